@@ -1,0 +1,41 @@
+// Primal-dual active set method for the condensed contact problem: find x with
+//
+//   x >= 0,   w = H x + q >= 0,   x . w = 0               H: n x n, symmetric positive definite
+//
+// (H = B A^-1 B^T, q = g - B A^-1 f, x = lambda, w = g - B u: a semismooth Newton method.)
+// Columns of H are asked for only when a node enters the active set for the first time. A repeated
+// active set is detected; single pivots by lowest index (Murty), which end for every such H, then
+// take over until the number of violations falls again.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// Returns the columns H(:, which) as an n x which.size() matrix; each column is asked for once.
+using ColumnSource = std::function<Matrix(const std::vector<Index> &which)>;
+
+struct LcpOptions {
+  double tolerance = 1e-13;    ///< violations relative to the scale of x and of w
+  int max_iterations = 0;      ///< 0: 50 + 10 n
+};
+
+struct LcpResult {
+  Vector x, w;
+  std::vector<Index> active;   ///< increasing
+  int iterations = 0;
+  int columns = 0;             ///< of H that were asked for
+  int backup_steps = 0;        ///< single pivots after a repeated active set
+  bool converged = false;
+  std::string reason;          ///< why it stopped
+};
+
+/// `start`: first guess of the active set (any order).
+LcpResult solve_lcp(const ColumnSource &columns, const Vector &q, const std::vector<Index> &start,
+                    const LcpOptions &options = {});
+
+} // namespace rbvi

@@ -1,0 +1,36 @@
+// The quantities of interest of one solve, full or reduced, and their table.
+#pragma once
+
+#include "rbvi/core/parameters.hpp"
+
+#include <optional>
+#include <ostream>
+#include <vector>
+
+namespace rbvi {
+
+/// A quantity that a scene does not have stays unset and has no column.
+struct Outputs {
+  std::optional<double> energy;          ///< J(u) = a(u,u)/2 - f(u)
+  std::optional<double> normal_force;    ///< integral of the multiplier
+  std::optional<double> tangential_force, reaction;
+  std::optional<double> contact_measure; ///< sum of the lumped weights of the active nodes
+  std::optional<double> contact_half_width, stick_half_width;
+  std::optional<double> peak_pressure, centre_pressure;
+  std::optional<double> min_u;
+  std::optional<double> kkt_residual;    ///< relative: stationarity, feasibility, complementarity
+  std::optional<double> max_penetration; ///< pointwise at the nodes of the contact region
+  std::optional<double> friction_violation;
+  std::optional<double> iterations;
+  std::optional<double> seconds;
+};
+
+/// Writes "radius,...,energy,...,seconds" and one row per mu; numbers with 10 digits (mu with 17).
+/// Columns are those set in the first row.
+void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector<Mu> &mus,
+               const std::vector<Outputs> &rows);
+
+/// "name value" lines for one answer.
+void print_outputs(std::ostream &out, const Outputs &outputs);
+
+} // namespace rbvi

@@ -1,0 +1,61 @@
+// Parameters, their box D, and sets of parameter values (training, validation, queries).
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// One value per parameter, in the order of the ParameterSpace it belongs to.
+using Mu = std::vector<double>;
+
+struct Parameter {
+  std::string name;
+  std::string unit; ///< "" when it has none
+  double lower = 0, upper = 0;
+  double value = 0; ///< used while the parameter is fixed
+};
+
+/// All parameters of a scene, and which of them are free. A `mu` given by a user, in a training
+/// set or in a file has one entry per free parameter; scene functions get one per parameter.
+struct ParameterSpace {
+  std::vector<Parameter> all;
+  std::vector<int> free; ///< indices into `all`, increasing
+
+  int size() const { return static_cast<int>(free.size()); }
+  const Parameter &at(int i) const { return all[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])]; }
+};
+
+/// Every parameter free.
+ParameterSpace all_free(std::vector<Parameter> parameters);
+
+/// Frees the named parameters only ("radius,center_x"). Throws bad_input for an unknown name.
+ParameterSpace free_only(const ParameterSpace &space, const std::string &names);
+
+/// The values of all parameters: `mu` for the free ones, `value` for the others.
+Mu expand(const ParameterSpace &space, const Mu &mu);
+
+/// Throws bad_input if mu has the wrong length, an entry that is not finite, or (unless
+/// `allow_outside`) lies outside the box by more than 1e-12 of its width.
+void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside = false);
+
+/// Reads "0.18,0.02,-0.01" (the free ones in order) or "radius=0.18,center_x=0" (the rest at
+/// the default value), and checks it. Throws bad_input.
+Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_outside = false);
+
+/// Reads "grid:5,5,5" (box ends included, last parameter fastest), "random:200:seed" (uniform,
+/// the same on every machine), or the name of a CSV file with a header of parameter names.
+/// Every mu is checked. Throws bad_input.
+std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
+                          bool allow_outside = false);
+
+/// "radius=0.18 center_x=0.02": for messages.
+std::string describe(const ParameterSpace &space, const Mu &mu);
+
+/// A finite decimal number that fills the whole text. Throws bad_input, naming `what`.
+double parse_number(const std::string &text, const std::string &what);
+
+/// "a,b,c" -> {"a", "b", "c"}; "" -> {}.
+std::vector<std::string> split(const std::string &text, char separator);
+
+} // namespace rbvi

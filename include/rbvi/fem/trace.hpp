@@ -1,0 +1,33 @@
+// The few displacement dofs that the contact forms touch: distributed vectors on one side,
+// replicated dense ones on the other.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/par/petsc.hpp"
+
+#include <vector>
+
+namespace rbvi {
+
+/// E: n_c unit columns. Each rank lists the contact dofs that it owns.
+struct Trace {
+  MPI_Comm comm = MPI_COMM_NULL;
+  PetscInt size = 0;                ///< n_c, the same on every rank
+  std::vector<PetscInt> local_row;  ///< owned free dof, local number (0 = first owned)
+  std::vector<PetscInt> index;      ///< its contact dof number, 0 .. n_c - 1
+};
+
+/// Collective. E^T u, on every rank.
+Vector restrict_to(const Trace &trace, Vec u);
+
+/// Collective. E^T M for a dense distributed matrix: n_c x columns, on every rank.
+Matrix restrict_to(const Trace &trace, Mat dense);
+
+/// f += E values. Not collective (each rank adds to the rows it owns).
+void add_extension(const Trace &trace, const Eigen::Ref<const Vector> &values, Vec f);
+
+/// M = E values (n_c x columns) as a dense distributed matrix with the row layout of `like`.
+/// Collective.
+Handle<Mat> extension(const Trace &trace, const Matrix &values, Mat like);
+
+} // namespace rbvi

@@ -1,0 +1,43 @@
+// Empirical interpolation of parameter-dependent matrices and vectors (B.3).
+//
+// The snapshots stay where they were assembled: each rank holds some of the entries, for all mu.
+// A step finds the largest residual entry over all ranks and shares its residual row (P numbers);
+// residuals are updated, never recomputed.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/par/petsc.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// An entry by the numbers of the undistributed mesh; a vector has column 0.
+struct EntryKey {
+  PetscInt row, column;
+  friend auto operator<=>(const EntryKey &, const EntryKey &) = default;
+};
+
+struct EimOptions {
+  double tolerance = 1e-3; ///< on (B.32)
+  int max_size = 0;        ///< 0: no bound
+};
+
+struct Eim {
+  std::vector<int> snapshots;    ///< training index of each term, J of them
+  std::vector<EntryKey> entries; ///< sampled entry of each term
+  Matrix interpolation;          ///< Q: J x J, lower triangular, unit diagonal (B.34)
+  Matrix combination;            ///< J x J upper triangular: term j = sum_{i <= j} A(mu_i) combination(i, j)
+  std::vector<double> error;     ///< e_EIM(j), j = 0, 1, ..., J (B.32): error[0] = 1
+  std::string reason;            ///< "separable: rank 1, error at round-off", "tolerance reached", ...
+  int size() const { return static_cast<int>(snapshots.size()); }
+};
+
+/// Collective. `values`: local entries x P; `keys`: one per local entry, each owned by one rank.
+/// Ties within 1e-10 relative go to the lowest training index, then the lowest key, so that the
+/// outcome does not depend on the number of ranks. All zero: J = 0.
+Eim eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
+        const EimOptions &options);
+
+} // namespace rbvi

@@ -1,0 +1,41 @@
+// Proper orthogonal decomposition in the V product: QR of the snapshots, then SVD of the small
+// factor (B.1), never the eigenvalues of a squared Gram matrix alone.
+#pragma once
+
+#include "rbvi/par/petsc.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// V-orthonormal columns, distributed like the snapshots.
+struct LinearBasis {
+  Handle<BV> columns; ///< its matrix (BVSetMatrix) is the V product
+  PetscInt size() const;
+};
+
+struct PodOptions {
+  double tolerance = 1e-6; ///< on e_POD (2.11)
+  PetscInt max_size = 0;   ///< 0: no bound
+};
+
+struct Pod {
+  LinearBasis basis;
+  std::vector<double> singular_values; ///< all, decreasing
+  std::vector<double> error;           ///< e_POD(n), n = 0, 1, ..., rank (2.11)
+  int dropped = 0;                     ///< snapshots that depend on earlier ones
+};
+
+/// Collective. `snapshots`: free dofs, all of one layout; `product`: Gram matrix of V. Columns whose
+/// remainder is below 1e-13 of their norm are dropped; singular values equal to 1e-8 relative are
+/// kept or cut together. The sign of each mode is fixed (largest projection coefficient positive).
+/// Throws failure if there is no snapshot or all are zero.
+Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &options);
+
+/// Collective. Appends `columns` (dense, distributed like the basis) after V-orthonormalisation
+/// against it, twice; a column with a remainder below `tolerance` of its norm is left out. Returns
+/// the positions of the columns taken.
+std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance);
+
+} // namespace rbvi
