@@ -1,0 +1,68 @@
+// The reference mesh: built in or read from Gmsh, partitioned by METIS, held by DMPlex, and handed
+// to the cell loops as plain arrays.
+#pragma once
+
+#include "rbvi/core/scene.hpp"
+#include "rbvi/par/petsc.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+struct MeshOptions {
+  std::string file; ///< Gmsh file; "" for the scene's built-in generator
+  int refine = 0;   ///< uniform refinements; interface vertices are brought back by Scene::snap
+};
+
+/// This rank's part of the mesh: its own cells and their vertices. Numbers called `natural` are
+/// those of the undistributed mesh, the same for any number of ranks.
+struct Mesh {
+  MPI_Comm comm = MPI_COMM_NULL;
+  Handle<DM> dm;
+  int dim = 2;
+  PetscInt total_vertices = 0, total_cells = 0; ///< of the undistributed mesh
+  std::string fingerprint;                      ///< hash of the undistributed mesh, 16 hex digits
+
+  std::vector<Point> points;                    ///< local vertices, reference coordinates
+  std::vector<PetscInt> natural_vertex;         ///< per local vertex
+  std::vector<PetscInt> dm_vertex;              ///< DMPlex point per local vertex
+  std::vector<bool> owned_vertex;               ///< per local vertex: each has one owner
+
+  std::vector<std::array<int, 4>> cells;        ///< owned cells: dim + 1 local vertices
+  std::vector<PetscInt> natural_cell;           ///< per owned cell
+
+  std::map<std::string, std::vector<bool>> region;   ///< per name: owned cells in it
+  std::map<std::string, std::vector<bool>> boundary; ///< per name: local vertices on it
+};
+
+/// The undistributed mesh on one process, vertices and cells in natural order.
+struct SerialMesh {
+  int dim = 2;
+  std::vector<Point> points;
+  std::vector<std::array<int, 4>> cells;             ///< dim + 1 vertices, positively oriented
+  std::map<std::string, std::vector<int>> region;    ///< cells of each named region
+  std::map<std::string, std::vector<int>> boundary;  ///< vertices of each named boundary
+};
+
+/// Unit square [-1/2, 1/2]^2 with a fitted disc of radius 0.2 about its centre (region "obstacle",
+/// boundary "boundary"): 3589 nodes, 469 of them in the closed disc. Deterministic: concentric
+/// rings of 6 k nodes in the disc, then 20 rings that turn from the circle into the square.
+SerialMesh square_with_disc();
+
+/// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the cell
+/// graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws
+/// bad_input: file missing or not a Gmsh mesh, a region or boundary of the scene's recipe not in
+/// it, the wrong dimension, order-2 elements (straightening is said in one line on stdout), an
+/// inverted cell.
+Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options);
+
+/// Quality of one mapped simplex: longest edge over the inradius, scaled to 1 for the regular one.
+double aspect_ratio(const Cell &cell);
+
+/// Maps the vertices of a cell and fills Cell::mapped. Throws failure if the mapped simplex is
+/// inverted or degenerate (volume <= 1e-12 of its longest edge to the power dim).
+Cell map_cell(const Scene &scene, const std::vector<double> &mu, const Cell &reference);
+
+} // namespace rbvi
