@@ -58,11 +58,4 @@ SerialMesh square_with_disc();
 /// inverted cell.
 Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options);
 
-/// Quality of one mapped simplex: longest edge over the inradius, scaled to 1 for the regular one.
-double aspect_ratio(const Cell &cell);
-
-/// Maps the vertices of a cell and fills Cell::mapped. Throws failure if the mapped simplex is
-/// inverted or degenerate (volume <= 1e-12 of its longest edge to the power dim).
-Cell map_cell(const Scene &scene, const std::vector<double> &mu, const Cell &reference);
-
 } // namespace rbvi
