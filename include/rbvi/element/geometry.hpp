@@ -8,8 +8,8 @@ namespace rbvi {
 
 /// Volume and gradients of the barycentric (P1) functions of a simplex.
 struct Simplex {
-  double volume = 0;                        ///< negative if inverted
-  Eigen::Matrix<double, 4, 3> gradients;    ///< row i: gradient of barycentric function i
+  double volume = 0;                     ///< negative if inverted
+  Eigen::Matrix<double, 4, 3> gradients; ///< row i: gradient of barycentric function i
 };
 
 /// From dim + 1 vertices, dim = 2 or 3.
