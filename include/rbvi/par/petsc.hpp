@@ -1,6 +1,7 @@
 // One throwing macro around PETSc and SLEPc calls, one move-only owner of their handles.
 #pragma once
 
+#include <petsc.h>
 #include <slepc.h>
 
 #include <utility>
