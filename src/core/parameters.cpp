@@ -82,7 +82,7 @@ int parse_count(const std::string &text, const std::string &what) {
 }
 
 /// The fraction t of the way through the box; fused, so that every machine rounds it alike.
-double in_box(const Parameter &p, double t) {
+double at_fraction(const Parameter &p, double t) {
   return t >= 1 ? p.upper : std::fma(t, p.upper - p.lower, p.lower);
 }
 
@@ -102,7 +102,7 @@ std::vector<Mu> grid(const ParameterSpace &space, const std::string &counts) {
     for (const Mu &mu : set)
       for (int k = 0; k < count; ++k) {
         finer.push_back(mu);
-        finer.back().push_back(in_box(space.at(i), count == 1 ? 0.5 : double(k) / (count - 1)));
+        finer.back().push_back(at_fraction(space.at(i), count == 1 ? 0.5 : double(k) / (count - 1)));
       }
     set = std::move(finer);
   }
@@ -129,7 +129,7 @@ std::vector<Mu> random_set(const ParameterSpace &space, const std::string &text)
   std::vector<Mu> set(static_cast<std::size_t>(count));
   for (Mu &mu : set)
     for (int i = 0; i < space.size(); ++i)
-      mu.push_back(in_box(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
+      mu.push_back(at_fraction(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
   return set;
 }
 
@@ -250,6 +250,21 @@ Mu expand(const ParameterSpace &space, const Mu &mu) {
   return values;
 }
 
+namespace {
+
+bool in_bounds(const Parameter &p, double value) {
+  const double slack = 1e-12 * (p.upper - p.lower);
+  return value >= p.lower - slack && value <= p.upper + slack;
+}
+
+} // namespace
+
+bool in_box(const ParameterSpace &space, const Mu &mu) {
+  for (std::size_t i = 0; i < mu.size(); ++i)
+    if (!in_bounds(space.at(static_cast<int>(i)), mu[i])) return false;
+  return true;
+}
+
 void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside) {
   if (static_cast<int>(mu.size()) != space.size())
     throw bad_input(std::to_string(mu.size()) + " values for " + std::to_string(space.size()) +
@@ -257,8 +272,7 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside) {
   for (std::size_t i = 0; i < mu.size(); ++i) {
     const Parameter &p = space.at(static_cast<int>(i));
     if (!std::isfinite(mu[i])) throw bad_input("parameter " + p.name + " is not finite");
-    const double slack = 1e-12 * (p.upper - p.lower);
-    if (!allow_outside && (mu[i] < p.lower - slack || mu[i] > p.upper + slack))
+    if (!allow_outside && !in_bounds(p, mu[i]))
       throw bad_input(p.name + " = " + shortest(mu[i]) + " is outside [" + shortest(p.lower) +
                       ", " + shortest(p.upper) + "]");
   }

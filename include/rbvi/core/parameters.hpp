@@ -35,6 +35,9 @@ ParameterSpace free_only(const ParameterSpace &space, const std::string &names);
 /// The values of all parameters: `mu` for the free ones, `value` for the others.
 Mu expand(const ParameterSpace &space, const Mu &mu);
 
+/// Whether each value lies in the box, to 1e-12 of its width.
+bool in_box(const ParameterSpace &space, const Mu &mu);
+
 /// Throws bad_input if mu has the wrong length, an entry that is not finite, or (unless
 /// `allow_outside`) lies outside the box by more than 1e-12 of its width.
 void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside = false);
