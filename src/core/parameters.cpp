@@ -167,7 +167,8 @@ Mu read_row(const ParameterSpace &space, const std::vector<std::size_t> &columns
 std::vector<Mu> csv_file(const ParameterSpace &space, const std::string &name, bool allow_outside) {
   std::ifstream in(name);
   std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
+  const bool empty = in && in.peek() == EOF && !in.bad();
+  if (!empty && !(text << in.rdbuf()))
     throw bad_input("cannot read '" + name + "' (a set is grid:5,5, random:200:1 or a CSV file)");
   std::istringstream lines(text.str());
   std::vector<Mu> set;
