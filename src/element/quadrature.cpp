@@ -8,17 +8,16 @@ double factorial(int n) {
   return n <= 1 ? 1.0 : n * factorial(n - 1);
 }
 
-/// Calls visit(k) for every multi-index of `count` entries >= 0 that sum to `total`.
-template <class Visit>
-void compositions(std::array<int, 4> &k, int position, int count, int total, Visit &&visit) {
-  const auto at = static_cast<std::size_t>(position);
-  if (position == count - 1) {
-    k[at] = total;
-    visit(k);
-    return;
-  }
-  for (k[at] = 0; k[at] <= total; ++k[at])
-    compositions(k, position + 1, count, total - k[at], visit);
+/// Every multi-index of dim + 1 entries >= 0 (the rest zero) that sum to `total`.
+std::vector<std::array<int, 4>> compositions(int dim, int total) {
+  std::vector<std::array<int, 4>> all;
+  for (int i = 0; i <= total; ++i)
+    for (int j = 0; i + j <= total; ++j)
+      for (int k = 0; k <= (dim >= 2 ? total - i - j : 0); ++k) {
+        const int rest = total - i - j - k;
+        if (rest == 0 || dim == 3) all.push_back({i, j, k, rest});
+      }
+  return all;
 }
 
 } // namespace
@@ -35,14 +34,12 @@ std::vector<QuadraturePoint> simplex_quadrature(int dim, int degree) {
       weight /= 2;
     for (int power = 0; power < d; ++power)
       weight *= denominator;
-    std::array<int, 4> k{};
-    compositions(k, 0, dim + 1, s - i, [&](const std::array<int, 4> &index) {
+    for (const std::array<int, 4> &k : compositions(dim, s - i)) {
       QuadraturePoint point{{0, 0, 0, 0}, weight};
-      for (int j = 0; j <= dim; ++j)
-        point.barycentric[static_cast<std::size_t>(j)] =
-            (2.0 * index[static_cast<std::size_t>(j)] + 1) / denominator;
+      for (std::size_t j = 0; j <= static_cast<std::size_t>(dim); ++j)
+        point.barycentric[j] = (2.0 * k[j] + 1) / denominator;
       points.push_back(point);
-    });
+    }
   }
   return points;
 }

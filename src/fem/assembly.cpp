@@ -100,7 +100,8 @@ void assemble_vector(const Form &form, const Mu &mu, const Mesh &mesh, const Dof
     if (!in_region(mesh, form.region, k)) continue;
     const std::size_t count = cell_rows(mesh, dofs, k, rows);
     form.kernel(mu, cells.cells[k], values.data());
-    RBVI_CALL(VecSetValues(vector, static_cast<PetscInt>(count), rows.data(), values.data(), ADD_VALUES));
+    RBVI_CALL(
+        VecSetValues(vector, static_cast<PetscInt>(count), rows.data(), values.data(), ADD_VALUES));
   }
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));

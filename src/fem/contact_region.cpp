@@ -12,11 +12,12 @@ namespace rbvi {
 
 namespace {
 
-/// Everybody's cells of the region as records: cell, its vertices (natural), fixed flags, coordinates.
+/// Everybody's cells of the region as records: cell, its vertices (natural), fixed flags,
+/// coordinates.
 struct Gathered {
-  std::vector<PetscInt> numbers;  ///< 1 + (dim + 1) per cell
-  std::vector<double> points;     ///< (dim + 1) * 3 per cell
-  std::vector<PetscInt> fixed;    ///< dim + 1 per cell
+  std::vector<PetscInt> numbers; ///< 1 + (dim + 1) per cell
+  std::vector<double> points;    ///< (dim + 1) * 3 per cell
+  std::vector<PetscInt> fixed;   ///< dim + 1 per cell
 };
 
 Gathered gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<bool> &in_region) {
@@ -31,7 +32,8 @@ Gathered gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<bool
       mine.fixed.push_back(dofs.free[v * static_cast<std::size_t>(dofs.components)] < 0);
     }
   }
-  return {gather_all(mesh.comm, mine.numbers, MPIU_INT), gather_all(mesh.comm, mine.points, MPI_DOUBLE),
+  return {gather_all(mesh.comm, mine.numbers, MPIU_INT),
+          gather_all(mesh.comm, mine.points, MPI_DOUBLE),
           gather_all(mesh.comm, mine.fixed, MPIU_INT)};
 }
 
@@ -97,7 +99,8 @@ ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std:
   return region;
 }
 
-std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene, const Mu &mu) {
+std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene,
+                                       const Mu &mu) {
   std::vector<Point> mapped;
   mapped.reserve(region.points.size());
   for (const Point &x : region.points)
@@ -127,7 +130,8 @@ ContactMatrix::ContactMatrix(const ContactRegion &region, Columns columns) {
       for (std::size_t j = 0; j < corners; ++j)
         for (std::size_t c = 0; c < components; ++c) {
           const auto vertex = static_cast<std::size_t>(cell[j]);
-          entries.emplace_back(cell[i], dual ? cell[j] : region.contact_dof[vertex * components + c]);
+          entries.emplace_back(cell[i],
+                               dual ? cell[j] : region.contact_dof[vertex * components + c]);
         }
   std::vector<Eigen::Triplet<double>> triplets;
   for (const auto &[row, column] : entries)
@@ -139,7 +143,8 @@ ContactMatrix::ContactMatrix(const ContactRegion &region, Columns columns) {
     position_.push_back(column < 0 ? -1 : &matrix_.coeffRef(row, column) - matrix_.valuePtr());
 }
 
-const SparseMatrix &ContactMatrix::assemble(const Form &form, const Mu &mu, const std::vector<Cell> &cells) {
+const SparseMatrix &ContactMatrix::assemble(const Form &form, const Mu &mu,
+                                            const std::vector<Cell> &cells) {
   std::vector<double> values(per_cell_);
   std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
   auto position = position_.begin();

@@ -61,8 +61,8 @@ Dofs number_dofs(const Mesh &mesh, int components, const std::string &fixed_boun
 Handle<Vec> make_vector(const Dofs &dofs) {
   Handle<Vec> vector;
   RBVI_CALL(VecCreate(dofs.comm, vector.put()));
-  RBVI_CALL(VecSetSizes(vector.get(), static_cast<PetscInt>(dofs.natural_owned.size()),
-                        dofs.total_free));
+  RBVI_CALL(
+      VecSetSizes(vector.get(), static_cast<PetscInt>(dofs.natural_owned.size()), dofs.total_free));
   RBVI_CALL(VecSetType(vector.get(), VECSTANDARD));
   RBVI_CALL(VecZeroEntries(vector.get()));
   return vector;

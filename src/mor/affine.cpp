@@ -98,7 +98,8 @@ std::vector<std::pair<int, int>> touched(const std::vector<EntryKey> &entries,
 }
 
 /// Cells of the contact region; columns are contact dofs for b, the single 0 for g.
-SampleMesh sample_contact(const ContactRegion &region, const std::vector<EntryKey> &entries, bool matrix) {
+SampleMesh sample_contact(const ContactRegion &region, const std::vector<EntryKey> &entries,
+                          bool matrix) {
   std::vector<TouchedCell> cells;
   const auto components = static_cast<std::size_t>(region.components);
   for (std::size_t k = 0; k < region.cells.size(); ++k) {
@@ -148,7 +149,8 @@ std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCe
 }
 
 /// Cells of the whole mesh; matrix: rows and columns are natural dofs, vector: column 0.
-SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &entries, bool matrix) {
+SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &entries,
+                         bool matrix) {
   const Mesh &mesh = problem.mesh();
   const auto components = problem.dofs().components;
   std::vector<TouchedCell> mine;
@@ -187,7 +189,8 @@ Vector local_values(Vec vector) {
 
 } // namespace
 
-AffineOperators separate(Problem &problem, const std::vector<Mu> &training, const EimOptions &options) {
+AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
+                         const EimOptions &options) {
   const auto count = static_cast<Index>(training.size());
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());

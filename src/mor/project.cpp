@@ -32,7 +32,8 @@ private:
 };
 
 void sum_over_ranks(MPI_Comm comm, Matrix &values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                comm);
 }
 
 /// V^T A V, its lower triangle column by column. Collective.
@@ -45,7 +46,8 @@ Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
   Vector packed(n * (n + 1) / 2);
   Index next = 0;
   for (Index j = 0; j < n; ++j) {
-    packed.segment(next, n - j) = (full.col(j).tail(n - j) + full.row(j).tail(n - j).transpose()) / 2;
+    packed.segment(next, n - j) =
+        (full.col(j).tail(n - j) + full.row(j).tail(n - j).transpose()) / 2;
     next += n - j;
   }
   return packed;
@@ -97,8 +99,8 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     mine.push_back(static_cast<int>(mesh.natural_cell[k]));
     for (int i = 0; i < corners; ++i)
-      mine.push_back(static_cast<int>(
-          mesh.natural_vertex[static_cast<std::size_t>(mesh.cells[k][static_cast<std::size_t>(i)])]));
+      mine.push_back(static_cast<int>(mesh.natural_vertex[static_cast<std::size_t>(
+          mesh.cells[k][static_cast<std::size_t>(i)])]));
   }
   const std::vector<int> all = gather_all(problem.comm(), mine, MPI_INT);
   model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * corners));
@@ -107,9 +109,11 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
 
   model.contact_points.resize(contact.dual_size(), mesh.dim);
   for (Index r = 0; r < contact.dual_size(); ++r) {
-    model.contact_nodes.push_back(static_cast<int>(contact.natural_vertex[static_cast<std::size_t>(r)]));
+    model.contact_nodes.push_back(
+        static_cast<int>(contact.natural_vertex[static_cast<std::size_t>(r)]));
     for (int c = 0; c < mesh.dim; ++c)
-      model.contact_points(r, c) = contact.points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+      model.contact_points(r, c) =
+          contact.points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
   }
   for (const auto &cell : contact.cells)
     model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + corners);
@@ -142,7 +146,8 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
 
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
-    if (uses(affine.a, p)) accumulate(affine.a, p, project_stiffness(problem.comm(), op.a, basis), model.a.reduced);
+    if (uses(affine.a, p))
+      accumulate(affine.a, p, project_stiffness(problem.comm(), op.a, basis), model.a.reduced);
     const Matrix b = model.dual_basis.transpose() * (op.b * trace);
     accumulate(affine.b, p, b.reshaped(), model.b.reduced);
     accumulate(affine.b, p, op.weights, model.lumped_weights);
@@ -156,7 +161,8 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
       sum_over_ranks(problem.comm(), f);
       accumulate(affine.f, p, f, model.f.reduced);
     }
-    model.gap_scale = std::max(model.gap_scale, op.g.cwiseQuotient(op.weights).cwiseAbs().maxCoeff());
+    model.gap_scale =
+        std::max(model.gap_scale, op.g.cwiseQuotient(op.weights).cwiseAbs().maxCoeff());
   }
 
   const auto &contact = problem.contact();
@@ -165,13 +171,15 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     const BorrowedRows rows(basis);
     const auto local = rows.rows();
     for (Index i = 0; i < local.rows(); ++i)
-      model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) = local.row(i);
+      model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
+          local.row(i);
   }
   sum_over_ranks(problem.comm(), model.primal_basis);
   RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
   model.contact_trace.resize(contact.dual_size(), n);
   for (Index r = 0; r < contact.dual_size(); ++r)
-    model.contact_trace.row(r) = model.primal_basis.row(contact.natural_vertex[static_cast<std::size_t>(r)]);
+    model.contact_trace.row(r) =
+        model.primal_basis.row(contact.natural_vertex[static_cast<std::size_t>(r)]);
   model.histories["pod/error"] = bases.pod.error;
   model.histories["cone/error"] = bases.cone.history.error;
   model.histories["cone/e_orth"] = bases.cone.history.e_orth;

@@ -27,7 +27,8 @@ private:
   double start_;
 };
 
-Pod compress_displacements(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options) {
+Pod compress_displacements(Problem &problem, const std::vector<Sample> &samples,
+                           const PodOptions &options) {
   std::vector<Handle<Vec>> owned;
   std::vector<Vec> snapshots;
   for (const Sample &sample : samples) {
@@ -109,12 +110,13 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
       training.push_back(sample.mu);
     if (b_is_scaled) training.resize(1);
     const Matrix modes = mode_coordinates(bases.riesz, bases.pod.basis, problem.trace());
-    bases.pga = projected_greedy(bases.riesz, modes,
-                                 supremizers_at(problem, bases.riesz, bases.dual, training), options.pga);
+    bases.pga =
+        projected_greedy(bases.riesz, modes,
+                         supremizers_at(problem, bases.riesz, bases.dual, training), options.pga);
     if (bases.pga.representers.cols() > 0)
       bases.supremizers = static_cast<int>(
-          append_orthonormalised(bases.pod.basis,
-                                 supremizer_fields(bases.riesz, bases.pga.representers).get(), 1e-10)
+          append_orthonormalised(
+              bases.pod.basis, supremizer_fields(bases.riesz, bases.pga.representers).get(), 1e-10)
               .size());
   }
   return bases;

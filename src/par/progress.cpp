@@ -12,8 +12,9 @@ constexpr Seconds between_lines{5}, between_updates{0.1};
 } // namespace
 
 Progress::Progress(std::string what, int total, bool reports)
-    : what_(std::move(what)), total_(total), reports_(reports), terminal_(isatty(STDOUT_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()), last_(start_) {}
+    : what_(std::move(what)), total_(total), reports_(reports),
+      terminal_(isatty(STDOUT_FILENO) == 1), start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
 
 void Progress::update(int done, const std::string &detail) {
   if (!reports_ || done == 0) return;

@@ -23,9 +23,9 @@ SparseMatrix reference_w_product(const ContactRegion &region, const Scene &scene
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
     : scene_(std::move(scene)), mesh_(make_mesh(comm, scene_, options)),
       dofs_(number_dofs(mesh_, scene_.components, scene_.fixed_boundary)),
-      contact_(make_contact_region(mesh_, dofs_, scene_.contact_region)), cells_(reference_cells(mesh_)),
-      a_(make_matrix(mesh_, dofs_, scene_.a.region)), f_(make_vector(dofs_)),
-      b_(contact_, ContactMatrix::Columns::contact_dofs),
+      contact_(make_contact_region(mesh_, dofs_, scene_.contact_region)),
+      cells_(reference_cells(mesh_)), a_(make_matrix(mesh_, dofs_, scene_.a.region)),
+      f_(make_vector(dofs_)), b_(contact_, ContactMatrix::Columns::contact_dofs),
       w_product_(reference_w_product(contact_, scene_)) {}
 
 void Problem::assemble_contact(const Mu &mu, Operators &operators) {

@@ -16,7 +16,9 @@ double norm(Vec v) {
   return value;
 }
 
-double ratio(double value, double scale) { return scale > 0 ? value / scale : value; }
+double ratio(double value, double scale) {
+  return scale > 0 ? value / scale : value;
+}
 
 Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
                 const HfSolution &solution) {
@@ -67,7 +69,8 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
   kkt.stationarity = ratio(norm(r.get()), norm(op.f) + norm(reaction.get()));
   kkt.feasibility = ratio(std::max(0.0, excess.cwiseQuotient(op.weights).maxCoeff()),
                           op.g.cwiseQuotient(op.weights).cwiseAbs().maxCoeff());
-  kkt.complementarity = ratio(lambda.cwiseProduct(excess).cwiseAbs().sum(), lambda.norm() * op.g.norm());
+  kkt.complementarity =
+      ratio(lambda.cwiseProduct(excess).cwiseAbs().sum(), lambda.norm() * op.g.norm());
   kkt.sign = std::max(0.0, ratio(-lambda.minCoeff(), lambda.cwiseAbs().maxCoeff()));
   return kkt;
 }
@@ -124,7 +127,8 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   solution.outputs.seconds = MPI_Wtime() - start;
   if (options_.method == HfMethod::active_set && solution.kkt.largest() > 1e-10)
     throw failure("the KKT residual is " + std::to_string(solution.kkt.largest()) +
-                  ", above 1e-10: is the mesh or the parameter extreme? Try -hf_pc_factor_mat_solver_type mumps");
+                  ", above 1e-10: is the mesh or the parameter extreme? Try "
+                  "-hf_pc_factor_mat_solver_type mumps");
   solved_.push_back({mu, solution.active});
   return solution;
 }

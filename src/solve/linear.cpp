@@ -23,8 +23,9 @@ void solve_linear(KSP ksp, Vec rhs, Vec x) {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
   if (reason < 0)
-    throw failure(std::string("the linear solver stopped with ") + KSPConvergedReasons[reason] +
-                  ": is the stiffness matrix singular? Try -hf_pc_type lu or a tighter -hf_ksp_rtol");
+    throw failure(
+        std::string("the linear solver stopped with ") + KSPConvergedReasons[reason] +
+        ": is the stiffness matrix singular? Try -hf_pc_type lu or a tighter -hf_ksp_rtol");
 }
 
 Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda) {

@@ -27,7 +27,9 @@ double largest_eigenvalue(KSP ksp, const Trace &trace, const Operators &op, Vec 
   return 1.01 * estimate;
 }
 
-double w_norm(const SparseMatrix &w, const Vector &x) { return std::sqrt(x.dot(w * x)); }
+double w_norm(const SparseMatrix &w, const Vector &x) {
+  return std::sqrt(x.dot(w * x));
+}
 
 } // namespace
 
@@ -40,7 +42,8 @@ MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
       options.uzawa_step > 0 ? options.uzawa_step : 1 / largest_eigenvalue(ksp, trace, op, u);
   Vector lambda = Vector::Zero(op.g.size()), extrapolated = lambda;
   double momentum = 1;
-  for (result.iterations = 1; result.iterations <= options.uzawa_max_iterations; ++result.iterations) {
+  for (result.iterations = 1; result.iterations <= options.uzawa_max_iterations;
+       ++result.iterations) {
     solve_linear(ksp, reaction_rhs(trace, op, extrapolated).get(), u);
     const Vector violation = op.b * restrict_to(trace, u) - op.g;
     const Vector next = (extrapolated + step * violation).cwiseMax(0);

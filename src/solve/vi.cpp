@@ -47,7 +47,8 @@ void nodal_bounds(const Trace &trace, const Operators &op, Vec lower, Vec upper)
     for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry) {
       if (entry.value() == 0) continue;
       if (entry.col() != i)
-        throw bad_input("vi needs a bound at each node: set -lumped yes, or use -hf_method active_set");
+        throw bad_input(
+            "vi needs a bound at each node: set -lumped yes, or use -hf_method active_set");
       (entry.value() < 0 ? low : high)[entry.col()] = op.g[i] / entry.value();
     }
   PetscScalar *l = nullptr, *h = nullptr;
@@ -72,7 +73,8 @@ Vector recover_multiplier(const Trace &trace, const Operators &op, Vec u) {
   for (Index i = 0; i < lambda.size(); ++i) {
     const double diagonal = op.b.coeff(i, i), bound = op.g[i] / diagonal;
     const double scale = std::max(std::abs(bound), op.obstacle.cwiseAbs().maxCoeff());
-    if (std::abs(trace_u[i] - bound) <= 1e-12 * scale) lambda[i] = std::max(0.0, reaction[i] / diagonal);
+    if (std::abs(trace_u[i] - bound) <= 1e-12 * scale)
+      lambda[i] = std::max(0.0, reaction[i] / diagonal);
   }
   return lambda;
 }
@@ -117,8 +119,9 @@ MethodResult solve_vi(const Problem &problem, const Operators &op) {
   RBVI_CALL(SNESGetIterationNumber(snes.get(), &iterations));
   result.iterations = static_cast<int>(iterations);
   result.converged = reason > 0;
-  result.reason = std::string("SNES: ") + SNESConvergedReasons[reason] +
-                  (reason > 0 ? "" : ": try -vi_snes_max_it, another -vi_snes_type, or -hf_method active_set");
+  result.reason =
+      std::string("SNES: ") + SNESConvergedReasons[reason] +
+      (reason > 0 ? "" : ": try -vi_snes_max_it, another -vi_snes_type, or -hf_method active_set");
   result.lambda = recover_multiplier(problem.trace(), op, result.u.get());
   for (Index i = 0; i < result.lambda.size(); ++i)
     if (result.lambda[i] > 0) result.active.push_back(i);

@@ -12,11 +12,10 @@ namespace {
 constexpr int sample_schema = 1;
 
 /// The outputs that a sample stores, in the order of their file record.
-constexpr std::array stored_outputs{&Outputs::energy,        &Outputs::normal_force,
-                                    &Outputs::contact_measure, &Outputs::peak_pressure,
-                                    &Outputs::min_u,         &Outputs::kkt_residual,
-                                    &Outputs::max_penetration, &Outputs::iterations,
-                                    &Outputs::seconds};
+constexpr std::array stored_outputs{
+    &Outputs::energy,          &Outputs::normal_force, &Outputs::contact_measure,
+    &Outputs::peak_pressure,   &Outputs::min_u,        &Outputs::kkt_residual,
+    &Outputs::max_penetration, &Outputs::iterations,   &Outputs::seconds};
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const std::vector<std::string> &names, const std::vector<std::string> &values) {
@@ -28,8 +27,9 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
     const auto found = theirs.find(name);
     const std::string other = found == theirs.end() ? "not set" : found->second;
     if (other != value)
-      throw bad_input("the samples in " + path.parent_path().string() + " were made with " + name + " = " +
-                      other + ", now it is " + value + ": use another -out or restore the option");
+      throw bad_input("the samples in " + path.parent_path().string() + " were made with " + name +
+                      " = " + other + ", now it is " + value +
+                      ": use another -out or restore the option");
   }
   throw bad_input("the samples in " + path.parent_path().string() +
                   " were made with options that this scene no longer has: use another -out");
@@ -37,7 +37,8 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
 
 } // namespace
 
-void write_sample(const std::filesystem::path &path, const Sample &sample, const Settings &settings) {
+void write_sample(const std::filesystem::path &path, const Sample &sample,
+                  const Settings &settings) {
   std::vector<std::string> names, values;
   for (const auto &[name, value] : settings) {
     names.push_back(name);

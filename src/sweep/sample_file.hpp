@@ -5,7 +5,8 @@
 
 namespace rbvi {
 
-void write_sample(const std::filesystem::path &path, const Sample &sample, const Settings &settings);
+void write_sample(const std::filesystem::path &path, const Sample &sample,
+                  const Settings &settings);
 
 /// Throws bad_input if the file was made with other settings, naming one of them.
 Sample read_sample(const std::filesystem::path &path, const Settings &settings);

@@ -23,11 +23,13 @@ std::string number(double value) {
   return text;
 }
 
-fs::path failure_file(const fs::path &sample) { return fs::path(sample).replace_extension("failed"); }
+fs::path failure_file(const fs::path &sample) {
+  return fs::path(sample).replace_extension("failed");
+}
 
 /// Solves one sample; its file, or the file with the reason of its failure, is there afterwards.
-void solve_sample(HighFidelity &solver, const Groups &groups, const ParameterSpace &space, const Mu &mu,
-                  const fs::path &file, const Settings &settings) {
+void solve_sample(HighFidelity &solver, const Groups &groups, const ParameterSpace &space,
+                  const Mu &mu, const fs::path &file, const Settings &settings) {
   std::string reason;
   Sample sample{mu, {}, {}, {}};
   try {
@@ -55,8 +57,8 @@ double median(std::vector<double> values) {
 }
 
 /// The numbers of `set` that have no sample yet, agreed by rank 0 for all.
-std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directory,
-                                 bool reuse) {
+std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
+                                 const fs::path &directory, bool reuse) {
   std::vector<int> missing(set.size(), 1);
   collectively(world, [&] {
     int rank = 0;
@@ -64,7 +66,8 @@ std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set, con
     if (rank != 0) return;
     std::error_code error;
     fs::create_directories(directory, error);
-    if (error) throw failure("cannot make the directory " + directory.string() + ": " + error.message());
+    if (error)
+      throw failure("cannot make the directory " + directory.string() + ": " + error.message());
     for (std::size_t i = 0; i < set.size(); ++i)
       missing[i] = !reuse || !fs::exists(sample_file(directory, set[i]));
   });
@@ -112,13 +115,15 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
   settings["parameters"] = free;
   const char *methods[] = {"active_set", "uzawa", "vi"};
   settings["hf_method"] = methods[static_cast<int>(options.method)];
-  if (options.method == HfMethod::uzawa) settings["uzawa_tolerance"] = number(options.uzawa_tolerance);
+  if (options.method == HfMethod::uzawa)
+    settings["uzawa_tolerance"] = number(options.uzawa_tolerance);
   return settings;
 }
 
 fs::path sample_file(const fs::path &directory, const Mu &mu) {
   char name[32];
-  std::snprintf(name, sizeof name, "%016" PRIx64 ".h5", fnv1a(mu.data(), mu.size() * sizeof(double)));
+  std::snprintf(name, sizeof name, "%016" PRIx64 ".h5",
+                fnv1a(mu.data(), mu.size() * sizeof(double)));
   return directory / name;
 }
 
@@ -146,7 +151,8 @@ Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const Hf
     for (int k = begin; k < end; ++k) {
       const Mu &mu = set[static_cast<std::size_t>(missing[static_cast<std::size_t>(k)])];
       collectively(groups.comm(), [&] {
-        solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu), settings);
+        solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
+                     settings);
       });
       progress.update(k + 1 - begin, std::to_string(groups.count()) + " groups");
     }

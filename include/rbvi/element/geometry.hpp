@@ -15,8 +15,8 @@ struct Simplex {
 /// From dim + 1 vertices, dim = 2 or 3.
 Simplex simplex(int dim, const std::array<Point, 4> &vertices);
 
-/// Throws failure, naming mu, if the mapped simplex is inverted or degenerate (volume <= 1e-12 times
-/// its longest edge to the power dim).
+/// Throws failure, naming mu, if the mapped simplex is inverted or degenerate (volume <= 1e-12
+/// times its longest edge to the power dim).
 void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell);
 
 /// Fills Cell::mapped by h(mu) and checks its orientation.

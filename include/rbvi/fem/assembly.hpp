@@ -16,8 +16,8 @@ struct MappedCells {
 /// Collective. The reference cells, `mapped` equal to `reference`.
 MappedCells reference_cells(const Mesh &mesh);
 
-/// Collective. Moves the vertices by h(mu): each vertex is mapped once. Throws failure on every rank
-/// if a cell of any rank is inverted.
+/// Collective. Moves the vertices by h(mu): each vertex is mapped once. Throws failure on every
+/// rank if a cell of any rank is inverted.
 void map_cells(const Scene &scene, const Mu &mu, const Mesh &mesh, MappedCells &cells);
 
 /// A square matrix of free dofs whose pattern is fixed by the cells of `region` ("": all).

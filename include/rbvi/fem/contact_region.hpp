@@ -10,11 +10,11 @@ namespace rbvi {
 
 struct ContactRegion {
   int dim = 2, components = 1;
-  std::vector<PetscInt> natural_vertex;      ///< per dual dof, increasing
-  std::vector<Point> points;                 ///< per dual dof, reference coordinates
-  std::vector<std::array<int, 4>> cells;     ///< dual dofs of each cell, in natural order of cells
-  std::vector<int> contact_dof;              ///< per dual dof * components + c: 0 .. n_c - 1, or -1
-  Trace trace;                               ///< contact dof -> displacement dof
+  std::vector<PetscInt> natural_vertex;  ///< per dual dof, increasing
+  std::vector<Point> points;             ///< per dual dof, reference coordinates
+  std::vector<std::array<int, 4>> cells; ///< dual dofs of each cell, in natural order of cells
+  std::vector<int> contact_dof;          ///< per dual dof * components + c: 0 .. n_c - 1, or -1
+  Trace trace;                           ///< contact dof -> displacement dof
   Index dual_size() const { return static_cast<Index>(points.size()); }
 };
 
@@ -22,7 +22,8 @@ struct ContactRegion {
 ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std::string &region);
 
 /// Not collective. The region's cells, `mapped` filled by h(mu).
-std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene, const Mu &mu);
+std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene,
+                                       const Mu &mu);
 
 /// Assembles dual x contact-dof matrices (or dual x dual ones) with one pattern. Not collective.
 class ContactMatrix {

@@ -14,9 +14,9 @@ namespace rbvi {
 struct Dofs {
   MPI_Comm comm = MPI_COMM_NULL;
   int components = 1;
-  PetscInt total = 0;      ///< all dofs, fixed ones included
-  PetscInt total_free = 0; ///< rows of the system
-  PetscInt first_free = 0; ///< first row owned by this rank
+  PetscInt total = 0;                  ///< all dofs, fixed ones included
+  PetscInt total_free = 0;             ///< rows of the system
+  PetscInt first_free = 0;             ///< first row owned by this rank
   std::vector<PetscInt> free;          ///< per local vertex * components + component: row or -1
   std::vector<PetscInt> natural_owned; ///< per owned row: its natural number
 };

@@ -15,6 +15,7 @@ struct AffineOperators {
 
 /// Collective. Assembles the operators at every mu of `training` (A: its lower triangle) and
 /// interpolates each.
-AffineOperators separate(Problem &problem, const std::vector<Mu> &training, const EimOptions &options);
+AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
+                         const EimOptions &options);
 
 } // namespace rbvi

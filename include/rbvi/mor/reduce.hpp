@@ -20,13 +20,13 @@ struct ReduceOptions {
 
 /// A basis pair with what is known about its stability. Coordinates as in mor/stability.hpp.
 struct ReducedBases {
-  Pod pod;               ///< basis: N modes, then the S supremizers, V-orthonormal
+  Pod pod; ///< basis: N modes, then the S supremizers, V-orthonormal
   Cone cone;
   RieszSpace riesz;
   Pga pga;
-  Matrix dual;           ///< orthonormal basis of the span of the cone
-  int modes = 0;         ///< N
-  int supremizers = 0;   ///< S
+  Matrix dual;         ///< orthonormal basis of the span of the cone
+  int modes = 0;       ///< N
+  int supremizers = 0; ///< S
 };
 
 /// Wall seconds of each stage, in order.

@@ -9,7 +9,8 @@
 namespace rbvi {
 
 /// Collective. The entries of rank 0, then of rank 1, ..., on every rank; `type` is T's.
-template <class T> std::vector<T> gather_all(MPI_Comm comm, const std::vector<T> &mine, MPI_Datatype type) {
+template <class T>
+std::vector<T> gather_all(MPI_Comm comm, const std::vector<T> &mine, MPI_Datatype type) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   std::vector<int> counts(static_cast<std::size_t>(ranks)), offsets(counts.size(), 0);

@@ -2,8 +2,8 @@
 //
 //   A u + B^T lambda = F,    B u <= G,    lambda >= 0,    lambda . (B u - G) = 0.
 //
-// A and F are distributed over the free dofs; B acts on the contact dofs alone (B u = B_c E^T u) and
-// is replicated, as are G and lambda.
+// A and F are distributed over the free dofs; B acts on the contact dofs alone (B u = B_c E^T u)
+// and is replicated, as are G and lambda.
 #pragma once
 
 #include "rbvi/fem/assembly.hpp"
@@ -15,13 +15,13 @@ namespace rbvi {
 
 /// Valid until the problem is assembled at another mu.
 struct Operators {
-  Mu mu;                ///< all parameters
+  Mu mu; ///< all parameters
   Mat a = nullptr;
-  Vec f = nullptr;      ///< zero where the scene has no load
-  SparseMatrix b;       ///< dual x contact dofs
-  Vector g;             ///< dual
-  Vector weights;       ///< integral of each hat function over the mapped contact region
-  Vector obstacle;      ///< psi at the mapped nodes of the contact region
+  Vec f = nullptr; ///< zero where the scene has no load
+  SparseMatrix b;  ///< dual x contact dofs
+  Vector g;        ///< dual
+  Vector weights;  ///< integral of each hat function over the mapped contact region
+  Vector obstacle; ///< psi at the mapped nodes of the contact region
 };
 
 class Problem {
@@ -42,7 +42,7 @@ public:
   /// Not collective: the contact operators alone, B, G, weights and obstacle.
   void assemble_contact(const Mu &mu, Operators &operators);
 
-  Mat v_product();                        ///< Gram matrix of V, assembled at the first call. Collective.
+  Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
   const SparseMatrix &w_product() const { return w_product_; } ///< dual x dual
 
 private:

@@ -19,10 +19,10 @@ enum class HfMethod { active_set, uzawa, vi };
 
 struct HfOptions {
   HfMethod method = HfMethod::active_set;
-  double uzawa_tolerance = 1e-6;    ///< relative change of lambda in W (3.19)
+  double uzawa_tolerance = 1e-6; ///< relative change of lambda in W (3.19)
   int uzawa_max_iterations = 20000;
-  bool uzawa_accelerated = false;   ///< Nesterov's extrapolation, restarted when it overshoots
-  double uzawa_step = 0;            ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
+  bool uzawa_accelerated = false; ///< Nesterov's extrapolation, restarted when it overshoots
+  double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
 };
 
 /// Relative residuals of the optimality system.
@@ -35,14 +35,14 @@ struct KktResidual {
 };
 
 struct HfSolution {
-  Vector u;      ///< all dofs in natural order, on every rank
-  Vector lambda; ///< dual dofs
+  Vector u;                  ///< all dofs in natural order, on every rank
+  Vector lambda;             ///< dual dofs
   std::vector<Index> active; ///< dual dofs in contact
   KktResidual kkt;
   Outputs outputs;
   int iterations = 0;
-  int columns = 0;      ///< active_set: columns of the condensed operator
-  std::string reason;   ///< why the solver stopped
+  int columns = 0;    ///< active_set: columns of the condensed operator
+  std::string reason; ///< why the solver stopped
 };
 
 /// Solves at many mu; remembers the active sets it has met and starts from that of the nearest mu.

@@ -49,6 +49,7 @@ std::filesystem::path sample_file(const std::filesystem::path &directory, const 
 /// values, if one was made with other settings. `reuse` false solves all anew (times are then
 /// comparable).
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                const std::vector<Mu> &set, const std::filesystem::path &directory, bool reuse = true);
+                const std::vector<Mu> &set, const std::filesystem::path &directory,
+                bool reuse = true);
 
 } // namespace rbvi
