@@ -14,9 +14,9 @@
 namespace rbvi {
 
 struct ReducedSolution {
-  Vector u;       ///< n coefficients
-  Vector x;       ///< R coefficients, >= 0
-  Vector theta_b; ///< coefficients of b at this mu
+  Vector u;                ///< n coefficients
+  Vector x;                ///< R coefficients, >= 0
+  Vector theta_b;          ///< coefficients of b at this mu
   double energy = 0;       ///< a(u,u)/2 - f(u) of the combination of the basis, without the offset
   double kkt_residual = 0; ///< see kkt_residual()
   int iterations = 0;      ///< active-set updates
