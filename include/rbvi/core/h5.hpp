@@ -1,10 +1,21 @@
 // Sealed HDF5 files: a 512-byte user block with magic, length and checksum stands before the HDF5
 // bytes, and is verified before HDF5 sees any of them. A file is built in memory, then written,
 // fsynced and renamed in one step, so that a reader meets the old file, the new one, or none.
+// Other HDF5 tools (h5dump, h5py) skip the user block and read the file as it is.
+//
+//   bytes 0-7    "rbvi" CR LF 0x1a LF
+//         8-39   kind, padded with zeros
+//         40-47  schema version           (this and the next three: unsigned, little-endian)
+//         48-55  length of the file
+//         56-63  FNV-1a of bytes 512-end
+//         64-71  FNV-1a of bytes 0-63
+//         72-511 zero
 #pragma once
 
 #include "rbvi/core/dense.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -12,7 +23,8 @@
 
 namespace rbvi {
 
-/// Collects named data sets ("group/name"; groups are made as needed) in memory.
+/// Collects named data sets ("group/name"; groups are made as needed) in memory. A name that is
+/// already taken is a failure. The bytes depend on what is written alone (no time stamps).
 class H5Writer {
 public:
   H5Writer();
@@ -38,7 +50,8 @@ private:
 };
 
 /// Opens a sealed file. Throws bad_input with one line that tells apart: missing, not an rbvi file,
-/// truncated, damaged (checksum), of another kind, of another schema version.
+/// truncated, damaged (checksum), of another kind, of another schema version; and, when a data set
+/// is read, that it is missing or of another type or shape.
 class H5Reader {
 public:
   H5Reader(const std::filesystem::path &path, const std::string &kind, int schema);
@@ -61,10 +74,11 @@ private:
 };
 
 /// Writes `bytes` to `path` atomically: temporary file beside it, fsync, rename, fsync of the
-/// directory. Throws failure; then no temporary file is left.
+/// directory; a link is followed, and a device or pipe is written directly. Throws failure; then
+/// no temporary file is left.
 void write_atomically(const std::filesystem::path &path, const std::string &bytes);
 
-/// FNV-1a, 64 bits: names sample files and seals files.
+/// FNV-1a, 64 bits: names sample files and seals files. A change of one byte always changes it.
 std::uint64_t fnv1a(const void *bytes, std::size_t size);
 
 } // namespace rbvi

@@ -11,8 +11,8 @@ namespace rbvi {
 
 /// A quantity that a scene does not have stays unset and has no column.
 struct Outputs {
-  std::optional<double> energy;          ///< J(u) = a(u,u)/2 - f(u)
-  std::optional<double> normal_force;    ///< integral of the multiplier
+  std::optional<double> energy;       ///< J(u) = a(u,u)/2 - f(u)
+  std::optional<double> normal_force; ///< integral of the multiplier
   std::optional<double> tangential_force, reaction;
   std::optional<double> contact_measure; ///< sum of the lumped weights of the active nodes
   std::optional<double> contact_half_width, stick_half_width;
@@ -21,12 +21,15 @@ struct Outputs {
   std::optional<double> kkt_residual;    ///< relative: stationarity, feasibility, complementarity
   std::optional<double> max_penetration; ///< pointwise at the nodes of the contact region
   std::optional<double> friction_violation;
+  /// Largest relative errors of the reduced model over its validation set (not of this answer).
+  std::optional<double> expected_error_u, expected_error_lambda;
   std::optional<double> iterations;
   std::optional<double> seconds;
 };
 
-/// Writes "radius,...,energy,...,seconds" and one row per mu; numbers with 10 digits (mu with 17).
-/// Columns are those set in the first row.
+/// Writes "radius,...,energy,...,seconds" and one row per mu; numbers with 10 digits,
+/// mu with all that it takes to read it back.
+/// A column that is set in any row is there; rows without it leave it empty.
 void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector<Mu> &mus,
                const std::vector<Outputs> &rows);
 

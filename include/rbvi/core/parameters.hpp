@@ -35,6 +35,9 @@ ParameterSpace free_only(const ParameterSpace &space, const std::string &names);
 /// The values of all parameters: `mu` for the free ones, `value` for the others.
 Mu expand(const ParameterSpace &space, const Mu &mu);
 
+/// Whether each value lies in the box, to 1e-12 of its width.
+bool in_box(const ParameterSpace &space, const Mu &mu);
+
 /// Throws bad_input if mu has the wrong length, an entry that is not finite, or (unless
 /// `allow_outside`) lies outside the box by more than 1e-12 of its width.
 void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside = false);
@@ -43,9 +46,9 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside = fa
 /// the default value), and checks it. Throws bad_input.
 Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_outside = false);
 
-/// Reads "grid:5,5,5" (box ends included, last parameter fastest), "random:200:seed" (uniform,
-/// the same on every machine), or the name of a CSV file with a header of parameter names.
-/// Every mu is checked. Throws bad_input.
+/// Reads "grid:5,5,5" (box ends included, last parameter fastest; a count of 1 is the middle),
+/// "random:200:seed" (uniform, the same on every machine), or the name of a CSV file with a header
+/// of parameter names, in any order. Every mu is checked. Throws bad_input, naming the line.
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false);
 

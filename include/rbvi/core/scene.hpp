@@ -71,12 +71,12 @@ struct Scene {
   std::string contact_region; ///< multipliers live on the vertices of this closed region
 
   Form a, b, g;
-  Form f;                 ///< empty: no load
-  Form v_product;         ///< inner product of V on the reference domain
-  Form w_product;         ///< inner product of W on the reference domain
-  bool lumped = false;    ///< b, g by vertex quadrature (then the bounds are nodal)
+  Form f;              ///< empty: no load
+  Form v_product;      ///< inner product of V on the reference domain
+  Form w_product;      ///< inner product of W on the reference domain
+  bool lumped = false; ///< b, g by vertex quadrature: the constraint is a bound at each node
 
-  /// Obstacle psi o h(mu) at a reference point: u >= obstacle.
+  /// psi(mu) at a point of the mapped domain: u >= psi in the contact region.
   std::function<double(const Mu &, const Point &)> obstacle;
 };
 

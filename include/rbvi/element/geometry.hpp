@@ -8,15 +8,18 @@ namespace rbvi {
 
 /// Volume and gradients of the barycentric (P1) functions of a simplex.
 struct Simplex {
-  double volume = 0;                        ///< negative if inverted
-  Eigen::Matrix<double, 4, 3> gradients;    ///< row i: gradient of barycentric function i
+  double volume = 0;                     ///< negative if inverted
+  Eigen::Matrix<double, 4, 3> gradients; ///< row i: gradient of barycentric function i
 };
 
 /// From dim + 1 vertices, dim = 2 or 3.
 Simplex simplex(int dim, const std::array<Point, 4> &vertices);
 
-/// Fills Cell::mapped by h(mu). Throws failure, naming mu, if the mapped simplex is inverted or
-/// degenerate (volume <= 1e-12 times its longest edge to the power dim).
+/// Throws failure, naming mu, if the mapped simplex is inverted or degenerate (volume <= 1e-12
+/// times its longest edge to the power dim).
+void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell);
+
+/// Fills Cell::mapped by h(mu) and checks its orientation.
 void map_cell(const Scene &scene, const Mu &mu, Cell &cell);
 
 /// Longest edge over inradius, scaled to 1 for the regular simplex; dim = 2 or 3.

@@ -25,13 +25,13 @@ struct Mesh {
   PetscInt total_vertices = 0, total_cells = 0; ///< of the undistributed mesh
   std::string fingerprint;                      ///< hash of the undistributed mesh, 16 hex digits
 
-  std::vector<Point> points;                    ///< local vertices, reference coordinates
-  std::vector<PetscInt> natural_vertex;         ///< per local vertex
-  std::vector<PetscInt> dm_vertex;              ///< DMPlex point per local vertex
-  std::vector<bool> owned_vertex;               ///< per local vertex: each has one owner
+  std::vector<Point> points;            ///< local vertices, reference coordinates
+  std::vector<PetscInt> natural_vertex; ///< per local vertex
+  std::vector<PetscInt> dm_vertex;      ///< DMPlex point per local vertex
+  std::vector<bool> owned_vertex;       ///< per local vertex: each has one owner
 
-  std::vector<std::array<int, 4>> cells;        ///< owned cells: dim + 1 local vertices
-  std::vector<PetscInt> natural_cell;           ///< per owned cell
+  std::vector<std::array<int, 4>> cells; ///< owned cells: dim + 1 local vertices, rest -1
+  std::vector<PetscInt> natural_cell;    ///< per owned cell
 
   std::map<std::string, std::vector<bool>> region;   ///< per name: owned cells in it
   std::map<std::string, std::vector<bool>> boundary; ///< per name: local vertices on it
@@ -41,21 +41,23 @@ struct Mesh {
 struct SerialMesh {
   int dim = 2;
   std::vector<Point> points;
-  std::vector<std::array<int, 4>> cells;             ///< dim + 1 vertices, positively oriented
-  std::map<std::string, std::vector<int>> region;    ///< cells of each named region
-  std::map<std::string, std::vector<int>> boundary;  ///< vertices of each named boundary
+  std::vector<std::array<int, 4>> cells; ///< dim + 1 vertices, the rest -1; positively oriented
+  std::map<std::string, std::vector<int>> region; ///< cells of each named region
+  /// Facets of each named boundary: dim vertices each, the rest -1.
+  std::map<std::string, std::vector<std::array<int, 3>>> boundary;
 };
 
 /// Unit square [-1/2, 1/2]^2 with a fitted disc of radius 0.2 about its centre (region "obstacle",
-/// boundary "boundary"): 3589 nodes, 469 of them in the closed disc. Deterministic: concentric
-/// rings of 6 k nodes in the disc, then 20 rings that turn from the circle into the square.
+/// boundary "boundary"): 3589 nodes, 469 of them in the closed disc, aspect ratios <= 1.44.
+/// Deterministic: concentric rings of 6 k nodes in the disc, then 20 rings that turn from the
+/// circle into the square.
 SerialMesh square_with_disc();
 
-/// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the cell
-/// graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws
+/// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the
+/// cell graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws
 /// bad_input: file missing or not a Gmsh mesh, a region or boundary of the scene's recipe not in
-/// it, the wrong dimension, order-2 elements (straightening is said in one line on stdout), an
-/// inverted cell.
+/// it, the wrong dimension, cells other than triangles or tetrahedra, elements of order 2, an
+/// inverted or degenerate cell, fewer cells than ranks, refine < 0.
 Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options);
 
 } // namespace rbvi

@@ -1,13 +1,15 @@
 // Empirical interpolation of parameter-dependent matrices and vectors (B.3).
 //
 // The snapshots stay where they were assembled: each rank holds some of the entries, for all mu.
-// A step finds the largest residual entry over all ranks and shares its residual row (P numbers);
-// residuals are updated, never recomputed.
+// A step finds the largest residual over all ranks (a reduction of P numbers, a gather of the
+// lowest keys) and shares the residual row of that entry (P numbers); residuals are updated in
+// place, never recomputed.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/par/petsc.hpp"
 
+#include <compare>
 #include <string>
 #include <vector>
 
@@ -36,8 +38,7 @@ struct Eim {
 
 /// Collective. `values`: local entries x P; `keys`: one per local entry, each owned by one rank.
 /// Ties within 1e-10 relative go to the lowest training index, then the lowest key, so that the
-/// outcome does not depend on the number of ranks. All zero: J = 0.
-Eim eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
+///  eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
         const EimOptions &options);
 
 } // namespace rbvi

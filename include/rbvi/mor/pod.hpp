@@ -16,13 +16,13 @@ struct LinearBasis {
 };
 
 struct PodOptions {
-  double tolerance = 1e-6; ///< on e_POD (2.11)
+  double tolerance = 1e-6; ///< on e_POD (2.11), in [0, 1)
   PetscInt max_size = 0;   ///< 0: no bound
 };
 
 struct Pod {
   LinearBasis basis;
-  std::vector<double> singular_values; ///< all, decreasing
+  std::vector<double> singular_values; ///< all (rank many), decreasing
   std::vector<double> error;           ///< e_POD(n), n = 0, 1, ..., rank (2.11)
   int dropped = 0;                     ///< snapshots that depend on earlier ones
 };
@@ -30,7 +30,8 @@ struct Pod {
 /// Collective. `snapshots`: free dofs, all of one layout; `product`: Gram matrix of V. Columns whose
 /// remainder is below 1e-13 of their norm are dropped; singular values equal to 1e-8 relative are
 /// kept or cut together. The sign of each mode is fixed (largest projection coefficient positive).
-/// Throws failure if there is no snapshot or all are zero.
+/// Throws failure if there is no snapshot, if all are zero or one is not finite; bad_input for an
+/// option out of its range or a size bound below the multiplicity of the first singular value.
 Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &options);
 
 /// Collective. Appends `columns` (dense, distributed like the basis) after V-orthonormalisation

@@ -25,14 +25,18 @@ struct RieszSpace {
   Matrix factor;     ///< L, lower triangular: n_c x n_c
 };
 
-/// Collective. One factorisation of `product` (KSP prefix -v_), one block of n_c solves.
+/// Collective. One factorisation of `product`, which is marked as symmetric positive definite (KSP
+/// prefix -v_; default: CHOLMOD on one rank, MUMPS on several), one block of n_c solves. Throws
+/// failure if the factorisation fails.
 RieszSpace make_riesz_space(Mat product, const Trace &trace);
 
-/// Collective. Coordinates of the basis columns: (n_c + N) x N, orthonormal.
+/// Collective. Coordinates of the basis columns: (n_c + N) x N, orthonormal. Throws failure if the
+/// basis is not orthonormal in the product of `space`.
 Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes, const Trace &trace);
 
-/// Columns orthonormal in W that span the columns of `generators` (dependent ones left out below
-/// `tolerance`, relative): dual dofs x rank.
+/// Columns orthonormal in W that span the columns of `generators` (rank-revealing: the largest
+/// remainder first, relative to the norm of its generator, until none is above `tolerance`): dual
+/// dofs x rank.
 Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
                               double tolerance = 1e-9);
 
@@ -48,6 +52,22 @@ struct InfSup {
   double hf, dec, on, off;
 };
 
+/// What V_N + S guarantees at one mu.
+struct StabilityBound {
+  double sigma;   ///< sigma_S(mu) (2.21), over the span
+  double c;       ///< c_S(mu) (2.22), over the span
+  double on;      ///< beta_on(mu)
+  double sharp;   ///< sqrt(1 - sigma^2) beta_on <= beta_off
+  double classic; ///< beta_S^* (2.24) <= beta_off; not positive where (2.23) fails
+};
+
+/// `enriched`: coordinates of V_N + S; `supremizers`: T(mu) X for an orthonormal dual basis X.
+StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers);
+
+/// Orthonormal columns that span those of `vectors` (directions below 1e-12 of the largest left
+/// out): rows x rank.
+Matrix orthonormal_range(const Matrix &vectors);
+
 /// The four constants at one mu (2.3), (2.14), (2.18), (2.30). `modes`: coordinates of V_N;
 /// `enriched`: of V_N + S; `x`: orthonormal dual basis; `w_product`: for beta_HF.
 /// beta_HF is over the whole dual space and costs a dense SVD of its size: NaN unless `with_hf`.
@@ -56,26 +76,32 @@ InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact,
                         const Matrix &x, bool with_hf);
 
 struct PgaOptions {
-  double tolerance = 0;        ///< on max sigma_S (2.27); 0: use `stability` instead
-  double stability = 0.9;      ///< stop when sqrt(1 - sigma_S(mu)^2) >= stability for all mu
-  int max_size = 0;            ///< 0: no bound
+  double tolerance = 0;   ///< on max sigma_S (2.27), below 1; 0: use `stability` instead
+  double stability = 0.9; ///< stop when sqrt(1 - sigma_S(mu)^2) >= stability for all mu; in (0, 1)
+  int max_size = 0;       ///< 0: no bound
 };
 
 struct Pga {
-  Matrix representers;           ///< n_c x S: supremizer s is V^-1 E times column s (before projection)
-  Matrix coordinates;            ///< (n_c + N) x (N + S): orthonormal, the modes first
-  std::vector<double> sigma;     ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
-  std::vector<int> selected;     ///< training index of each supremizer; -1 where one SVD gave all
-  int evaluations = 0;           ///< eigenproblems solved
+  Matrix representers; ///< n_c x S: supremizer s is V^-1 E times column s, of norm 1 (before projection)
+  Matrix coordinates;  ///< (n_c + N) x (N + S): orthonormal, the modes first
+  std::vector<double> sigma;          ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
+  std::vector<int> selected;          ///< training index of each supremizer; -1: one SVD gave all
+  int evaluations = 0;                ///< eigenproblems (or SVDs) solved
   bool parameter_independent = false; ///< S_R(mu) is one space: a single SVD replaced the sweep
-  std::string reason;
+  std::string reason;                 ///< why it stopped
 };
 
-/// Projected greedy algorithm (Algorithm 1), lazily evaluated, rank-one updates of the R x R
-/// matrices whose largest eigenvalue is sigma_S(mu)^2. `supremizers`: T(mu_p) X in coordinates
-/// (n_c x R each) for every training mu; it stops on the sharper bound
-/// beta_off >= sqrt(1 - sigma_S^2) beta_on. Ties within 1e-10 go to the lowest training index.
+/// Projected greedy algorithm (Algorithm 1), lazily evaluated: sigma does not increase, so that only
+/// candidates whose last value can still win are looked at again, with rank-k updates of the R x R
+/// matrices whose largest eigenvalue is sigma_S(mu)^2. A multiple eigenvalue gives all its vectors at
+/// once, as the greedy would take them one after the other.
+///
+/// `modes`: coordinates of V_N, (n_c + N) x N; `supremizers`: T(mu_p) X, n_c x R, for every training
+/// mu (move them in). One matrix, or all of the same span: a single SVD gives everything. Stops on
+/// the tolerance or on the sharper bound beta_off >= sqrt(1 - sigma_S^2) beta_on; supremizers within
+/// 1e-12 of the space count as inside. Ties within 1e-10 go to the lowest training index.
+/// Throws bad_input for an option out of its range, failure for entries that are not finite.
 Pga projected_greedy(const RieszSpace &space, const Matrix &modes,
-                     const std::vector<Matrix> &supremizers, const PgaOptions &options);
+                     std::vector<Matrix> supremizers, const PgaOptions &options);
 
 } // namespace rbvi

@@ -1,14 +1,16 @@
 // One throwing macro around PETSc and SLEPc calls, one move-only owner of their handles.
 #pragma once
 
+#include <petsc.h>
 #include <slepc.h>
 
 #include <utility>
 
 namespace rbvi {
 
-/// Turns a PETSc error code into an rbvi::Error that carries PETSc's own message.
-void throw_petsc_error(PetscErrorCode code, const char *call);
+/// Throws failure with the name of the function called and PETSc's own innermost message, in one
+/// line (see ErrorRecorder).
+[[noreturn]] void throw_petsc_error(PetscErrorCode code, const char *call);
 
 } // namespace rbvi
 
@@ -43,7 +45,8 @@ public:
   explicit Handle(T raw) noexcept : raw_(raw) {}
   Handle(Handle &&other) noexcept : raw_(std::exchange(other.raw_, nullptr)) {}
   Handle &operator=(Handle &&other) noexcept {
-    std::swap(raw_, other.raw_);
+    Handle taken(std::move(other));
+    std::swap(raw_, taken.raw_);
     return *this;
   }
   ~Handle() {

@@ -13,6 +13,7 @@
 #include "rbvi/core/scene.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -82,15 +83,30 @@ struct ReducedModel {
 
 inline constexpr int model_schema = 1;
 
-/// Throws failure (see H5Writer::commit).
+/// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
+/// not finite (members that reconstruction alone needs may all be empty).
+void check_model(const ReducedModel &model);
+
+/// Throws failure (check_model, H5Writer::commit).
 void write_model(const ReducedModel &model, const std::filesystem::path &path);
 
-/// Throws bad_input (see H5Reader), also for a scene or an option that this build does not have.
-/// `with_fields` false leaves out what reconstruction alone needs.
+/// Throws bad_input (see H5Reader), also for a scene or an option that this build does not have, or
+/// parameters that are not those of the scene. `with_fields` false leaves out what reconstruction
+/// alone needs: primal_basis, mesh_points, mesh_cells, contact_cells.
 ReducedModel read_model(const std::filesystem::path &path, bool with_fields = true);
 
 /// The same model with the first n primal columns alone (n = modes: the decorrelated basis) and
-/// the first r generators.
+/// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
+/// that the model does not have.
 ReducedModel leading(const ReducedModel &model, int n, int r);
+
+/// The errors measured for this model: with supremizers if it has any.
+const ValidationErrors &expected_errors(const ReducedModel &model);
+
+/// Row `i` of contact_points or mesh_points as a point.
+Point point_of(const Matrix &points, Index i);
+
+/// The scene of the model, with its options and the model's free and fixed parameters.
+Scene scene_of(const ReducedModel &model);
 
 } // namespace rbvi

@@ -1,4 +1,10 @@
-// The online stage: one parameter in, one checked answer out. Serial; allocates only when built.
+// The online stage: one parameter in, one checked answer out. Serial and dense. With A = L L^T,
+// Y = L^-1 B^T and c = L^-1 f the multipliers solve
+//
+//   min over x >= 0 of  1/2 |Y x - c|^2 + g . x,    then  u = L^-T (c - Y x)
+//
+// What does not depend on mu is done once: the factor L where A has one term, Y where B has one
+// term too.
 #pragma once
 
 #include "rbvi/core/nonnegative_qp.hpp"
@@ -8,38 +14,60 @@
 namespace rbvi {
 
 struct ReducedSolution {
-  Vector u; ///< n coefficients
-  Vector x; ///< R coefficients, >= 0
+  Vector u;       ///< n coefficients
+  Vector x;       ///< R coefficients, >= 0
   Vector theta_b; ///< coefficients of b at this mu
-  double kkt_residual = 0; ///< of the reduced problem, relative: stationarity, feasibility, complementarity
+  double energy = 0;       ///< a(u,u)/2 - f(u) of the combination of the basis, without the offset
+  double kkt_residual = 0; ///< see kkt_residual()
   int iterations = 0;      ///< active-set updates
 };
 
-/// Answers queries on a model it does not own; keeps the last active set as the next start.
+/// Answers queries on a model that it does not own; keeps the last active set as the next start.
 class OnlineSolver {
 public:
   explicit OnlineSolver(const ReducedModel &model);
+  /// With the forms, map and obstacle of `scene` instead of those of the catalogue.
+  OnlineSolver(const ReducedModel &model, Scene scene);
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`. Throws
   /// failure, saying what to try, if the reduced constraints contradict each other, if the reduced
   /// stiffness is not positive definite, or if the KKT residual exceeds 1e-8.
   ReducedSolution solve(const Mu &mu, bool extrapolate = false);
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
-  /// alone (min_u is left unset: it needs the full field).
+  /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   Vector multiplier(const ReducedSolution &solution) const; ///< at the dual dofs
-  Vector field(const ReducedSolution &solution) const;      ///< at all dofs (needs the fields)
+  /// At the nodes of the contact region; scalar displacements only.
+  Vector contact_displacement(const ReducedSolution &solution) const;
+  /// At all dofs. Throws failure if the model was read without its fields.
+  Vector field(const ReducedSolution &solution) const;
+  const ReducedModel &model() const { return model_; }
+  const Scene &scene() const { return scene_; }
 
 private:
-  struct Workspace;
+  ReducedSolution solve_at(const Mu &all_parameters);
+  void update_operators(const Vector &theta_a, const Vector &theta_b);
+  void solve_dual(ReducedSolution &solution);
+  void check(ReducedSolution &solution);
+
   const ReducedModel &model_;
   Scene scene_;
   NonnegativeQp qp_;
-  Matrix a_, b_, y_;
+  // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
+  // a_scale_^2 A, a_scale_ L, b_scale_ B.
+  Vector packed_, theta_a_, theta_b_;
+  Matrix a_, l_, b_, y_;
+  double a_scale_ = 1, b_scale_ = 1;
   Vector f_, g_, c_;
 };
 
-/// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36).
+/// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
 Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
                            const Mu &all_parameters);
+
+/// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
+/// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum x), with
+/// s = max(|g|, |B u|) in the maximum norm. au = A u, bu = B u, btx = B^T x.
+double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
+                    const Vector &g, const Vector &x);
 
 } // namespace rbvi

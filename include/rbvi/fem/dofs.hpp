@@ -1,0 +1,36 @@
+// Numbering of the displacement dofs (P1: one per component and vertex).
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/mesh/mesh.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// A dof's natural number is natural_vertex * components + component. Matrices and vectors hold the
+/// free dofs alone; the fixed ones are zero.
+struct Dofs {
+  MPI_Comm comm = MPI_COMM_NULL;
+  int components = 1;
+  PetscInt total = 0;                  ///< all dofs, fixed ones included
+  PetscInt total_free = 0;             ///< rows of the system
+  PetscInt first_free = 0;             ///< first row owned by this rank
+  std::vector<PetscInt> free;          ///< per local vertex * components + component: row or -1
+  std::vector<PetscInt> natural_owned; ///< per owned row: its natural number
+};
+
+/// Collective.
+Dofs number_dofs(const Mesh &mesh, int components, const std::string &fixed_boundary);
+
+/// Collective. A zero vector of free dofs.
+Handle<Vec> make_vector(const Dofs &dofs);
+
+/// Collective. All dofs in natural order on every rank; fixed ones are zero.
+Vector to_natural(const Dofs &dofs, Vec free);
+
+/// The owned part of a natural field as a distributed vector. Collective.
+Handle<Vec> from_natural(const Dofs &dofs, const Vector &natural);
+
+} // namespace rbvi

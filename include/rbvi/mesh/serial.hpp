@@ -1,0 +1,50 @@
+// The steps from a mesh description to the checked, undistributed mesh, all on one process, and
+// the bridge between its plain arrays and DMPlex.
+#pragma once
+
+#include "rbvi/mesh/mesh.hpp"
+
+namespace rbvi {
+
+/// Reads a Gmsh file (2.2, 4.0, 4.1; text or binary) with the regions and boundaries of the
+/// scene's recipe. Vertices are numbered as the cells first name them; cells are turned to be
+/// positively oriented. Throws bad_input (see make_mesh).
+SerialMesh read_gmsh(const std::string &file, const Scene &scene);
+
+/// Every simplex split by DMPlex into 2^dim; regions and boundaries are inherited.
+SerialMesh refined(const SerialMesh &mesh);
+
+/// Moves the vertices that the scene's contact region shares with the rest by Scene::snap.
+void snap_interface(SerialMesh &mesh, const Scene &scene);
+
+/// Throws bad_input, naming `source`: a degenerate or inverted cell (volume <= 1e-12 times its
+/// longest edge to the power dim), or two cells on the same side of their common facet.
+void check_mesh(const SerialMesh &mesh, const std::string &source);
+
+/// Hash of points (to 6e-8 of the mesh's extent: the last digits depend on the processor), cells,
+/// regions and boundaries: 16 hex digits.
+std::string fingerprint_of(const SerialMesh &mesh);
+
+/// Part (0 .. parts-1) of each cell: METIS, recursive bisection of the graph of cells that share a
+/// facet; the same on every run. Throws bad_input if there are fewer cells than parts.
+std::vector<int> partition_cells(const SerialMesh &mesh, int parts);
+
+/// Collective. An interpolated DMPlex that the first rank holds whole (`mesh` is read there alone):
+/// points 0 .. cells-1 are the cells in order, then the vertices in order; one label per region
+/// (cells) and boundary (facets and their closure), with value 1.
+Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe);
+
+/// The way back, for a DM that one process holds whole: the labels of `recipe` that it has.
+SerialMesh from_plex(DM dm, const MeshRecipe &recipe);
+
+/// Swaps two vertices of the cells with a negative volume: DMPlex has its own order.
+void orient_cells(int dim, const std::vector<Point> &points,
+                  std::vector<std::array<int, 4>> &cells);
+
+/// Coordinates of the local vertices of a DM, in the order of its vertex points.
+std::vector<Point> vertex_points(DM dm);
+
+/// Vertex points of a local cell or facet: dim + 1 or dim of them, the rest -1.
+std::array<PetscInt, 4> vertices_of(DM dm, PetscInt point);
+
+} // namespace rbvi

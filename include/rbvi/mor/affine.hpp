@@ -1,0 +1,21 @@
+// Separation of mu and space: empirical interpolation of A, B, F, G over the training set, with the
+// small meshes on which the sampled entries are re-assembled online.
+#pragma once
+
+#include "rbvi/mor/eim.hpp"
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/model.hpp"
+
+namespace rbvi {
+
+struct AffineOperators {
+  Eim a, b, f, g; ///< f.size() == 0: no load
+  SampleMesh sample_a, sample_b, sample_f, sample_g;
+};
+
+/// Collective. Assembles the operators at every mu of `training` (A: its lower triangle) and
+/// interpolates each.
+AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
+                         const EimOptions &options);
+
+} // namespace rbvi

@@ -1,0 +1,24 @@
+// Progress of a loop: one updating line on a terminal, plain lines now and then otherwise.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace rbvi {
+
+class Progress {
+public:
+  /// `what`: "samples"; `total` steps in all; a rank that does not report stays silent.
+  Progress(std::string what, int total, bool reports);
+  /// `done` of the total are finished; `detail` follows the time left.
+  void update(int done, const std::string &detail = "");
+  void finish(); ///< ends the line
+
+private:
+  std::string what_;
+  int total_;
+  bool reports_, terminal_;
+  std::chrono::steady_clock::time_point start_, last_;
+};
+
+} // namespace rbvi

@@ -1,0 +1,72 @@
+// High-fidelity solvers of the mixed problem at one mu. One result type; three methods that agree:
+//
+//   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column:
+//               the truth
+//   uzawa       lambda <- Proj(lambda + rho (B u - G)), fixed step or accelerated: the baseline
+//   vi          SNES with its VI extension on the bound-constrained primal problem (scenes with
+//               vertex quadrature in b and g: there the constraint is a bound at each node)
+#pragma once
+
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/problem/problem.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+enum class HfMethod { active_set, uzawa, vi };
+
+struct HfOptions {
+  HfMethod method = HfMethod::active_set;
+  double uzawa_tolerance = 1e-6; ///< relative change of lambda in W (3.19)
+  int uzawa_max_iterations = 20000;
+  bool uzawa_accelerated = false; ///< Nesterov's extrapolation, restarted when it overshoots
+  double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
+};
+
+/// Relative residuals of the optimality system.
+struct KktResidual {
+  double stationarity = 0;    ///< |A u + B^T l - F| / (|F| + |B^T l|)
+  double feasibility = 0;     ///< max (B u - G)_+ / weight, over max |G| / weight
+  double complementarity = 0; ///< sum |l (B u - G)| / (|l| |G|)
+  double sign = 0;            ///< -min l / max |l|
+  double largest() const;
+};
+
+struct HfSolution {
+  Vector u;                  ///< all dofs in natural order, on every rank
+  Vector lambda;             ///< dual dofs
+  std::vector<Index> active; ///< dual dofs in contact
+  KktResidual kkt;
+  Outputs outputs;
+  int iterations = 0;
+  int columns = 0;    ///< active_set: columns of the condensed operator
+  std::string reason; ///< why the solver stopped
+};
+
+/// Solves at many mu; remembers the active sets it has met and starts from that of the nearest mu.
+class HighFidelity {
+public:
+  /// Collective. KSP options under -hf_, SNES options under -vi_.
+  HighFidelity(Problem &problem, const HfOptions &options);
+  /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
+  /// not converge; throws bad_input for `vi` on a scene without vertex quadrature.
+  HfSolution solve(const Mu &mu);
+  /// Forgets earlier solutions: the next solve starts cold.
+  void forget() { solved_.clear(); }
+
+private:
+  struct Solved {
+    Mu mu;
+    std::vector<Index> active;
+  };
+  std::vector<Index> nearest_active_set(const Mu &mu) const;
+
+  Problem &problem_;
+  HfOptions options_;
+  Handle<KSP> ksp_;
+  std::vector<Solved> solved_;
+};
+
+} // namespace rbvi

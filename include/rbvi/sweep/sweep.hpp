@@ -1,0 +1,55 @@
+// Snapshots: high-fidelity solves at many mu, shared among groups of ranks, one file per sample.
+//
+// Each sample is committed by itself (write, fsync, rename), so that an interrupted sweep resumes
+// and recomputes only what is missing. A sample that fails leaves its reason, the others go on.
+#pragma once
+
+#include "rbvi/par/groups.hpp"
+#include "rbvi/solve/high_fidelity.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// One solved parameter.
+struct Sample {
+  Mu mu;
+  Vector u;      ///< all dofs, natural order
+  Vector lambda; ///< dual dofs
+  Outputs outputs;
+};
+
+/// Everything that a sample depends on beside mu: name -> value.
+using Settings = std::map<std::string, std::string>;
+
+/// The settings of a problem and its solver: scene, its options, fixed parameters, mesh, method and
+/// tolerances.
+Settings sample_settings(const Problem &problem, const HfOptions &options);
+
+struct SweepReport {
+  int reused = 0, solved = 0;
+  std::vector<std::pair<Mu, std::string>> failed; ///< with their reasons, in order of the set
+  double seconds = 0;                             ///< wall time of the sweep
+  double seconds_per_solve = 0;                   ///< median over the samples solved now
+};
+
+struct Sweep {
+  std::vector<Sample> samples; ///< in order of the set, failed ones left out; on every rank
+  SweepReport report;
+};
+
+/// `samples/<hash of mu>.h5`
+std::filesystem::path sample_file(const std::filesystem::path &directory, const Mu &mu);
+
+/// Collective on `world`. `problem` lives on the communicator of this rank's group. Samples of
+/// `directory` that are there already are reused; throws bad_input, naming the setting and both
+/// values, if one was made with other settings. `reuse` false solves all anew (times are then
+/// comparable).
+Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
+                const std::vector<Mu> &set, const std::filesystem::path &directory,
+                bool reuse = true);
+
+} // namespace rbvi

@@ -1,0 +1,64 @@
+#include "rbvi/core/scene.hpp"
+
+#include "../../cases/membrane_obstacle/scene.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+std::string joined(const std::vector<std::string> &names) {
+  std::string text;
+  for (const std::string &name : names)
+    text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void check_option(const SceneOption &option, const std::string &value) {
+  if (option.choices.empty()) {
+    (void)parse_number(value, "option " + option.name);
+  } else if (std::find(option.choices.begin(), option.choices.end(), value) ==
+             option.choices.end()) {
+    throw bad_input("option " + option.name + " is '" + value + "': use one of " +
+                    joined(option.choices));
+  }
+}
+
+} // namespace
+
+const std::vector<SceneEntry> &scene_catalogue() {
+  static const std::vector<SceneEntry> catalogue{membrane_obstacle()};
+  return catalogue;
+}
+
+Scene make_scene(const std::string &name, const SceneOptions &options) {
+  const auto &catalogue = scene_catalogue();
+  const auto entry = std::find_if(catalogue.begin(), catalogue.end(),
+                                  [&](const SceneEntry &e) { return e.name == name; });
+  if (entry == catalogue.end()) {
+    std::vector<std::string> names;
+    for (const SceneEntry &e : catalogue)
+      names.push_back(e.name);
+    throw bad_input("unknown scene '" + name + "': this build has " + joined(names));
+  }
+  SceneOptions resolved;
+  for (const SceneOption &option : entry->options)
+    resolved[option.name] = option.default_value;
+  for (const auto &[key, value] : options) {
+    const auto option = std::find_if(entry->options.begin(), entry->options.end(),
+                                     [&key = key](const SceneOption &o) { return o.name == key; });
+    if (option == entry->options.end())
+      throw bad_input("scene " + name + " has no option '" + key + "'");
+    check_option(*option, value);
+    resolved[key] = value;
+  }
+  Scene scene = entry->make(resolved);
+  scene.name = entry->name;
+  scene.summary = entry->summary;
+  scene.options = resolved;
+  return scene;
+}
+
+} // namespace rbvi

@@ -1,0 +1,65 @@
+#include "rbvi/element/geometry.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+Eigen::Vector3d difference(const Point &x, const Point &y) {
+  return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
+}
+
+double longest_edge(int dim, const std::array<Point, 4> &vertices) {
+  double longest = 0;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      longest = std::max(longest, difference(vertices[i], vertices[j]).norm());
+  return longest;
+}
+
+} // namespace
+
+Simplex simplex(int dim, const std::array<Point, 4> &vertices) {
+  Simplex result;
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
+  for (int j = 0; j < dim; ++j)
+    edges.col(j) = difference(vertices[static_cast<std::size_t>(j) + 1], vertices[0]);
+  const double determinant = edges.determinant();
+  result.volume = determinant / (dim == 2 ? 2 : 6);
+  const Eigen::Matrix3d inverse = edges.inverse();
+  result.gradients.setZero();
+  for (int j = 0; j < dim; ++j) {
+    result.gradients.row(j + 1) = inverse.row(j);
+    result.gradients.row(0) -= inverse.row(j);
+  }
+  return result;
+}
+
+void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell) {
+  const double volume = simplex(cell.dim, cell.mapped).volume;
+  if (!(volume > 1e-12 * std::pow(longest_edge(cell.dim, cell.mapped), cell.dim)))
+    throw failure("the geometric map of scene " + scene.name +
+                  " inverts a cell at mu = " + describe(all_free(scene.parameters.all), mu) +
+                  ": use a smaller parameter box or a finer mesh");
+}
+
+void map_cell(const Scene &scene, const Mu &mu, Cell &cell) {
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
+    cell.mapped[i] = scene.map(mu, cell.reference[i]);
+  check_orientation(scene, mu, cell);
+}
+
+double aspect_ratio(int dim, const std::array<Point, 4> &vertices) {
+  const Simplex cell = simplex(dim, vertices);
+  double surface = 0; // sum of facet measures: dim * volume * |gradient| is one facet's
+  for (int i = 0; i <= dim; ++i)
+    surface += dim * std::abs(cell.volume) * cell.gradients.row(i).norm();
+  const double inradius = dim * std::abs(cell.volume) / surface;
+  const double regular = dim == 2 ? 2 * std::sqrt(3.0) : 2 * std::sqrt(6.0);
+  return longest_edge(dim, vertices) / (regular * inradius);
+}
+
+} // namespace rbvi

@@ -1,0 +1,93 @@
+#include "rbvi/fem/dofs.hpp"
+
+namespace rbvi {
+
+namespace {
+
+/// Fills the entries of vertices owned by other ranks with their owners' values.
+void share_with_ghosts(const Mesh &mesh, std::vector<PetscInt> &first_row) {
+  int ranks = 1;
+  MPI_Comm_size(mesh.comm, &ranks);
+  if (ranks == 1) return;
+  PetscInt begin = 0, end = 0;
+  RBVI_CALL(DMPlexGetChart(mesh.dm.get(), &begin, &end));
+  std::vector<PetscInt> by_point(static_cast<std::size_t>(end), -1);
+  for (std::size_t v = 0; v < first_row.size(); ++v)
+    by_point[static_cast<std::size_t>(mesh.dm_vertex[v])] = first_row[v];
+  PetscSF sf = nullptr;
+  RBVI_CALL(DMGetPointSF(mesh.dm.get(), &sf));
+  const std::vector<PetscInt> roots = by_point;
+  RBVI_CALL(PetscSFBcastBegin(sf, MPIU_INT, roots.data(), by_point.data(), MPI_REPLACE));
+  RBVI_CALL(PetscSFBcastEnd(sf, MPIU_INT, roots.data(), by_point.data(), MPI_REPLACE));
+  for (std::size_t v = 0; v < first_row.size(); ++v)
+    first_row[v] = by_point[static_cast<std::size_t>(mesh.dm_vertex[v])];
+}
+
+} // namespace
+
+Dofs number_dofs(const Mesh &mesh, int components, const std::string &fixed_boundary) {
+  Dofs dofs;
+  dofs.comm = mesh.comm;
+  dofs.components = components;
+  dofs.total = mesh.total_vertices * components;
+  const std::vector<bool> &fixed = mesh.boundary.at(fixed_boundary);
+  const std::size_t vertices = mesh.points.size();
+
+  PetscInt owned = 0;
+  for (std::size_t v = 0; v < vertices; ++v)
+    if (mesh.owned_vertex[v] && !fixed[v]) owned += components;
+  MPI_Exscan(&owned, &dofs.first_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
+  MPI_Allreduce(&owned, &dofs.total_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
+
+  std::vector<PetscInt> first_row(vertices, -1);
+  PetscInt next = dofs.first_free;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (!mesh.owned_vertex[v] || fixed[v]) continue;
+    first_row[v] = next;
+    next += components;
+    for (int c = 0; c < components; ++c)
+      dofs.natural_owned.push_back(mesh.natural_vertex[v] * components + c);
+  }
+  share_with_ghosts(mesh, first_row);
+
+  dofs.free.assign(vertices * static_cast<std::size_t>(components), -1);
+  for (std::size_t v = 0; v < vertices; ++v)
+    for (int c = 0; c < components && first_row[v] >= 0; ++c)
+      dofs.free[v * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] =
+          first_row[v] + c;
+  return dofs;
+}
+
+Handle<Vec> make_vector(const Dofs &dofs) {
+  Handle<Vec> vector;
+  RBVI_CALL(VecCreate(dofs.comm, vector.put()));
+  RBVI_CALL(
+      VecSetSizes(vector.get(), static_cast<PetscInt>(dofs.natural_owned.size()), dofs.total_free));
+  RBVI_CALL(VecSetType(vector.get(), VECSTANDARD));
+  RBVI_CALL(VecZeroEntries(vector.get()));
+  return vector;
+}
+
+Vector to_natural(const Dofs &dofs, Vec free) {
+  Vector natural = Vector::Zero(dofs.total);
+  const PetscScalar *values = nullptr;
+  RBVI_CALL(VecGetArrayRead(free, &values));
+  for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
+    natural[dofs.natural_owned[i]] = values[i];
+  RBVI_CALL(VecRestoreArrayRead(free, &values));
+  MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPI_DOUBLE, MPI_SUM,
+                dofs.comm);
+  return natural;
+}
+
+Handle<Vec> from_natural(const Dofs &dofs, const Vector &natural) {
+  Handle<Vec> vector = make_vector(dofs);
+  PetscScalar *values = nullptr;
+  RBVI_CALL(VecGetArrayWrite(vector.get(), &values));
+  for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
+    values[i] = natural[dofs.natural_owned[i]];
+  RBVI_CALL(VecRestoreArrayWrite(vector.get(), &values));
+  return vector;
+}
+
+} // namespace rbvi

@@ -1,0 +1,67 @@
+#include "rbvi/fem/trace.hpp"
+
+namespace rbvi {
+
+namespace {
+
+// Every entry has one owner and is zero elsewhere, so the sum is exact for any number of ranks.
+void share_entries(MPI_Comm comm, double *values, Index count) {
+  RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, values, static_cast<PetscMPIInt>(count), MPI_DOUBLE,
+                          MPI_SUM, comm));
+}
+
+} // namespace
+
+Vector restrict_to(const Trace &trace, Vec u) {
+  Vector values = Vector::Zero(trace.size);
+  const double *local = nullptr;
+  RBVI_CALL(VecGetArrayRead(u, &local));
+  for (std::size_t k = 0; k < trace.index.size(); ++k)
+    values(trace.index[k]) = local[trace.local_row[k]];
+  RBVI_CALL(VecRestoreArrayRead(u, &local));
+  share_entries(trace.comm, values.data(), values.size());
+  return values;
+}
+
+Matrix restrict_to(const Trace &trace, Mat dense) {
+  PetscInt columns = 0, stride = 0;
+  RBVI_CALL(MatGetSize(dense, nullptr, &columns));
+  RBVI_CALL(MatDenseGetLDA(dense, &stride));
+  Matrix values = Matrix::Zero(trace.size, columns);
+  const double *local = nullptr;
+  RBVI_CALL(MatDenseGetArrayRead(dense, &local));
+  for (Index j = 0; j < columns; ++j)
+    for (std::size_t k = 0; k < trace.index.size(); ++k)
+      values(trace.index[k], j) = local[trace.local_row[k] + j * stride];
+  RBVI_CALL(MatDenseRestoreArrayRead(dense, &local));
+  share_entries(trace.comm, values.data(), values.size());
+  return values;
+}
+
+void add_extension(const Trace &trace, const Eigen::Ref<const Vector> &values, Vec f) {
+  double *local = nullptr;
+  RBVI_CALL(VecGetArray(f, &local));
+  for (std::size_t k = 0; k < trace.index.size(); ++k)
+    local[trace.local_row[k]] += values(trace.index[k]);
+  RBVI_CALL(VecRestoreArray(f, &local));
+}
+
+Handle<Mat> extension(const Trace &trace, const Matrix &values, Mat like) {
+  PetscInt local_rows = 0, stride = 0;
+  RBVI_CALL(MatGetLocalSize(like, &local_rows, nullptr));
+  Handle<Mat> dense;
+  RBVI_CALL(MatCreateDense(trace.comm, local_rows, PETSC_DECIDE, PETSC_DETERMINE,
+                           static_cast<PetscInt>(values.cols()), nullptr, dense.put()));
+  RBVI_CALL(MatDenseGetLDA(dense.get(), &stride));
+  double *local = nullptr;
+  RBVI_CALL(MatDenseGetArray(dense.get(), &local));
+  for (Index j = 0; j < values.cols(); ++j)
+    for (std::size_t k = 0; k < trace.index.size(); ++k)
+      local[trace.local_row[k] + j * stride] = values(trace.index[k], j);
+  RBVI_CALL(MatDenseRestoreArray(dense.get(), &local));
+  RBVI_CALL(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));
+  return dense;
+}
+
+} // namespace rbvi

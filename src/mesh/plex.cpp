@@ -1,0 +1,174 @@
+#include "rbvi/mesh/serial.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/geometry.hpp"
+
+#include <span>
+
+namespace rbvi {
+
+namespace {
+
+/// The whole label list of a recipe: regions, then boundaries.
+std::vector<std::string> label_names(const MeshRecipe &recipe) {
+  std::vector<std::string> names = recipe.regions;
+  names.insert(names.end(), recipe.boundaries.begin(), recipe.boundaries.end());
+  return names;
+}
+
+Handle<DM> plex_from_cells(MPI_Comm comm, const SerialMesh &mesh) {
+  const auto dim = static_cast<std::size_t>(mesh.dim);
+  std::vector<PetscInt> cells;
+  for (const auto &cell : mesh.cells)
+    cells.insert(cells.end(), cell.begin(), cell.begin() + mesh.dim + 1);
+  std::vector<PetscReal> coordinates;
+  for (const Point &x : mesh.points)
+    coordinates.insert(coordinates.end(), x.begin(), x.begin() + mesh.dim);
+  Handle<DM> dm;
+  RBVI_CALL(DMPlexCreateFromCellListPetsc(comm, mesh.dim, static_cast<PetscInt>(mesh.cells.size()),
+                                          static_cast<PetscInt>(mesh.points.size()),
+                                          static_cast<PetscInt>(dim + 1), PETSC_TRUE, cells.data(),
+                                          mesh.dim, coordinates.data(), dm.put()));
+  return dm;
+}
+
+void label_facets(DM dm, DMLabel label, const SerialMesh &mesh,
+                  std::span<const std::array<int, 3>> facets) {
+  const auto first = static_cast<PetscInt>(mesh.cells.size());
+  for (const auto &facet : facets) {
+    const std::array<PetscInt, 3> vertices{first + facet[0], first + facet[1], first + facet[2]};
+    PetscInt count = 0, point = -1;
+    const PetscInt *found = nullptr;
+    RBVI_CALL(DMPlexGetFullJoin(dm, mesh.dim, vertices.data(), &count, &found));
+    if (count == 1) point = found[0];
+    RBVI_CALL(DMPlexRestoreJoin(dm, mesh.dim, vertices.data(), &count, &found));
+    if (point < 0) throw failure("a boundary facet is not a facet of any cell of the mesh");
+    RBVI_CALL(DMLabelSetValue(label, point, 1));
+  }
+}
+
+/// Points of one height that carry the label.
+std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt height) {
+  std::vector<PetscInt> points;
+  DMLabel label = nullptr;
+  RBVI_CALL(DMGetLabel(dm, name.c_str(), &label));
+  if (label == nullptr) return points;
+  PetscInt begin = 0, end = 0;
+  RBVI_CALL(DMPlexGetHeightStratum(dm, height, &begin, &end));
+  for (PetscInt point = begin; point < end; ++point) {
+    PetscInt value = -1;
+    RBVI_CALL(DMLabelGetValue(label, point, &value));
+    if (value >= 0) points.push_back(point);
+  }
+  return points;
+}
+
+} // namespace
+
+Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe) {
+  Handle<DM> dm = plex_from_cells(comm, mesh);
+  for (const std::string &name : label_names(recipe))
+    RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
+  for (const auto &[name, cells] : mesh.region) {
+    DMLabel label = nullptr;
+    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
+    for (const int cell : cells)
+      RBVI_CALL(DMLabelSetValue(label, cell, 1));
+  }
+  for (const std::string &name : recipe.boundaries) {
+    DMLabel label = nullptr;
+    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
+    if (mesh.boundary.contains(name)) label_facets(dm.get(), label, mesh, mesh.boundary.at(name));
+    RBVI_CALL(DMPlexLabelComplete(dm.get(), label));
+  }
+  return dm;
+}
+
+std::vector<Point> vertex_points(DM dm) {
+  PetscInt dim = 0, begin = 0, end = 0;
+  Vec coordinates = nullptr;
+  PetscSection section = nullptr;
+  RBVI_CALL(DMGetCoordinateDim(dm, &dim));
+  RBVI_CALL(DMPlexGetDepthStratum(dm, 0, &begin, &end));
+  RBVI_CALL(DMGetCoordinatesLocal(dm, &coordinates));
+  RBVI_CALL(DMGetCoordinateSection(dm, &section));
+  std::vector<Point> points(static_cast<std::size_t>(end - begin), Point{});
+  const PetscScalar *values = nullptr;
+  RBVI_CALL(VecGetArrayRead(coordinates, &values));
+  for (PetscInt vertex = begin; vertex < end; ++vertex) {
+    PetscInt offset = 0;
+    RBVI_CALL(PetscSectionGetOffset(section, vertex, &offset));
+    std::copy_n(values + offset, dim, points[static_cast<std::size_t>(vertex - begin)].begin());
+  }
+  RBVI_CALL(VecRestoreArrayRead(coordinates, &values));
+  return points;
+}
+
+std::array<PetscInt, 4> vertices_of(DM dm, PetscInt point) {
+  PetscInt begin = 0, end = 0, size = 0;
+  PetscInt *closure = nullptr;
+  RBVI_CALL(DMPlexGetDepthStratum(dm, 0, &begin, &end));
+  RBVI_CALL(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &size, &closure));
+  std::array<PetscInt, 4> vertices{-1, -1, -1, -1};
+  std::size_t count = 0;
+  for (PetscInt k = 0; k < size && count < vertices.size(); ++k)
+    if (closure[2 * k] >= begin && closure[2 * k] < end) vertices[count++] = closure[2 * k];
+  RBVI_CALL(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &size, &closure));
+  return vertices;
+}
+
+void orient_cells(int dim, const std::vector<Point> &points,
+                  std::vector<std::array<int, 4>> &cells) {
+  for (auto &cell : cells) {
+    std::array<Point, 4> vertices{};
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+      vertices[i] = points[static_cast<std::size_t>(cell[i])];
+    if (simplex(dim, vertices).volume < 0)
+      std::swap(cell[static_cast<std::size_t>(dim) - 1], cell[static_cast<std::size_t>(dim)]);
+  }
+}
+
+SerialMesh from_plex(DM dm, const MeshRecipe &recipe) {
+  PetscInt dim = 0, first_cell = 0, last_cell = 0, first_vertex = 0, last_vertex = 0;
+  RBVI_CALL(DMGetDimension(dm, &dim));
+  RBVI_CALL(DMPlexGetHeightStratum(dm, 0, &first_cell, &last_cell));
+  RBVI_CALL(DMPlexGetDepthStratum(dm, 0, &first_vertex, &last_vertex));
+  SerialMesh mesh;
+  mesh.dim = static_cast<int>(dim);
+  mesh.points = vertex_points(dm);
+  for (PetscInt cell = first_cell; cell < last_cell; ++cell) {
+    const auto vertices = vertices_of(dm, cell);
+    std::array<int, 4> numbers{-1, -1, -1, -1};
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+      numbers[i] = static_cast<int>(vertices[i] - first_vertex);
+    mesh.cells.push_back(numbers);
+  }
+  orient_cells(mesh.dim, mesh.points, mesh.cells);
+  for (const std::string &name : recipe.regions)
+    for (const PetscInt cell : labelled_points(dm, name, 0))
+      mesh.region[name].push_back(static_cast<int>(cell - first_cell));
+  for (const std::string &name : recipe.boundaries)
+    for (const PetscInt facet : labelled_points(dm, name, 1)) {
+      const auto vertices = vertices_of(dm, facet);
+      std::array<int, 3> numbers{-1, -1, -1};
+      for (std::size_t i = 0; i < static_cast<std::size_t>(dim); ++i)
+        numbers[i] = static_cast<int>(vertices[i] - first_vertex);
+      mesh.boundary[name].push_back(numbers);
+    }
+  return mesh;
+}
+
+SerialMesh refined(const SerialMesh &mesh) {
+  MeshRecipe recipe;
+  for (const auto &[name, cells] : mesh.region)
+    recipe.regions.push_back(name);
+  for (const auto &[name, facets] : mesh.boundary)
+    recipe.boundaries.push_back(name);
+  const Handle<DM> coarse = make_plex(PETSC_COMM_SELF, mesh, recipe);
+  Handle<DM> fine;
+  RBVI_CALL(DMPlexSetRefinementUniform(coarse.get(), PETSC_TRUE));
+  RBVI_CALL(DMRefine(coarse.get(), PETSC_COMM_SELF, fine.put()));
+  return from_plex(fine.get(), recipe);
+}
+
+} // namespace rbvi

@@ -1,0 +1,132 @@
+#include "rbvi/mesh/serial.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+#include "rbvi/element/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <tuple>
+
+namespace rbvi {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Facet i of a cell lies opposite to vertex i; its vertices in an order whose parity is that of
+/// the cell's orientation, so that two cells on either side of it list opposite parities.
+struct OrientedFacet {
+  std::array<int, 3> sorted;
+  bool even;
+  int cell;
+  auto key() const { return std::tie(sorted, even); }
+};
+
+OrientedFacet facet_of(const SerialMesh &mesh, int cell, int opposite) {
+  OrientedFacet facet{{-1, -1, -1}, opposite % 2 == 0, cell};
+  std::size_t count = 0;
+  for (int i = 0; i <= mesh.dim; ++i)
+    if (i != opposite) facet.sorted[count++] = mesh.cells[at(cell)][at(i)];
+  // Insertion sort: every exchange of neighbours turns the parity.
+  for (std::size_t i = 1; i < count; ++i)
+    for (std::size_t j = i; j > 0 && facet.sorted[j] < facet.sorted[j - 1]; --j) {
+      std::swap(facet.sorted[j], facet.sorted[j - 1]);
+      facet.even = !facet.even;
+    }
+  return facet;
+}
+
+void check_volumes(const SerialMesh &mesh, const std::string &source) {
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    std::array<Point, 4> vertices{};
+    double longest = 0;
+    for (int i = 0; i <= mesh.dim; ++i) {
+      vertices[at(i)] = mesh.points[at(mesh.cells[c][at(i)])];
+      for (int j = 0; j < i; ++j) {
+        const Point &x = vertices[at(i)], &y = vertices[at(j)];
+        longest = std::max(longest, std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]));
+      }
+    }
+    if (!(simplex(mesh.dim, vertices).volume > 1e-12 * std::pow(longest, mesh.dim)))
+      throw bad_input(source + ": cell " + std::to_string(c) + " near (" +
+                      std::to_string(vertices[0][0]) + ", " + std::to_string(vertices[0][1]) +
+                      ") is degenerate or inverted");
+  }
+}
+
+/// Bytes of plain values, one after the other.
+template <class T> void append(std::string &bytes, const T &value) {
+  bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
+}
+
+double extent(const SerialMesh &mesh) {
+  double largest = 0;
+  for (const Point &x : mesh.points)
+    for (const double coordinate : x)
+      largest = std::max(largest, std::abs(coordinate));
+  return largest;
+}
+
+} // namespace
+
+void check_mesh(const SerialMesh &mesh, const std::string &source) {
+  check_volumes(mesh, source);
+  std::vector<OrientedFacet> facets;
+  for (int cell = 0; cell < static_cast<int>(mesh.cells.size()); ++cell)
+    for (int i = 0; i <= mesh.dim; ++i)
+      facets.push_back(facet_of(mesh, cell, i));
+  std::sort(facets.begin(), facets.end(),
+            [](const auto &x, const auto &y) { return x.key() < y.key(); });
+  const auto twice =
+      std::adjacent_find(facets.begin(), facets.end(),
+                         [](const auto &x, const auto &y) { return x.key() == y.key(); });
+  if (twice != facets.end())
+    throw bad_input(source + ": cells " + std::to_string(twice->cell) + " and " +
+                    std::to_string((twice + 1)->cell) +
+                    " lie on the same side of their common facet: one of them is inverted");
+}
+
+void snap_interface(SerialMesh &mesh, const Scene &scene) {
+  if (!scene.snap || !mesh.region.contains(scene.contact_region)) return;
+  std::vector<bool> contact_cell(mesh.cells.size(), false);
+  for (const int cell : mesh.region.at(scene.contact_region))
+    contact_cell[at(cell)] = true;
+  std::vector<bool> inside(mesh.points.size(), false), outside(mesh.points.size(), false);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (int i = 0; i <= mesh.dim; ++i)
+      (contact_cell[c] ? inside : outside)[at(mesh.cells[c][at(i)])] = true;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (inside[v] && outside[v]) mesh.points[v] = scene.snap(mesh.points[v]);
+}
+
+std::string fingerprint_of(const SerialMesh &mesh) {
+  std::string bytes;
+  append(bytes, mesh.dim);
+  const double scale = 0x1p24 / extent(mesh);
+  for (const Point &x : mesh.points)
+    for (const double coordinate : x)
+      append(bytes, std::llround(coordinate * scale));
+  append(bytes, std::llround(std::log2(extent(mesh)) * 0x1p24));
+  for (const auto &cell : mesh.cells)
+    append(bytes, cell);
+  for (const auto &[name, cells] : mesh.region) {
+    bytes += name + '\n';
+    for (const int cell : cells)
+      append(bytes, cell);
+  }
+  for (const auto &[name, facets] : mesh.boundary) {
+    bytes += name + '\n';
+    for (const auto &facet : facets)
+      append(bytes, facet);
+  }
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx",
+                static_cast<unsigned long long>(fnv1a(bytes.data(), bytes.size())));
+  return text.data();
+}
+
+} // namespace rbvi

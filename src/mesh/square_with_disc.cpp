@@ -1,0 +1,111 @@
+#include "rbvi/mesh/mesh.hpp"
+
+#include "rbvi/element/geometry.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double radius = 0.2;
+constexpr int disc_rings = 12;  ///< ring k has 6 k nodes
+constexpr int outer_rings = 20; ///< ring j has 72 + 8 j nodes
+constexpr int circle_nodes = 6 * disc_rings;
+
+using Ring = std::vector<int>;
+
+/// Point of the unit circle at turn t in [0, 1).
+Point on_circle(double t) {
+  const double angle = 2 * std::numbers::pi * t;
+  return {std::cos(angle), std::sin(angle), 0};
+}
+
+/// Point of the boundary of [-1/2, 1/2]^2 at the fraction t of its length, from (1/2, 0) on.
+Point on_square(double t) {
+  const double s = std::fmod(8 * t + 1, 8.0);
+  const double along = 0.5 * (std::fmod(s, 2.0) - 1);
+  switch (static_cast<int>(s / 2)) {
+  case 0:
+    return {0.5, along, 0};
+  case 1:
+    return {-along, 0.5, 0};
+  case 2:
+    return {-0.5, -along, 0};
+  default:
+    return {along, -0.5, 0};
+  }
+}
+
+/// Appends a ring of n nodes given by their turn.
+template <class Curve> Ring add_ring(SerialMesh &mesh, int n, Curve &&curve) {
+  Ring ring;
+  for (int i = 0; i < n; ++i) {
+    ring.push_back(static_cast<int>(mesh.points.size()));
+    mesh.points.push_back(curve(static_cast<double>(i) / n));
+  }
+  return ring;
+}
+
+double quality(const SerialMesh &mesh, const std::array<int, 4> &cell) {
+  std::array<Point, 4> vertices{};
+  for (std::size_t i = 0; i < 3; ++i)
+    vertices[i] = mesh.points[static_cast<std::size_t>(cell[i])];
+  return aspect_ratio(2, vertices);
+}
+
+/// Fills the strip between two rings with triangles. From the edge that joins the two current
+/// nodes, either ring can go one node further: the better triangle of the two is taken. Equal ones
+/// are told apart by a margin far above round-off, so that every machine makes the same mesh.
+void zip(SerialMesh &mesh, const Ring &inner, const Ring &outer) {
+  constexpr double margin = 1e-8;
+  const std::size_t m = inner.size(), n = outer.size();
+  for (std::size_t i = 0, j = 0; i < m || j < n;) {
+    const std::array<int, 4> by_inner{inner[i % m], outer[j % n], inner[(i + 1) % m], -1};
+    const std::array<int, 4> by_outer{inner[i % m], outer[j % n], outer[(j + 1) % n], -1};
+    const bool take_inner =
+        j == n || (i < m && quality(mesh, by_inner) < (1 - margin) * quality(mesh, by_outer));
+    mesh.cells.push_back(take_inner ? by_inner : by_outer);
+    ++(take_inner ? i : j);
+  }
+}
+
+} // namespace
+
+SerialMesh square_with_disc() {
+  SerialMesh mesh;
+  mesh.points.push_back({0, 0, 0});
+  Ring ring;
+  for (int k = 1; k <= disc_rings; ++k) {
+    const Ring next = add_ring(mesh, 6 * k, [&](double t) -> Point {
+      const Point c = on_circle(t);
+      const double r = radius * k / disc_rings;
+      return {r * c[0], r * c[1], 0};
+    });
+    if (k > 1)
+      zip(mesh, ring, next);
+    else
+      for (std::size_t i = 0; i < 6; ++i)
+        mesh.cells.push_back({0, next[i], next[(i + 1) % 6], -1});
+    ring = next;
+  }
+  for (int cell = 0; cell < static_cast<int>(mesh.cells.size()); ++cell)
+    mesh.region["obstacle"].push_back(cell);
+
+  for (int j = 1; j <= outer_rings; ++j) {
+    const Ring next = add_ring(mesh, circle_nodes + 8 * j, [&](double t) -> Point {
+      const Point c = on_circle(t), s = on_square(t);
+      const double blend = static_cast<double>(j) / outer_rings;
+      const double circle = radius * (1 - blend);
+      return {circle * c[0] + blend * s[0], circle * c[1] + blend * s[1], 0};
+    });
+    zip(mesh, ring, next);
+    ring = next;
+  }
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    mesh.boundary["boundary"].push_back({ring[i], ring[(i + 1) % ring.size()], -1});
+  return mesh;
+}
+
+} // namespace rbvi

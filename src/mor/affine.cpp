@@ -1,0 +1,226 @@
+#include "rbvi/mor/affine.hpp"
+
+#include "rbvi/par/gather.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// The local entries of the lower triangle of A, by natural numbers, and where their values stand.
+class LowerTriangle {
+public:
+  LowerTriangle(Mat a, const Dofs &dofs) : natural_(natural_of_rows(dofs)) {
+    visit(a, [this](PetscInt row, PetscInt column, double) {
+      const EntryKey key{natural_[static_cast<std::size_t>(row)],
+                         natural_[static_cast<std::size_t>(column)]};
+      taken_.push_back(key.row >= key.column);
+      if (taken_.back()) keys_.push_back(key);
+    });
+  }
+  const std::vector<EntryKey> &keys() const { return keys_; }
+  Vector values(Mat a) const {
+    Vector result(static_cast<Index>(keys_.size()));
+    auto taken = taken_.begin();
+    Index next = 0;
+    visit(a, [&](PetscInt, PetscInt, double value) {
+      if (*taken++) result[next++] = value;
+    });
+    return result;
+  }
+
+private:
+  static std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
+    std::vector<PetscInt> natural(static_cast<std::size_t>(dofs.total_free), 0);
+    for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
+      natural[static_cast<std::size_t>(dofs.first_free) + i] = dofs.natural_owned[i];
+    MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPIU_INT, MPI_SUM,
+                  dofs.comm);
+    return natural;
+  }
+
+  template <class Visitor> static void visit(Mat a, Visitor &&visitor) {
+    PetscInt begin = 0, end = 0;
+    RBVI_CALL(MatGetOwnershipRange(a, &begin, &end));
+    for (PetscInt row = begin; row < end; ++row) {
+      PetscInt count = 0;
+      const PetscInt *columns = nullptr;
+      const PetscScalar *values = nullptr;
+      RBVI_CALL(MatGetRow(a, row, &count, &columns, &values));
+      for (PetscInt k = 0; k < count; ++k)
+        visitor(row, columns[k], values[k]);
+      RBVI_CALL(MatRestoreRow(a, row, &count, &columns, &values));
+    }
+  }
+
+  std::vector<PetscInt> natural_;
+  std::vector<EntryKey> keys_;
+  std::vector<bool> taken_;
+};
+
+/// One cell that touches sampled entries: its number, its vertices, and (entry, local) pairs.
+struct TouchedCell {
+  PetscInt number;
+  std::array<Point, 4> vertices;
+  std::vector<std::pair<int, int>> entries;
+};
+
+SampleMesh to_sample_mesh(int dim, std::vector<TouchedCell> cells) {
+  std::sort(cells.begin(), cells.end(),
+            [](const TouchedCell &x, const TouchedCell &y) { return x.number < y.number; });
+  SampleMesh sample;
+  sample.vertices.resize(static_cast<Index>(cells.size()) * (dim + 1), dim);
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    for (int i = 0; i <= dim; ++i)
+      for (int c = 0; c < dim; ++c)
+        sample.vertices(static_cast<Index>(k) * (dim + 1) + i, c) =
+            cells[k].vertices[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+    for (const auto &[entry, local] : cells[k].entries)
+      sample.contributions.push_back({entry, static_cast<int>(k), local});
+  }
+  std::stable_sort(sample.contributions.begin(), sample.contributions.end(),
+                   [](const auto &x, const auto &y) { return x.entry < y.entry; });
+  return sample;
+}
+
+/// (entry, local) pairs of one cell, given the keys' rows and columns of its local dofs.
+std::vector<std::pair<int, int>> touched(const std::vector<EntryKey> &entries,
+                                         const std::vector<PetscInt> &rows,
+                                         const std::vector<PetscInt> &columns) {
+  std::vector<std::pair<int, int>> result;
+  for (std::size_t e = 0; e < entries.size(); ++e)
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t j = 0; j < columns.size(); ++j)
+        if (rows[i] == entries[e].row && columns[j] == entries[e].column)
+          result.emplace_back(static_cast<int>(e), static_cast<int>(i * columns.size() + j));
+  return result;
+}
+
+/// Cells of the contact region; columns are contact dofs for b, the single 0 for g.
+SampleMesh sample_contact(const ContactRegion &region, const std::vector<EntryKey> &entries,
+                          bool matrix) {
+  std::vector<TouchedCell> cells;
+  const auto components = static_cast<std::size_t>(region.components);
+  for (std::size_t k = 0; k < region.cells.size(); ++k) {
+    std::vector<PetscInt> rows, columns;
+    TouchedCell cell{static_cast<PetscInt>(k), {}, {}};
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(region.dim); ++i) {
+      const int dual = region.cells[k][i];
+      rows.push_back(dual);
+      cell.vertices[i] = region.points[static_cast<std::size_t>(dual)];
+      for (std::size_t c = 0; c < components && matrix; ++c)
+        columns.push_back(region.contact_dof[static_cast<std::size_t>(dual) * components + c]);
+    }
+    if (!matrix) columns.push_back(0);
+    cell.entries = touched(entries, rows, columns);
+    if (!cell.entries.empty()) cells.push_back(std::move(cell));
+  }
+  return to_sample_mesh(region.dim, std::move(cells));
+}
+
+/// Flattens the cells of all ranks onto every rank.
+std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCell> &mine) {
+  std::vector<double> packed; // number, 12 coordinates, count, pairs
+  for (const TouchedCell &cell : mine) {
+    packed.push_back(static_cast<double>(cell.number));
+    for (const Point &x : cell.vertices)
+      packed.insert(packed.end(), x.begin(), x.end());
+    packed.push_back(static_cast<double>(cell.entries.size()));
+    for (const auto &[entry, local] : cell.entries) {
+      packed.push_back(entry);
+      packed.push_back(local);
+    }
+  }
+  const std::vector<double> all = gather_all(comm, packed, MPI_DOUBLE);
+  std::vector<TouchedCell> cells;
+  for (auto at = all.begin(); at != all.end();) {
+    TouchedCell cell{static_cast<PetscInt>(*at++), {}, {}};
+    for (Point &x : cell.vertices)
+      for (double &coordinate : x)
+        coordinate = *at++;
+    for (auto count = static_cast<int>(*at++); count > 0; --count) {
+      const int entry = static_cast<int>(*at++);
+      cell.entries.emplace_back(entry, static_cast<int>(*at++));
+    }
+    cells.push_back(std::move(cell));
+  }
+  return cells;
+}
+
+/// Cells of the whole mesh; matrix: rows and columns are natural dofs, vector: column 0.
+SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &entries,
+                         bool matrix) {
+  const Mesh &mesh = problem.mesh();
+  const auto components = problem.dofs().components;
+  std::vector<TouchedCell> mine;
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
+    std::vector<PetscInt> rows;
+    TouchedCell cell{mesh.natural_cell[k], {}, {}};
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i) {
+      const auto vertex = static_cast<std::size_t>(mesh.cells[k][i]);
+      cell.vertices[i] = mesh.points[vertex];
+      for (int c = 0; c < components; ++c)
+        rows.push_back(mesh.natural_vertex[vertex] * components + c);
+    }
+    cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
+    if (!cell.entries.empty()) mine.push_back(std::move(cell));
+  }
+  return to_sample_mesh(mesh.dim, gather_cells(problem.comm(), mine));
+}
+
+std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix) {
+  std::vector<EntryKey> keys;
+  for (Index row = 0; row < matrix.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
+      keys.push_back({static_cast<PetscInt>(row), static_cast<PetscInt>(entry.col())});
+  return keys;
+}
+
+Vector local_values(Vec vector) {
+  PetscInt size = 0;
+  const PetscScalar *values = nullptr;
+  RBVI_CALL(VecGetLocalSize(vector, &size));
+  RBVI_CALL(VecGetArrayRead(vector, &values));
+  Vector result = Eigen::Map<const Vector>(values, size);
+  RBVI_CALL(VecRestoreArrayRead(vector, &values));
+  return result;
+}
+
+} // namespace
+
+AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
+                         const EimOptions &options) {
+  const auto count = static_cast<Index>(training.size());
+  const Operators &op = problem.assemble(training.front());
+  const LowerTriangle triangle(op.a, problem.dofs());
+  const std::vector<EntryKey> b_keys = nonzero_keys(op.b);
+  std::vector<EntryKey> f_keys, g_keys;
+  for (const PetscInt natural : problem.dofs().natural_owned)
+    f_keys.push_back({natural, 0});
+  for (PetscInt i = 0; i < op.g.size(); ++i)
+    g_keys.push_back({i, 0});
+
+  Matrix a(triangle.keys().size(), count), b(b_keys.size(), count), f(f_keys.size(), count),
+      g(g_keys.size(), count);
+  for (Index p = 0; p < count; ++p) {
+    problem.assemble(training[static_cast<std::size_t>(p)]);
+    a.col(p) = triangle.values(op.a);
+    b.col(p) = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
+    f.col(p) = local_values(op.f);
+    g.col(p) = op.g;
+  }
+
+  AffineOperators result;
+  result.a = eim(problem.comm(), a, triangle.keys(), options);
+  result.b = eim(MPI_COMM_SELF, b, b_keys, options);
+  if (problem.scene().f) result.f = eim(problem.comm(), f, f_keys, options);
+  result.g = eim(MPI_COMM_SELF, g, g_keys, options);
+  result.sample_a = sample_domain(problem, result.a.entries, true);
+  result.sample_b = sample_contact(problem.contact(), result.b.entries, true);
+  result.sample_f = sample_domain(problem, result.f.entries, false);
+  result.sample_g = sample_contact(problem.contact(), result.g.entries, false);
+  return result;
+}
+
+} // namespace rbvi

@@ -1,0 +1,195 @@
+#include "rbvi/mor/reduce.hpp"
+
+#include "rbvi/par/gather.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+using Stride = Eigen::OuterStride<>;
+using LocalRows = Eigen::Map<const Matrix, 0, Stride>;
+
+/// This rank's rows of a dense matrix, borrowed until destruction.
+class BorrowedRows {
+public:
+  explicit BorrowedRows(Mat dense) : dense_(dense) {
+    RBVI_CALL(MatGetLocalSize(dense, &rows_, nullptr));
+    RBVI_CALL(MatGetSize(dense, nullptr, &columns_));
+    RBVI_CALL(MatDenseGetLDA(dense, &stride_));
+    RBVI_CALL(MatDenseGetArrayRead(dense, &values_));
+  }
+  ~BorrowedRows() { (void)MatDenseRestoreArrayRead(dense_, &values_); }
+  BorrowedRows(const BorrowedRows &) = delete;
+  BorrowedRows &operator=(const BorrowedRows &) = delete;
+  LocalRows rows() const { return {values_, rows_, columns_, Stride(stride_)}; }
+
+private:
+  Mat dense_;
+  PetscInt rows_ = 0, columns_ = 0, stride_ = 0;
+  const PetscScalar *values_ = nullptr;
+};
+
+void sum_over_ranks(MPI_Comm comm, Matrix &values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                comm);
+}
+
+/// V^T A V, its lower triangle column by column. Collective.
+Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
+  Handle<Mat> product;
+  RBVI_CALL(MatMatMult(a, basis, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
+  Matrix full = BorrowedRows(basis).rows().transpose() * BorrowedRows(product.get()).rows();
+  sum_over_ranks(comm, full);
+  const Index n = full.cols();
+  Vector packed(n * (n + 1) / 2);
+  Index next = 0;
+  for (Index j = 0; j < n; ++j) {
+    packed.segment(next, n - j) =
+        (full.col(j).tail(n - j) + full.row(j).tail(n - j).transpose()) / 2;
+    next += n - j;
+  }
+  return packed;
+}
+
+/// The training numbers that some operator was sampled at, each once.
+std::vector<int> sampled_snapshots(const AffineOperators &affine) {
+  std::vector<int> all;
+  for (const Eim *operator_eim : {&affine.a, &affine.b, &affine.f, &affine.g})
+    all.insert(all.end(), operator_eim->snapshots.begin(), operator_eim->snapshots.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+AffineTerms start_terms(const Eim &eim, const SampleMesh &sample, Index entries) {
+  AffineTerms terms;
+  terms.reduced = Matrix::Zero(entries, eim.size());
+  terms.interpolation = eim.interpolation;
+  terms.sample = sample;
+  terms.error = eim.error.empty() ? 0 : eim.error.back();
+  return terms;
+}
+
+/// Adds a snapshot's projection to every term that contains it.
+void accumulate(const Eim &eim, int snapshot, const Vector &projected, Matrix &terms) {
+  for (int i = 0; i < eim.size(); ++i)
+    if (eim.snapshots[static_cast<std::size_t>(i)] == snapshot)
+      for (int j = i; j < eim.size(); ++j)
+        terms.col(j) += eim.combination(i, j) * projected;
+}
+
+bool uses(const Eim &eim, int snapshot) {
+  return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
+}
+
+void describe_mesh(const Problem &problem, ReducedModel &model) {
+  const Mesh &mesh = problem.mesh();
+  const ContactRegion &contact = problem.contact();
+  model.mesh_fingerprint = mesh.fingerprint;
+  model.mesh_points = Matrix::Zero(mesh.total_vertices, mesh.dim);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    for (int c = 0; c < mesh.dim && mesh.owned_vertex[v]; ++c)
+      model.mesh_points(mesh.natural_vertex[v], c) = mesh.points[v][static_cast<std::size_t>(c)];
+  sum_over_ranks(problem.comm(), model.mesh_points);
+
+  const int corners = mesh.dim + 1;
+  std::vector<int> mine;
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
+    mine.push_back(static_cast<int>(mesh.natural_cell[k]));
+    for (int i = 0; i < corners; ++i)
+      mine.push_back(static_cast<int>(mesh.natural_vertex[static_cast<std::size_t>(
+          mesh.cells[k][static_cast<std::size_t>(i)])]));
+  }
+  const std::vector<int> all = gather_all(problem.comm(), mine, MPI_INT);
+  model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * corners));
+  for (auto record = all.begin(); record != all.end(); record += corners + 1)
+    std::copy(record + 1, record + 1 + corners, model.mesh_cells.begin() + *record * corners);
+
+  model.contact_points.resize(contact.dual_size(), mesh.dim);
+  for (Index r = 0; r < contact.dual_size(); ++r) {
+    model.contact_nodes.push_back(
+        static_cast<int>(contact.natural_vertex[static_cast<std::size_t>(r)]));
+    for (int c = 0; c < mesh.dim; ++c)
+      model.contact_points(r, c) =
+          contact.points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+  }
+  for (const auto &cell : contact.cells)
+    model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + corners);
+}
+
+} // namespace
+
+ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
+                     const AffineOperators &affine, const ReducedBases &bases) {
+  ReducedModel model;
+  model.scene_name = problem.scene().name;
+  model.scene_options = problem.scene().options;
+  model.parameters = problem.scene().parameters;
+  model.modes = bases.modes;
+  model.supremizers = bases.supremizers;
+  model.dual_basis = bases.cone.basis.generators;
+  model.generators = static_cast<int>(model.dual_basis.cols());
+  describe_mesh(problem, model);
+
+  Mat basis = nullptr;
+  RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
+  model.gap_scale = 0;
+  const Index n = model.primal_size(), generators = model.generators;
+  const Matrix trace = restrict_to(problem.trace(), basis); // contact dofs x n
+  model.a = start_terms(affine.a, affine.sample_a, n * (n + 1) / 2);
+  model.b = start_terms(affine.b, affine.sample_b, generators * n);
+  model.f = start_terms(affine.f, affine.sample_f, n);
+  model.g = start_terms(affine.g, affine.sample_g, generators);
+  model.lumped_weights = Matrix::Zero(problem.contact().dual_size(), affine.b.size());
+
+  for (const int p : sampled_snapshots(affine)) {
+    const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
+    if (uses(affine.a, p))
+      accumulate(affine.a, p, project_stiffness(problem.comm(), op.a, basis), model.a.reduced);
+    const Matrix b = model.dual_basis.transpose() * (op.b * trace);
+    accumulate(affine.b, p, b.reshaped(), model.b.reduced);
+    accumulate(affine.b, p, op.weights, model.lumped_weights);
+    accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
+    if (uses(affine.f, p)) {
+      const PetscScalar *load = nullptr;
+      RBVI_CALL(VecGetArrayRead(op.f, &load));
+      const BorrowedRows rows(basis);
+      Matrix f = rows.rows().transpose() * Eigen::Map<const Vector>(load, rows.rows().rows());
+      RBVI_CALL(VecRestoreArrayRead(op.f, &load));
+      sum_over_ranks(problem.comm(), f);
+      accumulate(affine.f, p, f, model.f.reduced);
+    }
+    model.gap_scale =
+        std::max(model.gap_scale, op.g.cwiseQuotient(op.weights).cwiseAbs().maxCoeff());
+  }
+
+  const auto &contact = problem.contact();
+  model.primal_basis = Matrix::Zero(problem.dofs().total, n);
+  {
+    const BorrowedRows rows(basis);
+    const auto local = rows.rows();
+    for (Index i = 0; i < local.rows(); ++i)
+      model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
+          local.row(i);
+  }
+  sum_over_ranks(problem.comm(), model.primal_basis);
+  RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
+  model.contact_trace.resize(contact.dual_size(), n);
+  for (Index r = 0; r < contact.dual_size(); ++r)
+    model.contact_trace.row(r) =
+        model.primal_basis.row(contact.natural_vertex[static_cast<std::size_t>(r)]);
+  model.histories["pod/error"] = bases.pod.error;
+  model.histories["cone/error"] = bases.cone.history.error;
+  model.histories["cone/e_orth"] = bases.cone.history.e_orth;
+  model.histories["cone/gram_condition"] = bases.cone.history.gram_condition;
+  model.histories["pga/sigma"] = bases.pga.sigma;
+  model.histories["eim/a"] = affine.a.error;
+  model.histories["eim/b"] = affine.b.error;
+  model.histories["eim/f"] = affine.f.error;
+  model.histories["eim/g"] = affine.g.error;
+  return model;
+}
+
+} // namespace rbvi

@@ -1,0 +1,76 @@
+#include "rbvi/mor/small_svd.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace rbvi {
+
+namespace {
+
+Handle<SVD> solved(const Matrix &matrix) {
+  const auto wanted = static_cast<PetscInt>(std::min(matrix.rows(), matrix.cols()));
+  if (!matrix.allFinite()) throw failure("singular values of a matrix with entries not finite");
+  const Handle<Mat> copy = sequential_dense(matrix);
+  Handle<SVD> svd;
+  RBVI_CALL(SVDCreate(PETSC_COMM_SELF, svd.put()));
+  RBVI_CALL(SVDSetOperators(svd.get(), copy.get(), nullptr));
+  RBVI_CALL(SVDSetType(svd.get(), SVDLAPACK));
+  RBVI_CALL(SVDSetDimensions(svd.get(), wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  RBVI_CALL(SVDSolve(svd.get()));
+  PetscInt converged = 0;
+  RBVI_CALL(SVDGetConverged(svd.get(), &converged));
+  if (converged < wanted)
+    throw failure("SLEPc returned " + std::to_string(converged) + " of " + std::to_string(wanted) +
+                  " singular values of a dense matrix; check the scaling of its entries");
+  return svd;
+}
+
+Handle<Vec> wrapped_column(Matrix &matrix, Index column) {
+  Handle<Vec> vector;
+  RBVI_CALL(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, static_cast<PetscInt>(matrix.rows()),
+                                  matrix.col(column).data(), vector.put()));
+  return vector;
+}
+
+} // namespace
+
+Handle<Mat> sequential_dense(const Matrix &matrix) {
+  Handle<Mat> copy;
+  RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, static_cast<PetscInt>(matrix.rows()),
+                              static_cast<PetscInt>(matrix.cols()), nullptr, copy.put()));
+  double *entries = nullptr;
+  RBVI_CALL(MatDenseGetArrayWrite(copy.get(), &entries));
+  std::copy_n(matrix.data(), matrix.size(), entries);
+  RBVI_CALL(MatDenseRestoreArrayWrite(copy.get(), &entries));
+  RBVI_CALL(MatAssemblyBegin(copy.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(copy.get(), MAT_FINAL_ASSEMBLY));
+  return copy;
+}
+
+SmallSvd small_svd(const Matrix &matrix) {
+  const Index count = std::min(matrix.rows(), matrix.cols());
+  SmallSvd result{Vector(count), Matrix(matrix.rows(), count), Matrix(matrix.cols(), count)};
+  if (count == 0) return result;
+  const Handle<SVD> svd = solved(matrix);
+  for (Index k = 0; k < count; ++k) {
+    const Handle<Vec> left = wrapped_column(result.left, k);
+    const Handle<Vec> right = wrapped_column(result.right, k);
+    RBVI_CALL(SVDGetSingularTriplet(svd.get(), static_cast<PetscInt>(k), &result.values(k),
+                                    left.get(), right.get()));
+  }
+  return result;
+}
+
+Vector singular_values(const Matrix &matrix) {
+  Vector values(std::min(matrix.rows(), matrix.cols()));
+  if (values.size() == 0) return values;
+  const Handle<SVD> svd = solved(matrix);
+  for (Index k = 0; k < values.size(); ++k)
+    RBVI_CALL(
+        SVDGetSingularTriplet(svd.get(), static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
+  return values;
+}
+
+} // namespace rbvi

@@ -1,0 +1,187 @@
+#include "rbvi/mor/stability.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/mor/small_svd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double range_tolerance = 1e-12;
+
+Handle<KSP> factorised(Mat product) {
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(product));
+  PetscMPIInt ranks = 1;
+  RBVI_CALL(MPI_Comm_size(comm, &ranks));
+  RBVI_CALL(MatSetOption(product, MAT_SPD, PETSC_TRUE));
+  Handle<KSP> solver;
+  PC preconditioner = nullptr;
+  RBVI_CALL(KSPCreate(comm, solver.put()));
+  RBVI_CALL(KSPSetOptionsPrefix(solver.get(), "v_"));
+  RBVI_CALL(KSPSetOperators(solver.get(), product, product));
+  RBVI_CALL(KSPSetType(solver.get(), KSPPREONLY));
+  RBVI_CALL(KSPGetPC(solver.get(), &preconditioner));
+  RBVI_CALL(PCSetType(preconditioner, PCCHOLESKY));
+  RBVI_CALL(
+      PCFactorSetMatSolverType(preconditioner, ranks == 1 ? MATSOLVERCHOLMOD : MATSOLVERMUMPS));
+  RBVI_CALL(KSPSetFromOptions(solver.get()));
+  return solver;
+}
+
+Matrix lower_cholesky(const Matrix &matrix, const char *what) {
+  const Eigen::LLT<Matrix> cholesky(matrix);
+  if (!matrix.allFinite() || cholesky.info() != Eigen::Success)
+    throw failure(std::string(what) + " is not positive definite");
+  return cholesky.matrixL();
+}
+
+} // namespace
+
+RieszSpace make_riesz_space(Mat product, const Trace &trace) {
+  const Handle<KSP> solver = factorised(product);
+  const Handle<Mat> columns = extension(trace, Matrix::Identity(trace.size, trace.size), product);
+  RieszSpace space;
+  RBVI_CALL(MatDuplicate(columns.get(), MAT_DO_NOT_COPY_VALUES, space.lift.put()));
+  RBVI_CALL(KSPMatSolve(solver.get(), columns.get(), space.lift.get()));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  RBVI_CALL(KSPGetConvergedReason(solver.get(), &reason));
+  if (reason < 0)
+    throw failure(std::string("the V product could not be factorised (") +
+                  KSPConvergedReasons[reason] +
+                  "): it must be symmetric positive definite; see -v_pc_type, -v_ksp_type");
+  const Matrix traces = restrict_to(trace, space.lift.get());
+  space.factor = lower_cholesky((traces + traces.transpose()) / 2,
+                                "the inverse V product on the contact dofs");
+  return space;
+}
+
+Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes, const Trace &trace) {
+  const PetscInt count = modes.size();
+  const Index contact = trace.size;
+  Matrix coordinates = Matrix::Zero(contact + count, count);
+  if (count == 0) return coordinates;
+  Mat columns = nullptr;
+  RBVI_CALL(BVGetMat(modes.columns.get(), &columns));
+  Matrix top = restrict_to(trace, columns);
+  RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
+  space.factor.triangularView<Eigen::Lower>().solveInPlace(top);
+  const Eigen::SelfAdjointEigenSolver<Matrix> rest(Matrix::Identity(count, count) -
+                                                   top.transpose() * top);
+  if (rest.info() != Eigen::Success || !(rest.eigenvalues()(0) > -1e-8))
+    throw failure("the primal basis is not orthonormal in the V product of the supremizers");
+  const Vector roots = rest.eigenvalues().cwiseMax(0).cwiseSqrt();
+  coordinates.topRows(contact) = top;
+  coordinates.bottomRows(count) = roots.asDiagonal() * rest.eigenvectors().transpose();
+  return coordinates;
+}
+
+Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
+                              double tolerance) {
+  const auto squares = [&](const Matrix &x) -> Vector {
+    return x.cwiseProduct(w_product * x).colwise().sum().transpose().cwiseMax(0);
+  };
+  const Vector norms = squares(generators).cwiseSqrt();
+  Matrix remainders = generators;
+  for (Index r = 0; r < remainders.cols(); ++r)
+    if (norms(r) > 0) remainders.col(r) /= norms(r);
+  Matrix basis(generators.rows(), generators.cols());
+  Index rank = 0;
+  for (; rank < generators.cols(); ++rank) {
+    Index next = 0;
+    if (std::sqrt(squares(remainders).maxCoeff(&next)) <= tolerance) break;
+    Vector column = remainders.col(next);
+    Vector image = w_product * column;
+    const auto known = basis.leftCols(rank);
+    column -= known * (known.transpose() * image);
+    image = w_product * column;
+    const double norm = std::sqrt(column.dot(image));
+    basis.col(rank) = column / norm;
+    remainders -= basis.col(rank) * ((image / norm).transpose() * remainders).eval();
+    remainders.col(next).setZero();
+  }
+  return basis.leftCols(rank);
+}
+
+Matrix orthonormal_range(const Matrix &vectors) {
+  const Index size = std::min(vectors.rows(), vectors.cols());
+  if (!vectors.allFinite()) throw failure("supremizers with entries that are not finite");
+  if (size == 0) return Matrix(vectors.rows(), 0);
+  // Blocked, then pivoted on the small factor: pivoting the tall matrix costs several times more.
+  const Eigen::HouseholderQR<Matrix> qr(vectors);
+  const Matrix triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+  Eigen::ColPivHouseholderQR<Matrix> small(triangle);
+  small.setThreshold(range_tolerance);
+  const Index rank = small.maxPivot() > 0 ? small.rank() : 0;
+  Matrix basis = Matrix::Zero(vectors.rows(), rank);
+  if (rank == size)
+    basis.topRows(size).setIdentity();
+  else
+    basis.topRows(size) = small.householderQ() * Matrix::Identity(size, rank);
+  basis.applyOnTheLeft(qr.householderQ());
+  return basis;
+}
+
+Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const Matrix &x) {
+  const Matrix forces = b_contact.transpose() * x;
+  return space.factor.transpose().triangularView<Eigen::Upper>() * forces;
+}
+
+double infsup_constant(const Matrix &primal, const Matrix &supremizers) {
+  if (supremizers.cols() == 0) return std::numeric_limits<double>::infinity();
+  if (primal.cols() < supremizers.cols()) return 0;
+  const Matrix pairing = primal.topRows(supremizers.rows()).transpose() * supremizers;
+  return singular_values(pairing)(supremizers.cols() - 1);
+}
+
+namespace {
+
+// T(mu) eta lies in V_N + S_R(mu), so the supremum over that space is the norm of T(mu) eta.
+double smallest_stretch(const Matrix &supremizers) {
+  if (supremizers.cols() == 0) return std::numeric_limits<double>::infinity();
+  if (supremizers.rows() < supremizers.cols()) return 0;
+  return singular_values(supremizers)(supremizers.cols() - 1);
+}
+
+double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const SparseMatrix &w_product) {
+  Matrix x = lower_cholesky(Matrix(w_product), "the W product");
+  x = Matrix(
+      x.transpose().triangularView<Eigen::Upper>().solve(Matrix::Identity(x.rows(), x.cols())));
+  return smallest_stretch(supremizer_coordinates(space, b_contact, x));
+}
+
+} // namespace
+
+InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact,
+                        const SparseMatrix &w_product, const Matrix &modes, const Matrix &enriched,
+                        const Matrix &x, bool with_hf) {
+  const Matrix supremizers = supremizer_coordinates(space, b_contact, x);
+  return {.hf = with_hf ? high_fidelity_constant(space, b_contact, w_product)
+                        : std::numeric_limits<double>::quiet_NaN(),
+          .dec = infsup_constant(modes, supremizers),
+          .on = smallest_stretch(supremizers),
+          .off = infsup_constant(enriched, supremizers)};
+}
+
+StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers) {
+  const Vector stretch = singular_values(supremizers);
+  const Matrix range = orthonormal_range(supremizers);
+  Matrix rest = Matrix::Zero(enriched.rows(), range.cols());
+  rest.topRows(range.rows()) = range;
+  rest -= enriched * (enriched.topRows(range.rows()).transpose() * range);
+  StabilityBound bound{};
+  bound.sigma = range.cols() > 0 ? std::min(singular_values(rest)(0), 1.0) : 0;
+  bound.c = stretch.size() > 0 ? stretch(0) : 0;
+  bound.on = smallest_stretch(supremizers);
+  bound.sharp = std::sqrt((1 - bound.sigma) * (1 + bound.sigma)) * bound.on;
+  bound.classic = (bound.on - bound.c * bound.sigma) / (1 + bound.sigma);
+  return bound;
+}
+
+} // namespace rbvi

@@ -1,0 +1,26 @@
+#include "rbvi/par/groups.hpp"
+
+#include "rbvi/core/error.hpp"
+
+namespace rbvi {
+
+Groups::Groups(MPI_Comm world, int ranks_per_group) {
+  int ranks = 1, rank = 0;
+  MPI_Comm_size(world, &ranks);
+  MPI_Comm_rank(world, &rank);
+  if (ranks_per_group < 1 || ranks % ranks_per_group != 0)
+    throw bad_input("-sweep_ranks_per_solve is " + std::to_string(ranks_per_group) +
+                    ": use a number that divides the " + std::to_string(ranks) + " ranks");
+  count_ = ranks / ranks_per_group;
+  mine_ = rank / ranks_per_group;
+  leads_ = rank % ranks_per_group == 0;
+  MPI_Comm_split(world, mine_, rank, &comm_);
+}
+
+Groups::~Groups() {
+  int finalized = 0;
+  MPI_Finalized(&finalized);
+  if (finalized == 0 && comm_ != MPI_COMM_NULL) MPI_Comm_free(&comm_);
+}
+
+} // namespace rbvi

@@ -1,0 +1,75 @@
+#include "rbvi/par/petsc.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/par/session.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace rbvi {
+
+namespace {
+
+// The handler runs inside C code and must not throw: fixed storage.
+std::array<char, 1024> recorded{};
+
+PetscErrorCode record(MPI_Comm, int, const char *, const char *, PetscErrorCode code,
+                      PetscErrorType type, const char *message, void *) {
+  if (type == PETSC_ERROR_INITIAL && message != nullptr) {
+    const std::string_view text = message;
+    const std::size_t length = std::min(text.size(), recorded.size() - 1);
+    std::copy_n(text.begin(), length, recorded.begin());
+    recorded[length] = '\0';
+  }
+  return code;
+}
+
+std::string one_line(std::string_view text) {
+  std::string line;
+  for (const char c : text) {
+    const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+    if (!blank) line += c;
+    if (blank && !line.empty() && line.back() != ' ') line += ' ';
+  }
+  if (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+} // namespace
+
+void throw_petsc_error(PetscErrorCode code, const char *call) {
+  const char *general = nullptr;
+  char *specific = nullptr;
+  (void)PetscErrorMessage(code, &general, &specific);
+  std::string message = one_line(recorded.data());
+  recorded[0] = '\0';
+  if (message.empty() && specific != nullptr) message = one_line(specific);
+  if (message.empty() && general != nullptr) message = one_line(general);
+  if (message.empty()) message = "no message";
+  const std::string_view name = call;
+  throw failure(std::string(name.substr(0, name.find('('))) + ": " + message + " (PETSc error " +
+                std::to_string(static_cast<int>(code)) + ")");
+}
+
+ErrorRecorder::ErrorRecorder() {
+  recorded[0] = '\0';
+  RBVI_CALL(PetscPushErrorHandler(record, nullptr));
+}
+
+ErrorRecorder::~ErrorRecorder() {
+  (void)PetscPopErrorHandler();
+}
+
+Session::Session(int &argc, char **&argv, const char *help) {
+  RBVI_CALL(SlepcInitialize(&argc, &argv, nullptr, help));
+  RBVI_CALL(PetscPushErrorHandler(record, nullptr));
+}
+
+Session::~Session() {
+  (void)PetscPopErrorHandler();
+  (void)SlepcFinalize();
+}
+
+} // namespace rbvi

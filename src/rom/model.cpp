@@ -1,0 +1,151 @@
+#include "rbvi/rom/model.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// Offset of column j of a packed lower triangle of order n.
+Index packed_column(Index n, Index j) {
+  return j * n - j * (j - 1) / 2;
+}
+
+Matrix leading_triangle(const Matrix &packed, Index n, Index size) {
+  Matrix result(size * (size + 1) / 2, packed.cols());
+  for (Index j = 0; j < size; ++j)
+    result.middleRows(packed_column(size, j), size - j) =
+        packed.middleRows(packed_column(n, j), size - j);
+  return result;
+}
+
+Matrix leading_block(const Matrix &packed, Index rows, Index r, Index n) {
+  Matrix result(r * n, packed.cols());
+  for (Index j = 0; j < n; ++j)
+    result.middleRows(j * r, r) = packed.middleRows(j * rows, r);
+  return result;
+}
+
+void require(bool holds, const std::string &what) {
+  if (!holds) throw failure("the reduced model is inconsistent: " + what);
+}
+
+void require_shape(const Matrix &matrix, Index rows, Index cols, const std::string &name) {
+  require(matrix.rows() == rows && matrix.cols() == cols,
+          name + " is " + std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) +
+              " instead of " + std::to_string(rows) + " x " + std::to_string(cols));
+  require(matrix.allFinite(), name + " has an entry that is not finite");
+}
+
+void require_indices(const std::vector<int> &indices, Index bound, const std::string &name) {
+  require(std::all_of(indices.begin(), indices.end(), [&](int i) { return i >= 0 && i < bound; }),
+          name + " points outside 0.." + std::to_string(bound - 1));
+}
+
+void check_terms(const AffineTerms &terms, Index rows, int dim, const std::string &name) {
+  const Index size = terms.interpolation.rows();
+  require_shape(terms.interpolation, size, size, name + "/interpolation");
+  require_shape(terms.reduced, size == 0 ? terms.reduced.rows() : rows, size, name + "/reduced");
+  const Matrix &vertices = terms.sample.vertices;
+  require(vertices.rows() % (dim + 1) == 0, name + "/vertices is not a list of cells");
+  require_shape(vertices, vertices.rows(), size == 0 ? vertices.cols() : dim, name + "/vertices");
+  int previous = 0;
+  for (const SampleMesh::Contribution &c : terms.sample.contributions) {
+    require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
+                c.cell < vertices.rows() / (dim + 1),
+            name + "/contributions point nowhere or are not ordered by entry");
+    previous = c.entry;
+  }
+}
+
+void check_fields(const ReducedModel &model, int dim) {
+  const Index nodes = model.mesh_points.rows(), contact = model.dual_basis.rows();
+  if (nodes == 0 && model.primal_basis.rows() == 0) return;
+  require_shape(model.mesh_points, nodes, dim, "fields/points");
+  require(nodes > 0 && model.primal_basis.rows() % nodes == 0,
+          "fields/primal_basis has no whole number of rows per node");
+  require_shape(model.primal_basis, model.primal_basis.rows(), model.primal_size(),
+                "fields/primal_basis");
+  require(model.primal_offset.size() == 0 ||
+              model.primal_offset.size() == model.primal_basis.rows(),
+          "fields/offset does not fit fields/primal_basis");
+  require_indices(model.contact_nodes, nodes, "contact/nodes");
+  require_indices(model.mesh_cells, nodes, "fields/cells");
+  require_indices(model.contact_cells, contact, "fields/contact_cells");
+  require(model.mesh_cells.size() % static_cast<std::size_t>(dim + 1) == 0,
+          "fields/cells is not a list of cells");
+}
+
+} // namespace
+
+void check_model(const ReducedModel &model) {
+  const int dim = static_cast<int>(model.contact_points.cols());
+  const Index n = model.primal_size(), r = model.generators, contact = model.dual_basis.rows();
+  require(dim == 2 || dim == 3, "contact/points has neither 2 nor 3 columns");
+  require(model.modes > 0 && model.supremizers >= 0 && r > 0, "it has no modes or no generators");
+  require(model.a.size() > 0 && model.b.size() > 0, "a or b has no terms");
+  check_terms(model.a, n * (n + 1) / 2, dim, "a");
+  check_terms(model.b, r * n, dim, "b");
+  check_terms(model.f, n, dim, "f");
+  check_terms(model.g, r, dim, "g");
+  require_shape(model.dual_basis, contact, r, "contact/dual_basis");
+  require(model.dual_basis.minCoeff() >= 0, "contact/dual_basis has a negative entry");
+  require_shape(model.contact_trace, contact, n, "contact/trace");
+  require(static_cast<Index>(model.contact_nodes.size()) == contact,
+          "contact/nodes does not fit contact/dual_basis");
+  require_shape(model.contact_points, contact, dim, "contact/points");
+  require_shape(model.lumped_weights, contact, model.b.size(), "contact/lumped_weights");
+  require(model.primal_offset.allFinite(), "fields/offset has an entry that is not finite");
+  if (model.primal_offset.size() > 0)
+    require_indices(model.contact_nodes, model.primal_offset.size(), "contact/nodes");
+  require(model.gap_scale > 0, "gap_scale is not positive");
+  check_fields(model, dim);
+}
+
+ReducedModel leading(const ReducedModel &model, int n, int r) {
+  if (n < 1 || n > model.primal_size() || r < 1 || r > model.generators)
+    throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
+                    " dual functions in a model of " + std::to_string(model.primal_size()) +
+                    " and " + std::to_string(model.generators));
+  ReducedModel result = model;
+  result.modes = std::min(n, model.modes);
+  result.supremizers = n - result.modes;
+  result.generators = r;
+  result.a.reduced = leading_triangle(model.a.reduced, model.primal_size(), n);
+  result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
+  if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);
+  if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
+  result.dual_basis = model.dual_basis.leftCols(r);
+  result.contact_trace = model.contact_trace.leftCols(n);
+  if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
+  if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
+  if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};
+  return result;
+}
+
+const ValidationErrors &expected_errors(const ReducedModel &model) {
+  const bool plain = model.supremizers == 0 && model.validation_decorrelated.count > 0;
+  return plain ? model.validation_decorrelated : model.validation_enriched;
+}
+
+Point point_of(const Matrix &points, Index i) {
+  Point point{};
+  for (Index k = 0; k < points.cols(); ++k)
+    point[static_cast<std::size_t>(k)] = points(i, k);
+  return point;
+}
+
+Scene scene_of(const ReducedModel &model) {
+  Scene scene = make_scene(model.scene_name, model.scene_options);
+  const auto same = [](const Parameter &p, const Parameter &q) { return p.name == q.name; };
+  if (!std::equal(scene.parameters.all.begin(), scene.parameters.all.end(),
+                  model.parameters.all.begin(), model.parameters.all.end(), same))
+    throw bad_input("the parameters of the model are not those of scene " + model.scene_name +
+                    " in this build");
+  scene.parameters = model.parameters;
+  return scene;
+}
+
+} // namespace rbvi

@@ -1,0 +1,240 @@
+// Layout of model.h5 (schema 1). n = modes + supremizers, R generators, c = dual dofs of the
+// contact region, d = dimension; every term set T = a, b, f, g has its own J.
+//
+//   scene/name, scene/options/{names,values}          text
+//   parameters/{names,units}                          text, all parameters in order
+//   parameters/{lower,upper,value}                    bounds; value while fixed
+//   parameters/free                                   indices of the free ones
+//   settings/{names,values}, mesh/fingerprint         text
+//   size/{modes,supremizers,generators}               integers
+//   T/reduced                                         entries x J: a packed lower triangle by
+//                                                     columns, b R x n by columns, f n, g R
+//   T/interpolation                                   J x J unit lower triangular (B.34)
+//   T/vertices                                        (sample cells (d + 1)) x d
+//   T/contributions                                   triples entry, cell, local
+//   T/error                                           e_EIM reached (B.32)
+//   contact/{dual_basis,trace,points,lumped_weights}  c x R, c x n, c x d, c x J of b
+//   contact/{nodes,gap_scale}                         mesh node of each dual dof; a number
+//   fields/{primal_basis,offset}                      dofs x n; dofs or empty
+//   fields/{points,cells,contact_cells}               nodes x d; lists of d + 1 numbers per cell
+//   validation/{enriched,decorrelated}                count, then mean and max error of u, of
+//   lambda histories/names, histories/values/<name>          convergence histories
+//   stages/{names,seconds}                            wall time of each offline stage
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+#include "rbvi/rom/model.hpp"
+
+namespace rbvi {
+
+namespace {
+
+template <class Value>
+void keys_and_values(const std::map<std::string, Value> &map, std::vector<std::string> &keys,
+                     std::vector<Value> &values) {
+  for (const auto &[key, value] : map) {
+    keys.push_back(key);
+    values.push_back(value);
+  }
+}
+
+void write_texts(H5Writer &file, const std::string &group,
+                 const std::map<std::string, std::string> &map) {
+  std::vector<std::string> keys, values;
+  keys_and_values(map, keys, values);
+  file.write(group + "/names", keys);
+  file.write(group + "/values", values);
+}
+
+template <class Value>
+std::map<std::string, Value> zip(const std::string &what, const std::vector<std::string> &keys,
+                                 const std::vector<Value> &values) {
+  if (keys.size() != values.size()) throw bad_input(what + ": names without values");
+  std::map<std::string, Value> map;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    map[keys[i]] = values[i];
+  return map;
+}
+
+std::map<std::string, std::string> read_texts(const H5Reader &file, const std::string &group) {
+  return zip(group, file.strings(group + "/names"), file.strings(group + "/values"));
+}
+
+void write_parameters(H5Writer &file, const ParameterSpace &space) {
+  std::vector<std::string> names, units;
+  std::vector<double> lower, upper, value;
+  for (const Parameter &p : space.all) {
+    names.push_back(p.name);
+    units.push_back(p.unit);
+    lower.push_back(p.lower);
+    upper.push_back(p.upper);
+    value.push_back(p.value);
+  }
+  file.write("parameters/names", names);
+  file.write("parameters/units", units);
+  file.write("parameters/lower", lower);
+  file.write("parameters/upper", upper);
+  file.write("parameters/value", value);
+  file.write("parameters/free", space.free);
+}
+
+ParameterSpace read_parameters(const H5Reader &file) {
+  const std::vector<std::string> names = file.strings("parameters/names");
+  const std::vector<std::string> units = file.strings("parameters/units");
+  const std::vector<double> lower = file.doubles("parameters/lower");
+  const std::vector<double> upper = file.doubles("parameters/upper");
+  const std::vector<double> value = file.doubles("parameters/value");
+  const std::size_t count = names.size();
+  if (units.size() != count || lower.size() != count || upper.size() != count ||
+      value.size() != count)
+    throw bad_input("the parameters are incomplete");
+  ParameterSpace space;
+  for (std::size_t i = 0; i < count; ++i)
+    space.all.push_back({names[i], units[i], lower[i], upper[i], value[i]});
+  space.free = file.ints("parameters/free");
+  for (const int i : space.free)
+    if (i < 0 || static_cast<std::size_t>(i) >= count)
+      throw bad_input("a free parameter does not exist");
+  return space;
+}
+
+void write_terms(H5Writer &file, const std::string &group, const AffineTerms &terms) {
+  std::vector<int> triples;
+  for (const SampleMesh::Contribution &c : terms.sample.contributions)
+    triples.insert(triples.end(), {c.entry, c.cell, c.local});
+  file.write(group + "/reduced", terms.reduced);
+  file.write(group + "/interpolation", terms.interpolation);
+  file.write(group + "/vertices", terms.sample.vertices);
+  file.write(group + "/contributions", triples);
+  file.write(group + "/error", terms.error);
+}
+
+AffineTerms read_terms(const H5Reader &file, const std::string &group) {
+  AffineTerms terms;
+  terms.reduced = file.matrix(group + "/reduced");
+  terms.interpolation = file.matrix(group + "/interpolation");
+  terms.sample.vertices = file.matrix(group + "/vertices");
+  terms.error = file.number(group + "/error");
+  const std::vector<int> triples = file.ints(group + "/contributions");
+  if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
+  for (std::size_t i = 0; i < triples.size(); i += 3)
+    terms.sample.contributions.push_back({triples[i], triples[i + 1], triples[i + 2]});
+  return terms;
+}
+
+void write_validation(H5Writer &file, const std::string &name, const ValidationErrors &errors) {
+  file.write(name, std::vector<double>{static_cast<double>(errors.count), errors.u_mean,
+                                       errors.u_max, errors.lambda_mean, errors.lambda_max});
+}
+
+ValidationErrors read_validation(const H5Reader &file, const std::string &name) {
+  const std::vector<double> values = file.doubles(name);
+  if (values.size() != 5) throw bad_input(name + " has not 5 entries");
+  return {static_cast<int>(values[0]), values[1], values[2], values[3], values[4]};
+}
+
+void write_history(H5Writer &file, const ReducedModel &model) {
+  std::vector<std::string> names, stages;
+  std::vector<std::vector<double>> histories;
+  std::vector<double> seconds;
+  keys_and_values(model.histories, names, histories);
+  keys_and_values(model.stage_seconds, stages, seconds);
+  file.write("histories/names", names);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    file.write("histories/values/" + names[i], histories[i]);
+  file.write("stages/names", stages);
+  file.write("stages/seconds", seconds);
+  write_validation(file, "validation/enriched", model.validation_enriched);
+  write_validation(file, "validation/decorrelated", model.validation_decorrelated);
+}
+
+void read_history(const H5Reader &file, ReducedModel &model) {
+  for (const std::string &name : file.strings("histories/names"))
+    model.histories[name] = file.doubles("histories/values/" + name);
+  model.stage_seconds = zip("stages", file.strings("stages/names"), file.doubles("stages/seconds"));
+  model.validation_enriched = read_validation(file, "validation/enriched");
+  model.validation_decorrelated = read_validation(file, "validation/decorrelated");
+}
+
+void write_fields(H5Writer &file, const ReducedModel &model) {
+  file.write("contact/dual_basis", model.dual_basis);
+  file.write("contact/trace", model.contact_trace);
+  file.write("contact/points", model.contact_points);
+  file.write("contact/lumped_weights", model.lumped_weights);
+  file.write("contact/nodes", model.contact_nodes);
+  file.write("contact/gap_scale", model.gap_scale);
+  file.write("fields/primal_basis", model.primal_basis);
+  file.write("fields/offset", model.primal_offset);
+  file.write("fields/points", model.mesh_points);
+  file.write("fields/cells", model.mesh_cells);
+  file.write("fields/contact_cells", model.contact_cells);
+}
+
+void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
+  model.dual_basis = file.matrix("contact/dual_basis");
+  model.contact_trace = file.matrix("contact/trace");
+  model.contact_points = file.matrix("contact/points");
+  model.lumped_weights = file.matrix("contact/lumped_weights");
+  model.contact_nodes = file.ints("contact/nodes");
+  model.gap_scale = file.number("contact/gap_scale");
+  model.primal_offset = file.vector("fields/offset");
+  if (!all) return;
+  model.primal_basis = file.matrix("fields/primal_basis");
+  model.mesh_points = file.matrix("fields/points");
+  model.mesh_cells = file.ints("fields/cells");
+  model.contact_cells = file.ints("fields/contact_cells");
+}
+
+ReducedModel read_members(const H5Reader &file, bool with_fields) {
+  ReducedModel model;
+  model.scene_name = file.string("scene/name");
+  model.scene_options = read_texts(file, "scene/options");
+  model.parameters = read_parameters(file);
+  model.settings = read_texts(file, "settings");
+  model.mesh_fingerprint = file.string("mesh/fingerprint");
+  model.modes = file.integer("size/modes");
+  model.supremizers = file.integer("size/supremizers");
+  model.generators = file.integer("size/generators");
+  model.a = read_terms(file, "a");
+  model.b = read_terms(file, "b");
+  model.f = read_terms(file, "f");
+  model.g = read_terms(file, "g");
+  read_fields(file, with_fields, model);
+  read_history(file, model);
+  return model;
+}
+
+} // namespace
+
+void write_model(const ReducedModel &model, const std::filesystem::path &path) {
+  check_model(model);
+  H5Writer file;
+  file.write("scene/name", model.scene_name);
+  write_texts(file, "scene/options", model.scene_options);
+  write_parameters(file, model.parameters);
+  write_texts(file, "settings", model.settings);
+  file.write("mesh/fingerprint", model.mesh_fingerprint);
+  file.write("size/modes", model.modes);
+  file.write("size/supremizers", model.supremizers);
+  file.write("size/generators", model.generators);
+  write_terms(file, "a", model.a);
+  write_terms(file, "b", model.b);
+  write_terms(file, "f", model.f);
+  write_terms(file, "g", model.g);
+  write_fields(file, model);
+  write_history(file, model);
+  file.commit(path, "model", model_schema);
+}
+
+ReducedModel read_model(const std::filesystem::path &path, bool with_fields) {
+  const H5Reader file(path, "model", model_schema);
+  try {
+    ReducedModel model = read_members(file, with_fields);
+    check_model(model);
+    (void)scene_of(model);
+    return model;
+  } catch (const Error &error) {
+    throw bad_input(std::string(error.what()) + ", while reading " + path.string());
+  }
+}
+
+} // namespace rbvi

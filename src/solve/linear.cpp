@@ -1,0 +1,40 @@
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/methods.hpp"
+
+namespace rbvi {
+
+Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  Handle<KSP> ksp;
+  RBVI_CALL(KSPCreate(comm, ksp.put()));
+  RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), prefix));
+  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY));
+  PC pc = nullptr;
+  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  RBVI_CALL(PCSetType(pc, PCCHOLESKY));
+  RBVI_CALL(PCFactorSetMatSolverType(pc, ranks == 1 ? MATSOLVERCHOLMOD : MATSOLVERMUMPS));
+  RBVI_CALL(KSPSetFromOptions(ksp.get()));
+  return ksp;
+}
+
+void solve_linear(KSP ksp, Vec rhs, Vec x) {
+  RBVI_CALL(KSPSolve(ksp, rhs, x));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
+  if (reason < 0)
+    throw failure(
+        std::string("the linear solver stopped with ") + KSPConvergedReasons[reason] +
+        ": is the stiffness matrix singular? Try -hf_pc_type lu or a tighter -hf_ksp_rtol");
+}
+
+Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda) {
+  Handle<Vec> rhs;
+  RBVI_CALL(VecDuplicate(op.f, rhs.put()));
+  RBVI_CALL(VecCopy(op.f, rhs.get()));
+  const Vector reaction = -(op.b.transpose() * lambda);
+  add_extension(trace, reaction, rhs.get());
+  return rhs;
+}
+
+} // namespace rbvi

@@ -1,0 +1,70 @@
+#include "sample_file.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+constexpr int sample_schema = 1;
+
+/// The outputs that a sample stores, in the order of their file record.
+constexpr std::array stored_outputs{
+    &Outputs::energy,          &Outputs::normal_force, &Outputs::contact_measure,
+    &Outputs::peak_pressure,   &Outputs::min_u,        &Outputs::kkt_residual,
+    &Outputs::max_penetration, &Outputs::iterations,   &Outputs::seconds};
+
+void check_settings(const std::filesystem::path &path, const Settings &mine,
+                    const std::vector<std::string> &names, const std::vector<std::string> &values) {
+  Settings theirs;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    theirs[names[i]] = values[i];
+  if (theirs == mine) return;
+  for (const auto &[name, value] : mine) {
+    const auto found = theirs.find(name);
+    const std::string other = found == theirs.end() ? "not set" : found->second;
+    if (other != value)
+      throw bad_input("the samples in " + path.parent_path().string() + " were made with " + name +
+                      " = " + other + ", now it is " + value +
+                      ": use another -out or restore the option");
+  }
+  throw bad_input("the samples in " + path.parent_path().string() +
+                  " were made with options that this scene no longer has: use another -out");
+}
+
+} // namespace
+
+void write_sample(const std::filesystem::path &path, const Sample &sample,
+                  const Settings &settings) {
+  std::vector<std::string> names, values;
+  for (const auto &[name, value] : settings) {
+    names.push_back(name);
+    values.push_back(value);
+  }
+  std::vector<double> outputs;
+  for (const auto member : stored_outputs)
+    outputs.push_back((sample.outputs.*member).value_or(std::numeric_limits<double>::quiet_NaN()));
+  H5Writer file;
+  file.write("mu", sample.mu);
+  file.write("u", sample.u);
+  file.write("lambda", sample.lambda);
+  file.write("outputs", outputs);
+  file.write("settings/names", names);
+  file.write("settings/values", values);
+  file.commit(path, "sample", sample_schema);
+}
+
+Sample read_sample(const std::filesystem::path &path, const Settings &settings) {
+  const H5Reader file(path, "sample", sample_schema);
+  check_settings(path, settings, file.strings("settings/names"), file.strings("settings/values"));
+  Sample sample{file.doubles("mu"), file.vector("u"), file.vector("lambda"), {}};
+  const std::vector<double> outputs = file.doubles("outputs");
+  for (std::size_t i = 0; i < stored_outputs.size(); ++i)
+    if (!std::isnan(outputs[i])) sample.outputs.*stored_outputs[i] = outputs[i];
+  return sample;
+}
+
+} // namespace rbvi
