@@ -5,9 +5,9 @@
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/pod.hpp"
 #include "rbvi/mor/stability.hpp"
+#include "rbvi/par/stage.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
-#include <map>
 
 namespace rbvi {
 
@@ -28,9 +28,6 @@ struct ReducedBases {
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
 };
-
-/// Wall seconds of each stage, in order.
-using StageTimes = std::vector<std::pair<std::string, double>>;
 
 /// Collective. `world_problem`: on all ranks. `b_is_scaled`: b depends on mu by a factor only, so
 /// one training mu serves the supremizers.
