@@ -19,7 +19,7 @@ std::vector<Index> allowed_generators(const Vector &bound, const Matrix &generat
 }
 
 /// Upper triangular R and Q^T target of the columns Z = Q R. Dependent generators leave `a` open:
-/// a ridge of 1e-8 then fixes it, and changes the squared distance by round-off alone.
+/// a ridge of 1e-6 then fixes it, and changes the squared distance by 1e-12 relative.
 std::pair<Matrix, Vector> triangular_form(const Matrix &z, const Vector &target) {
   const Index rows = z.rows(), columns = z.cols();
   Matrix extended(rows + columns, columns);
@@ -33,16 +33,16 @@ std::pair<Matrix, Vector> triangular_form(const Matrix &z, const Vector &target)
       const Vector rotated = qr.householderQ().adjoint() * right;
       return {qr.matrixQR().topRows(columns).triangularView<Eigen::Upper>(), rotated.head(columns)};
     }
-    extended.bottomRows(columns).diagonal().setConstant(1e-8 * pivots.maxCoeff());
+    extended.bottomRows(columns).diagonal().setConstant(1e-6 * pivots.maxCoeff());
   }
 }
 
 } // namespace
 
-Vector largest_part_below(const Vector &theta, double slack, const Matrix &generators,
-                          const Matrix &coordinates, const Vector &target) {
+PartBelow largest_part_below(const Vector &theta, double slack, const Matrix &generators,
+                             const Matrix &coordinates, const Vector &target) {
   const Vector bound = theta.array() + slack;
-  Vector result = Vector::Zero(generators.cols());
+  PartBelow result{Vector::Zero(generators.cols()), {}};
   const std::vector<Index> allowed = allowed_generators(bound, generators);
   if (allowed.empty()) return result;
   const Index count = static_cast<Index>(allowed.size());
@@ -60,12 +60,15 @@ Vector largest_part_below(const Vector &theta, double slack, const Matrix &gener
   r.triangularView<Eigen::Upper>().transpose().solveInPlace(y);
   Vector g = Vector::Zero(rows + count);
   g.head(rows) = bound(nodes);
-  NonnegativeQp dual(count);
+  // Near-dependent generators make y large, and the tolerance is relative to it.
+  NonnegativeQp dual(count, {.tolerance = 1e-14});
   if (!dual.solve(y, z0, g).converged)
     throw failure("the part of a snapshot that the cone can represent from below was not found; "
                   "try -cone_type cpg");
   const Vector a = r.triangularView<Eigen::Upper>().solve(dual.residual());
-  result(allowed) = a.cwiseMax(0.0);
+  result.coefficients(allowed) = a.cwiseMax(0.0);
+  for (const Index k : dual.active())
+    if (k < rows) result.touching.push_back(nodes[static_cast<std::size_t>(k)]);
   return result;
 }
 

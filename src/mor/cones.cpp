@@ -106,10 +106,11 @@ Vector remainder(const Vector &theta, const Matrix &generators, const Matrix &co
                  const Vector &target, const ConeOptions &options) {
   if (options.type == ConeType::cpg || generators.cols() == 0) return theta;
   const double largest = theta.maxCoeff();
-  const Vector part =
+  const PartBelow part =
       largest_part_below(theta, options.feasibility * largest, generators, coordinates, target);
-  const Vector left = theta - generators * part;
-  return (left.array() > 1e-14 * largest).select(left, 0.0);
+  Vector left = theta - generators * part.coefficients;
+  left(part.touching).setZero();
+  return (left.array() > 1e-13 * largest).select(left, 0.0);
 }
 
 /// Condition numbers of the Gram matrices of the leading columns, from singular values.

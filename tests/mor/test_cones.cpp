@@ -165,7 +165,7 @@ TEST(Cones, AllSnapshotsReproduceThemselves) {
 
 TEST(Cones, ModifiedGeneratorsAreFartherFromTheCone) {
   const SparseMatrix product = grid_mass(13);
-  const Matrix snapshots = moving_bumps(13, 3, 0.02);
+  const Matrix snapshots = moving_bumps(13, 3, 0.1);
   const Cone cpg = build_cone(snapshots, product, {.type = ConeType::cpg, .tolerance = 0});
   const Cone mcpg = build_cone(snapshots, product, {.tolerance = 0});
   const auto mean = [](const std::vector<double> &values) {
@@ -315,11 +315,14 @@ TEST(LargestPartBelow, SatisfiesTheOptimalityConditions) {
     const Vector theta = Vector::NullaryExpr(n, draw);
     const Matrix factor = Matrix::NullaryExpr(n, n, draw) + Matrix::Identity(n, n);
     const double slack = k % 2 == 0 ? 0 : 0.05;
-    const Vector a =
+    const PartBelow part =
         largest_part_below(theta, slack, generators, factor * generators, factor * theta);
+    const Vector &a = part.coefficients;
     const Vector below = generators * a, left = factor * (theta - below);
     EXPECT_GE(a.minCoeff(), 0);
-    EXPECT_GE((theta - below).minCoeff(), -slack - 1e-13);
+    EXPECT_GE((theta - below).minCoeff() + slack, -1e-12);
+    for (const Index i : part.touching)
+      EXPECT_NEAR(theta[i] - below[i], -slack, 1e-12);
     for (int trial = 0; trial < 200; ++trial) {
       Vector other = Vector::NullaryExpr(r, draw);
       for (Index j = 0; j < r; ++j)
@@ -335,13 +338,15 @@ TEST(LargestPartBelow, SatisfiesTheOptimalityConditions) {
 TEST(LargestPartBelow, ZerosForbidGenerators) {
   const Matrix generators{{1, 1, 0}, {1, 0, 0}, {0, 0, 1}};
   const Vector theta{{2, 0, 3}};
-  const Vector strict = largest_part_below(theta, 0, generators, generators, theta);
-  EXPECT_LT((strict - Vector{{0, 2, 3}}).norm(), 1e-14);
-  EXPECT_EQ(strict[0], 0);
-  // With the third axis alone blocked, the best multiple of (1, 1, 0) below (2, 1 + slack, 0) is 1.
-  const Vector one = largest_part_below(Vector{{2, 0.9, 0}}, 0.1, generators.leftCols(1),
-                                        generators.leftCols(1), Vector{{2, 0.9, 0}});
-  EXPECT_NEAR(one[0], 1, 1e-14);
-  EXPECT_EQ(largest_part_below(Vector::Zero(3), 0, generators, generators, Vector::Zero(3)),
-            Vector::Zero(3));
+  const PartBelow strict = largest_part_below(theta, 0, generators, generators, theta);
+  EXPECT_LT((strict.coefficients - Vector{{0, 2, 3}}).norm(), 1e-14);
+  EXPECT_EQ(strict.coefficients[0], 0);
+  // The best multiple of (1, 1, 0) below (2, 0.9 + 0.1, 0.1) is 1.
+  const Vector other{{2, 0.9, 0}};
+  const Matrix first = generators.leftCols(1);
+  const PartBelow one = largest_part_below(other, 0.1, first, first, other);
+  EXPECT_NEAR(one.coefficients[0], 1, 1e-14);
+  EXPECT_EQ(one.touching, std::vector<Index>{1});
+  const Vector zero = Vector::Zero(3);
+  EXPECT_EQ(largest_part_below(zero, 0, generators, generators, zero).coefficients, zero);
 }

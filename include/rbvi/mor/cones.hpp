@@ -18,7 +18,8 @@ struct ConeBasis {
 struct ConeHistory {
   std::vector<double> error;  ///< e(r), r = 0, 1, ..., R, over all snapshots: (2.13), (2.34)
   std::vector<double> e_orth; ///< distance of generator r + 1 to the cone of the first r (2.41)
-  std::vector<double> gram_condition; ///< condition number of the Gram matrix of the first r >= 1
+  std::vector<double> gram_condition; ///< condition number of the Gram matrix of the first r >= 1;
+                                      ///< infinite if they are dependent
   std::vector<int> selected;          ///< snapshot taken at each step
   std::string reason; ///< "tolerance reached", "round-off reached", "size reached", "stagnation"
 };
@@ -52,11 +53,17 @@ Vector distances_to_cone(const Matrix &values, const ConeBasis &basis, const Spa
 /// U with U^T U = `product`: |U v| = |v|_W. Throws failure if it is not positive definite.
 Matrix product_factor(const SparseMatrix &product);
 
+/// Largest part of theta that a cone represents from below.
+struct PartBelow {
+  Vector coefficients;         ///< a >= 0, one per generator
+  std::vector<Index> touching; ///< nodes where the bound is active
+};
+
 /// Line 9 of Algorithm 2: a >= 0 that minimises |theta - N a|_W under theta - N a >= -slack at
 /// every node; N = `generators`, `coordinates` = U N, `target` = U theta with |U .| the norm of W.
 /// Where theta + slack is zero no generator that is positive may take part. Exact, by the dual of
 /// a least-distance problem. Throws failure if that does not converge.
-Vector largest_part_below(const Vector &theta, double slack, const Matrix &generators,
-                          const Matrix &coordinates, const Vector &target);
+PartBelow largest_part_below(const Vector &theta, double slack, const Matrix &generators,
+                             const Matrix &coordinates, const Vector &target);
 
 } // namespace rbvi
