@@ -142,12 +142,15 @@ Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
   return model_.dual_basis * solution.x;
 }
 
-Vector OnlineSolver::contact_displacement(const ReducedSolution &solution) const {
-  Vector u = model_.contact_trace * solution.u;
-  if (model_.primal_offset.size() > 0)
-    for (Index i = 0; i < u.size(); ++i)
-      u[i] += model_.primal_offset[model_.contact_nodes[static_cast<std::size_t>(i)]];
-  return u;
+Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) const {
+  const Mu all = expand(scene_.parameters, mu);
+  Vector gap = model_.contact_trace * solution.u;
+  for (Index i = 0; i < gap.size(); ++i) {
+    if (model_.primal_offset.size() > 0)
+      gap[i] += model_.primal_offset[model_.contact_nodes[static_cast<std::size_t>(i)]];
+    gap[i] -= scene_.obstacle(all, scene_.map(all, point_of(model_.contact_points, i)));
+  }
+  return gap;
 }
 
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
@@ -168,14 +171,8 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   result.peak_pressure = peak;
   result.contact_measure =
       peak > 0 ? (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
-  if (scene_.obstacle) {
-    const Mu all = expand(scene_.parameters, mu);
-    const Vector u = contact_displacement(solution);
-    double deepest = 0;
-    for (Index i = 0; i < u.size(); ++i)
-      deepest = std::max(deepest, scene_.obstacle(all, point_of(model_.contact_points, i)) - u[i]);
-    result.max_penetration = deepest;
-  }
+  if (scene_.obstacle)
+    result.max_penetration = std::max(0.0, -contact_gap(mu, solution).minCoeff());
   result.kkt_residual = solution.kkt_residual;
   result.iterations = solution.iterations;
   const ValidationErrors &expected = expected_errors(model_);

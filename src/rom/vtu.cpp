@@ -106,12 +106,7 @@ void write_vtu(const std::filesystem::path &path, const OnlineSolver &solver, co
   write_vtu(path, mapped(scene, all, model.mesh_points), model.mesh_cells, scene.dim + 1,
             {{"u", solver.field(solution)}});
   std::vector<NodalField> fields{{"pressure", solver.multiplier(solution)}};
-  if (scene.obstacle) {
-    Vector gap = solver.contact_displacement(solution);
-    for (Index i = 0; i < gap.size(); ++i)
-      gap[i] -= scene.obstacle(all, point_of(model.contact_points, i));
-    fields.push_back({"gap", gap});
-  }
+  if (scene.obstacle) fields.push_back({"gap", solver.contact_gap(mu, solution)});
   write_vtu(contact_file(path), mapped(scene, all, model.contact_points), model.contact_cells,
             scene.dim + 1, fields);
 }

@@ -218,9 +218,10 @@ TEST(Outputs, AreIntegralsOverTheContactRegion) {
   const Vector field = solver.field(solution);
   double deepest = 0;
   for (int node : model.contact_nodes) {
-    const double x = mu[0] / 0.2 * model.mesh_points(node, 0);
-    const double y = mu[0] / 0.2 * model.mesh_points(node, 1);
-    deepest = std::max(deepest, -1.25 * (x * x + y * y) / (mu[0] * mu[0]) - field[node]);
+    // psi = -1.25 |x - c|^2 / r^2 on the mapped disc is -1.25 |xhat|^2 / 0.2^2 on the reference
+    // one.
+    const double psi = -1.25 * model.mesh_points.row(node).squaredNorm() / 0.04;
+    deepest = std::max(deepest, psi - field[node]);
   }
   EXPECT_NEAR(*outputs.max_penetration, deepest, 1e-12);
   EXPECT_EQ(*outputs.expected_error_u, 2e-3);

@@ -36,8 +36,8 @@ public:
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   Vector multiplier(const ReducedSolution &solution) const; ///< at the dual dofs
-  /// At the nodes of the contact region; scalar displacements only.
-  Vector contact_displacement(const ReducedSolution &solution) const;
+  /// u - psi at the nodes of the contact region, for scenes with an obstacle.
+  Vector contact_gap(const Mu &mu, const ReducedSolution &solution) const;
   /// At all dofs. Throws failure if the model was read without its fields.
   Vector field(const ReducedSolution &solution) const;
   const ReducedModel &model() const { return model_; }
