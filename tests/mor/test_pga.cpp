@@ -14,7 +14,7 @@ namespace {
 
 using testing_grid::random_matrix;
 
-constexpr Index contact = 40;
+constexpr Index contact = 24;
 
 RieszSpace make_space(unsigned seed) {
   Matrix factor = random_matrix(contact, contact, seed).triangularView<Eigen::Lower>();
@@ -92,10 +92,12 @@ TEST_P(Greedy, sigma_and_the_stability_bound_hold_at_every_step) {
     for (const Matrix &supremizers : example.supremizers) {
       const double off = infsup_constant(enriched, supremizers);
       const double on = singular_values(supremizers)(cone - 1);
-      EXPECT_LE(std::sqrt(std::max(1 - sigma * sigma, 0.0)) * on, off * (1 + 1e-9) + 1e-9 * on);
+      // The root of 1 - sigma^2 turns the round-off of sigma near 1 into 2e-8.
+      EXPECT_LE(std::sqrt(std::max(1 - sigma * sigma, 0.0)) * on, off + 3e-8 * on);
       const StabilityBound bound = stability_bound(enriched, supremizers);
-      EXPECT_LE(bound.sharp, off + 1e-9 * on);
-      EXPECT_LE(bound.classic, off + 1e-9 * on);
+      EXPECT_LE(bound.sharp, off + 1e-13 * on);
+      EXPECT_LE(bound.classic, off + 1e-13 * on);
+      EXPECT_LE(bound.sigma, sigma + 1e-9);
     }
   }
 }
@@ -130,7 +132,7 @@ TEST_P(Greedy, each_step_takes_the_worst_parameter_and_its_worst_direction) {
 INSTANTIATE_TEST_SUITE_P(Sizes, Greedy,
                          testing::Combine(testing::Values<Index>(0, 3, 9),
                                           testing::Values<Index>(1, 4, 6),
-                                          testing::Values(20U, 40U, 60U)));
+                                          testing::Values(20U, 60U)));
 
 TEST(Pga, stability_fraction_is_reached_and_not_by_luck) {
   const Example example = make_example(4, 6, 9, 100);
@@ -146,11 +148,12 @@ TEST(Pga, stability_fraction_is_reached_and_not_by_luck) {
   }
 }
 
-TEST(Pga, lazy_evaluation_saves_work) {
+TEST(Pga, few_eigenproblems_per_step) {
   const Example example = make_example(6, 5, 40, 200);
   const Pga pga =
       projected_greedy(example.space, example.modes, example.supremizers, {.tolerance = 0.02});
-  EXPECT_LT(pga.evaluations, 20 * static_cast<int>(pga.sigma.size()));
+  EXPECT_GT(pga.selected.size(), 10U);
+  EXPECT_LT(pga.evaluations, 8 * static_cast<int>(pga.sigma.size())) << "of 40 candidates each";
 }
 
 TEST(Pga, small_sigma_is_not_round_off) {
