@@ -39,6 +39,9 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
 ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases);
 
+/// Collective. Fills the parts of a model that describe the mesh and the contact region.
+void describe_mesh(const Problem &problem, ReducedModel &model);
+
 /// T(mu) X in coordinates for every mu of the set (n_c x columns of X each). Not collective.
 std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
                                    const std::vector<Mu> &set);
