@@ -1,0 +1,7 @@
+#include "rbvi/tool/commands.hpp"
+
+namespace rbvi {
+
+void command_bench(const ToolOptions &) {}
+
+} // namespace rbvi
