@@ -117,7 +117,7 @@ TEST_F(ModelFile, NoLoadAndNoGapAreModels) {
 TEST_F(ModelFile, DamageIsNoticed) {
   write_model(full_model(), path);
   const std::string good = slurp(path);
-  for (std::size_t i = 0; i < good.size(); i += 61) {
+  for (std::size_t i = 0; i < good.size(); i += 211) {
     std::string bad = good;
     bad[i] = static_cast<char>(bad[i] ^ (1 << (i % 8)));
     std::ofstream(path, std::ios::binary) << bad;
