@@ -2,7 +2,7 @@
 // that has left.
 #pragma once
 
-#include <mpi.h>
+#include <petscsys.h>
 
 #include <functional>
 
