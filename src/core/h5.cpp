@@ -113,7 +113,8 @@ std::string read_whole(const Path &path) {
     throw bad_input(path.string() + " is a directory, not an rbvi file");
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
-  if (!in || (in.peek() != EOF && !(bytes << in.rdbuf())))
+  const bool empty = in && in.peek() == EOF && !in.bad();
+  if (!empty && !(bytes << in.rdbuf()))
     throw bad_input(path.string() + " cannot be read: " + std::strerror(errno));
   return bytes.str();
 }

@@ -102,7 +102,8 @@ std::vector<Mu> grid(const ParameterSpace &space, const std::string &counts) {
     for (const Mu &mu : set)
       for (int k = 0; k < count; ++k) {
         finer.push_back(mu);
-        finer.back().push_back(at_fraction(space.at(i), count == 1 ? 0.5 : double(k) / (count - 1)));
+        finer.back().push_back(
+            at_fraction(space.at(i), count == 1 ? 0.5 : double(k) / (count - 1)));
       }
     set = std::move(finer);
   }
@@ -129,7 +130,8 @@ std::vector<Mu> random_set(const ParameterSpace &space, const std::string &text)
   std::vector<Mu> set(static_cast<std::size_t>(count));
   for (Mu &mu : set)
     for (int i = 0; i < space.size(); ++i)
-      mu.push_back(at_fraction(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
+      mu.push_back(
+          at_fraction(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
   return set;
 }
 
@@ -165,7 +167,8 @@ Mu read_row(const ParameterSpace &space, const std::vector<std::size_t> &columns
 std::vector<Mu> csv_file(const ParameterSpace &space, const std::string &name, bool allow_outside) {
   std::ifstream in(name);
   std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
+  const bool empty = in && in.peek() == EOF && !in.bad();
+  if (!empty && !(text << in.rdbuf()))
     throw bad_input("cannot read '" + name + "' (a set is grid:5,5, random:200:1 or a CSV file)");
   std::istringstream lines(text.str());
   std::vector<Mu> set;

@@ -2,6 +2,8 @@
 
 #include "rbvi/core/error.hpp"
 
+#include <petscdmplex.h>
+
 #include <fstream>
 #include <memory>
 

@@ -4,6 +4,9 @@
 #include "rbvi/mesh/serial.hpp"
 #include "rbvi/par/collective.hpp"
 
+#include <petscdmplex.h>
+#include <petscsf.h>
+
 #include <numeric>
 
 namespace rbvi {

@@ -3,6 +3,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/geometry.hpp"
 
+#include <petscdmplex.h>
+
 #include <span>
 
 namespace rbvi {

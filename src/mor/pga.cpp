@@ -13,15 +13,16 @@ namespace {
 constexpr double tie = 1e-10;
 constexpr double inside = 1e-12;      // a supremizer this close to the space is in it
 constexpr double same_space = 1e-9;   // sine of the largest principal angle
-constexpr double cancellation = 1e-8; // updates of a Gram matrix keep half the digits below this
+constexpr double cancellation = 1e-6; // a Gram matrix that shrank this much is computed afresh
 
 /// One training parameter: sigma^2 is the largest eigenvalue of gram = range^T (I - Pi) range.
 struct Candidate {
-  Matrix range; // orthonormal columns that span S_R(mu); T(mu) X until the first evaluation
+  Matrix range; // orthonormal columns that span S_R(mu); T(mu) X until it is first needed
   Matrix gram;
   double built = 1; // largest eigenvalue when gram was last computed afresh
-  double sigma = 1; // as of the first `seen` columns, an upper bound from then on
-  Index seen = -1;  // columns of the space in gram; -1: not evaluated yet
+  double sigma = 1; // upper bound
+  Index seen = -1;  // columns of the space in gram; -1: range is still T(mu) X
+  Index exact = -1; // number of columns at which sigma is the value itself
 };
 
 /// V_N + S in coordinates, and the supremizers that made it.
@@ -57,7 +58,7 @@ double largest_eigenvalue(const Matrix &gram) {
   return std::max(eigen.eigenvalues().tail(1)(0), 0.0);
 }
 
-void evaluate(Candidate &candidate, const Space &space) {
+void update(Candidate &candidate, const Space &space) {
   if (candidate.seen < 0) {
     candidate.range = orthonormal_range(candidate.range);
     candidate.gram.setIdentity(candidate.range.cols(), candidate.range.cols());
@@ -68,6 +69,19 @@ void evaluate(Candidate &candidate, const Space &space) {
   const Matrix overlap = candidate.range.transpose() * fresh;
   candidate.gram.selfadjointView<Eigen::Lower>().rankUpdate(overlap, -1);
   candidate.seen = space.size;
+}
+
+/// Whether sigma is below `needed`, by a Cholesky factorisation: several times cheaper than the
+/// eigenvalue, and all that most candidates need.
+bool certainly_below(const Candidate &candidate, double needed) {
+  const double square = needed * needed;
+  if (square < cancellation * candidate.built) return false;
+  Matrix shifted = -candidate.gram;
+  shifted.diagonal().array() += square;
+  return Eigen::LLT<Eigen::Ref<Matrix>>(shifted).info() == Eigen::Success;
+}
+
+void evaluate(Candidate &candidate, const Space &space) {
   double eigenvalue = largest_eigenvalue(candidate.gram);
   if (eigenvalue < cancellation * candidate.built) {
     const Matrix rest = space.remainder(candidate.range);
@@ -75,31 +89,34 @@ void evaluate(Candidate &candidate, const Space &space) {
     eigenvalue = candidate.built = largest_eigenvalue(candidate.gram);
   }
   candidate.sigma = std::min(candidate.sigma, std::sqrt(eigenvalue));
+  candidate.exact = space.size;
 }
 
 /// The training index with the largest sigma, the lowest among equals. Only candidates whose old
-/// value could still win are evaluated, the most promising first.
+/// value could still win are looked at, the most promising first.
 int greedy_choice(std::vector<Candidate> &candidates, const Space &space, int &evaluations) {
   const auto count = static_cast<int>(candidates.size());
+  const auto at = [&](int p) -> Candidate & { return candidates[static_cast<std::size_t>(p)]; };
   int winner = -1;
   double best = 0;
+  const auto needed = [&](int p) { return p < winner ? best * (1 - tie) : best * (1 + tie); };
   while (true) {
     int next = -1;
     for (int p = 0; p < count; ++p) {
-      const Candidate &candidate = candidates[static_cast<std::size_t>(p)];
-      const double needed = p < winner ? best * (1 - tie) : best * (1 + tie);
-      const bool can_win = winner < 0 || candidate.sigma > needed;
-      if (candidate.seen == space.size || !can_win) continue;
-      if (next < 0 || candidate.sigma > candidates[static_cast<std::size_t>(next)].sigma) next = p;
+      const bool open = at(p).exact != space.size && (winner < 0 || at(p).sigma > needed(p));
+      if (open && (next < 0 || at(p).sigma > at(next).sigma)) next = p;
     }
     if (next < 0) return winner;
-    evaluate(candidates[static_cast<std::size_t>(next)], space);
-    ++evaluations;
-    best = std::max(best, candidates[static_cast<std::size_t>(next)].sigma);
-    for (int p = count - 1; p >= 0; --p) {
-      const Candidate &candidate = candidates[static_cast<std::size_t>(p)];
-      if (candidate.seen == space.size && candidate.sigma >= (1 - tie) * best) winner = p;
+    if (at(next).seen != space.size) update(at(next), space);
+    if (winner >= 0 && certainly_below(at(next), needed(next))) {
+      at(next).sigma = needed(next);
+      continue;
     }
+    evaluate(at(next), space);
+    ++evaluations;
+    best = std::max(best, at(next).sigma);
+    for (int p = count - 1; p >= 0; --p)
+      if (at(p).exact == space.size && at(p).sigma >= (1 - tie) * best) winner = p;
   }
 }
 

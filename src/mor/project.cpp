@@ -84,6 +84,8 @@ bool uses(const Eim &eim, int snapshot) {
   return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
 }
 
+} // namespace
+
 void describe_mesh(const Problem &problem, ReducedModel &model) {
   const Mesh &mesh = problem.mesh();
   const ContactRegion &contact = problem.contact();
@@ -118,8 +120,6 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
   for (const auto &cell : contact.cells)
     model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + corners);
 }
-
-} // namespace
 
 ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases) {

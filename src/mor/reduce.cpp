@@ -6,27 +6,6 @@ namespace rbvi {
 
 namespace {
 
-class Stage {
-public:
-  Stage(const char *name, StageTimes &times) : name_(name), times_(times), start_(MPI_Wtime()) {
-    PetscLogStage stage = -1;
-    RBVI_CALL(PetscLogStageGetId(name, &stage));
-    if (stage < 0) RBVI_CALL(PetscLogStageRegister(name, &stage));
-    RBVI_CALL(PetscLogStagePush(stage));
-  }
-  ~Stage() {
-    (void)PetscLogStagePop();
-    times_.emplace_back(name_, MPI_Wtime() - start_);
-  }
-  Stage(const Stage &) = delete;
-  Stage &operator=(const Stage &) = delete;
-
-private:
-  const char *name_;
-  StageTimes &times_;
-  double start_;
-};
-
 Pod compress_displacements(Problem &problem, const std::vector<Sample> &samples,
                            const PodOptions &options) {
   std::vector<Handle<Vec>> owned;

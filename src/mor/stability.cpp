@@ -179,7 +179,8 @@ StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers
   bound.sigma = range.cols() > 0 ? std::min(singular_values(rest)(0), 1.0) : 0;
   bound.c = stretch.size() > 0 ? stretch(0) : 0;
   bound.on = smallest_stretch(supremizers);
-  bound.sharp = std::sqrt((1 - bound.sigma) * (1 + bound.sigma)) * bound.on;
+  // The smallest cosine between S_R(mu) and the space is sqrt(1 - sigma^2), without cancellation.
+  bound.sharp = std::min(infsup_constant(enriched, range), 1.0) * bound.on;
   bound.classic = (bound.on - bound.c * bound.sigma) / (1 + bound.sigma);
   return bound;
 }

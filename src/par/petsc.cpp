@@ -14,6 +14,7 @@ namespace {
 
 // The handler runs inside C code and must not throw: fixed storage.
 std::array<char, 1024> recorded{};
+int recorders = 0;
 
 PetscErrorCode record(MPI_Comm, int, const char *, const char *, PetscErrorCode code,
                       PetscErrorType type, const char *message, void *) {
@@ -45,7 +46,8 @@ void throw_petsc_error(PetscErrorCode code, const char *call) {
   (void)PetscErrorMessage(code, &general, &specific);
   std::string message = one_line(recorded.data());
   recorded[0] = '\0';
-  if (message.empty() && specific != nullptr) message = one_line(specific);
+  // PETSc keeps the message of its last error for ever: an old one if this code came without.
+  if (recorders == 0 && specific != nullptr) message = one_line(specific);
   if (message.empty() && general != nullptr) message = one_line(general);
   if (message.empty()) message = "no message";
   const std::string_view name = call;
@@ -56,19 +58,21 @@ void throw_petsc_error(PetscErrorCode code, const char *call) {
 ErrorRecorder::ErrorRecorder() {
   recorded[0] = '\0';
   RBVI_CALL(PetscPushErrorHandler(record, nullptr));
+  ++recorders;
 }
 
 ErrorRecorder::~ErrorRecorder() {
   (void)PetscPopErrorHandler();
+  --recorders;
 }
 
 Session::Session(int &argc, char **&argv, const char *help) {
   RBVI_CALL(SlepcInitialize(&argc, &argv, nullptr, help));
-  RBVI_CALL(PetscPushErrorHandler(record, nullptr));
+  recorder_.emplace();
 }
 
 Session::~Session() {
-  (void)PetscPopErrorHandler();
+  recorder_.reset();
   (void)SlepcFinalize();
 }
 

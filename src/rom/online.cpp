@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 
 #include <cmath>
+#include <sstream>
 
 namespace rbvi {
 
@@ -77,9 +78,8 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
 }
 
 void OnlineSolver::solve_dual(ReducedSolution &solution) {
-  const auto factor = l_.triangularView<Eigen::Lower>();
   c_ = f_ / a_scale_;
-  factor.solveInPlace(c_);
+  l_.triangularView<Eigen::Lower>().solveInPlace(c_);
   // The columns of the true Y are those kept, times `scale`: x takes the factor instead.
   const double scale = b_scale_ / a_scale_;
   const NonnegativeQpReport report = qp_.solve(y_, c_, g_ / scale);
@@ -92,7 +92,7 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
   solution.iterations = report.iterations;
   solution.x = qp_.x() / scale;
   solution.u = qp_.residual() / a_scale_;
-  factor.transpose().solveInPlace(solution.u);
+  l_.transpose().triangularView<Eigen::Upper>().solveInPlace(solution.u);
 }
 
 double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
@@ -106,16 +106,16 @@ double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const 
 }
 
 void OnlineSolver::check(ReducedSolution &solution) {
-  const Vector au =
-      a_scale_ * a_scale_ * (a_.selfadjointView<Eigen::Lower>() * solution.u).eval();
+  const Vector au = a_scale_ * a_scale_ * (a_.selfadjointView<Eigen::Lower>() * solution.u).eval();
   const Vector btx = b_scale_ * (b_.transpose() * solution.x);
   const Vector bu = b_scale_ * (b_ * solution.u);
   solution.energy = 0.5 * solution.u.dot(au) - f_.dot(solution.u);
   solution.kkt_residual = kkt_residual(au, btx, f_, bu, g_, solution.x);
   if (!(solution.kkt_residual <= largest_residual))
-    throw failure("the reduced answer has a KKT residual of " +
-                  std::to_string(solution.kkt_residual) +
-                  ": reduce again with fewer generators or more supremizers");
+    throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
+                   << solution.kkt_residual
+                   << ": reduce again with fewer generators or more supremizers")
+                      .str());
 }
 
 ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
@@ -142,12 +142,15 @@ Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
   return model_.dual_basis * solution.x;
 }
 
-Vector OnlineSolver::contact_displacement(const ReducedSolution &solution) const {
-  Vector u = model_.contact_trace * solution.u;
-  if (model_.primal_offset.size() > 0)
-    for (Index i = 0; i < u.size(); ++i)
-      u[i] += model_.primal_offset[model_.contact_nodes[static_cast<std::size_t>(i)]];
-  return u;
+Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) const {
+  const Mu all = expand(scene_.parameters, mu);
+  Vector gap = model_.contact_trace * solution.u;
+  for (Index i = 0; i < gap.size(); ++i) {
+    if (model_.primal_offset.size() > 0)
+      gap[i] += model_.primal_offset[model_.contact_nodes[static_cast<std::size_t>(i)]];
+    gap[i] -= scene_.obstacle(all, scene_.map(all, point_of(model_.contact_points, i)));
+  }
+  return gap;
 }
 
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
@@ -168,14 +171,8 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   result.peak_pressure = peak;
   result.contact_measure =
       peak > 0 ? (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
-  if (scene_.obstacle) {
-    const Mu all = expand(scene_.parameters, mu);
-    const Vector u = contact_displacement(solution);
-    double deepest = 0;
-    for (Index i = 0; i < u.size(); ++i)
-      deepest = std::max(deepest, scene_.obstacle(all, point_of(model_.contact_points, i)) - u[i]);
-    result.max_penetration = deepest;
-  }
+  if (scene_.obstacle)
+    result.max_penetration = std::max(0.0, -contact_gap(mu, solution).minCoeff());
   result.kkt_residual = solution.kkt_residual;
   result.iterations = solution.iterations;
   const ValidationErrors &expected = expected_errors(model_);

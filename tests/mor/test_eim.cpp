@@ -113,8 +113,12 @@ TEST(Eim, interpolation_matrix_holds_the_terms_at_the_entries) {
     const Index e = entry_of(result.entries[static_cast<std::size_t>(j)]);
     EXPECT_EQ(result.interpolation(j, j), 1);
     for (Index i = 0; i < result.size(); ++i) {
-      if (i > j) EXPECT_EQ(result.interpolation(j, i), 0);
-      if (i > j) EXPECT_EQ(result.combination(i, j), 0);
+      if (i > j) {
+        EXPECT_EQ(result.interpolation(j, i), 0);
+      }
+      if (i > j) {
+        EXPECT_EQ(result.combination(i, j), 0);
+      }
       EXPECT_NEAR(terms(e, i), result.interpolation(j, i), 1e-10);
     }
     EXPECT_LE(result.interpolation.row(j).cwiseAbs().maxCoeff(), 1 + 1e-9);

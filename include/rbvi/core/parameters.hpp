@@ -23,7 +23,9 @@ struct ParameterSpace {
   std::vector<int> free; ///< indices into `all`, increasing
 
   int size() const { return static_cast<int>(free.size()); }
-  const Parameter &at(int i) const { return all[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])]; }
+  const Parameter &at(int i) const {
+    return all[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])];
+  }
 };
 
 /// Every parameter free.

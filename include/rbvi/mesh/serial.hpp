@@ -7,8 +7,8 @@
 namespace rbvi {
 
 /// Reads a Gmsh file (2.2, 4.0, 4.1; text or binary) with the regions and boundaries of the
-/// scene's recipe. Vertices are numbered as the cells first name them; cells are turned to be
-/// positively oriented. Throws bad_input (see make_mesh).
+/// scene's recipe. Vertices and cells keep the order of the file, vertices of no cell are left out;
+/// cells are turned to be positively oriented. Throws bad_input (see make_mesh).
 SerialMesh read_gmsh(const std::string &file, const Scene &scene);
 
 /// Every simplex split by DMPlex into 2^dim; regions and boundaries are inherited.

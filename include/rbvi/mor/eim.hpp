@@ -38,7 +38,9 @@ struct Eim {
 
 /// Collective. `values`: local entries x P; `keys`: one per local entry, each owned by one rank.
 /// Ties within 1e-10 relative go to the lowest training index, then the lowest key, so that the
-///  eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
+/// outcome does not depend on the number of ranks. All zero: J = 0. Throws failure on every rank if
+/// an entry is not finite, bad_input for an option out of its range.
+Eim eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
         const EimOptions &options);
 
 } // namespace rbvi

@@ -5,9 +5,9 @@
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/pod.hpp"
 #include "rbvi/mor/stability.hpp"
+#include "rbvi/par/stage.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
-#include <map>
 
 namespace rbvi {
 
@@ -29,9 +29,6 @@ struct ReducedBases {
   int supremizers = 0; ///< S
 };
 
-/// Wall seconds of each stage, in order.
-using StageTimes = std::vector<std::pair<std::string, double>>;
-
 /// Collective. `world_problem`: on all ranks. `b_is_scaled`: b depends on mu by a factor only, so
 /// one training mu serves the supremizers.
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
@@ -41,6 +38,9 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
 /// rank, but for its settings, validation errors and stage times.
 ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases);
+
+/// Collective. Fills the parts of a model that describe the mesh and the contact region.
+void describe_mesh(const Problem &problem, ReducedModel &model);
 
 /// T(mu) X in coordinates for every mu of the set (n_c x columns of X each). Not collective.
 std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,

@@ -4,6 +4,8 @@
 
 #include "rbvi/par/petsc.hpp"
 
+#include <optional>
+
 namespace rbvi {
 
 /// While it lives, a failing PETSc call prints no traceback; throw_petsc_error finds the innermost
@@ -24,6 +26,9 @@ public:
   ~Session();
   Session(const Session &) = delete;
   Session &operator=(const Session &) = delete;
+
+private:
+  std::optional<ErrorRecorder> recorder_;
 };
 
 } // namespace rbvi

@@ -31,10 +31,10 @@ struct SampleMesh {
 
 /// One operator as sum_q theta_q(mu) (reduced term q), with theta from empirical interpolation.
 struct AffineTerms {
-  Matrix reduced;        ///< (entries of the reduced operator) x J, see ReducedModel
-  Matrix interpolation;  ///< J x J, lower triangular with unit diagonal (B.34)
-  SampleMesh sample;     ///< J entries
-  double error = 0;      ///< e_EIM reached (B.32)
+  Matrix reduced;       ///< (entries of the reduced operator) x J, see ReducedModel
+  Matrix interpolation; ///< J x J, lower triangular with unit diagonal (B.34)
+  SampleMesh sample;    ///< J entries
+  double error = 0;     ///< e_EIM reached (B.32)
   int size() const { return static_cast<int>(interpolation.rows()); }
 };
 
@@ -51,9 +51,9 @@ struct ReducedModel {
   std::map<std::string, std::string> settings; ///< tolerances and options that made it
   std::string mesh_fingerprint;
 
-  int modes = 0;        ///< N
-  int supremizers = 0;  ///< S
-  int generators = 0;   ///< R
+  int modes = 0;       ///< N
+  int supremizers = 0; ///< S
+  int generators = 0;  ///< R
   int primal_size() const { return modes + supremizers; }
 
   AffineTerms a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x J
@@ -62,17 +62,17 @@ struct ReducedModel {
   AffineTerms g; ///< R x J
 
   // Full order, for outputs: the contact region.
-  Matrix dual_basis;      ///< dual dofs x R, entries >= 0
-  Matrix contact_trace;   ///< dual dofs x n: primal basis at the nodes of the contact region
-  Matrix contact_points;  ///< dual dofs x dim, reference coordinates
-  Matrix lumped_weights;  ///< dual dofs x b.size(): integral of each hat function, per term of b
-  double gap_scale = 1;   ///< max |G| / weight over training: scale of the feasibility residual
+  Matrix dual_basis;     ///< dual dofs x R, entries >= 0
+  Matrix contact_trace;  ///< dual dofs x n: primal basis at the nodes of the contact region
+  Matrix contact_points; ///< dual dofs x dim, reference coordinates
+  Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
+  double gap_scale = 1;  ///< max |G| / weight over training: scale of the feasibility residual
 
   // Full order, for reconstruction.
-  Matrix primal_basis;    ///< dofs x n, fixed dofs included
-  Vector primal_offset;   ///< dofs: lifting added to the basis combination (empty: zero)
-  Matrix mesh_points;     ///< nodes x dim, reference coordinates
-  std::vector<int> mesh_cells; ///< (dim + 1) node numbers per cell
+  Matrix primal_basis;            ///< dofs x n, fixed dofs included
+  Vector primal_offset;           ///< dofs: lifting added to the basis combination (empty: zero)
+  Matrix mesh_points;             ///< nodes x dim, reference coordinates
+  std::vector<int> mesh_cells;    ///< (dim + 1) node numbers per cell
   std::vector<int> contact_nodes; ///< mesh node of each dual dof
   std::vector<int> contact_cells; ///< (dim + 1) dual dof numbers per cell of the contact region
 

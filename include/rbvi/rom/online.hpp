@@ -14,9 +14,9 @@
 namespace rbvi {
 
 struct ReducedSolution {
-  Vector u;       ///< n coefficients
-  Vector x;       ///< R coefficients, >= 0
-  Vector theta_b; ///< coefficients of b at this mu
+  Vector u;                ///< n coefficients
+  Vector x;                ///< R coefficients, >= 0
+  Vector theta_b;          ///< coefficients of b at this mu
   double energy = 0;       ///< a(u,u)/2 - f(u) of the combination of the basis, without the offset
   double kkt_residual = 0; ///< see kkt_residual()
   int iterations = 0;      ///< active-set updates
@@ -36,8 +36,8 @@ public:
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   Vector multiplier(const ReducedSolution &solution) const; ///< at the dual dofs
-  /// At the nodes of the contact region; scalar displacements only.
-  Vector contact_displacement(const ReducedSolution &solution) const;
+  /// u - psi at the nodes of the contact region, for scenes with an obstacle.
+  Vector contact_gap(const Mu &mu, const ReducedSolution &solution) const;
   /// At all dofs. Throws failure if the model was read without its fields.
   Vector field(const ReducedSolution &solution) const;
   const ReducedModel &model() const { return model_; }

@@ -1,0 +1,50 @@
+// Errors of reduced answers against high-fidelity ones, relative: u in V, the multiplier in W.
+#pragma once
+
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/online.hpp"
+#include "rbvi/sweep/sweep.hpp"
+
+namespace rbvi {
+
+/// High-fidelity answers as a model's V-orthonormal basis sees them: |u - V c|_V^2 =
+/// |coordinates - c|^2 + remainder^2, so that one projection serves every sub-model.
+struct Truths {
+  std::vector<Mu> mu;
+  Matrix coordinates; ///< n x P
+  Vector remainder;   ///< P: distance of u to the basis, in V
+  Vector u_norm;      ///< P, in V
+  Matrix lambda;      ///< dual dofs x P
+  Vector lambda_norm; ///< P, in W
+};
+
+/// Collective. `problem`: on the communicator of all ranks.
+Truths make_truths(Problem &problem, const ReducedModel &model, const std::vector<Sample> &samples);
+
+/// Errors at each mu, and what the bases alone could reach.
+struct ModelErrors {
+  Vector u, lambda;             ///< of the reduced answers
+  Vector u_floor, lambda_floor; ///< of the projections on the space and on the cone
+  double seconds = 0;           ///< median per query, outputs and reconstruction left out
+  double kkt_residual = 0;      ///< largest
+};
+
+/// Serial. `embedding`: coordinates of the sub-model's basis in the basis of the truths (n x k,
+/// orthonormal columns); empty: the leading columns.
+ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, const Truths &truths,
+                         const SparseMatrix &w_product);
+
+/// A sub-model and its embedding.
+struct SubModel {
+  ReducedModel model;
+  Matrix embedding;
+};
+
+/// The pair of the first n modes and the first r generators, enriched by the supremizers of those
+/// generators within the model's space. Needs a b that depends on mu by a factor only: then the
+/// coordinates of T chi_r are row r of the reduced b.
+SubModel enriched_pair(const ReducedModel &model, int n, int r);
+
+ValidationErrors summary(const ModelErrors &errors);
+
+} // namespace rbvi

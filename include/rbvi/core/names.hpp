@@ -1,0 +1,12 @@
+// Suggestions for mistyped names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// The name with the fewest single-letter edits (Levenshtein); "" if there is none.
+std::string nearest_name(const std::string &given, const std::vector<std::string> &names);
+
+} // namespace rbvi

@@ -1,0 +1,22 @@
+// The command line of rbvi-online.
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+struct OnlineArguments {
+  std::string model, mu, queries, out, vtu; ///< "" where not given
+  bool extrapolate = false, decorrelated = false, full = false, help = false, version = false;
+};
+
+/// Reads the arguments behind the program's name; one or two dashes, `--name value` or
+/// `--name=value`. Throws bad_input, naming the nearest option.
+OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments);
+
+/// Does what they say. Everything is computed before a file is written. Throws bad_input, failure.
+void run_online(const OnlineArguments &arguments, std::ostream &out);
+
+} // namespace rbvi

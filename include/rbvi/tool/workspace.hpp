@@ -1,0 +1,28 @@
+// The problems that a command works on: one per group of ranks for the solves, one on all ranks for
+// the reduction. They are one and the same where a group is the world.
+#pragma once
+
+#include "rbvi/par/groups.hpp"
+#include "rbvi/par/stage.hpp"
+#include "rbvi/tool/options.hpp"
+
+#include <memory>
+
+namespace rbvi {
+
+class Workspace {
+public:
+  /// Collective on `world`. Makes the group's problem.
+  Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options, StageTimes &times);
+  Problem &group_problem() { return *group_; }
+  /// Made at the first call. Collective on the world.
+  Problem &world_problem(StageTimes &times);
+
+private:
+  MPI_Comm world_;
+  const ToolOptions &options_;
+  bool shared_;
+  std::unique_ptr<Problem> group_, all_;
+};
+
+} // namespace rbvi

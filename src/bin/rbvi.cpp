@@ -1,0 +1,45 @@
+// rbvi: the MPI tool. `rbvi -help` lists commands and options.
+#include "rbvi/core/error.hpp"
+#include "rbvi/par/session.hpp"
+#include "rbvi/tool/commands.hpp"
+#include "rbvi/tool/finish.hpp"
+
+#include <cstdio>
+
+namespace {
+
+using namespace rbvi;
+
+void run(const std::string &command, const std::string &file) {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (command == "list" || command == "help" || command == "inspect") {
+    if (rank != 0) return;
+    if (command == "list") command_list();
+    if (command == "help") print_help();
+    if (command == "inspect") command_inspect(file);
+    return;
+  }
+  const ToolOptions options = read_options(PETSC_COMM_WORLD);
+  if (command == "offline") command_offline(options);
+  if (command == "solve") command_solve(options);
+  if (command == "verify") command_verify(options);
+  if (command == "bench") command_bench(options);
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  const Invocation invocation = read_invocation(argc, argv);
+  if (invocation.status) return report_without_mpi(invocation);
+  try {
+    std::vector<char *> arguments = invocation.pointers();
+    int count = static_cast<int>(arguments.size()) - 1;
+    char **values = arguments.data();
+    Session session(count, values);
+    return finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
+  } catch (const Error &error) {
+    std::fprintf(stderr, "rbvi: %s\n", error.what());
+    return static_cast<int>(error.status());
+  }
+}

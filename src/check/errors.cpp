@@ -1,0 +1,137 @@
+#include "rbvi/check/errors.hpp"
+
+#include "rbvi/mor/cones.hpp"
+#include "rbvi/mor/stability.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace rbvi {
+
+namespace {
+
+/// <x, y>_V for natural fields given as free vectors.
+double product(Mat v, Vec x, Vec y, Vec scratch) {
+  PetscScalar value = 0;
+  RBVI_CALL(MatMult(v, y, scratch));
+  RBVI_CALL(VecDot(x, scratch, &value));
+  return value;
+}
+
+/// C^T A C of a packed symmetric matrix, packed again.
+Vector congruence(const Eigen::Ref<const Vector> &packed, const Matrix &c) {
+  const Index n = c.rows(), k = c.cols();
+  Matrix a = Matrix::Zero(n, n);
+  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
+    a.col(j).tail(n - j) = packed.segment(at, n - j);
+  const Matrix reduced = c.transpose() * (a.selfadjointView<Eigen::Lower>() * c);
+  Vector result(k * (k + 1) / 2);
+  for (Index j = 0, at = 0; j < k; at += k - j, ++j)
+    result.segment(at, k - j) = reduced.col(j).tail(k - j);
+  return result;
+}
+
+/// The reduced operators in the basis V C.
+ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
+  ReducedModel result = model;
+  const Index k = c.cols(), r = model.generators;
+  result.modes = modes;
+  result.supremizers = static_cast<int>(k) - modes;
+  result.a.reduced.resize(k * (k + 1) / 2, model.a.size());
+  for (Index q = 0; q < model.a.size(); ++q)
+    result.a.reduced.col(q) = congruence(model.a.reduced.col(q), c);
+  result.b.reduced.resize(r * k, model.b.size());
+  for (Index q = 0; q < model.b.size(); ++q)
+    result.b.reduced.col(q) =
+        (model.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
+  result.f.reduced = c.transpose() * model.f.reduced;
+  result.contact_trace = model.contact_trace * c;
+  result.primal_basis.resize(0, 0);
+  return result;
+}
+
+} // namespace
+
+Truths make_truths(Problem &problem, const ReducedModel &model, const std::vector<Sample> &samples) {
+  const Index n = model.primal_size(), count = static_cast<Index>(samples.size());
+  Mat v = problem.v_product();
+  std::vector<Handle<Vec>> basis;
+  std::vector<Vec> raw;
+  for (Index j = 0; j < n; ++j) {
+    basis.push_back(from_natural(problem.dofs(), model.primal_basis.col(j)));
+    raw.push_back(basis.back().get());
+  }
+  const Handle<Vec> scratch = make_vector(problem.dofs());
+  Truths truths{{}, Matrix(n, count), Vector(count), Vector(count), Matrix(model.dual_basis.rows(), count),
+                Vector(count)};
+  for (Index p = 0; p < count; ++p) {
+    const Sample &sample = samples[static_cast<std::size_t>(p)];
+    const Handle<Vec> u = from_natural(problem.dofs(), sample.u);
+    truths.u_norm[p] = std::sqrt(product(v, u.get(), u.get(), scratch.get()));
+    RBVI_CALL(MatMult(v, u.get(), scratch.get()));
+    RBVI_CALL(VecMDot(scratch.get(), static_cast<PetscInt>(n), raw.data(), truths.coordinates.col(p).data()));
+    const Vector back = -truths.coordinates.col(p);
+    RBVI_CALL(VecMAXPY(u.get(), static_cast<PetscInt>(n), back.data(), raw.data()));
+    truths.remainder[p] = std::sqrt(std::max(0.0, product(v, u.get(), u.get(), scratch.get())));
+    truths.mu.push_back(sample.mu);
+    truths.lambda.col(p) = sample.lambda;
+    truths.lambda_norm[p] = std::sqrt(sample.lambda.dot(problem.w_product() * sample.lambda));
+  }
+  return truths;
+}
+
+ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, const Truths &truths,
+                         const SparseMatrix &w_product) {
+  using Clock = std::chrono::steady_clock;
+  const Index count = static_cast<Index>(truths.mu.size()), k = model.primal_size();
+  OnlineSolver solver(model);
+  ModelErrors errors{Vector(count), Vector(count), Vector(count), Vector(count), 0, 0};
+  std::vector<double> seconds;
+  for (Index p = 0; p < count; ++p) {
+    const auto start = Clock::now();
+    const ReducedSolution answer = solver.solve(truths.mu[static_cast<std::size_t>(p)], true);
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    errors.kkt_residual = std::max(errors.kkt_residual, answer.kkt_residual);
+    Vector c = Vector::Zero(truths.coordinates.rows());
+    if (embedding.size() > 0)
+      c = embedding * answer.u;
+    else
+      c.head(k) = answer.u;
+    const Vector coordinates = truths.coordinates.col(p);
+    const Vector inside = embedding.size() > 0 ? Vector(embedding.transpose() * coordinates)
+                                               : Vector(coordinates.head(k));
+    const double outside = coordinates.squaredNorm() - inside.squaredNorm();
+    const double remainder = truths.remainder[p] * truths.remainder[p];
+    errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
+    errors.u_floor[p] = std::sqrt(std::max(0.0, outside) + remainder) / truths.u_norm[p];
+    const Vector difference = solver.multiplier(answer) - truths.lambda.col(p);
+    const double scale = truths.lambda_norm[p] > 0 ? truths.lambda_norm[p] : 1;
+    errors.lambda[p] = std::sqrt(difference.dot(w_product * difference)) / scale;
+  }
+  const Vector distance =
+      distances_to_cone(truths.lambda, {model.dual_basis}, w_product) * truths.lambda_norm.maxCoeff();
+  errors.lambda_floor = distance.cwiseQuotient(truths.lambda_norm.cwiseMax(1e-300));
+  std::sort(seconds.begin(), seconds.end());
+  errors.seconds = seconds[seconds.size() / 2];
+  return errors;
+}
+
+SubModel enriched_pair(const ReducedModel &model, int n, int r) {
+  ReducedModel part = leading(model, model.primal_size(), r);
+  Matrix vectors = Matrix::Zero(model.primal_size(), n + r);
+  vectors.leftCols(n).setIdentity();
+  vectors.rightCols(r) = part.b.reduced.col(0).reshaped(r, model.primal_size()).transpose();
+  // Modes first, kept as they are; the supremizers orthonormalised against them.
+  vectors.rightCols(r).topRows(n).setZero();
+  const Matrix rest = orthonormal_range(vectors.rightCols(r));
+  Matrix c(model.primal_size(), n + rest.cols());
+  c << vectors.leftCols(n), rest;
+  return {rebased(part, c, n), c};
+}
+
+ValidationErrors summary(const ModelErrors &errors) {
+  return {static_cast<int>(errors.u.size()), errors.u.mean(), errors.u.maxCoeff(), errors.lambda.mean(),
+          errors.lambda.maxCoeff()};
+}
+
+} // namespace rbvi

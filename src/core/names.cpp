@@ -1,0 +1,33 @@
+#include "rbvi/core/names.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace rbvi {
+
+namespace {
+
+std::size_t edits(const std::string &from, const std::string &to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+} // namespace
+
+std::string nearest_name(const std::string &given, const std::vector<std::string> &names) {
+  const auto nearest = std::min_element(
+      names.begin(), names.end(),
+      [&](const std::string &a, const std::string &b) { return edits(given, a) < edits(given, b); });
+  return nearest == names.end() ? "" : *nearest;
+}
+
+} // namespace rbvi

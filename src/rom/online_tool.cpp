@@ -1,0 +1,205 @@
+#include "rbvi/rom/online_tool.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+#include "rbvi/rom/online.hpp"
+#include "rbvi/rom/print.hpp"
+#include "rbvi/rom/vtu.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iomanip>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+constexpr const char *usage =
+    R"(rbvi-online MODEL                        what the model is: parameters, sizes, errors
+rbvi-online MODEL --mu VALUES            one answer (0.18,0.02,-0.01 or radius=0.18,center_x=0.02)
+rbvi-online MODEL --queries SET          one row per parameter of a CSV file, grid:5,5,5 or
+                                         random:COUNT:SEED
+  --out FILE       the table as CSV (standard output without it)
+  --vtu FILE       with --mu: the field, and the contact region in FILE_contact
+  --full           reconstruct the field: adds min_u
+  --decorrelated   without the supremizers
+  --extrapolate    allow parameters outside the box of the model
+  --help, --version
+Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).
+)";
+
+struct Option {
+  const char *name;
+  std::string OnlineArguments::*text;
+  bool OnlineArguments::*flag;
+};
+
+constexpr Option options[] = {{"mu", &OnlineArguments::mu, nullptr},
+                              {"queries", &OnlineArguments::queries, nullptr},
+                              {"out", &OnlineArguments::out, nullptr},
+                              {"vtu", &OnlineArguments::vtu, nullptr},
+                              {"extrapolate", nullptr, &OnlineArguments::extrapolate},
+                              {"decorrelated", nullptr, &OnlineArguments::decorrelated},
+                              {"full", nullptr, &OnlineArguments::full},
+                              {"help", nullptr, &OnlineArguments::help},
+                              {"version", nullptr, &OnlineArguments::version}};
+
+/// Levenshtein distance.
+std::size_t distance(const std::string &from, const std::string &to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+const Option &find_option(const std::string &name) {
+  const auto found = std::find_if(std::begin(options), std::end(options),
+                                  [&](const Option &option) { return name == option.name; });
+  if (found != std::end(options)) return *found;
+  const auto nearest =
+      std::min_element(std::begin(options), std::end(options), [&](const auto &a, const auto &b) {
+        return distance(name, a.name) < distance(name, b.name);
+      });
+  throw bad_input("unknown option --" + name + "; the nearest one is --" + nearest->name +
+                  " (--help lists all)");
+}
+
+void check_combination(const OnlineArguments &given) {
+  if (given.help || given.version) return;
+  if (given.model.empty()) throw bad_input("no model is named; --help shows how");
+  const bool one = !given.mu.empty(), many = !given.queries.empty();
+  if (one && many) throw bad_input("--mu and --queries exclude each other");
+  if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
+  if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
+}
+
+struct Answers {
+  std::vector<Mu> mus;
+  std::vector<Outputs> rows;
+};
+
+/// seconds: theta, assembly and solution, the checks and the outputs, and with `full` the field.
+Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
+               ReducedSolution &solution) {
+  const auto start = std::chrono::steady_clock::now();
+  solution = solver.solve(mu, arguments.extrapolate);
+  Outputs outputs = solver.outputs(mu, solution);
+  if (arguments.full && solver.scene().components == 1)
+    outputs.min_u = solver.field(solution).minCoeff();
+  outputs.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return outputs;
+}
+
+void write_table(const OnlineArguments &arguments, const OnlineSolver &solver,
+                 const Answers &answers, std::ostream &out) {
+  std::ostringstream table;
+  write_csv(table, solver.scene().parameters, answers.mus, answers.rows);
+  if (arguments.out.empty())
+    out << table.str();
+  else
+    write_atomically(arguments.out, table.str());
+}
+
+void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
+  const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
+  ReducedSolution solution;
+  const Outputs outputs = answer(solver, mu, arguments, solution);
+  if (!arguments.vtu.empty()) write_vtu(arguments.vtu, solver, mu, solution);
+  if (!arguments.out.empty()) write_table(arguments, solver, {{mu}, {outputs}}, out);
+  out << describe(solver.scene().parameters, mu) << '\n';
+  print_outputs(out, outputs);
+  if (in_box(solver.scene().parameters, mu))
+    print_expected_errors(out, solver.model());
+  else
+    out << std::left << std::setw(22) << "expected error"
+        << "unknown outside the box\n";
+}
+
+void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
+  Answers answers;
+  answers.mus = parse_set(solver.scene().parameters, arguments.queries, arguments.extrapolate);
+  ReducedSolution solution;
+  for (const Mu &mu : answers.mus)
+    answers.rows.push_back(while_doing("answering query " +
+                                           std::to_string(answers.rows.size() + 1) + " of " +
+                                           std::to_string(answers.mus.size()),
+                                       [&] { return answer(solver, mu, arguments, solution); }));
+  write_table(arguments, solver, answers, out);
+  if (arguments.out.empty()) return;
+  double seconds = 0, residual = 0;
+  for (const Outputs &row : answers.rows) {
+    seconds += row.seconds.value_or(0);
+    residual = std::max(residual, row.kkt_residual.value_or(0));
+  }
+  out << answers.rows.size() << " answers in " << arguments.out << ", "
+      << 1e3 * seconds / static_cast<double>(answers.rows.size())
+      << " ms each, largest kkt_residual " << residual << '\n';
+  print_expected_errors(out, solver.model());
+}
+
+} // namespace
+
+OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments) {
+  OnlineArguments result;
+  std::set<std::string> given;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string &argument = arguments[i];
+    if (argument.size() < 2 || argument[0] != '-') {
+      if (!result.model.empty())
+        throw bad_input("'" + argument + "' is left over behind the model " + result.model);
+      result.model = argument;
+      continue;
+    }
+    const std::string body = argument.substr(argument[1] == '-' ? 2 : 1);
+    const std::size_t equals = body.find('=');
+    const Option &option = find_option(body.substr(0, equals));
+    const std::string name = std::string("--") + option.name;
+    if (!given.insert(name).second) throw bad_input(name + " is given twice");
+    if (option.flag != nullptr) {
+      if (equals != std::string::npos) throw bad_input(name + " takes no value");
+      result.*option.flag = true;
+      continue;
+    }
+    if (equals == std::string::npos && i + 1 == arguments.size())
+      throw bad_input(name + " needs a value");
+    result.*option.text = equals == std::string::npos ? arguments[++i] : body.substr(equals + 1);
+    if ((result.*option.text).empty()) throw bad_input(name + " needs a value");
+  }
+  check_combination(result);
+  return result;
+}
+
+void run_online(const OnlineArguments &arguments, std::ostream &out) {
+  if (arguments.help) {
+    out << usage;
+    return;
+  }
+  if (arguments.version) {
+    out << "rbvi-online " RBVI_VERSION "\n";
+    return;
+  }
+  const bool fields = arguments.full || !arguments.vtu.empty();
+  ReducedModel model = read_model(arguments.model, fields);
+  if (arguments.decorrelated) model = leading(model, model.modes, model.generators);
+  if (arguments.mu.empty() && arguments.queries.empty()) {
+    print_model(out, model);
+    return;
+  }
+  OnlineSolver solver(model);
+  if (!arguments.mu.empty())
+    answer_one(arguments, solver, out);
+  else
+    answer_many(arguments, solver, out);
+}
+
+} // namespace rbvi

@@ -1,0 +1,79 @@
+#include "rbvi/rom/print.hpp"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+constexpr int label_width = 22;
+
+std::ostream &label(std::ostream &out, const std::string &text) {
+  return out << std::left << std::setw(label_width) << text;
+}
+
+std::string joined(const std::map<std::string, std::string> &map) {
+  std::string text;
+  for (const auto &[key, value] : map)
+    text += (text.empty() ? "" : ", ") + key + " " + value;
+  return text.empty() ? "-" : text;
+}
+
+std::string validation(const ValidationErrors &errors) {
+  if (errors.count <= 0) return "not measured (run rbvi verify)";
+  std::ostringstream text;
+  text << std::setprecision(2) << "u " << errors.u_mean << " mean, " << errors.u_max
+       << " max; lambda " << errors.lambda_mean << " mean, " << errors.lambda_max << " max; over "
+       << errors.count << " parameters, relative";
+  return text.str();
+}
+
+void print_parameters(std::ostream &out, const ParameterSpace &space) {
+  for (std::size_t i = 0; i < space.all.size(); ++i) {
+    const Parameter &p = space.all[i];
+    const bool is_free =
+        std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
+    label(out, i == 0 ? "parameters" : "") << std::setw(label_width) << p.name;
+    if (is_free)
+      out << '[' << p.lower << ", " << p.upper << ']';
+    else
+      out << p.value << " (fixed)";
+    out << (p.unit.empty() ? "" : " ") << p.unit << '\n';
+  }
+}
+
+void print_terms(std::ostream &out, const std::string &name, const AffineTerms &terms) {
+  label(out, "terms of " + name) << terms.size();
+  if (terms.size() > 0) out << " (interpolation error " << terms.error << ')';
+  out << '\n';
+}
+
+} // namespace
+
+void print_expected_errors(std::ostream &out, const ReducedModel &model) {
+  label(out, "expected error") << validation(expected_errors(model)) << '\n';
+}
+
+void print_model(std::ostream &out, const ReducedModel &model) {
+  label(out, "scene") << model.scene_name << '\n';
+  label(out, "options") << joined(model.scene_options) << '\n';
+  print_parameters(out, model.parameters);
+  label(out, "modes") << model.modes << '\n';
+  label(out, "supremizers") << model.supremizers << '\n';
+  label(out, "cone generators") << model.generators << '\n';
+  print_terms(out, "a", model.a);
+  print_terms(out, "b", model.b);
+  print_terms(out, "f", model.f);
+  print_terms(out, "g", model.g);
+  label(out, "contact dofs") << model.dual_basis.rows() << '\n';
+  label(out, "mesh") << model.mesh_fingerprint << '\n';
+  for (const auto &[name, value] : model.settings)
+    label(out, name) << value << '\n';
+  print_expected_errors(out, model);
+  if (model.supremizers > 0)
+    label(out, "  decorrelated") << validation(model.validation_decorrelated) << '\n';
+}
+
+} // namespace rbvi

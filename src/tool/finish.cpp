@@ -1,0 +1,103 @@
+#include "rbvi/tool/finish.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/names.hpp"
+#include "rbvi/tool/options.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace rbvi {
+
+namespace {
+
+/// The lowest rank that failed (the number of ranks if none did), or nothing if some rank does not
+/// arrive within a few seconds of a failure here.
+std::optional<int> first_failure(MPI_Comm world, bool failed) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(world, &rank);
+  MPI_Comm_size(world, &ranks);
+  const int mine = failed ? rank : ranks;
+  int first = ranks, done = 0;
+  MPI_Request request = MPI_REQUEST_NULL;
+  MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, world, &request);
+  const double start = MPI_Wtime();
+  while (done == 0 && (!failed || MPI_Wtime() - start < 3))
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+  return done != 0 ? std::optional<int>(first) : std::nullopt;
+}
+
+} // namespace
+
+std::vector<char *> Invocation::pointers() const {
+  std::vector<char *> result;
+  for (std::string &argument : arguments)
+    result.push_back(argument.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+Invocation read_invocation(int argc, char **argv) {
+  static const std::vector<std::string> commands{"offline", "solve", "verify", "bench",
+                                                 "list",    "inspect", "help"};
+  Invocation result;
+  std::vector<std::string> given = normalised_arguments(argc, argv);
+  const auto has = [&](const char *name) { return std::find(given.begin(), given.end(), name) != given.end(); };
+  if (has("-version")) {
+    result.status = 0;
+    result.message = "rbvi " RBVI_VERSION;
+    return result;
+  }
+  if (given.size() < 2 || has("-help") || has("-h")) {
+    given.resize(1);
+    given.emplace_back("help");
+  }
+  result.command = given[1];
+  if (std::find(commands.begin(), commands.end(), result.command) == commands.end()) {
+    result.status = static_cast<int>(Status::bad_input);
+    result.message = "rbvi: unknown command '" + result.command + "'; the nearest one is '" +
+                     nearest_name(result.command, commands) + "' (rbvi -help lists all)";
+    return result;
+  }
+  given.erase(given.begin() + 1);
+  if (result.command == "inspect") {
+    if (given.size() != 2) {
+      result.status = static_cast<int>(Status::bad_input);
+      result.message = "rbvi: inspect takes one model file: rbvi inspect run/obstacle/model.h5";
+      return result;
+    }
+    result.file = given[1];
+    given.resize(1);
+  }
+  result.arguments = given;
+  return result;
+}
+
+int report_without_mpi(const Invocation &invocation) {
+  std::fprintf(*invocation.status == 0 ? stdout : stderr, "%s\n", invocation.message.c_str());
+  return *invocation.status;
+}
+
+int finish(MPI_Comm world, const std::function<void()> &work) {
+  std::string message;
+  int status = 0, rank = 0;
+  MPI_Comm_rank(world, &rank);
+  try {
+    work();
+  } catch (const Error &error) {
+    message = error.what();
+    status = static_cast<int>(error.status());
+  } catch (const std::exception &error) {
+    message = error.what();
+    status = static_cast<int>(Status::failed);
+  }
+  std::fflush(stdout);
+  const std::optional<int> first = first_failure(world, status != 0);
+  if (status != 0 && first.value_or(rank) == rank) std::fprintf(stderr, "rbvi: %s\n", message.c_str());
+  if (!first) MPI_Abort(world, status);
+  int worst = status;
+  MPI_Allreduce(&status, &worst, 1, MPI_INT, MPI_MAX, world);
+  return worst;
+}
+
+} // namespace rbvi

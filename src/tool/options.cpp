@@ -1,0 +1,289 @@
+#include "rbvi/tool/options.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/names.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+/// Options of PETSc and SLEPc as a whole; objects have the prefixes below.
+const std::vector<std::string> general_prefixes{"log_", "info",   "help",  "malloc", "options_", "on_error",
+                                                "mat_", "vec_",   "dm_",   "petsc",  "bv_",      "svd_",
+                                                "fp_",  "skip_p", "check", "memory", "version",  "nox",
+                                                "saws", "get_",   "stack", "debug",  "eps_"};
+const std::vector<std::string> object_prefixes{"hf_", "vi_", "v_"};
+
+bool starts_with_any(const std::string &name, const std::vector<std::string> &prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(),
+                     [&](const std::string &prefix) { return name.rfind(prefix, 0) == 0; });
+}
+
+/// The names (without dash) of all options in PETSc's database.
+std::vector<std::string> given_names() {
+  char *all = nullptr;
+  RBVI_CALL(PetscOptionsGetAll(nullptr, &all));
+  std::istringstream words(all);
+  RBVI_CALL(PetscFree(all));
+  std::vector<std::string> names;
+  for (std::string word; words >> word;)
+    if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0)
+      names.push_back(word.substr(1));
+  return names;
+}
+
+std::string text_of(const std::string &name, const std::string &otherwise = "") {
+  char value[4096];
+  PetscBool set = PETSC_FALSE;
+  RBVI_CALL(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), value, sizeof value, &set));
+  return set == PETSC_TRUE ? value : otherwise;
+}
+
+bool flag_of(const std::string &name) {
+  PetscBool value = PETSC_FALSE;
+  const std::string text = text_of(name, "no");
+  if (text.empty()) return true;
+  if (PetscOptionsStringToBool(text.c_str(), &value) != 0)
+    throw bad_input("option -" + name + " is '" + text + "': use yes or no");
+  return value == PETSC_TRUE;
+}
+
+const std::string &default_of(const std::string &name) {
+  const auto &options = tool_options();
+  return std::find_if(options.begin(), options.end(), [&](const OptionHelp &o) { return o.name == name; })
+      ->default_value;
+}
+
+/// A number in [lower, upper].
+double number_of(const std::string &name, double lower, double upper) {
+  const std::string text = text_of(name, default_of(name));
+  const double value = parse_number(text, "option -" + name);
+  if (value < lower || value > upper) {
+    std::ostringstream message;
+    message << "option -" << name << " is " << text << ": use a number from " << lower << " to " << upper;
+    throw bad_input(message.str());
+  }
+  return value;
+}
+
+int integer_of(const std::string &name, int lower, int upper) {
+  const double value = number_of(name, lower, upper);
+  if (value != std::floor(value)) throw bad_input("option -" + name + " must be an integer");
+  return static_cast<int>(value);
+}
+
+/// Position of the value among the choices.
+int choice_of(const std::string &name, const std::vector<std::string> &choices) {
+  const std::string text = text_of(name, default_of(name));
+  const auto found = std::find(choices.begin(), choices.end(), text);
+  if (found == choices.end()) {
+    std::string all;
+    for (const std::string &choice : choices)
+      all += (all.empty() ? "" : ", ") + choice;
+    throw bad_input("option -" + name + " is '" + text + "': use one of " + all);
+  }
+  return static_cast<int>(found - choices.begin());
+}
+
+void insert_case_file(MPI_Comm comm) {
+  const std::string file = text_of("case");
+  if (file.empty()) throw bad_input("no case is named: use -case cases/<scene>/case.yaml");
+  if (!std::ifstream(file)) throw bad_input("the case file " + file + " cannot be read");
+  if (std::filesystem::is_directory(file)) throw bad_input("the case file " + file + " is a directory");
+  char *command_line = nullptr;
+  RBVI_CALL(PetscOptionsGetAll(nullptr, &command_line));
+  const std::string given(command_line);
+  RBVI_CALL(PetscFree(command_line));
+  if (PetscOptionsInsertFileYAML(comm, nullptr, file.c_str(), PETSC_TRUE) != 0)
+    throw bad_input("the case file " + file + " is malformed: one 'option: value' per line is expected");
+  RBVI_CALL(PetscOptionsInsertString(nullptr, given.c_str())); // the command line wins
+}
+
+SceneOptions scene_options_of(const std::string &scene) {
+  SceneOptions options;
+  for (const SceneEntry &entry : scene_catalogue()) {
+    if (entry.name != scene) continue;
+    for (const SceneOption &option : entry.options) {
+      PetscBool set = PETSC_FALSE;
+      RBVI_CALL(PetscOptionsHasName(nullptr, nullptr, ("-" + option.name).c_str(), &set));
+      if (set == PETSC_TRUE) options[option.name] = text_of(option.name);
+    }
+  }
+  return options;
+}
+
+/// "-radius 0.2" gives the value, "-radius 0.18,0.22" the bounds; "-parameters" says which are free.
+void adapt_parameters(ParameterSpace &space) {
+  for (Parameter &parameter : space.all) {
+    const std::string text = text_of(parameter.name);
+    if (text.empty()) continue;
+    const std::vector<std::string> parts = split(text, ',');
+    const std::string what = "option -" + parameter.name;
+    if (parts.size() == 1) {
+      parameter.value = parse_number(parts[0], what);
+    } else if (parts.size() == 2) {
+      parameter.lower = parse_number(parts[0], what);
+      parameter.upper = parse_number(parts[1], what);
+      parameter.value = std::clamp(parameter.value, parameter.lower, parameter.upper);
+      if (!(parameter.lower < parameter.upper))
+        throw bad_input(what + " is '" + text + "': the lower bound comes first");
+    } else {
+      throw bad_input(what + " is '" + text + "': give one value, or two bounds");
+    }
+  }
+  const std::string free = text_of("parameters");
+  if (!free.empty()) space = free_only(space, free);
+}
+
+void check_names(const Scene &scene) {
+  std::vector<std::string> known;
+  for (const OptionHelp &option : tool_options())
+    known.push_back(option.name);
+  for (const auto &[name, value] : scene.options)
+    known.push_back(name);
+  for (const Parameter &parameter : scene.parameters.all)
+    known.push_back(parameter.name);
+  for (const std::string &name : given_names()) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (starts_with_any(name, object_prefixes) || starts_with_any(name, general_prefixes)) continue;
+    throw bad_input("unknown option -" + name + "; the nearest one is -" + nearest_name(name, known) +
+                    " (-help lists all)");
+  }
+}
+
+ReduceOptions reduce_options() {
+  ReduceOptions options;
+  options.pod.tolerance = number_of("pod_tolerance", 0, 1);
+  options.pod.max_size = integer_of("pod_max_size", 0, 100000);
+  options.cone.type = static_cast<ConeType>(choice_of("cone_type", {"cpg", "mcpg"}));
+  options.cone.tolerance = number_of("cone_tolerance", 0, 1);
+  options.cone.max_size = integer_of("cone_max_size", 0, 100000);
+  options.cone.feasibility = number_of("cone_feasibility", 0, 1);
+  options.pga.tolerance = number_of("pga_tolerance", 0, 1);
+  options.pga.stability = number_of("pga_beta_fraction", 0, 1 - 1e-12);
+  options.pga.max_size = integer_of("pga_max_size", 0, 100000);
+  options.eim.tolerance = number_of("eim_tolerance", 0, 1);
+  options.eim.max_size = integer_of("eim_max_size", 0, 100000);
+  return options;
+}
+
+HfOptions hf_options() {
+  HfOptions options;
+  options.method = static_cast<HfMethod>(choice_of("hf_method", {"active_set", "uzawa", "vi"}));
+  options.uzawa_tolerance = number_of("uzawa_tolerance", 1e-15, 1);
+  options.uzawa_max_iterations = integer_of("uzawa_max_iterations", 1, 100000000);
+  options.uzawa_accelerated = flag_of("uzawa_accelerated");
+  options.uzawa_step = number_of("uzawa_step", 0, 1e300);
+  return options;
+}
+
+} // namespace
+
+const std::vector<OptionHelp> &tool_options() {
+  static const std::vector<OptionHelp> options{
+      {"case", "", "case file (YAML, one 'option: value' per line); the command line beats it"},
+      {"scene", "", "name of the scene (rbvi list)"},
+      {"out", "", "run directory"},
+      {"parameters", "", "names of the free parameters; the others keep their value"},
+      {"train", "", "training set: grid:5,5,5 | random:COUNT:SEED | file.csv"},
+      {"valid", "", "validation set, as -train"},
+      {"mu", "", "parameter of one solve: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02"},
+      {"vtu", "", "file for the field of one solve"},
+      {"csv", "", "file for the table of outputs"},
+      {"plan", "no", "print which stages will run, and stop"},
+      {"mesh", "", "Gmsh file instead of the built-in mesh"},
+      {"mesh_refine", "0", "uniform refinements"},
+      {"hf_method", "active_set", "high-fidelity solver: active_set | uzawa | vi"},
+      {"uzawa_tolerance", "1e-6", "relative change of the multiplier"},
+      {"uzawa_max_iterations", "20000", "limit of iterations"},
+      {"uzawa_accelerated", "no", "Nesterov's extrapolation with restart"},
+      {"uzawa_step", "0", "step rho; 0 is 1 / largest eigenvalue of B A^-1 B^T"},
+      {"sweep_ranks_per_solve", "1", "ranks that share one solve; divides the ranks"},
+      {"pod_tolerance", "1e-6", "relative error of the displacement modes (2.11)"},
+      {"pod_max_size", "0", "most modes; 0 is no bound"},
+      {"cone_type", "mcpg", "cone of multipliers: mcpg | cpg"},
+      {"cone_tolerance", "1e-2", "relative error of the cone (2.34)"},
+      {"cone_max_size", "0", "most generators; 0 is no bound"},
+      {"cone_feasibility", "0", "mcpg: tolerated negative part, as a fraction of the maximum"},
+      {"pga_tolerance", "0", "on max sigma (2.27); 0 uses -pga_beta_fraction"},
+      {"pga_beta_fraction", "0.9", "stop when beta_off >= this fraction of beta_on is sure"},
+      {"pga_max_size", "0", "most supremizers; 0 is no bound"},
+      {"eim_tolerance", "1e-3", "relative error of the separated operators (B.32)"},
+      {"eim_max_size", "0", "most terms; 0 is no bound"}};
+  return options;
+}
+
+std::vector<std::string> normalised_arguments(int argc, char **argv) {
+  std::vector<std::string> arguments(argv, argv + argc);
+  for (std::string &argument : arguments)
+    if (argument.size() > 2 && argument[0] == '-' && argument[1] == '-' &&
+        std::isalpha(static_cast<unsigned char>(argument[2])) != 0)
+      argument.erase(0, 1);
+  return arguments;
+}
+
+ToolOptions read_options(MPI_Comm comm) {
+  insert_case_file(comm);
+  ToolOptions options;
+  const std::string scene = text_of("scene");
+  if (scene.empty()) throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
+  options.scene = make_scene(scene, scene_options_of(scene));
+  check_names(options.scene);
+  adapt_parameters(options.scene.parameters);
+  options.mesh.file = text_of("mesh");
+  options.mesh.refine = integer_of("mesh_refine", 0, 6);
+  options.train = text_of("train", options.scene.training);
+  options.valid = text_of("valid", options.scene.validation);
+  options.hf = hf_options();
+  options.reduce = reduce_options();
+  options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
+  options.out = text_of("out");
+  options.mu = text_of("mu");
+  options.vtu = text_of("vtu");
+  options.csv = text_of("csv");
+  options.plan = flag_of("plan");
+  return options;
+}
+
+void check_used(const std::string &prefix) {
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  RBVI_CALL(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::string unused;
+  for (PetscInt i = 0; i < count; ++i)
+    if (std::string(names[i]).rfind(prefix, 0) == 0) unused += " -" + std::string(names[i]);
+  RBVI_CALL(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  if (!unused.empty()) throw bad_input("no solver knows the option" + unused);
+}
+
+void print_help() {
+  std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n"
+              "  offline   snapshots, bases, interpolation, reduced model into -out\n"
+              "  verify    reduced against high-fidelity over the validation set\n"
+              "  solve     one high-fidelity solve at -mu\n"
+              "  bench     run time against error\n"
+              "  list      the scenes of this build\n"
+              "  inspect FILE   what a model file holds\n\nOptions [default]:\n");
+  for (const OptionHelp &option : tool_options())
+    std::printf("  -%-24s %s%s\n", option.name.c_str(), option.help.c_str(),
+                option.default_value.empty() ? "" : (" [" + option.default_value + "]").c_str());
+  for (const SceneEntry &scene : scene_catalogue()) {
+    std::printf("\nScene %s: %s\n", scene.name.c_str(), scene.summary.c_str());
+    for (const SceneOption &option : scene.options)
+      std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
+                  option.default_value.c_str());
+    for (const Parameter &p : make_scene(scene.name).parameters.all)
+      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(), p.lower,
+                  p.upper, p.unit.c_str());
+  }
+  std::printf("\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
+              "(Riesz representers), -log_view, ...\n"
+              "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
+}
+
+} // namespace rbvi

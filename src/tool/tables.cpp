@@ -1,0 +1,44 @@
+#include "rbvi/tool/tables.hpp"
+
+#include "rbvi/core/h5.hpp"
+
+#include <cstdio>
+#include <sstream>
+
+namespace rbvi {
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+void write_columns(const std::filesystem::path &path, const std::vector<std::string> &names,
+                   const std::vector<std::vector<double>> &columns) {
+  std::ostringstream out;
+  out.precision(10);
+  for (std::size_t j = 0; j < names.size(); ++j)
+    out << (j > 0 ? "," : "") << names[j];
+  out << "\n";
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      out << (j > 0 ? "," : "") << columns[j][i];
+    out << "\n";
+  }
+  write_atomically(path, out.str());
+}
+
+void write_sample_table(const std::filesystem::path &path, const ParameterSpace &space,
+                        const std::vector<Sample> &samples) {
+  std::vector<Mu> mus;
+  std::vector<Outputs> outputs;
+  for (const Sample &sample : samples) {
+    mus.push_back(sample.mu);
+    outputs.push_back(sample.outputs);
+  }
+  std::ostringstream out;
+  write_csv(out, space, mus, outputs);
+  write_atomically(path, out.str());
+}
+
+} // namespace rbvi

@@ -1,0 +1,24 @@
+#include "rbvi/tool/workspace.hpp"
+
+#include "rbvi/par/collective.hpp"
+
+namespace rbvi {
+
+Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options, StageTimes &times)
+    : world_(world), options_(options), shared_(groups.count() == 1) {
+  const Stage stage("mesh", times);
+  collectively(world, [&] {
+    group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh);
+  });
+}
+
+Problem &Workspace::world_problem(StageTimes &times) {
+  if (shared_) return *group_;
+  if (!all_) {
+    const Stage stage("distributed mesh", times);
+    all_ = std::make_unique<Problem>(world_, options_.scene, options_.mesh);
+  }
+  return *all_;
+}
+
+} // namespace rbvi

@@ -1,0 +1,170 @@
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/parameters.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <limits>
+#include <unistd.h>
+
+namespace rbvi {
+namespace {
+
+ParameterSpace space() {
+  return all_free({{"radius", "m", 0.16, 0.24, 0.2}, {"x", "m", -0.05, 0.05, 0}});
+}
+
+ParameterSpace only_x() {
+  return free_only(space(), "x");
+}
+
+/// Whether `work` throws bad_input with one line that contains `part`.
+template <class Work> testing::AssertionResult refuses(const std::string &part, Work &&work) {
+  try {
+    work();
+  } catch (const Error &error) {
+    const std::string message = error.what();
+    const bool ok = error.status() == Status::bad_input &&
+                    message.find(part) != std::string::npos &&
+                    message.find('\n') == std::string::npos;
+    return (ok ? testing::AssertionSuccess() : testing::AssertionFailure()) << message;
+  }
+  return testing::AssertionFailure() << "accepted";
+}
+
+TEST(ParseNumber, WholeFiniteText) {
+  EXPECT_EQ(parse_number(" -0.5e-3\r", "x"), -0.5e-3);
+  EXPECT_EQ(parse_number("+2", "x"), 2);
+  for (const char *text : {"", " ", "nan", "inf", "-infinity", "1e999", "1,5", "0.2m", "0x1p3",
+                           "1 2", "+-1", "--1", "+", "e5"})
+    EXPECT_TRUE(refuses("load", [&] { (void)parse_number(text, "load"); })) << text;
+}
+
+TEST(Split, KeepsEmptyParts) {
+  EXPECT_TRUE(split("", ',').empty());
+  EXPECT_EQ(split("a", ','), (std::vector<std::string>{"a"}));
+  EXPECT_EQ(split(",b,", ','), (std::vector<std::string>{"", "b", ""}));
+}
+
+TEST(ParseMu, InOrderOrByName) {
+  EXPECT_EQ(parse_mu(space(), "0.18, 0.02"), (Mu{0.18, 0.02}));
+  EXPECT_EQ(parse_mu(space(), "x=-0.01"), (Mu{0.2, -0.01}));
+  EXPECT_EQ(parse_mu(space(), "x=-0.01, radius=0.24"), (Mu{0.24, -0.01}));
+  EXPECT_EQ(parse_mu(space(), "0.5,0", true), (Mu{0.5, 0}));
+  EXPECT_EQ(parse_mu(only_x(), "0.02"), (Mu{0.02}));
+  EXPECT_EQ(expand(only_x(), {0.02}), (Mu{0.2, 0.02}));
+}
+
+TEST(ParseMu, RefusesWhatIsWrong) {
+  const auto refused = [](const std::string &text, const std::string &part) {
+    return refuses(part, [&] { (void)parse_mu(space(), text); });
+  };
+  EXPECT_TRUE(refused("", "0 values for 2"));
+  EXPECT_TRUE(refused("0.2", "1 values for 2"));
+  EXPECT_TRUE(refused("0.2,0,0", "3 values for 2"));
+  EXPECT_TRUE(refused("0.2,", "empty"));
+  EXPECT_TRUE(refused("nan,0", "not finite"));
+  EXPECT_TRUE(refused("a,0", "not a number"));
+  EXPECT_TRUE(refused("0.2,0.06", "x = 0.06 is outside [-0.05, 0.05]"));
+  EXPECT_TRUE(refused("y=1", "no parameter 'y'"));
+  EXPECT_TRUE(refused("x=0,x=0", "given twice"));
+  EXPECT_TRUE(refused("x=0,0.2", "no name"));
+  EXPECT_TRUE(refuses("is fixed", [] { (void)parse_mu(only_x(), "radius=0.2"); }));
+}
+
+TEST(CheckMu, BoxWithSlackOfRoundOff) {
+  EXPECT_NO_THROW(check_mu(space(), {0.24 + 1e-14, -0.05 - 1e-14}));
+  EXPECT_THROW(check_mu(space(), {0.24 + 1e-12, 0}), Error);
+  EXPECT_NO_THROW(check_mu(space(), {9, 9}, true));
+  EXPECT_THROW(check_mu(space(), {std::numeric_limits<double>::quiet_NaN(), 0}, true), Error);
+  EXPECT_FALSE(in_box(space(), {0.2, 1}));
+  EXPECT_TRUE(in_box(space(), {0.2, 0.05}));
+}
+
+TEST(FreeOnly, ByNameInTheOrderOfTheSpace) {
+  EXPECT_EQ(free_only(space(), "x,radius").free, (std::vector<int>{0, 1}));
+  EXPECT_TRUE(refuses("no parameter 'z'", [] { (void)free_only(space(), "z"); }));
+  EXPECT_TRUE(refuses("named twice", [] { (void)free_only(space(), "x,x"); }));
+  EXPECT_TRUE(refuses("no parameter is freed", [] { (void)free_only(space(), ""); }));
+}
+
+TEST(Grid, EndsIncludedLastFastest) {
+  const std::vector<Mu> set = parse_set(space(), "grid:3,2");
+  ASSERT_EQ(set.size(), 6U);
+  EXPECT_EQ(set[0], (Mu{0.16, -0.05}));
+  EXPECT_EQ(set[1], (Mu{0.16, 0.05}));
+  EXPECT_EQ(set[5], (Mu{0.24, 0.05}));
+  EXPECT_NEAR(set[2][0], 0.2, 1e-16);
+  EXPECT_NEAR(parse_set(space(), "grid:1,1")[0][0], 0.2, 1e-16);
+  for (const char *text : {"grid:", "grid:3", "grid:3,3,3", "grid:0,3", "grid:2.5,3", "grid:-1,3",
+                           "grid:100000,100000"})
+    EXPECT_TRUE(refuses("", [&] { (void)parse_set(space(), text); })) << text;
+}
+
+TEST(RandomSet, UniformInTheBoxAndTheSameEverywhere) {
+  const std::vector<Mu> set = parse_set(space(), "random:4000:1");
+  EXPECT_EQ(set, parse_set(space(), "random:4000:1"));
+  EXPECT_NE(set, parse_set(space(), "random:4000:2"));
+  double mean = 0, square = 0, product = 0;
+  for (const Mu &mu : set) {
+    check_mu(space(), mu);
+    const double s = (mu[0] - 0.2) / 0.04, t = mu[1] / 0.05;
+    mean += s / 4000;
+    square += s * s / 4000;
+    product += s * t / 4000;
+  }
+  // Standard deviations of these means: 0.009, 0.005, 0.005.
+  EXPECT_NEAR(mean, 0, 0.04);
+  EXPECT_NEAR(square, 1.0 / 3, 0.02);
+  EXPECT_NEAR(product, 0, 0.02);
+  // splitmix64 from state 0 begins with 0xe220a8397b1dcdaf (the author's reference output).
+  const double first = std::ldexp(static_cast<double>(0xe220a8397b1dcdafULL >> 11), -53);
+  EXPECT_NEAR(parse_set(space(), "random:1:0")[0][0], 0.16 + 0.08 * first, 1e-16);
+  for (const char *text :
+       {"random:5", "random:5:", "random:0:1", "random:5:-1", "random:5:1:1", "random:5:0.5"})
+    EXPECT_TRUE(refuses("", [&] { (void)parse_set(space(), text); })) << text;
+}
+
+struct CsvSet : testing::Test {
+  std::string name = testing::TempDir() + "rbvi_set_" + std::to_string(::getpid()) + ".csv";
+  void TearDown() override { std::filesystem::remove(name); }
+  std::vector<Mu> read(const std::string &text) {
+    std::ofstream(name, std::ios::binary) << text;
+    return parse_set(space(), name);
+  }
+};
+
+TEST_F(CsvSet, ColumnsInAnyOrder) {
+  EXPECT_EQ(read("\xef\xbb\xbfx, radius\r\n0.01,0.2\r\n\r\n-0.01,0.16\r\n"),
+            (std::vector<Mu>{{0.2, 0.01}, {0.16, -0.01}}));
+}
+
+TEST_F(CsvSet, RefusesWhatIsWrong) {
+  const auto refused = [&](const std::string &text, const std::string &part) {
+    return refuses(part, [&] { (void)read(text); });
+  };
+  EXPECT_TRUE(refused("", "no rows"));
+  EXPECT_TRUE(refused("radius,x\n", "no rows"));
+  EXPECT_TRUE(refused("radius\n0.2\n", "every free parameter"));
+  EXPECT_TRUE(refused("radius,y\n0.2,0\n", "no parameter 'y'"));
+  EXPECT_TRUE(refused("radius,x,x\n0.2,0,0\n", "two columns"));
+  EXPECT_TRUE(refused("radius,x,energy\n0.2,0,1\n", "no parameter 'energy'"));
+  EXPECT_TRUE(refused("radius,x\n0.2,0\n0.2\n", "line 3"));
+  EXPECT_TRUE(refused("radius,x\n0.2,0,1\n", "3 entries under 2 columns, while reading line 2"));
+  EXPECT_TRUE(refused("radius,x\n0.2,0\n\n0.2,oops\n", "line 4"));
+  EXPECT_TRUE(refused("radius,x\n0.2,nan\n", "not finite"));
+  EXPECT_TRUE(refused("radius,x\n0.3,0\n", "outside"));
+  EXPECT_TRUE(refuses("cannot read", [&] { (void)parse_set(space(), name + ".no"); }));
+  EXPECT_TRUE(refuses("cannot read", [&] { (void)parse_set(space(), testing::TempDir()); }));
+}
+
+TEST(Describe, ReadsBackExactly) {
+  EXPECT_EQ(describe(space(), {0.18, -0.02}), "radius=0.18 x=-0.02");
+  const double third = 0.17 + 0.01 / 3;
+  const std::string text = describe(only_x(), {third});
+  EXPECT_EQ(parse_number(text.substr(2), "x"), third);
+}
+
+} // namespace
+} // namespace rbvi

@@ -1,0 +1,142 @@
+// Dof numbering, COO assembly and the contact region: against closed forms, at any number of ranks.
+#include "rbvi/core/error.hpp"
+#include "rbvi/fem/assembly.hpp"
+#include "rbvi/fem/contact_region.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace rbvi {
+namespace {
+
+struct Membrane {
+  Scene scene = make_scene("membrane_obstacle");
+  Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+  Dofs dofs = number_dofs(mesh, 1, "boundary");
+};
+
+/// x^T M y for free-dof fields given by functions of the reference point, zero on the boundary.
+template <class Fx, class Fy> double quadratic(const Membrane &m, Mat matrix, Fx x, Fy y) {
+  const auto field = [&](auto function) {
+    Vector natural = Vector::Zero(m.dofs.total);
+    for (std::size_t v = 0; v < m.mesh.points.size(); ++v)
+      if (m.mesh.owned_vertex[v]) natural[m.mesh.natural_vertex[v]] = function(m.mesh.points[v]);
+    MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPI_DOUBLE, MPI_SUM,
+                  m.mesh.comm);
+    return from_natural(m.dofs, natural);
+  };
+  const Handle<Vec> left = field(x), right = field(y), image = make_vector(m.dofs);
+  RBVI_CALL(MatMult(matrix, right.get(), image.get()));
+  PetscScalar value = 0;
+  RBVI_CALL(VecDot(left.get(), image.get(), &value));
+  return value;
+}
+
+double bubble(const Point &x) { return (0.25 - x[0] * x[0]) * (0.25 - x[1] * x[1]); }
+
+TEST(Dofs, NumberEveryInteriorVertexOnce) {
+  const Membrane m;
+  EXPECT_EQ(m.dofs.total, 3589);
+  EXPECT_EQ(m.dofs.total_free, 3589 - 232);
+  std::vector<int> count(static_cast<std::size_t>(m.dofs.total), 0);
+  for (const PetscInt natural : m.dofs.natural_owned)
+    ++count[static_cast<std::size_t>(natural)];
+  MPI_Allreduce(MPI_IN_PLACE, count.data(), static_cast<int>(count.size()), MPI_INT, MPI_SUM, m.mesh.comm);
+  int free = 0;
+  for (const int c : count) {
+    EXPECT_LE(c, 1);
+    free += c;
+  }
+  EXPECT_EQ(free, m.dofs.total_free);
+}
+
+TEST(Dofs, NaturalFieldsSurviveTheRoundTrip) {
+  const Membrane m;
+  Vector natural = Vector::LinSpaced(m.dofs.total, 1, 2);
+  const Vector back = to_natural(m.dofs, from_natural(m.dofs, natural).get());
+  int kept = 0;
+  for (Index i = 0; i < natural.size(); ++i) {
+    EXPECT_TRUE(back[i] == natural[i] || back[i] == 0);
+    kept += back[i] != 0;
+  }
+  EXPECT_EQ(kept, m.dofs.total_free);
+}
+
+TEST(Assembly, H1ProductConvergesToTheIntegral) {
+  // int w^2 = (1/30)^2 and int |grad w|^2 = 2 (1/3) (1/30) for w = (1/4 - x^2)(1/4 - y^2).
+  const Membrane m;
+  const Handle<Mat> v = make_matrix(m.mesh, m.dofs, "");
+  assemble_matrix(m.scene.v_product, {}, m.mesh, m.dofs, reference_cells(m.mesh), v.get());
+  const double exact = 1.0 / 900 + 2.0 / 90;
+  EXPECT_NEAR(quadratic(m, v.get(), bubble, bubble), exact, 2e-3 * exact);
+}
+
+TEST(Assembly, ASecondFillOverwritesTheFirst) {
+  const Membrane m;
+  MappedCells cells = reference_cells(m.mesh);
+  const Handle<Mat> a = make_matrix(m.mesh, m.dofs, "");
+  const Mu one{0.2, 0, 0}, other{0.23, 0.03, -0.04};
+  map_cells(m.scene, one, m.mesh, cells);
+  assemble_matrix(m.scene.a, one, m.mesh, m.dofs, cells, a.get());
+  const double first = quadratic(m, a.get(), bubble, bubble);
+  map_cells(m.scene, other, m.mesh, cells);
+  assemble_matrix(m.scene.a, other, m.mesh, m.dofs, cells, a.get());
+  EXPECT_GT(std::abs(quadratic(m, a.get(), bubble, bubble) - first), 1e-3 * first);
+  map_cells(m.scene, one, m.mesh, cells);
+  assemble_matrix(m.scene.a, one, m.mesh, m.dofs, cells, a.get());
+  EXPECT_NEAR(quadratic(m, a.get(), bubble, bubble), first, 1e-14 * first);
+}
+
+TEST(Assembly, TheMapKeepsEnergiesOfMappedFunctions) {
+  // a(mu; u, u) of a field given on the mapped nodes does not depend on the map but for O(h^2).
+  const Membrane m;
+  const Mu mu{0.24, 0.05, 0.05};
+  MappedCells cells = reference_cells(m.mesh);
+  const Handle<Mat> a = make_matrix(m.mesh, m.dofs, "");
+  map_cells(m.scene, mu, m.mesh, cells);
+  assemble_matrix(m.scene.a, mu, m.mesh, m.dofs, cells, a.get());
+  const auto mapped_bubble = [&](const Point &x) { return bubble(m.scene.map(mu, x)); };
+  EXPECT_NEAR(quadratic(m, a.get(), mapped_bubble, mapped_bubble), 2.0 / 90, 3e-3 * 2.0 / 90);
+}
+
+TEST(Assembly, AnInvertedCellOnOneRankFailsOnAll) {
+  Membrane m;
+  m.scene.map = [](const Mu &, const Point &x) {
+    return x[0] > 0.48 ? Point{0.9 - x[0], x[1], 0} : x;
+  };
+  MappedCells cells = reference_cells(m.mesh);
+  EXPECT_THROW(map_cells(m.scene, {0.2, 0, 0}, m.mesh, cells), Error);
+}
+
+TEST(ContactRegion, IsTheWholeDiscOnEveryRank) {
+  const Membrane m;
+  const ContactRegion region = make_contact_region(m.mesh, m.dofs, "obstacle");
+  EXPECT_EQ(region.dual_size(), 469);
+  EXPECT_EQ(region.trace.size, 469);
+  for (const Point &x : region.points)
+    EXPECT_LE(std::hypot(x[0], x[1]), 0.2 + 1e-12);
+  const Mu mu{0.16, 0.05, 0};
+  const auto cells = mapped_contact_cells(region, m.scene, mu);
+  ContactMatrix b(region, ContactMatrix::Columns::contact_dofs);
+  const double area = std::numbers::pi * mu[0] * mu[0];
+  EXPECT_NEAR(b.assemble(m.scene.b, mu, cells).sum(), -area, 2e-3 * area);
+  int owned = static_cast<int>(region.trace.index.size());
+  MPI_Allreduce(MPI_IN_PLACE, &owned, 1, MPI_INT, MPI_SUM, m.mesh.comm);
+  EXPECT_EQ(owned, 469);
+}
+
+TEST(ContactRegion, TraceFollowsTheNodes) {
+  const Membrane m;
+  const ContactRegion region = make_contact_region(m.mesh, m.dofs, "obstacle");
+  const Vector natural = Vector::LinSpaced(m.dofs.total, 1, 2);
+  const Vector trace = restrict_to(region.trace, from_natural(m.dofs, natural).get());
+  for (Index r = 0; r < region.dual_size(); ++r)
+    EXPECT_EQ(trace[region.contact_dof[static_cast<std::size_t>(r)]],
+              natural[region.natural_vertex[static_cast<std::size_t>(r)]]);
+}
+
+} // namespace
+} // namespace rbvi

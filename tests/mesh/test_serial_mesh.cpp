@@ -1,0 +1,193 @@
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/geometry.hpp"
+#include "rbvi/mesh/serial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace rbvi {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+std::array<Point, 4> corners(const SerialMesh &mesh, const std::array<int, 4> &cell) {
+  std::array<Point, 4> points{};
+  for (std::size_t i = 0; i < 3; ++i)
+    points[i] = mesh.points[at(cell[i])];
+  return points;
+}
+
+double area(const SerialMesh &mesh, const std::vector<int> &cells) {
+  double sum = 0;
+  for (const int cell : cells)
+    sum += simplex(2, corners(mesh, mesh.cells[at(cell)])).volume;
+  return sum;
+}
+
+std::vector<int> all_cells(const SerialMesh &mesh) {
+  std::vector<int> cells;
+  for (int i = 0; i < static_cast<int>(mesh.cells.size()); ++i)
+    cells.push_back(i);
+  return cells;
+}
+
+double polygon_area(int sides, double radius) {
+  return 0.5 * sides * radius * radius * std::sin(2 * std::numbers::pi / sides);
+}
+
+TEST(SquareWithDisc, HasTheCountsOfItsRings) {
+  const SerialMesh mesh = square_with_disc();
+  EXPECT_EQ(mesh.points.size(), 3589u);
+  // Euler's formula for a disc, every boundary vertex being on one boundary edge too.
+  const std::size_t boundary = mesh.boundary.at("boundary").size();
+  EXPECT_EQ(boundary, 232u);
+  EXPECT_EQ(mesh.cells.size(), 2 * mesh.points.size() - 2 - boundary);
+  std::set<int> disc;
+  for (const int cell : mesh.region.at("obstacle"))
+    disc.insert(mesh.cells[at(cell)].begin(), mesh.cells[at(cell)].begin() + 3);
+  EXPECT_EQ(disc.size(), 469u);
+  const auto inside = std::count_if(mesh.points.begin(), mesh.points.end(), [](const Point &x) {
+    return std::hypot(x[0], x[1]) <= 0.2 * (1 + 1e-14);
+  });
+  EXPECT_EQ(inside, 469);
+}
+
+TEST(SquareWithDisc, FillsSquareAndPolygon) {
+  const SerialMesh mesh = square_with_disc();
+  EXPECT_NO_THROW(check_mesh(mesh, "square"));
+  EXPECT_NEAR(area(mesh, all_cells(mesh)), 1, 1e-13);
+  EXPECT_NEAR(area(mesh, mesh.region.at("obstacle")) / polygon_area(72, 0.2), 1, 1e-13);
+  double length = 0;
+  for (const auto &edge : mesh.boundary.at("boundary")) {
+    const Point &x = mesh.points[at(edge[0])], &y = mesh.points[at(edge[1])];
+    EXPECT_NEAR(std::max(std::abs(x[0]), std::abs(x[1])), 0.5, 1e-15);
+    length += std::hypot(x[0] - y[0], x[1] - y[1]);
+  }
+  EXPECT_NEAR(length, 4, 1e-13);
+}
+
+TEST(SquareWithDisc, IsWellShapedAndNearlyUniform) {
+  const SerialMesh mesh = square_with_disc();
+  double shortest = 1, longest = 0;
+  for (const auto &cell : mesh.cells) {
+    const auto points = corners(mesh, cell);
+    EXPECT_LE(aspect_ratio(2, points), 1.44);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point &x = points[i], &y = points[(i + 1) % 3];
+      const double edge = std::hypot(x[0] - y[0], x[1] - y[1]);
+      shortest = std::min(shortest, edge);
+      longest = std::max(longest, edge);
+    }
+  }
+  EXPECT_GT(shortest, 0.0149);
+  EXPECT_LT(longest, 0.0285);
+}
+
+TEST(SquareWithDisc, TurnsIntoItselfByAQuarter) {
+  const SerialMesh mesh = square_with_disc();
+  for (const Point &x : mesh.points) {
+    const bool found = std::any_of(mesh.points.begin(), mesh.points.end(), [&](const Point &y) {
+      return std::abs(y[0] + x[1]) < 1e-14 && std::abs(y[1] - x[0]) < 1e-14;
+    });
+    // Inside the disc only every second ring (6 k nodes) has the symmetry of the square.
+    EXPECT_TRUE(found || std::hypot(x[0], x[1]) < 0.2 * (1 - 1e-12));
+  }
+}
+
+TEST(CheckMesh, NamesAnInvertedCell) {
+  SerialMesh mesh = square_with_disc();
+  std::swap(mesh.cells[17][0], mesh.cells[17][1]);
+  try {
+    check_mesh(mesh, "my mesh");
+    FAIL() << "an inverted cell passed";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_NE(std::string(error.what()).find("my mesh: cell 17 "), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(CheckMesh, SeesAFoldEvenIfEveryCellIsTurnedUpright) {
+  SerialMesh mesh = square_with_disc();
+  mesh.points[0] = {0.03, 0, 0}; // the centre, moved out of the first ring
+  EXPECT_THROW(check_mesh(mesh, "fold"), Error);
+  orient_cells(2, mesh.points, mesh.cells);
+  try {
+    check_mesh(mesh, "fold");
+    FAIL() << "a fold passed";
+  } catch (const Error &error) {
+    EXPECT_NE(std::string(error.what()).find("same side"), std::string::npos) << error.what();
+  }
+}
+
+TEST(CheckMesh, SeesADegenerateCellAtAnyScale) {
+  for (const double scale : {1e-6, 1.0, 1e6}) {
+    SerialMesh mesh;
+    mesh.points = {{0, 0, 0}, {scale, 0, 0}, {0, scale, 0}, {scale, scale, 0}};
+    mesh.cells = {{0, 1, 2, -1}, {1, 3, 2, -1}};
+    EXPECT_NO_THROW(check_mesh(mesh, "two triangles"));
+    mesh.points[3] = {0.5 * scale, 0.5 * scale, 0};
+    EXPECT_THROW(check_mesh(mesh, "two triangles"), Error);
+  }
+}
+
+TEST(Fingerprint, FollowsWhatMattersOnly) {
+  const SerialMesh mesh = square_with_disc();
+  const std::string print = fingerprint_of(mesh);
+  EXPECT_EQ(print.size(), 16u);
+  SerialMesh other = mesh;
+  for (Point &x : other.points)
+    x[0] *= 1 + 1e-15;
+  EXPECT_EQ(fingerprint_of(other), print);
+  other = mesh;
+  other.points[7][1] += 1e-6;
+  EXPECT_NE(fingerprint_of(other), print);
+  other = mesh;
+  for (Point &x : other.points)
+    for (double &coordinate : x)
+      coordinate *= 2;
+  EXPECT_NE(fingerprint_of(other), print);
+  other = mesh;
+  other.region["obstacle"].pop_back();
+  EXPECT_NE(fingerprint_of(other), print);
+  other = mesh;
+  std::swap(other.cells[0], other.cells[1]);
+  EXPECT_NE(fingerprint_of(other), print);
+  other = mesh;
+  other.boundary["wall"] = other.boundary["boundary"];
+  other.boundary.erase("boundary");
+  EXPECT_NE(fingerprint_of(other), print);
+}
+
+TEST(PartitionCells, IsBalancedConnectedEnoughAndRepeatable) {
+  const SerialMesh mesh = square_with_disc();
+  for (const int parts : {1, 2, 3, 4, 7}) {
+    const std::vector<int> part = partition_cells(mesh, parts);
+    ASSERT_EQ(part.size(), mesh.cells.size());
+    std::vector<int> size(at(parts), 0);
+    std::vector<std::set<int>> vertices(at(parts));
+    for (std::size_t c = 0; c < part.size(); ++c) {
+      ++size.at(at(part[c]));
+      vertices[at(part[c])].insert(mesh.cells[c].begin(), mesh.cells[c].begin() + 3);
+    }
+    const double average = static_cast<double>(part.size()) / parts;
+    EXPECT_LE(*std::max_element(size.begin(), size.end()), 1.05 * average);
+    EXPECT_GE(*std::min_element(size.begin(), size.end()), 0.95 * average);
+    std::size_t copies = 0;
+    for (const auto &own : vertices)
+      copies += own.size();
+    // A cut across the square has about 60 vertices.
+    EXPECT_LE(copies - mesh.points.size(), at(80 * (parts - 1)));
+    EXPECT_EQ(part, partition_cells(mesh, parts));
+  }
+  EXPECT_THROW(partition_cells(mesh, 6945), Error);
+}
+
+} // namespace
+} // namespace rbvi

@@ -1,0 +1,230 @@
+#include "rbvi/mor/stability.hpp"
+
+#include "grid.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+using namespace testing_grid;
+
+constexpr PetscInt n = 8, duals = 14;
+
+/// A membrane whose lower two rows are in contact, numbered backwards.
+struct Membrane {
+  Handle<Mat> product = distributed_product(n);
+  Matrix dense = dense_product(n);
+  std::vector<PetscInt> nodes;
+  Trace trace;
+  SparseMatrix w_product, b_contact;
+  Matrix b_full = Matrix::Zero(duals, n *n); // dual x free dofs
+
+  Membrane() {
+    for (PetscInt k = 2 * n - 1; k >= 0; --k)
+      nodes.push_back(k);
+    trace = make_trace(product.get(), nodes);
+    Matrix w = Matrix::Zero(duals, duals), b = Matrix::Zero(duals, 2 * n);
+    for (Index r = 0; r < duals; ++r) {
+      w(r, r) = 4 + 0.1 * static_cast<double>(r);
+      if (r > 0) w(r, r - 1) = w(r - 1, r) = 1;
+      for (Index k = r; k < std::min<Index>(r + 3, 2 * n); ++k)
+        b(r, k) = -1.0 / static_cast<double>(1 + k - r) - 0.05 * static_cast<double>(r % 4);
+    }
+    w_product = w.sparseView();
+    b_contact = b.sparseView();
+    for (Index k = 0; k < 2 * n; ++k)
+      b_full.col(nodes[static_cast<std::size_t>(k)]) = b.col(k);
+  }
+
+  LinearBasis basis(const Matrix &columns) const {
+    std::vector<Handle<Vec>> owners;
+    std::vector<Vec> raw;
+    for (Index p = 0; p < columns.cols(); ++p) {
+      owners.push_back(distributed(product.get(), columns.col(p)));
+      raw.push_back(owners.back().get());
+    }
+    return pod(raw, product.get(), {.tolerance = 0}).basis;
+  }
+};
+
+Matrix beside(const Matrix &a, const Matrix &b) {
+  Matrix both(a.rows(), a.cols() + b.cols());
+  both << a, b;
+  return both;
+}
+
+TEST(RieszSpace, lift_solves_and_factor_squares_to_the_traces) {
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  Matrix columns = Matrix::Zero(n * n, 2 * n);
+  for (Index k = 0; k < 2 * n; ++k)
+    columns(membrane.nodes[static_cast<std::size_t>(k)], k) = 1;
+  const Matrix exact = membrane.dense.llt().solve(columns);
+  EXPECT_LE((gathered(space.lift.get()) - exact).norm(), 1e-12 * exact.norm());
+  const Matrix traces = columns.transpose() * exact;
+  EXPECT_LE((space.factor * space.factor.transpose() - traces).norm(), 1e-12 * traces.norm());
+  EXPECT_TRUE(space.factor.isLowerTriangular());
+}
+
+TEST(RieszSpace, refuses_a_product_that_is_not_definite) {
+  const Membrane membrane;
+  RBVI_CALL(MatShift(membrane.product.get(), -1));
+  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+  EXPECT_THROW(make_riesz_space(membrane.product.get(), membrane.trace), Error);
+  PetscPopErrorHandler();
+}
+
+TEST(ModeCoordinates, are_orthonormal_and_keep_the_products_with_riesz_representers) {
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  for (const Index size : {1, 5, 20, 40}) {
+    const LinearBasis modes = membrane.basis(random_matrix(n * n, size, 1));
+    const Matrix columns = gathered(modes.columns.get());
+    const Matrix coordinates = mode_coordinates(space, modes, membrane.trace);
+    ASSERT_EQ(coordinates.rows(), 2 * n + size);
+    ASSERT_EQ(coordinates.cols(), size);
+    EXPECT_LE((coordinates.transpose() * coordinates - Matrix::Identity(size, size))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-12);
+    const Matrix x = random_matrix(duals, 6, 2);
+    const Matrix supremizers = supremizer_coordinates(space, membrane.b_contact, x);
+    const Matrix representers = membrane.dense.llt().solve(membrane.b_full.transpose() * x);
+    const Matrix exact = columns.transpose() * membrane.dense * representers;
+    EXPECT_LE((coordinates.topRows(2 * n).transpose() * supremizers - exact).norm(),
+              1e-12 * exact.norm());
+    const Matrix gram = representers.transpose() * membrane.dense * representers;
+    EXPECT_LE((supremizers.transpose() * supremizers - gram).norm(), 1e-12 * gram.norm());
+  }
+}
+
+TEST(ModeCoordinates, modes_inside_the_range_of_the_lift) {
+  // I - P^T P is zero up to round-off of either sign: it must be cut, not rooted.
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  const LinearBasis modes = membrane.basis(gathered(space.lift.get()) * random_matrix(2 * n, 7, 3));
+  const Matrix coordinates = mode_coordinates(space, modes, membrane.trace);
+  EXPECT_TRUE(coordinates.allFinite());
+  EXPECT_LE(coordinates.bottomRows(7).cwiseAbs().maxCoeff(), 1e-7);
+  EXPECT_LE((coordinates.transpose() * coordinates - Matrix::Identity(7, 7)).norm(), 1e-12);
+}
+
+TEST(DualBasis, is_orthonormal_spans_and_drops_dependent_generators) {
+  const Membrane membrane;
+  Matrix generators = random_matrix(duals, 8, 4);
+  generators.col(3) = generators.col(0) + generators.col(1);
+  generators.col(5) *= 1e-12;
+  generators.col(6).setZero();
+  generators.col(7) = generators.col(2) + 1e-11 * generators.col(7);
+  const Matrix x = orthonormal_dual_basis(generators, membrane.w_product);
+  ASSERT_EQ(x.cols(), 5);
+  const Matrix wx = membrane.w_product * x;
+  EXPECT_LE((x.transpose() * wx - Matrix::Identity(5, 5)).cwiseAbs().maxCoeff(), 1e-13);
+  for (Index r = 0; r < 8; ++r) {
+    const Vector column = generators.col(r);
+    EXPECT_LE((column - x * (wx.transpose() * column)).norm(), 2e-9 * column.norm());
+  }
+  EXPECT_EQ(orthonormal_dual_basis(Matrix(duals, 0), membrane.w_product).cols(), 0);
+}
+
+TEST(OrthonormalRange, reveals_the_rank) {
+  const Matrix factor = random_matrix(30, 4, 5);
+  const Matrix vectors = factor * random_matrix(4, 9, 6);
+  const Matrix range = orthonormal_range(vectors);
+  ASSERT_EQ(range.cols(), 4);
+  EXPECT_LE((range.transpose() * range - Matrix::Identity(4, 4)).norm(), 1e-13);
+  EXPECT_LE((vectors - range * (range.transpose() * vectors)).norm(), 1e-12 * vectors.norm());
+  EXPECT_EQ(orthonormal_range(random_matrix(5, 9, 7)).cols(), 5);
+  EXPECT_EQ(orthonormal_range(Matrix::Zero(6, 3)).cols(), 0);
+}
+
+class InfSupConstants : public testing::TestWithParam<std::tuple<int, int, int>> {};
+
+TEST_P(InfSupConstants, agree_with_brute_force_in_the_full_space) {
+  const auto [size, supremizers, cone] = GetParam();
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  const Matrix &v = membrane.dense;
+  const Matrix w = Matrix(membrane.w_product);
+  const Matrix x = orthonormal_dual_basis(random_matrix(duals, cone, 8), membrane.w_product);
+  const Matrix riesz = v.llt().solve(membrane.b_full.transpose() * x);
+
+  // Rough modes, so that both spaces matter.
+  const LinearBasis modes = membrane.basis(v.llt().solve(random_matrix(n * n, size, 9)));
+  const Matrix primal = gathered(modes.columns.get());
+  const Matrix added = riesz * random_matrix(cone, supremizers, 10);
+  LinearBasis enriched = membrane.basis(beside(primal, added));
+  const Matrix all = gathered(enriched.columns.get());
+
+  const Matrix coordinates = mode_coordinates(space, modes, membrane.trace);
+  // Coordinates of V_N + S: the added representers T(mu) X C, orthonormalised.
+  Matrix both = Matrix::Zero(coordinates.rows(), size + supremizers);
+  both.leftCols(size) = coordinates;
+  both.block(0, size, 2 * n, supremizers) =
+      supremizer_coordinates(space, membrane.b_contact, x) * random_matrix(cone, supremizers, 10);
+  both = orthonormal_range(both);
+
+  const InfSup beta =
+      infsup_constants(space, membrane.b_contact, membrane.w_product, coordinates, both, x, true);
+  const double scale = beta.on;
+  EXPECT_NEAR(beta.hf,
+              brute_infsup(v, w, membrane.b_full, Matrix::Identity(n * n, n * n),
+                           Matrix::Identity(duals, duals)),
+              1e-9 * scale);
+  EXPECT_NEAR(beta.dec, brute_infsup(v, w, membrane.b_full, primal, x), 1e-7 * scale);
+  EXPECT_NEAR(beta.off, brute_infsup(v, w, membrane.b_full, all, x), 1e-7 * scale);
+  const Matrix online = gathered(membrane.basis(beside(primal, riesz)).columns.get());
+  EXPECT_NEAR(beta.on, brute_infsup(v, w, membrane.b_full, online, x), 1e-9 * scale);
+
+  const double slack = 1e-12 * scale;
+  EXPECT_GE(beta.on, beta.off - slack);
+  EXPECT_GE(beta.off, beta.dec - slack);
+  EXPECT_GE(beta.on, beta.hf - slack);
+  if (size < cone) {
+    EXPECT_EQ(beta.dec, 0);
+  }
+
+  const StabilityBound bound =
+      stability_bound(both, supremizer_coordinates(space, membrane.b_contact, x));
+  EXPECT_NEAR(bound.on, beta.on, slack);
+  EXPECT_LE(bound.sharp, beta.off + slack);
+  EXPECT_LE(bound.classic, beta.off + slack);
+  EXPECT_GE(bound.sharp, bound.classic - slack) << "the sharper of the two";
+  if (supremizers >= cone) {
+    EXPECT_LE(bound.sigma, 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, InfSupConstants,
+                         testing::Values(std::tuple(3, 0, 5), std::tuple(3, 2, 5),
+                                         std::tuple(3, 5, 5), std::tuple(10, 0, 6),
+                                         std::tuple(10, 3, 6), std::tuple(12, 1, 12),
+                                         std::tuple(1, 4, 14)));
+
+TEST(InfSupConstants, smallest_is_not_lost_at_the_root_of_round_off) {
+  // Orthonormal pair with known cosines down to 1e-11.
+  const Vector cosines = (Vector(4) << 1, 0.3, 1e-5, 1e-11).finished();
+  const Matrix q = Matrix(Eigen::HouseholderQR<Matrix>(random_matrix(20, 8, 11)).householderQ() *
+                          Matrix::Identity(20, 8));
+  const Matrix primal =
+      q.leftCols(4) * cosines.asDiagonal() +
+      q.rightCols(4) * (1 - cosines.array().square()).sqrt().matrix().asDiagonal();
+  EXPECT_NEAR(infsup_constant(primal, q.leftCols(4)), 1e-11, 1e-14);
+  EXPECT_EQ(infsup_constant(primal.leftCols(3), q.leftCols(4)), 0);
+}
+
+TEST(InfSupConstants, high_fidelity_only_when_asked) {
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  const Matrix x = orthonormal_dual_basis(random_matrix(duals, 2, 12), membrane.w_product);
+  const Matrix modes = Matrix::Identity(2 * n + 3, 3);
+  EXPECT_TRUE(std::isnan(
+      infsup_constants(space, membrane.b_contact, membrane.w_product, modes, modes, x, false).hf));
+}
+
+} // namespace
+} // namespace rbvi

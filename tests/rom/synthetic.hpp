@@ -1,0 +1,156 @@
+// Reduced models of any size on the forms of membrane_obstacle, and of a toy scene whose forms are
+// given numbers, for tests that compute the answer another way.
+#pragma once
+
+#include "rbvi/rom/online.hpp"
+
+#include <cmath>
+#include <random>
+
+namespace rbvi::synthetic {
+
+struct Sizes {
+  int modes = 3, supremizers = 2, generators = 4;
+  int a = 2, b = 1, f = 1, g = 1; ///< terms
+};
+
+inline Matrix random_matrix(std::mt19937 &random, Index rows, Index cols) {
+  std::normal_distribution<double> normal;
+  return Matrix::NullaryExpr(rows, cols, [&] { return normal(random); });
+}
+
+inline Vector packed_lower(const Matrix &matrix) {
+  const Index n = matrix.rows();
+  Vector packed(n * (n + 1) / 2);
+  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
+    packed.segment(at, n - j) = matrix.col(j).tail(n - j);
+  return packed;
+}
+
+inline Matrix random_spd(std::mt19937 &random, Index n) {
+  const Matrix factor = random_matrix(random, n, n);
+  return factor * factor.transpose() / static_cast<double>(n) + Matrix::Identity(n, n);
+}
+
+/// `size` entries, each the sum of `per_entry` small cells of the disc (local entry 0).
+inline SampleMesh random_sample(std::mt19937 &random, int size, int per_entry) {
+  std::uniform_real_distribution<double> position(-0.1, 0.1);
+  SampleMesh sample;
+  sample.vertices.resize(size * per_entry * 3, 2);
+  for (int cell = 0; cell < size * per_entry; ++cell) {
+    const double x = position(random), y = position(random);
+    sample.vertices.middleRows(3 * cell, 3) << x, y, x + 0.02, y + 0.004, x + 0.003, y + 0.03;
+    sample.contributions.push_back({cell / per_entry, cell, 0});
+  }
+  return sample;
+}
+
+inline AffineTerms random_terms(std::mt19937 &random, Index rows, int size, int per_entry) {
+  AffineTerms terms;
+  terms.reduced = random_matrix(random, rows, size);
+  terms.interpolation = Matrix::Identity(size, size);
+  terms.sample = random_sample(random, size, per_entry);
+  return terms;
+}
+
+/// Sets what outputs and reconstruction need: a square of four triangles and `generators` hats.
+inline void add_fields(std::mt19937 &random, ReducedModel &model) {
+  const Index n = model.primal_size(), r = model.generators;
+  model.mesh_points.resize(5, 2);
+  model.mesh_points << -0.1, -0.1, 0.1, -0.1, 0.1, 0.1, -0.1, 0.1, 0, 0;
+  model.mesh_cells = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+  model.contact_nodes = {0, 1, 4};
+  model.contact_cells = {0, 1, 2};
+  model.primal_basis = random_matrix(random, 5, n);
+  model.dual_basis = random_matrix(random, 3, r).cwiseAbs();
+  model.contact_trace.resize(3, n);
+  model.contact_points.resize(3, 2);
+  for (Index i = 0; i < 3; ++i) {
+    model.contact_trace.row(i) = model.primal_basis.row(model.contact_nodes[std::size_t(i)]);
+    model.contact_points.row(i) = model.mesh_points.row(model.contact_nodes[std::size_t(i)]);
+  }
+  model.lumped_weights = random_matrix(random, 3, model.b.size()).cwiseAbs();
+}
+
+/// Lets entry q of every term set be local value q of one cell: theta_q = value(form, q, mu).
+inline void sample_one_cell(AffineTerms &terms) {
+  terms.sample.vertices.resize(3, 2);
+  terms.sample.vertices << 0, 0, 1, 0, 0, 1;
+  terms.sample.contributions.clear();
+  for (int q = 0; q < terms.size(); ++q)
+    terms.sample.contributions.push_back({q, 0, q});
+}
+
+/// Divides each term by its theta in the middle of the box, so that all weigh alike there.
+inline void scale_terms(AffineTerms &terms, const Form &form, const Scene &scene) {
+  Mu middle;
+  for (const Parameter &p : scene.parameters.all)
+    middle.push_back(0.5 * (p.lower + p.upper));
+  const Vector theta = affine_coefficients(terms, form, scene, middle);
+  for (int q = 0; q < terms.size(); ++q)
+    terms.reduced.col(q) /= theta[q];
+}
+
+/// Strictly convex; in the middle of the box u = 0 is feasible (g >= 0), and g is a third of the
+/// violation of the unconstrained minimum, so that about a third of the constraints bite.
+inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene &scene,
+                                 bool one_cell = false) {
+  std::mt19937 random(seed);
+  ReducedModel model;
+  model.scene_name = scene.name;
+  model.scene_options = scene.options;
+  model.parameters = scene.parameters;
+  model.modes = sizes.modes;
+  model.supremizers = sizes.supremizers;
+  model.generators = sizes.generators;
+  const Index n = model.primal_size(), r = sizes.generators;
+  model.a = random_terms(random, n * (n + 1) / 2, sizes.a, 4);
+  Matrix a = Matrix::Zero(n, n);
+  for (int q = 0; q < sizes.a; ++q) {
+    const Matrix term = random_spd(random, n);
+    a += term;
+    model.a.reduced.col(q) = packed_lower(term);
+  }
+  model.b = random_terms(random, r * n, sizes.b, 1);
+  model.f = random_terms(random, n, sizes.f, 1);
+  model.g = random_terms(random, r, sizes.g, 1);
+  const Vector b = model.b.reduced.rowwise().sum();
+  const Vector u = a.llt().solve(model.f.reduced.rowwise().sum());
+  const double violation = (Eigen::Map<const Matrix>(b.data(), r, n) * u).norm();
+  model.g.reduced = model.g.reduced.cwiseAbs();
+  if (violation > 0) model.g.reduced *= violation / (3 * model.g.reduced.rowwise().sum().norm());
+  if (one_cell)
+    for (AffineTerms *terms : {&model.a, &model.b, &model.f, &model.g})
+      sample_one_cell(*terms);
+  scale_terms(model.a, scene.a, scene);
+  scale_terms(model.b, scene.b, scene);
+  scale_terms(model.f, scene.f, scene);
+  scale_terms(model.g, scene.g, scene);
+  add_fields(random, model);
+  return model;
+}
+
+inline ReducedModel random_model(const Sizes &sizes, unsigned seed) {
+  return random_model(sizes, seed, make_scene("membrane_obstacle"));
+}
+
+/// A scene on the identity map whose forms fill their values from mu alone: value i of form k is
+/// value(k, i, mu).
+using Value = double (*)(int form, int i, const Mu &mu);
+template <Value value> Scene toy_scene() {
+  Scene scene = make_scene("membrane_obstacle");
+  scene.map = [](const Mu &, const Point &x) { return x; };
+  const auto filled = [](int form, int count) {
+    return [form, count](const Mu &mu, const Cell &, double *values) {
+      for (int i = 0; i < count; ++i)
+        values[i] = value(form, i, mu);
+    };
+  };
+  scene.a.kernel = filled(0, 9);
+  scene.b.kernel = filled(1, 9);
+  scene.f.kernel = filled(2, 3);
+  scene.g.kernel = filled(3, 3);
+  return scene;
+}
+
+} // namespace rbvi::synthetic

@@ -1,0 +1,251 @@
+#include "synthetic.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+#include "rbvi/rom/online.hpp"
+#include "rbvi/rom/print.hpp"
+#include "rbvi/rom/vtu.hpp"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <unistd.h>
+
+namespace rbvi {
+namespace {
+
+using Path = std::filesystem::path;
+
+struct ModelFile : testing::Test {
+  Path directory = Path(testing::TempDir()) / ("rbvi_model_" + std::to_string(::getpid()));
+  Path path = directory / "model.h5";
+  void SetUp() override { std::filesystem::create_directories(directory); }
+  void TearDown() override { std::filesystem::remove_all(directory); }
+};
+
+std::string slurp(const Path &path) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  return bytes.str();
+}
+
+void expect_same(const AffineTerms &a, const AffineTerms &b) {
+  EXPECT_EQ(a.reduced, b.reduced);
+  EXPECT_EQ(a.interpolation, b.interpolation);
+  EXPECT_EQ(a.sample.vertices, b.sample.vertices);
+  EXPECT_EQ(a.error, b.error);
+  ASSERT_EQ(a.sample.contributions.size(), b.sample.contributions.size());
+  for (std::size_t i = 0; i < a.sample.contributions.size(); ++i) {
+    EXPECT_EQ(a.sample.contributions[i].entry, b.sample.contributions[i].entry);
+    EXPECT_EQ(a.sample.contributions[i].cell, b.sample.contributions[i].cell);
+    EXPECT_EQ(a.sample.contributions[i].local, b.sample.contributions[i].local);
+  }
+}
+
+ReducedModel full_model() {
+  ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
+  model.parameters = free_only(model.parameters, "radius,center_y");
+  model.parameters.all[1].value = 0.01;
+  model.settings = {{"-pod_tolerance", "1e-3"}, {"-cone", "mcpg"}};
+  model.mesh_fingerprint = "0123456789abcdef";
+  model.gap_scale = 0.3;
+  model.primal_offset = Vector::LinSpaced(5, 0, 1);
+  model.a.error = 1e-3;
+  model.histories = {{"pod/error", {1, 0.1}}, {"cone/e_orth", {}}};
+  model.stage_seconds = {{"snapshots", 12.5}};
+  model.validation_enriched = {64, 1e-4, 2e-4, 3e-4, 4e-4};
+  return model;
+}
+
+TEST_F(ModelFile, ReturnsTheModel) {
+  const ReducedModel model = full_model();
+  write_model(model, path);
+  const ReducedModel copy = read_model(path);
+  EXPECT_EQ(copy.scene_name, model.scene_name);
+  EXPECT_EQ(copy.scene_options, model.scene_options);
+  EXPECT_EQ(copy.parameters.free, model.parameters.free);
+  EXPECT_EQ(copy.parameters.all[1].value, 0.01);
+  EXPECT_EQ(copy.parameters.all[2].unit, "m");
+  EXPECT_EQ(copy.settings, model.settings);
+  EXPECT_EQ(copy.mesh_fingerprint, model.mesh_fingerprint);
+  EXPECT_EQ(copy.primal_size(), 5);
+  EXPECT_EQ(copy.modes, 3);
+  EXPECT_EQ(copy.generators, 4);
+  expect_same(copy.a, model.a);
+  expect_same(copy.b, model.b);
+  expect_same(copy.f, model.f);
+  expect_same(copy.g, model.g);
+  EXPECT_EQ(copy.dual_basis, model.dual_basis);
+  EXPECT_EQ(copy.contact_trace, model.contact_trace);
+  EXPECT_EQ(copy.contact_points, model.contact_points);
+  EXPECT_EQ(copy.lumped_weights, model.lumped_weights);
+  EXPECT_EQ(copy.gap_scale, model.gap_scale);
+  EXPECT_EQ(copy.primal_basis, model.primal_basis);
+  EXPECT_EQ(copy.primal_offset, model.primal_offset);
+  EXPECT_EQ(copy.mesh_points, model.mesh_points);
+  EXPECT_EQ(copy.mesh_cells, model.mesh_cells);
+  EXPECT_EQ(copy.contact_nodes, model.contact_nodes);
+  EXPECT_EQ(copy.contact_cells, model.contact_cells);
+  EXPECT_EQ(copy.histories, model.histories);
+  EXPECT_EQ(copy.stage_seconds, model.stage_seconds);
+  EXPECT_EQ(copy.validation_enriched.lambda_max, 4e-4);
+  EXPECT_EQ(copy.validation_decorrelated.count, 0);
+}
+
+TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
+  write_model(full_model(), path);
+  const ReducedModel with = read_model(path), without = read_model(path, false);
+  EXPECT_EQ(without.primal_basis.size(), 0);
+  OnlineSolver a(with), b(without);
+  const Mu mu{0.2, 0.01};
+  const ReducedSolution solution = a.solve(mu);
+  EXPECT_EQ(solution.u, b.solve(mu).u);
+  EXPECT_EQ(*a.outputs(mu, solution).max_penetration, *b.outputs(mu, solution).max_penetration);
+  EXPECT_THROW(b.field(solution), Error);
+}
+
+TEST_F(ModelFile, NoLoadAndNoGapAreModels) {
+  ReducedModel model = synthetic::random_model({3, 2, 4, 2, 1, 1, 1}, 12);
+  model.f = model.g = {};
+  write_model(model, path);
+  const ReducedModel copy = read_model(path);
+  OnlineSolver solver(copy);
+  EXPECT_EQ(solver.solve({0.2, 0, 0}).u.norm(), 0);
+  EXPECT_EQ(leading(copy, 2, 3).f.size(), 0);
+}
+
+TEST_F(ModelFile, DamageIsNoticed) {
+  write_model(full_model(), path);
+  const std::string good = slurp(path);
+  for (std::size_t i = 0; i < good.size(); i += 61) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (1 << (i % 8)));
+    std::ofstream(path, std::ios::binary) << bad;
+    EXPECT_THROW(read_model(path), Error) << "byte " << i;
+    std::ofstream(path, std::ios::binary) << good.substr(0, i);
+    EXPECT_THROW(read_model(path), Error) << "length " << i;
+  }
+}
+
+TEST_F(ModelFile, WhatThisBuildLacksIsBadInput) {
+  const auto refused = [&](const ReducedModel &model) {
+    write_model(model, path);
+    try {
+      (void)read_model(path);
+    } catch (const Error &error) {
+      return error.status() == Status::bad_input;
+    }
+    return false;
+  };
+  ReducedModel model = full_model();
+  model.scene_name = "bridge";
+  EXPECT_TRUE(refused(model));
+  model = full_model();
+  model.scene_options["colour"] = "red";
+  EXPECT_TRUE(refused(model));
+  model = full_model();
+  model.parameters.all[0].name = "diameter";
+  EXPECT_TRUE(refused(model));
+}
+
+TEST(CheckModel, NamesWhatDoesNotFit) {
+  const auto refused = [](auto change) {
+    ReducedModel model = full_model();
+    change(model);
+    try {
+      check_model(model);
+    } catch (const Error &) {
+      return true;
+    }
+    return false;
+  };
+  using M = ReducedModel;
+  EXPECT_FALSE(refused([](M &) {}));
+  EXPECT_TRUE(refused([](M &m) { m.modes = 4; }));
+  EXPECT_TRUE(refused([](M &m) { m.a.reduced(0, 0) = std::nan(""); }));
+  EXPECT_TRUE(refused([](M &m) { m.dual_basis(0, 0) = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.mesh_cells[0] = 5; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact_nodes[0] = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.b.sample.contributions[0].cell = 99; }));
+  EXPECT_TRUE(refused([](M &m) { m.b.sample.contributions.back().entry = 2; }));
+  EXPECT_TRUE(refused([](M &m) { m.lumped_weights.conservativeResize(3, 1); }));
+  EXPECT_TRUE(refused([](M &m) { m.a = {}; }));
+  EXPECT_TRUE(refused([](M &m) { m.gap_scale = 0; }));
+}
+
+/// The leading part of A, B, F, G as dense matrices is the top left corner of the whole.
+TEST(Leading, IsTheTopLeftCorner) {
+  const ReducedModel model = full_model();
+  const ReducedModel part = leading(model, 4, 3);
+  check_model(part);
+  EXPECT_EQ(part.modes, 3);
+  EXPECT_EQ(part.supremizers, 1);
+  for (int q = 0; q < model.a.size(); ++q)
+    for (Index j = 0, at = 0; j < 4; ++j)
+      for (Index i = j; i < 4; ++i, ++at)
+        EXPECT_EQ(part.a.reduced(at, q), model.a.reduced(5 * j - j * (j - 1) / 2 + i - j, q));
+  for (Index i = 0; i < 3; ++i)
+    for (Index j = 0; j < 4; ++j)
+      EXPECT_EQ(part.b.reduced(j * 3 + i, 1), model.b.reduced(j * 4 + i, 1));
+  EXPECT_EQ(part.f.reduced, model.f.reduced.topRows(4));
+  EXPECT_EQ(part.g.reduced, model.g.reduced.topRows(3));
+  EXPECT_EQ(part.validation_enriched.count, 0);
+  EXPECT_EQ(leading(model, 5, 4).validation_enriched.count, 64);
+  EXPECT_THROW(leading(model, 6, 4), Error);
+  EXPECT_THROW(leading(model, 0, 4), Error);
+  EXPECT_THROW(leading(model, 5, 5), Error);
+}
+
+TEST(Leading, DecorrelatedKeepsItsOwnErrors) {
+  ReducedModel model = full_model();
+  model.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
+  EXPECT_EQ(expected_errors(model).u_max, 2e-4);
+  EXPECT_EQ(expected_errors(leading(model, 3, 4)).u_max, 0.2);
+  EXPECT_EQ(expected_errors(leading(model, 3, 3)).count, 0);
+  EXPECT_EQ(expected_errors(leading(model, 2, 4)).count, 0);
+}
+
+TEST(PrintModel, ShowsParametersSizesAndErrors) {
+  std::ostringstream out;
+  print_model(out, full_model());
+  for (const char *part : {"membrane_obstacle", "radius", "[0.16, 0.24] m", "0.01 (fixed) m",
+                           "supremizers", "-pod_tolerance", "0.0004 max"})
+    EXPECT_NE(out.str().find(part), std::string::npos) << part << " in\n" << out.str();
+}
+
+/// The numbers of one DataArray.
+std::vector<double> data_array(const std::string &vtu, const std::string &name) {
+  const std::size_t begin = vtu.find('>', vtu.find("Name=\"" + name + "\"")) + 1;
+  std::istringstream text(vtu.substr(begin, vtu.find('<', begin) - begin));
+  return {std::istream_iterator<double>(text), {}};
+}
+
+TEST_F(ModelFile, VtuHoldsTheMappedFieldAndContact) {
+  const ReducedModel model = full_model();
+  OnlineSolver solver(model);
+  const Mu mu{0.18, 0.02};
+  const ReducedSolution solution = solver.solve(mu);
+  write_vtu(directory / "u.vtu", solver, mu, solution);
+  const std::string field = slurp(directory / "u.vtu");
+  const std::vector<double> points = data_array(field, "points"), u = data_array(field, "u");
+  ASSERT_EQ(points.size(), 15U);
+  ASSERT_EQ(u.size(), 5U);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(u[std::size_t(i)], solver.field(solution)[i]);
+    const Point x = solver.scene().map({0.18, 0.01, 0.02}, point_of(model.mesh_points, i));
+    EXPECT_EQ(points[std::size_t(3 * i)], x[0]);
+    EXPECT_EQ(points[std::size_t(3 * i + 1)], x[1]);
+  }
+  EXPECT_EQ(data_array(field, "connectivity").size(), 12U);
+  EXPECT_EQ(data_array(field, "offsets"), (std::vector<double>{3, 6, 9, 12}));
+  EXPECT_EQ(data_array(field, "types"), (std::vector<double>{5, 5, 5, 5}));
+  const std::string contact = slurp(directory / "u_contact.vtu");
+  const Vector pressure = solver.multiplier(solution);
+  EXPECT_EQ(data_array(contact, "pressure"),
+            (std::vector<double>(pressure.data(), pressure.data() + 3)));
+  EXPECT_EQ(data_array(contact, "gap").size(), 3U);
+  EXPECT_THROW(write_vtu(path / "no" / "u.vtu", solver, mu, solution), Error);
+}
+
+} // namespace
+} // namespace rbvi

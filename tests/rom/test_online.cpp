@@ -1,0 +1,237 @@
+#include "synthetic.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/rom/online.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+/// Positive for every form but, on the left half of the box, b: signs change with mu.
+double smooth(int form, int i, const Mu &mu) {
+  return 1 + 0.3 * form + 0.5 * i * (mu[0] - 0.16) / 0.08 + 0.2 * mu[1] / 0.05;
+}
+
+double flipping(int form, int i, const Mu &mu) {
+  const double value = smooth(form, i, mu);
+  return form == 1 && mu[1] < 0 ? -value : value;
+}
+
+struct Operators {
+  Matrix a, b;
+  Vector f, g;
+};
+
+Vector combine(const AffineTerms &terms, int form, double (*value)(int, int, const Mu &),
+               const Mu &mu) {
+  Vector sum = Vector::Zero(terms.reduced.rows());
+  for (int q = 0; q < terms.size(); ++q)
+    sum += value(form, q, mu) * terms.reduced.col(q);
+  return sum;
+}
+
+Operators assemble(const ReducedModel &model, double (*value)(int, int, const Mu &), const Mu &mu) {
+  const Index n = model.primal_size(), r = model.generators;
+  Operators result;
+  const Vector a = combine(model.a, 0, value, mu), b = combine(model.b, 1, value, mu);
+  result.a.resize(n, n);
+  for (Index j = 0, at = 0; j < n; ++j)
+    for (Index i = j; i < n; ++i, ++at)
+      result.a(i, j) = result.a(j, i) = a[at];
+  result.b = Eigen::Map<const Matrix>(b.data(), r, n);
+  result.f = combine(model.f, 2, value, mu);
+  result.g = combine(model.g, 3, value, mu);
+  return result;
+}
+
+/// Tries every active set: the one whose KKT system gives x >= 0 and B u <= g holds the solution.
+Vector brute_force(const Operators &o) {
+  const Index n = o.a.rows(), r = o.b.rows();
+  for (int set = 0; set < (1 << r); ++set) {
+    std::vector<Index> active;
+    for (Index i = 0; i < r; ++i)
+      if ((set >> i) & 1) active.push_back(i);
+    const auto k = static_cast<Index>(active.size());
+    Matrix system = Matrix::Zero(n + k, n + k);
+    Vector right(n + k);
+    system.topLeftCorner(n, n) = o.a;
+    right.head(n) = o.f;
+    for (Index j = 0; j < k; ++j) {
+      system.row(n + j).head(n) = o.b.row(active[std::size_t(j)]);
+      system.col(n + j).head(n) = o.b.row(active[std::size_t(j)]).transpose();
+      right[n + j] = o.g[active[std::size_t(j)]];
+    }
+    const Eigen::FullPivLU<Matrix> lu(system);
+    if (!lu.isInvertible()) continue;
+    const Vector solution = lu.solve(right);
+    const Vector u = solution.head(n);
+    if ((k == 0 || solution.tail(k).minCoeff() >= 0) &&
+        (o.b * u - o.g).maxCoeff() <= 1e-11 * (1 + u.norm()))
+      return u;
+  }
+  ADD_FAILURE() << "no active set fits";
+  return Vector::Zero(n);
+}
+
+ReducedModel toy_model(const synthetic::Sizes &sizes, unsigned seed) {
+  return synthetic::random_model(sizes, seed, synthetic::toy_scene<smooth>(), true);
+}
+
+/// One solver that goes through many parameters gives the answer found by brute force.
+template <synthetic::Value value> void expect_exact(const synthetic::Sizes &sizes) {
+  int active = 0;
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const ReducedModel model = toy_model(sizes, seed);
+    OnlineSolver solver(model, synthetic::toy_scene<value>());
+    for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
+      const ReducedSolution solution = solver.solve(mu);
+      const Operators o = assemble(model, value, mu);
+      const Vector u = brute_force(o);
+      EXPECT_LE((solution.u - u).norm(), 1e-10 * (u.norm() + 1e-3));
+      EXPECT_GE(solution.x.minCoeff(), 0);
+      EXPECT_LE((o.a * solution.u + o.b.transpose() * solution.x - o.f).norm(), 1e-11 * o.f.norm());
+      EXPECT_NEAR(solution.energy, 0.5 * u.dot(o.a * u) - o.f.dot(u), 1e-10 * std::abs(o.f.dot(u)));
+      EXPECT_LE(solution.kkt_residual, 1e-11);
+      active += (solution.x.array() > 0).any();
+    }
+  }
+  EXPECT_GT(active, 20) << "the constraints were hardly ever tested";
+}
+
+TEST(OnlineSolver, AgreesWithBruteForce) {
+  expect_exact<smooth>({3, 3, 5, 3, 2, 2, 2});
+}
+TEST(OnlineSolver, OneTermOfA) {
+  expect_exact<smooth>({3, 3, 5, 1, 2, 2, 2});
+}
+TEST(OnlineSolver, OneTermOfB) {
+  expect_exact<smooth>({3, 3, 5, 3, 1, 2, 2});
+}
+TEST(OnlineSolver, OneTermOfBoth) {
+  expect_exact<smooth>({3, 3, 5, 1, 1, 2, 2});
+}
+TEST(OnlineSolver, OneTermOfBothSignsChange) {
+  expect_exact<flipping>({4, 2, 5, 1, 1, 2, 2});
+}
+TEST(OnlineSolver, NoLoad) {
+  const ReducedModel model = toy_model({3, 3, 5, 3, 2, 0, 1}, 1);
+  OnlineSolver solver(model, synthetic::toy_scene<smooth>());
+  EXPECT_EQ(solver.solve({0.2, 0, 0}).u.norm(), 0); // g > 0: rest is feasible
+}
+
+TEST(OnlineSolver, MoreConstraintsThanUnknowns) {
+  ReducedModel model = toy_model({2, 0, 8, 2, 1, 2, 1}, 3);
+  model.b.reduced(4, 0) = model.b.reduced(0, 0); // two equal generators
+  model.b.reduced(8 + 4, 0) = model.b.reduced(8, 0);
+  model.g.reduced(4, 0) = model.g.reduced(0, 0);
+  OnlineSolver solver(model, synthetic::toy_scene<smooth>());
+  for (const Mu &mu : parse_set(model.parameters, "grid:5,5,1")) {
+    const Vector u = brute_force(assemble(model, smooth, mu));
+    EXPECT_LE((solver.solve(mu).u - u).norm(), 1e-10 * u.norm());
+  }
+}
+
+TEST(OnlineSolver, ContradictingConstraintsAreAFailure) {
+  ReducedModel model = toy_model({3, 0, 2, 1, 1, 1, 1}, 2);
+  for (int j = 0; j < 3; ++j)
+    model.b.reduced(2 * j + 1, 0) = -model.b.reduced(2 * j, 0);
+  model.g.reduced.setConstant(-1); // b u <= -1 and -b u <= -1
+  OnlineSolver solver(model, synthetic::toy_scene<smooth>());
+  try {
+    solver.solve({0.2, 0, 0});
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::failed);
+    const std::string message = error.what();
+    EXPECT_NE(message.find("contradict"), std::string::npos) << message;
+    EXPECT_NE(message.find("radius=0.2"), std::string::npos) << message;
+  }
+}
+
+TEST(OnlineSolver, IndefiniteStiffnessIsAFailureAndForgotten) {
+  ReducedModel model = toy_model({3, 3, 5, 2, 1, 1, 1}, 4);
+  OnlineSolver solver(model, synthetic::toy_scene<smooth>());
+  model.a.reduced *= -1;
+  EXPECT_THROW(solver.solve({0.2, 0, 0}), Error);
+  model.a.reduced *= -1;
+  const Mu mu{0.2, 0, 0};
+  EXPECT_LE((solver.solve(mu).u - brute_force(assemble(model, smooth, mu))).norm(), 1e-10);
+}
+
+TEST(OnlineSolver, TheBoxIsKeptUnlessExtrapolating) {
+  const ReducedModel model = toy_model({}, 5);
+  OnlineSolver solver(model, synthetic::toy_scene<smooth>());
+  EXPECT_THROW(solver.solve({0.3, 0, 0}), Error);
+  EXPECT_THROW(solver.solve({0.2, 0}), Error);
+  EXPECT_NO_THROW(solver.solve({0.25, 0, 0}, true));
+}
+
+TEST(KktResidual, SeesEachCondition) {
+  const Vector au = Vector::Constant(1, 1), btx = Vector::Constant(1, 1),
+               f = Vector::Constant(1, 2), one = Vector::Constant(1, 1);
+  EXPECT_EQ(kkt_residual(au, btx, f, one, one, one), 0);
+  EXPECT_EQ(kkt_residual(au, 0 * btx, f, one, one, one), 0.5);
+  EXPECT_EQ(kkt_residual(au, btx, f, 4 * one, 3 * one, 0 * one), 0.25);
+  EXPECT_EQ(kkt_residual(au, btx, f, 3 * one, 4 * one, one), 0.25);
+  EXPECT_EQ(kkt_residual(0 * au, 0 * au, 0 * au, 0 * one, 0 * one, 0 * one), 0);
+}
+
+/// (B.36) against the cotangent formula: int |grad phi_0|^2 = |opposite edge|^2 / (4 area).
+TEST(AffineCoefficients, ReassembleTheSampledEntries) {
+  const Scene scene = make_scene("membrane_obstacle");
+  std::mt19937 random(7);
+  AffineTerms terms = synthetic::random_terms(random, 1, 4, 3);
+  terms.interpolation = synthetic::random_matrix(random, 4, 4).triangularView<Eigen::UnitLower>();
+  terms.interpolation.triangularView<Eigen::StrictlyUpper>().setZero();
+  const Mu mu{0.23, 0.04, -0.03};
+  const Vector theta = affine_coefficients(terms, scene.a, scene, mu);
+  for (int entry = 0; entry < 4; ++entry) {
+    double expected = 0;
+    for (int cell = 3 * entry; cell < 3 * entry + 3; ++cell) {
+      Point x[3];
+      for (int i = 0; i < 3; ++i)
+        x[i] = scene.map(mu, point_of(terms.sample.vertices, 3 * cell + i));
+      const double edge[2] = {x[2][0] - x[1][0], x[2][1] - x[1][1]};
+      const double area = 0.5 * std::abs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) -
+                                         (x[2][0] - x[0][0]) * (x[1][1] - x[0][1]));
+      expected += (edge[0] * edge[0] + edge[1] * edge[1]) / (4 * area);
+    }
+    EXPECT_NEAR(terms.interpolation.row(entry).dot(theta), expected, 1e-12 * expected);
+  }
+  EXPECT_EQ(affine_coefficients({}, scene.f, scene, mu).size(), 0);
+}
+
+TEST(Outputs, AreIntegralsOverTheContactRegion) {
+  ReducedModel model = synthetic::random_model({}, 8);
+  model.validation_enriched = {10, 1e-3, 2e-3, 3e-3, 4e-3};
+  OnlineSolver solver(model);
+  const Mu mu{0.19, 0.01, 0.02};
+  ReducedSolution solution = solver.solve(mu);
+  solution.x << 1, 0, 2, 0;
+  const Outputs outputs = solver.outputs(mu, solution);
+  const Vector lambda = model.dual_basis.col(0) + 2 * model.dual_basis.col(2);
+  const Vector weights = solution.theta_b[0] * model.lumped_weights.col(0);
+  EXPECT_NEAR(*outputs.normal_force, lambda.dot(weights), 1e-13 * std::abs(lambda.dot(weights)));
+  EXPECT_NEAR(*outputs.peak_pressure, lambda.maxCoeff(), 1e-13 * lambda.maxCoeff());
+  EXPECT_NEAR(*outputs.contact_measure, weights.sum(), 1e-13 * std::abs(weights.sum()));
+  const Vector field = solver.field(solution);
+  double deepest = 0;
+  for (int node : model.contact_nodes) {
+    // psi = -1.25 |x - c|^2 / r^2 on the mapped disc is -1.25 |xhat|^2 / 0.2^2 on the reference
+    // one.
+    const double psi = -1.25 * model.mesh_points.row(node).squaredNorm() / 0.04;
+    deepest = std::max(deepest, psi - field[node]);
+  }
+  EXPECT_NEAR(*outputs.max_penetration, deepest, 1e-12);
+  EXPECT_EQ(*outputs.expected_error_u, 2e-3);
+  EXPECT_EQ(*outputs.expected_error_lambda, 4e-3);
+  EXPECT_FALSE(outputs.min_u);
+  EXPECT_FALSE(solver.outputs({0.26, 0, 0}, solution).expected_error_u);
+
+  solution.x.setZero();
+  EXPECT_EQ(*solver.outputs(mu, solution).contact_measure, 0);
+}
+
+} // namespace
+} // namespace rbvi

@@ -1,0 +1,148 @@
+// The high-fidelity solvers agree with each other, with exact values, and across ranks.
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/high_fidelity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+const Mu centred{0.2, 0, 0}, shifted{0.18, 0.025, -0.025};
+
+HfSolution solve(MPI_Comm comm, const Mu &mu, const HfOptions &options = {},
+                 const SceneOptions &scene = {}, int refine = 0) {
+  Problem problem(comm, make_scene("membrane_obstacle", scene), {"", refine});
+  return HighFidelity(problem, options).solve(mu);
+}
+
+double relative(double value, double exact) { return std::abs(value / exact - 1); }
+
+// Exact energy, force and area: 1D Newton on the radial solution (tests/check) and, for the shifted
+// disc, a solution without a mesh (errors <= 1e-11).
+struct Exact {
+  Mu mu;
+  double energy, area, force, min_u;
+};
+const Exact exact[] = {{centred, -6.528778, 0.036578, 5.486761, -0.801163},
+                       {shifted, -6.759297, 0.028921, 5.186180, -0.906835}};
+
+TEST(ActiveSet, ReachesTheExactValues) {
+  for (const Exact &e : exact) {
+    const HfSolution s = solve(PETSC_COMM_WORLD, e.mu);
+    EXPECT_LE(s.kkt.largest(), 1e-12);
+    EXPECT_LE(relative(*s.outputs.energy, e.energy), 2e-3);
+    EXPECT_LE(relative(*s.outputs.normal_force, e.force), 1e-3);
+    EXPECT_LE(relative(*s.outputs.contact_measure, e.area), 5e-2);
+    EXPECT_LE(relative(*s.outputs.min_u, e.min_u), 2e-3);
+  }
+}
+
+TEST(ActiveSet, EnergyConvergesAtSecondOrder) {
+  for (const Exact &e : exact) {
+    double previous = 0;
+    for (int refine : {0, 1, 2}) {
+      const HfSolution s = solve(PETSC_COMM_WORLD, e.mu, {}, {}, refine);
+      const double error = relative(*s.outputs.energy, e.energy);
+      if (refine > 0) {
+        EXPECT_GT(std::log2(previous / error), 1.8) << "refinement " << refine;
+        EXPECT_LT(std::log2(previous / error), 2.3) << "refinement " << refine;
+      }
+      previous = error;
+    }
+  }
+}
+
+TEST(ActiveSet, AWarmStartChangesTheCostOnly) {
+  Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {});
+  HighFidelity solver(problem, {});
+  const HfSolution cold = solver.solve(shifted);
+  solver.forget();
+  (void)solver.solve({0.185, 0.03, -0.02});
+  const HfSolution warm = solver.solve(shifted);
+  EXPECT_EQ(cold.active, warm.active);
+  EXPECT_LE((cold.u - warm.u).norm(), 1e-11 * cold.u.norm());
+  EXPECT_LE((cold.lambda - warm.lambda).norm(), 1e-10 * cold.lambda.norm());
+  EXPECT_LT(warm.columns, cold.columns);
+}
+
+TEST(ActiveSet, DoesNotDependOnTheNumberOfRanks) {
+  const HfSolution alone = solve(PETSC_COMM_SELF, shifted), world = solve(PETSC_COMM_WORLD, shifted);
+  EXPECT_LE((alone.u - world.u).norm(), 1e-10 * alone.u.norm());
+  EXPECT_LE((alone.lambda - world.lambda).norm(), 1e-10 * alone.lambda.norm());
+}
+
+TEST(ActiveSet, BothDiscMapsSolveTheSameProblem) {
+  const HfSolution similarity = solve(PETSC_COMM_WORLD, shifted);
+  const HfSolution graded = solve(PETSC_COMM_WORLD, shifted, {}, {{"disc_map", "graded"}});
+  EXPECT_LE(relative(*graded.outputs.energy, *similarity.outputs.energy), 1e-3);
+  EXPECT_LE(relative(*graded.outputs.normal_force, *similarity.outputs.normal_force), 1e-3);
+}
+
+TEST(ActiveSet, WithoutLoadNothingIsPressed) {
+  const HfSolution s = solve(PETSC_COMM_WORLD, centred, {}, {{"load", "5"}});
+  EXPECT_EQ(s.lambda.norm(), 0);
+  EXPECT_TRUE(s.active.empty());
+  EXPECT_GT(*s.outputs.energy, -1);
+}
+
+TEST(Vi, AgreesWithTheActiveSetWhereBothHaveNodalBounds) {
+  const SceneOptions lumped{{"lumped", "yes"}};
+  for (const Mu &mu : {centred, shifted}) {
+    const HfSolution truth = solve(PETSC_COMM_WORLD, mu, {}, lumped);
+    HfOptions options;
+    options.method = HfMethod::vi;
+    for (const char *type : {SNESVINEWTONRSLS, SNESVINEWTONSSLS}) {
+      RBVI_CALL(PetscOptionsSetValue(nullptr, "-vi_snes_type", type));
+      const HfSolution s = solve(PETSC_COMM_WORLD, mu, options, lumped);
+      EXPECT_LE(relative(*s.outputs.energy, *truth.outputs.energy), 1e-9) << type;
+      EXPECT_LE((s.u - truth.u).norm(), 1e-8 * truth.u.norm()) << type;
+      EXPECT_LE((s.lambda - truth.lambda).norm(), 1e-6 * truth.lambda.norm()) << type;
+    }
+    RBVI_CALL(PetscOptionsClearValue(nullptr, "-vi_snes_type"));
+  }
+}
+
+TEST(Vi, SaysThatItNeedsNodalBounds) {
+  HfOptions options;
+  options.method = HfMethod::vi;
+  try {
+    solve(PETSC_COMM_WORLD, centred, options);
+    FAIL();
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_NE(std::string(error.what()).find("-lumped"), std::string::npos);
+  }
+}
+
+TEST(Uzawa, ReachesItsToleranceBothWays) {
+  const HfSolution truth = solve(PETSC_COMM_WORLD, shifted);
+  HfOptions options;
+  options.method = HfMethod::uzawa;
+  options.uzawa_tolerance = 1e-5;
+  const HfSolution fixed = solve(PETSC_COMM_WORLD, shifted, options);
+  options.uzawa_accelerated = true;
+  const HfSolution accelerated = solve(PETSC_COMM_WORLD, shifted, options);
+  EXPECT_LT(accelerated.iterations, fixed.iterations);
+  for (const HfSolution *s : {&fixed, &accelerated}) {
+    EXPECT_LE(relative(*s->outputs.energy, *truth.outputs.energy), 1e-4);
+    EXPECT_LE((s->lambda - truth.lambda).norm(), 2e-2 * truth.lambda.norm());
+    EXPECT_GE(s->lambda.minCoeff(), 0);
+  }
+}
+
+TEST(Uzawa, StoppingEarlyIsAnError) {
+  HfOptions options;
+  options.method = HfMethod::uzawa;
+  options.uzawa_max_iterations = 3;
+  try {
+    solve(PETSC_COMM_WORLD, centred, options);
+    FAIL();
+  } catch (const Error &error) {
+    EXPECT_NE(std::string(error.what()).find("-uzawa_max_iterations"), std::string::npos);
+  }
+}
+
+} // namespace
+} // namespace rbvi
