@@ -209,7 +209,8 @@ TEST(Lcp, SaysWhatIsWrong) {
   const auto columns = [&](const std::vector<Index> &which) {
     return Matrix(h(Eigen::all, which));
   };
-  EXPECT_THROW(solve_lcp(columns, -Vector::Ones(3), {}), Error);
+  const auto short_columns = [](const std::vector<Index> &) { return Matrix(Matrix::Ones(2, 1)); };
+  EXPECT_THROW(solve_lcp(short_columns, -Vector::Ones(2), {}), Error);
   EXPECT_THROW(solve_lcp(columns, -Vector::Ones(2), {2}), Error);
   EXPECT_THROW(solve_lcp(columns, -Vector::Ones(2), {-1}), Error);
   Vector bad = Vector::Ones(2);
