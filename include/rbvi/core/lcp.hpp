@@ -20,21 +20,23 @@ namespace rbvi {
 using ColumnSource = std::function<Matrix(const std::vector<Index> &which)>;
 
 struct LcpOptions {
-  double tolerance = 1e-13;    ///< violations relative to the scale of x and of w
-  int max_iterations = 0;      ///< 0: 50 + 10 n
+  double tolerance = 1e-13; ///< relative: w to the terms of its row, x (unit diag. H) to its max
+  int max_iterations = 0;   ///< 0: 50 + 10 n
 };
 
 struct LcpResult {
   Vector x, w;
-  std::vector<Index> active;   ///< increasing
+  std::vector<Index> active; ///< increasing
   int iterations = 0;
-  int columns = 0;             ///< of H that were asked for
-  int backup_steps = 0;        ///< single pivots after a repeated active set
+  int columns = 0;      ///< of H that were asked for
+  int backup_steps = 0; ///< single pivots after a repeated active set
   bool converged = false;
-  std::string reason;          ///< why it stopped
+  std::string reason; ///< why it stopped
 };
 
-/// `start`: first guess of the active set (any order).
+/// `start`: first guess of the active set (any order). Not converged, or a block of H that is not
+/// positive definite: `reason` says what to try (then x and w are empty for the latter). Throws
+/// failure for a q or a column that is not finite or of the wrong size, or a start out of range.
 LcpResult solve_lcp(const ColumnSource &columns, const Vector &q, const std::vector<Index> &start,
                     const LcpOptions &options = {});
 
