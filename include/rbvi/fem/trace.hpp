@@ -12,9 +12,9 @@ namespace rbvi {
 /// E: n_c unit columns. Each rank lists the contact dofs that it owns.
 struct Trace {
   MPI_Comm comm = MPI_COMM_NULL;
-  PetscInt size = 0;                ///< n_c, the same on every rank
-  std::vector<PetscInt> local_row;  ///< owned free dof, local number (0 = first owned)
-  std::vector<PetscInt> index;      ///< its contact dof number, 0 .. n_c - 1
+  PetscInt size = 0;               ///< n_c, the same on every rank
+  std::vector<PetscInt> local_row; ///< owned free dof, local number (0 = first owned)
+  std::vector<PetscInt> index;     ///< its contact dof number, 0 .. n_c - 1
 };
 
 /// Collective. E^T u, on every rank.

@@ -30,9 +30,9 @@ struct Eim {
   std::vector<int> snapshots;    ///< training index of each term, J of them
   std::vector<EntryKey> entries; ///< sampled entry of each term
   Matrix interpolation;          ///< Q: J x J, lower triangular, unit diagonal (B.34)
-  Matrix combination;            ///< J x J upper triangular: term j = sum_{i <= j} A(mu_i) combination(i, j)
-  std::vector<double> error;     ///< e_EIM(j), j = 0, 1, ..., J (B.32): error[0] = 1
-  std::string reason;            ///< "separable: rank 1, error at round-off", "tolerance reached", ...
+  Matrix combination; ///< J x J upper triangular: term j = sum_{i <= j} A(mu_i) combination(i, j)
+  std::vector<double> error; ///< e_EIM(j), j = 0, 1, ..., J (B.32): error[0] = 1
+  std::string reason;        ///< "separable: rank 1, error at round-off", "tolerance reached", ...
   int size() const { return static_cast<int>(snapshots.size()); }
 };
 

@@ -27,11 +27,12 @@ struct Pod {
   int dropped = 0;                     ///< snapshots that depend on earlier ones
 };
 
-/// Collective. `snapshots`: free dofs, all of one layout; `product`: Gram matrix of V. Columns whose
-/// remainder is below 1e-13 of their norm are dropped; singular values equal to 1e-8 relative are
-/// kept or cut together. The sign of each mode is fixed (largest projection coefficient positive).
-/// Throws failure if there is no snapshot, if all are zero or one is not finite; bad_input for an
-/// option out of its range or a size bound below the multiplicity of the first singular value.
+/// Collective. `snapshots`: free dofs, all of one layout; `product`: Gram matrix of V. Columns
+/// whose remainder is below 1e-13 of their norm are dropped; singular values equal to 1e-8 relative
+/// are kept or cut together. The sign of each mode is fixed (largest projection coefficient
+/// positive). Throws failure if there is no snapshot, if all are zero or one is not finite;
+/// bad_input for an option out of its range or a size bound below the multiplicity of the first
+/// singular value.
 Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &options);
 
 /// Collective. Appends `columns` (dense, distributed like the basis) after V-orthonormalisation

@@ -3,9 +3,10 @@
 // The contact forms touch n_c displacement dofs only, so every Riesz representer
 // T(mu) eta = V^-1 E B_c(mu)^T eta lies in the range of V^-1 E, E the n_c unit columns of those
 // dofs. With Z = E^T V^-1 E = L L^T one block of n_c solves serves all mu:
-//   T(mu) eta           has coordinates  [ L^T B_c(mu)^T eta ; 0 ]            in R^(n_c + N)
-//   a mode v_n          has coordinates  [ L^-1 E^T v_n ; K^T ],  K K^T = I - P^T P, P = L^-1 E^T V_N
-//   b(mu; v, eta)       = eta^T B_c(mu) L y            for v with coordinates [ y ; z ].
+//   T(mu) eta      has coordinates  [ L^T B_c(mu)^T eta ; 0 ]  in R^(n_c + N)
+//   a mode v_n     has coordinates  [ L^-1 E^T v_n ; K^T ],
+//                  K K^T = I - P^T P,  P = L^-1 E^T V_N
+//   b(mu; v, eta)  = eta^T B_c(mu) L y  for v with coordinates [ y ; z ].
 // Constants are over the span of the dual basis, a lower bound for the cone's (Niakh 2022, 2.3).
 #pragma once
 
@@ -21,8 +22,8 @@ namespace rbvi {
 
 /// The map between displacement fields and Euclidean coordinates above. Dense parts replicated.
 struct RieszSpace {
-  Handle<Mat> lift;  ///< V^-1 E: free dofs x n_c, dense, distributed like V
-  Matrix factor;     ///< L, lower triangular: n_c x n_c
+  Handle<Mat> lift; ///< V^-1 E: free dofs x n_c, dense, distributed like V
+  Matrix factor;    ///< L, lower triangular: n_c x n_c
 };
 
 /// Collective. One factorisation of `product`, which is marked as symmetric positive definite (KSP
@@ -41,7 +42,8 @@ Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_pr
                               double tolerance = 1e-9);
 
 /// L^T B_c(mu)^T X: n_c x columns of X, the coordinates of T(mu) X.
-Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact, const Matrix &x);
+Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const Matrix &x);
 
 /// Smallest singular value of b between the orthonormal columns of `primal` ((n_c + N) x k
 /// coordinates) and an orthonormal dual basis X, given T = supremizer_coordinates(X). 0 if k is
@@ -82,8 +84,8 @@ struct PgaOptions {
 };
 
 struct Pga {
-  Matrix representers; ///< n_c x S: supremizer s is V^-1 E times column s, of norm 1 (before projection)
-  Matrix coordinates;  ///< (n_c + N) x (N + S): orthonormal, the modes first
+  Matrix representers;                ///< n_c x S: V^-1 E times column s is supremizer s, of norm 1
+  Matrix coordinates;                 ///< (n_c + N) x (N + S): orthonormal, the modes first
   std::vector<double> sigma;          ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
   std::vector<int> selected;          ///< training index of each supremizer; -1: one SVD gave all
   int evaluations = 0;                ///< eigenproblems (or SVDs) solved
@@ -91,17 +93,18 @@ struct Pga {
   std::string reason;                 ///< why it stopped
 };
 
-/// Projected greedy algorithm (Algorithm 1), lazily evaluated: sigma does not increase, so that only
-/// candidates whose last value can still win are looked at again, with rank-k updates of the R x R
-/// matrices whose largest eigenvalue is sigma_S(mu)^2. A multiple eigenvalue gives all its vectors at
-/// once, as the greedy would take them one after the other.
+/// Projected greedy algorithm (Algorithm 1), lazily evaluated: sigma does not increase, so that
+/// only candidates whose last value can still win are looked at again, with rank-k updates of the
+/// R x R matrices whose largest eigenvalue is sigma_S(mu)^2. A multiple eigenvalue gives all its
+/// vectors at once, as the greedy would take them one after the other.
 ///
-/// `modes`: coordinates of V_N, (n_c + N) x N; `supremizers`: T(mu_p) X, n_c x R, for every training
-/// mu (move them in). One matrix, or all of the same span: a single SVD gives everything. Stops on
-/// the tolerance or on the sharper bound beta_off >= sqrt(1 - sigma_S^2) beta_on; supremizers within
-/// 1e-12 of the space count as inside. Ties within 1e-10 go to the lowest training index.
-/// Throws bad_input for an option out of its range, failure for entries that are not finite.
-Pga projected_greedy(const RieszSpace &space, const Matrix &modes,
-                     std::vector<Matrix> supremizers, const PgaOptions &options);
+/// `modes`: coordinates of V_N, (n_c + N) x N; `supremizers`: T(mu_p) X, n_c x R, for every
+/// training mu (move them in). One matrix, or all of the same span: a single SVD gives everything.
+/// Stops on the tolerance or on the sharper bound beta_off >= sqrt(1 - sigma_S^2) beta_on;
+/// supremizers within 1e-12 of the space count as inside. Ties within 1e-10 go to the lowest
+/// training index. Throws bad_input for an option out of its range, failure for entries that are
+/// not finite.
+Pga projected_greedy(const RieszSpace &space, const Matrix &modes, std::vector<Matrix> supremizers,
+                     const PgaOptions &options);
 
 } // namespace rbvi
