@@ -43,7 +43,7 @@ Point graded(const Mu &mu, const Point &x) {
   if (rho > reference_radius) return map_outside(mu, x, rho);
   const double s = rho / reference_radius;
   const double kappa =
-      0.1 * (mu[0] - 0.2) / 0.04 + 0.1 * (mu[1] * x[0] + mu[2] * x[1]) / (0.05 * reference_radius);
+      0.05 * ((mu[0] - 0.2) / 0.04 + (mu[1] * x[0] + mu[2] * x[1]) / (0.05 * reference_radius));
   const double scale = (mu[0] / reference_radius) * (1 + kappa * (1 - s * s));
   return {mu[1] + scale * x[0], mu[2] + scale * x[1], 0};
 }

@@ -109,7 +109,7 @@ void expect_square_with_disc(const std::string &content) {
   EXPECT_NO_THROW(check_mesh(read, "file"));
   EXPECT_EQ(read.points, built.points);
   EXPECT_EQ(read.cells.size(), built.cells.size());
-  EXPECT_EQ(read.boundary.at("boundary").size(), 232u);
+  EXPECT_EQ(read.boundary.at("boundary").size(), 200u);
   ASSERT_EQ(read.region.at("obstacle"), built.region.at("obstacle"));
   for (const int c : read.region.at("obstacle"))
     for (std::size_t i = 0; i < 3; ++i) {
