@@ -41,10 +41,10 @@ void expect_refused(const Case &c, const Finished &run, int ranks) {
 
 class BadInput : public InDirectory, public testing::WithParamInterface<int> {
 protected:
-  /// Runs all, four at a time, and checks each; nothing in the directory may change.
+  /// Runs all, some at a time, and checks each; nothing in the directory may change.
   void refuse(const std::vector<Case> &cases) const {
     const auto files = everything();
-    constexpr std::size_t at_once = 4;
+    constexpr std::size_t at_once = 6;
     for (std::size_t begin = 0; begin < cases.size(); begin += at_once) {
       std::vector<std::future<Finished>> runs;
       const std::size_t end = std::min(begin + at_once, cases.size());
@@ -89,7 +89,7 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml -radius 0.24,0.16 -out run", "the lower bound comes first"},
        {"offline -case case.yaml -radius 0.2 -out run", "3 counts for 2 free parameters"},
        {"offline -case case.yaml -radius 0.2 -parameters radius -out run", "fixed by -radius 0.2"},
-       {"offline -case case.yaml -options_file nofile -out run", "nofile"},
+       {"offline -case case.yaml -options_file no -out run", "options file no"},
        {"offline -case case.yaml", "use -out"}});
 }
 

@@ -103,7 +103,7 @@ bool kill_in_the_sweep(const std::string &command, Victim victim) {
 }
 
 TEST_F(Runs, ResumesAfterAKill) {
-  const std::string sweep = "offline -case case.yaml -mesh_refine 2 -train grid:4,4,4 "
+  const std::string sweep = "offline -case case.yaml -train grid:4,4,4 "
                             "-pod_tolerance 1e-3 -cone_tolerance 1e-1 -out ";
   ASSERT_EQ(shell(rbvi(2, sweep + "whole")).status, 0);
   const std::vector<double> expected = answers("whole");
@@ -189,10 +189,9 @@ TEST_F(Runs, HelpVersionAndListWithOneAndTwoDashes) {
       EXPECT_EQ(help.status, 0);
       EXPECT_EQ(lines_with(help.out, "rbvi COMMAND"), 1) << help.out;
       EXPECT_TRUE(contains(help.out, "-sweep_ranks_per_solve"));
-      EXPECT_EQ(shell(rbvi(ranks, "offline " + dashes + "help")).status, 0);
       const Finished version = shell(rbvi(ranks, dashes + "version"));
       EXPECT_EQ(version.status, 0);
-      EXPECT_TRUE(contains(version.out, "rbvi " RBVI_VERSION "\n"));
+      EXPECT_EQ(lines_with(version.out, "rbvi " RBVI_VERSION), 1) << version.out;
       const Finished solve = shell(rbvi(ranks, "solve " + dashes + "case case.yaml " + dashes +
                                                    "mu 0.2,0,0 " + dashes + "csv u.csv"));
       EXPECT_EQ(solve.status, 0) << solve.err;
