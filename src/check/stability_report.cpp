@@ -12,7 +12,8 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
   const Handle<Vec> like = make_vector(problem.dofs());
   RBVI_CALL(BVCreate(problem.comm(), basis.columns.put()));
-  RBVI_CALL(BVSetSizesFromVec(basis.columns.get(), like.get(), static_cast<PetscInt>(natural_columns.cols())));
+  RBVI_CALL(BVSetSizesFromVec(basis.columns.get(), like.get(),
+                              static_cast<PetscInt>(natural_columns.cols())));
   RBVI_CALL(BVSetFromOptions(basis.columns.get()));
   RBVI_CALL(BVSetMatrix(basis.columns.get(), problem.v_product(), PETSC_FALSE));
   for (Index j = 0; j < natural_columns.cols(); ++j)
@@ -26,7 +27,8 @@ template <class Visit> void share(MPI_Comm comm, std::size_t count, Visit &&visi
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  for (std::size_t p = static_cast<std::size_t>(rank); p < count; p += static_cast<std::size_t>(ranks))
+  for (std::size_t p = static_cast<std::size_t>(rank); p < count;
+       p += static_cast<std::size_t>(ranks))
     visit(p);
 }
 
@@ -36,7 +38,8 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
   StabilityCheck check;
   check.modes = model.modes;
   check.space = make_riesz_space(problem.v_product(), problem.trace());
-  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis), problem.trace());
+  check.coordinates =
+      mode_coordinates(check.space, basis_of(problem, model.primal_basis), problem.trace());
   check.dual = orthonormal_dual_basis(model.dual_basis, problem.w_product());
   return check;
 }
@@ -50,15 +53,17 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
     Operators op;
     problem.assemble_contact(set[p], op);
     const bool with_hf = !b_is_scaled || hf_per_b == 0;
-    InfSup c = infsup_constants(check.space, op.b, problem.w_product(), modes, check.coordinates, check.dual,
-                                with_hf);
+    InfSup c = infsup_constants(check.space, op.b, problem.w_product(), modes, check.coordinates,
+                                check.dual, with_hf);
     if (with_hf)
       hf_per_b = c.hf / op.b.norm();
     else
       c.hf = hf_per_b * op.b.norm();
-    std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4, values.begin() + static_cast<long>(4 * p));
+    std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4,
+                values.begin() + static_cast<long>(4 * p));
   });
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                comm);
   std::vector<InfSup> result;
   for (std::size_t p = 0; p < set.size(); ++p)
     result.push_back({values[4 * p], values[4 * p + 1], values[4 * p + 2], values[4 * p + 3]});

@@ -38,11 +38,13 @@ std::vector<char *> Invocation::pointers() const {
 }
 
 Invocation read_invocation(int argc, char **argv) {
-  static const std::vector<std::string> commands{"offline", "solve", "verify", "bench",
+  static const std::vector<std::string> commands{"offline", "solve",   "verify", "bench",
                                                  "list",    "inspect", "help"};
   Invocation result;
   std::vector<std::string> given = normalised_arguments(argc, argv);
-  const auto has = [&](const char *name) { return std::find(given.begin(), given.end(), name) != given.end(); };
+  const auto has = [&](const char *name) {
+    return std::find(given.begin(), given.end(), name) != given.end();
+  };
   if (has("-version")) {
     result.status = 0;
     result.message = "rbvi " RBVI_VERSION;
@@ -93,7 +95,8 @@ int finish(MPI_Comm world, const std::function<void()> &work) {
   }
   std::fflush(stdout);
   const std::optional<int> first = first_failure(world, status != 0);
-  if (status != 0 && first.value_or(rank) == rank) std::fprintf(stderr, "rbvi: %s\n", message.c_str());
+  if (status != 0 && first.value_or(rank) == rank)
+    std::fprintf(stderr, "rbvi: %s\n", message.c_str());
   if (!first) MPI_Abort(world, status);
   int worst = status;
   MPI_Allreduce(&status, &worst, 1, MPI_INT, MPI_MAX, world);

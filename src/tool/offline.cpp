@@ -18,15 +18,19 @@ void print_plan(const ToolOptions &options, std::size_t training, int groups) {
     std::printf("  %-22s %s\n", stage, what.c_str());
   };
   std::printf("Plan for scene %s\n", scene.name.c_str());
-  line("snapshots", std::to_string(training) + " high-fidelity solves on " + std::to_string(groups) +
-                        " groups of " + std::to_string(options.ranks_per_solve) + " ranks");
-  line("interpolation", "A, B, F and G over the training set; a term that only scales stops at rank 1");
-  line("POD", "displacements, to a relative error of " + short_number(options.reduce.pod.tolerance));
+  line("snapshots", std::to_string(training) + " high-fidelity solves on " +
+                        std::to_string(groups) + " groups of " +
+                        std::to_string(options.ranks_per_solve) + " ranks");
+  line("interpolation",
+       "A, B, F and G over the training set; a term that only scales stops at rank 1");
+  line("POD",
+       "displacements, to a relative error of " + short_number(options.reduce.pod.tolerance));
   line("cone", std::string(options.reduce.cone.type == ConeType::mcpg ? "mcpg" : "cpg") +
                    " for the multipliers, to " + short_number(options.reduce.cone.tolerance));
   line("PGA", options.reduce.pga.tolerance > 0
                   ? "supremizers until sigma <= " + short_number(options.reduce.pga.tolerance)
-                  : "supremizers until beta_off >= " + short_number(options.reduce.pga.stability) + " beta_on");
+                  : "supremizers until beta_off >= " + short_number(options.reduce.pga.stability) +
+                        " beta_on");
   if (!scene.f) line("load vector", "skipped: the scene has no load");
   line("tangential multipliers", "skipped: the scene has no friction");
   line("reconstruction", "skipped: online, only when asked");
@@ -98,7 +102,8 @@ void command_offline(const ToolOptions &options) {
   Workspace work(world, groups, options, times);
   {
     const Stage stage("snapshots", times);
-    sweep = run_sweep(world, groups, work.group_problem(), options.hf, training, options.out / "samples");
+    sweep = run_sweep(world, groups, work.group_problem(), options.hf, training,
+                      options.out / "samples");
   }
   if (rank == 0) print_sweep(sweep, options.scene.parameters);
   if (sweep.samples.empty()) throw failure("no sample succeeded: see the reasons above");

@@ -13,10 +13,10 @@ namespace rbvi {
 namespace {
 
 /// Options of PETSc and SLEPc as a whole; objects have the prefixes below.
-const std::vector<std::string> general_prefixes{"log_", "info",   "help",  "malloc", "options_", "on_error",
-                                                "mat_", "vec_",   "dm_",   "petsc",  "bv_",      "svd_",
-                                                "fp_",  "skip_p", "check", "memory", "version",  "nox",
-                                                "saws", "get_",   "stack", "debug",  "eps_"};
+const std::vector<std::string> general_prefixes{
+    "log_",    "info",  "help", "malloc", "options_", "on_error", "mat_",  "vec_",
+    "dm_",     "petsc", "bv_",  "svd_",   "fp_",      "skip_p",   "check", "memory",
+    "version", "nox",   "saws", "get_",   "stack",    "debug",    "eps_"};
 const std::vector<std::string> object_prefixes{"hf_", "vi_", "v_"};
 
 bool starts_with_any(const std::string &name, const std::vector<std::string> &prefixes) {
@@ -40,7 +40,8 @@ std::vector<std::string> given_names() {
 std::string text_of(const std::string &name, const std::string &otherwise = "") {
   char value[4096];
   PetscBool set = PETSC_FALSE;
-  RBVI_CALL(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), value, sizeof value, &set));
+  RBVI_CALL(
+      PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), value, sizeof value, &set));
   return set == PETSC_TRUE ? value : otherwise;
 }
 
@@ -55,7 +56,8 @@ bool flag_of(const std::string &name) {
 
 const std::string &default_of(const std::string &name) {
   const auto &options = tool_options();
-  return std::find_if(options.begin(), options.end(), [&](const OptionHelp &o) { return o.name == name; })
+  return std::find_if(options.begin(), options.end(),
+                      [&](const OptionHelp &o) { return o.name == name; })
       ->default_value;
 }
 
@@ -65,7 +67,8 @@ double number_of(const std::string &name, double lower, double upper) {
   const double value = parse_number(text, "option -" + name);
   if (value < lower || value > upper) {
     std::ostringstream message;
-    message << "option -" << name << " is " << text << ": use a number from " << lower << " to " << upper;
+    message << "option -" << name << " is " << text << ": use a number from " << lower << " to "
+            << upper;
     throw bad_input(message.str());
   }
   return value;
@@ -94,13 +97,15 @@ void insert_case_file(MPI_Comm comm) {
   const std::string file = text_of("case");
   if (file.empty()) throw bad_input("no case is named: use -case cases/<scene>/case.yaml");
   if (!std::ifstream(file)) throw bad_input("the case file " + file + " cannot be read");
-  if (std::filesystem::is_directory(file)) throw bad_input("the case file " + file + " is a directory");
+  if (std::filesystem::is_directory(file))
+    throw bad_input("the case file " + file + " is a directory");
   char *command_line = nullptr;
   RBVI_CALL(PetscOptionsGetAll(nullptr, &command_line));
   const std::string given(command_line);
   RBVI_CALL(PetscFree(command_line));
   if (PetscOptionsInsertFileYAML(comm, nullptr, file.c_str(), PETSC_TRUE) != 0)
-    throw bad_input("the case file " + file + " is malformed: one 'option: value' per line is expected");
+    throw bad_input("the case file " + file +
+                    " is malformed: one 'option: value' per line is expected");
   RBVI_CALL(PetscOptionsInsertString(nullptr, given.c_str())); // the command line wins
 }
 
@@ -117,7 +122,8 @@ SceneOptions scene_options_of(const std::string &scene) {
   return options;
 }
 
-/// "-radius 0.2" gives the value, "-radius 0.18,0.22" the bounds; "-parameters" says which are free.
+/// "-radius 0.2" gives the value, "-radius 0.18,0.22" the bounds; "-parameters" says which are
+/// free.
 void adapt_parameters(ParameterSpace &space) {
   for (Parameter &parameter : space.all) {
     const std::string text = text_of(parameter.name);
@@ -151,8 +157,8 @@ void check_names(const Scene &scene) {
   for (const std::string &name : given_names()) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     if (starts_with_any(name, object_prefixes) || starts_with_any(name, general_prefixes)) continue;
-    throw bad_input("unknown option -" + name + "; the nearest one is -" + nearest_name(name, known) +
-                    " (-help lists all)");
+    throw bad_input("unknown option -" + name + "; the nearest one is -" +
+                    nearest_name(name, known) + " (-help lists all)");
   }
 }
 
@@ -231,7 +237,8 @@ ToolOptions read_options(MPI_Comm comm) {
   insert_case_file(comm);
   ToolOptions options;
   const std::string scene = text_of("scene");
-  if (scene.empty()) throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
+  if (scene.empty())
+    throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
   options.scene = make_scene(scene, scene_options_of(scene));
   check_names(options.scene);
   adapt_parameters(options.scene.parameters);
@@ -278,12 +285,13 @@ void print_help() {
       std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
                   option.default_value.c_str());
     for (const Parameter &p : make_scene(scene.name).parameters.all)
-      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(), p.lower,
-                  p.upper, p.unit.c_str());
+      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
+                  p.lower, p.upper, p.unit.c_str());
   }
-  std::printf("\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
-              "(Riesz representers), -log_view, ...\n"
-              "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
+  std::printf(
+      "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
+      "(Riesz representers), -log_view, ...\n"
+      "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
 }
 
 } // namespace rbvi

@@ -19,8 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 void print_errors(const char *name, const ModelErrors &e) {
-  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(), e.u.maxCoeff(),
-              e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds, e.kkt_residual);
+  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(),
+              e.u.maxCoeff(), e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds,
+              e.kkt_residual);
 }
 
 /// Rows (N, R) of errors; the enriched pairs where b is scaled only.
@@ -38,13 +39,21 @@ void write_error_map(const fs::path &path, const ReducedModel &model, const Trut
     for (const int r : generators) {
       const SubModel pair = enriched_pair(model, n, r);
       const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w);
-      const double row[] = {static_cast<double>(n), static_cast<double>(r), e.u.mean(),     e.u.maxCoeff(),
-                            e.lambda.mean(),        e.lambda.maxCoeff(),    e.lambda_floor.maxCoeff(), e.seconds};
+      const double row[] = {static_cast<double>(n),
+                            static_cast<double>(r),
+                            e.u.mean(),
+                            e.u.maxCoeff(),
+                            e.lambda.mean(),
+                            e.lambda.maxCoeff(),
+                            e.lambda_floor.maxCoeff(),
+                            e.seconds};
       for (std::size_t j = 0; j < columns.size(); ++j)
         columns[j].push_back(row[j]);
     }
-  write_columns(path, {"N", "R", "u_mean", "u_max", "lambda_mean", "lambda_max", "lambda_floor_max", "seconds"},
-                columns);
+  write_columns(
+      path,
+      {"N", "R", "u_mean", "u_max", "lambda_mean", "lambda_max", "lambda_floor_max", "seconds"},
+      columns);
 }
 
 /// Largest aspect ratio of the mapped mesh at each mu (figure 2.3 of the reference).
@@ -59,7 +68,8 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
     for (const Cell &cell : cells.cells)
       worst[p] = std::max(worst[p], aspect_ratio(cell.dim, cell.mapped));
   }
-  MPI_Allreduce(MPI_IN_PLACE, worst.data(), static_cast<int>(worst.size()), MPI_DOUBLE, MPI_MAX, world);
+  MPI_Allreduce(MPI_IN_PLACE, worst.data(), static_cast<int>(worst.size()), MPI_DOUBLE, MPI_MAX,
+                world);
   std::vector<double> is_training(all.size(), 0);
   std::fill_n(is_training.begin(), training.size(), 1.0);
   int rank = 0;
@@ -83,7 +93,8 @@ void write_infsup(const fs::path &path, const std::vector<InfSup> &constants) {
 
 /// What the model promises about stability, checked at every training and validation mu.
 void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
-                     const std::vector<Mu> &training, const std::vector<Mu> &validation, const fs::path &out) {
+                     const std::vector<Mu> &training, const std::vector<Mu> &validation,
+                     const fs::path &out) {
   int rank = 0;
   MPI_Comm_rank(world, &rank);
   const bool scaled = model.b.size() == 1;
@@ -110,9 +121,10 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
   };
   std::printf("Inf-sup constants over the span, smallest over %zu validation mu\n"
               "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n",
-              constants.size(), smallest(&InfSup::hf), smallest(&InfSup::on), smallest(&InfSup::off),
-              smallest(&InfSup::dec));
-  std::printf("  beta_off over its bound sqrt(1 - sigma^2) beta_on, smallest over training: %.6f\n", slack);
+              constants.size(), smallest(&InfSup::hf), smallest(&InfSup::on),
+              smallest(&InfSup::off), smallest(&InfSup::dec));
+  std::printf("  beta_off over its bound sqrt(1 - sigma^2) beta_on, smallest over training: %.6f\n",
+              slack);
   std::printf("  fewest supremizers with beta_off >= 0.9 beta_on at every mu: %d of %d\n", fewest,
               model.supremizers);
 }
@@ -127,7 +139,8 @@ void command_verify(const ToolOptions &options) {
   ReducedModel model;
   collectively(world, [&] { model = read_model(options.out / "model.h5"); });
   if (model.scene_options != options.scene.options || model.scene_name != options.scene.name)
-    throw bad_input("the model in " + options.out.string() + " was made with other options of its scene");
+    throw bad_input("the model in " + options.out.string() +
+                    " was made with other options of its scene");
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   const std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
   const Groups groups(world, options.ranks_per_solve);
@@ -135,8 +148,8 @@ void command_verify(const ToolOptions &options) {
   Workspace work(world, groups, options, times);
   if (work.group_problem().mesh().fingerprint != model.mesh_fingerprint)
     throw bad_input("the model in " + options.out.string() + " was made on another mesh");
-  const Sweep sweep =
-      run_sweep(world, groups, work.group_problem(), options.hf, validation, options.out / "samples");
+  const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
+                                options.out / "samples");
   Problem &problem = work.world_problem(times);
   const Truths truths = make_truths(problem, model, sweep.samples);
   const fs::path out = options.out / "verify";
@@ -147,15 +160,18 @@ void command_verify(const ToolOptions &options) {
     const ReducedModel decorrelated = leading(model, model.modes, model.generators);
     const ModelErrors enriched = model_errors(model, {}, truths, w);
     const ModelErrors plain = model_errors(decorrelated, {}, truths, w);
-    std::printf("Relative errors over %zu validation mu      u mean     max       lambda mean  max     ms/query"
-                "   KKT\n", truths.mu.size());
+    std::printf("Relative errors over %zu validation mu      u mean     max       lambda mean  max "
+                "    ms/query"
+                "   KKT\n",
+                truths.mu.size());
     print_errors("offline-enriched", enriched);
     print_errors("decorrelated", plain);
     std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e\n", "bases alone", enriched.u_floor.mean(),
-                enriched.u_floor.maxCoeff(), enriched.lambda_floor.mean(), enriched.lambda_floor.maxCoeff());
+                enriched.u_floor.maxCoeff(), enriched.lambda_floor.mean(),
+                enriched.lambda_floor.maxCoeff());
     write_columns(out / "errors.csv",
-                  {"u_enriched", "lambda_enriched", "u_decorrelated", "lambda_decorrelated", "u_floor",
-                   "lambda_floor"},
+                  {"u_enriched", "lambda_enriched", "u_decorrelated", "lambda_decorrelated",
+                   "u_floor", "lambda_floor"},
                   [&] {
                     std::vector<std::vector<double>> columns;
                     for (const Vector *v : {&enriched.u, &enriched.lambda, &plain.u, &plain.lambda,

@@ -1,5 +1,5 @@
-// Options of the rbvi tool: read from PETSc's options database (command line over case file), checked
-// before any work starts.
+// Options of the rbvi tool: read from PETSc's options database (command line over case file),
+// checked before any work starts.
 #pragma once
 
 #include "rbvi/mor/reduce.hpp"
@@ -30,12 +30,13 @@ struct OptionHelp {
 /// All options of rbvi that are not a scene's own.
 const std::vector<OptionHelp> &tool_options();
 
-/// "--name" becomes "-name"; what PETSc would take for itself stays. To be called before PETSc starts.
+/// "--name" becomes "-name"; what PETSc would take for itself stays. To be called before PETSc
+/// starts.
 std::vector<std::string> normalised_arguments(int argc, char **argv);
 
 /// Collective. Inserts the case file under the command line and reads everything. Throws bad_input
-/// for an unknown option (naming the nearest one), a missing or malformed case file, or a value that
-/// does not fit.
+/// for an unknown option (naming the nearest one), a missing or malformed case file, or a value
+/// that does not fit.
 ToolOptions read_options(MPI_Comm comm);
 
 /// Throws bad_input if an option with this prefix was given but no PETSc object has asked for it.
