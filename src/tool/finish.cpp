@@ -4,6 +4,8 @@
 #include "rbvi/core/names.hpp"
 #include "rbvi/tool/options.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 
@@ -25,6 +27,13 @@ std::optional<int> first_failure(MPI_Comm world, bool failed) {
   while (done == 0 && (!failed || MPI_Wtime() - start < 3))
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);
   return done != 0 ? std::optional<int>(first) : std::nullopt;
+}
+
+Invocation left_over(const std::string &word) {
+  Invocation result;
+  result.status = static_cast<int>(Status::bad_input);
+  result.message = "rbvi: '" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)";
+  return result;
 }
 
 } // namespace
@@ -62,6 +71,11 @@ Invocation read_invocation(int argc, char **argv) {
     return result;
   }
   given.erase(given.begin() + 1);
+  const std::size_t words = result.command == "inspect" ? 2 : 1;
+  for (std::size_t i = words; i < given.size(); ++i)
+    if (!is_option(given[i]) && !is_option(given[i - 1])) return left_over(given[i]);
+  if ((result.command == "list" || result.command == "help") && given.size() > 1)
+    return left_over(given[1]);
   if (result.command == "inspect") {
     if (given.size() != 2) {
       result.status = static_cast<int>(Status::bad_input);
@@ -93,8 +107,13 @@ int finish(MPI_Comm world, const std::function<void()> &work) {
     message = error.what();
     status = static_cast<int>(Status::failed);
   }
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0 && status == 0) {
+    message = "cannot write to standard output";
+    status = static_cast<int>(Status::failed);
+  }
   const std::optional<int> first = first_failure(world, status != 0);
+  // Where several ranks fail and others hang, the lowest comes first and ends the rest.
+  if (!first) usleep(static_cast<useconds_t>(std::min(rank, 20)) * 200000);
   if (status != 0 && first.value_or(rank) == rank)
     std::fprintf(stderr, "rbvi: %s\n", message.c_str());
   if (!first) MPI_Abort(world, status);

@@ -50,8 +50,8 @@ void command_solve(const ToolOptions &options) {
   const ParameterSpace &space = options.scene.parameters;
   const Mu mu = parse_mu(space, options.mu);
   Problem problem(world, options.scene, options.mesh);
+  check_solver_options(problem, options.hf);
   HighFidelity solver(problem, options.hf);
-  check_used("hf_");
   const HfSolution solution =
       while_doing("solving " + describe(space, mu), [&] { return solver.solve(mu); });
   ReducedModel mesh;

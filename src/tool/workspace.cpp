@@ -10,6 +10,7 @@ Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &op
   const Stage stage("mesh", times);
   collectively(world, [&] {
     group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh);
+    check_solver_options(*group_, options.hf);
   });
 }
 
