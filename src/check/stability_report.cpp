@@ -1,6 +1,7 @@
 #include "rbvi/check/stability_report.hpp"
 
 #include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/small_svd.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -112,27 +113,26 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
   return rows;
 }
 
-double smallest_ratio(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                      const std::vector<Mu> &set, int supremizers) {
-  double smallest = 2;
-  const Matrix primal = check.coordinates.leftCols(check.modes + supremizers);
-  share(comm, set.size(), [&](std::size_t p) {
-    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
-    smallest = std::min(smallest, infsup_constant(primal, t) / stability_bound(primal, t).on);
-  });
-  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
-  return smallest;
-}
-
 int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set, double fraction) {
-  int enough = static_cast<int>(check.coordinates.cols()) - check.modes, few = -1;
-  if (smallest_ratio(comm, problem, check, set, enough) < fraction) return -1;
-  while (enough - few > 1) {
-    const int middle = few + (enough - few) / 2;
-    (smallest_ratio(comm, problem, check, set, middle) >= fraction ? enough : few) = middle;
-  }
-  return enough;
+  const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
+  int fewest = 0; // enough for every mu so far; all + 1: nothing is
+  share(comm, set.size(), [&](std::size_t p) {
+    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
+    const double needed = fraction * singular_values(t).minCoeff();
+    const auto enough = [&](int supremizers) {
+      return infsup_constant(check.coordinates.leftCols(check.modes + supremizers), t) >= needed;
+    };
+    if (fewest > all || enough(fewest)) return;
+    int few = fewest;
+    fewest = enough(all) ? all : all + 1;
+    while (fewest - few > 1 && fewest <= all) {
+      const int middle = few + (fewest - few) / 2;
+      (enough(middle) ? fewest : few) = middle;
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &fewest, 1, MPI_INT, MPI_MAX, comm);
+  return fewest <= all ? fewest : -1;
 }
 
 } // namespace rbvi

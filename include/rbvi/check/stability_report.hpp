@@ -46,12 +46,8 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
                                           const StabilityCheck &check, const std::vector<Mu> &set,
                                           const std::vector<int> &counts);
 
-/// Smallest beta_off / beta_on over the set with the first `supremizers` columns. Collective.
-double smallest_ratio(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                      const std::vector<Mu> &set, int supremizers);
-
-/// The fewest supremizers with smallest_ratio >= fraction, by bisection (the ratio grows with every
-/// supremizer); -1 if all are not enough. Collective.
+/// The fewest supremizers with beta_off >= fraction * beta_on at every mu of the set; -1 if all are
+/// not enough. beta_off grows with every supremizer. Collective on `comm`.
 int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set, double fraction);
 
