@@ -1,8 +1,10 @@
 #include "rbvi/check/stability_report.hpp"
 
 #include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/small_svd.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace rbvi {
 
@@ -12,7 +14,8 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
   const Handle<Vec> like = make_vector(problem.dofs());
   RBVI_CALL(BVCreate(problem.comm(), basis.columns.put()));
-  RBVI_CALL(BVSetSizesFromVec(basis.columns.get(), like.get(), static_cast<PetscInt>(natural_columns.cols())));
+  RBVI_CALL(BVSetSizesFromVec(basis.columns.get(), like.get(),
+                              static_cast<PetscInt>(natural_columns.cols())));
   RBVI_CALL(BVSetFromOptions(basis.columns.get()));
   RBVI_CALL(BVSetMatrix(basis.columns.get(), problem.v_product(), PETSC_FALSE));
   for (Index j = 0; j < natural_columns.cols(); ++j)
@@ -26,7 +29,8 @@ template <class Visit> void share(MPI_Comm comm, std::size_t count, Visit &&visi
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  for (std::size_t p = static_cast<std::size_t>(rank); p < count; p += static_cast<std::size_t>(ranks))
+  for (std::size_t p = static_cast<std::size_t>(rank); p < count;
+       p += static_cast<std::size_t>(ranks))
     visit(p);
 }
 
@@ -36,7 +40,8 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
   StabilityCheck check;
   check.modes = model.modes;
   check.space = make_riesz_space(problem.v_product(), problem.trace());
-  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis), problem.trace());
+  check.coordinates =
+      mode_coordinates(check.space, basis_of(problem, model.primal_basis), problem.trace());
   check.dual = orthonormal_dual_basis(model.dual_basis, problem.w_product());
   return check;
 }
@@ -50,42 +55,84 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
     Operators op;
     problem.assemble_contact(set[p], op);
     const bool with_hf = !b_is_scaled || hf_per_b == 0;
-    InfSup c = infsup_constants(check.space, op.b, problem.w_product(), modes, check.coordinates, check.dual,
-                                with_hf);
+    InfSup c = infsup_constants(check.space, op.b, problem.w_product(), modes, check.coordinates,
+                                check.dual, with_hf);
     if (with_hf)
       hf_per_b = c.hf / op.b.norm();
     else
       c.hf = hf_per_b * op.b.norm();
-    std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4, values.begin() + static_cast<long>(4 * p));
+    std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4,
+                values.begin() + static_cast<long>(4 * p));
   });
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
+                comm);
   std::vector<InfSup> result;
   for (std::size_t p = 0; p < set.size(); ++p)
     result.push_back({values[4 * p], values[4 * p + 1], values[4 * p + 2], values[4 * p + 3]});
   return result;
 }
 
-double smallest_ratio(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                      const std::vector<Mu> &set, int supremizers) {
-  double smallest = 2;
-  const Matrix primal = check.coordinates.leftCols(check.modes + supremizers);
+BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
+                       const std::vector<Mu> &set) {
+  // Of the product of singular values, relative to the largest: what the arithmetic leaves.
+  constexpr double round_off = 1e-10;
+  BoundCheck result{.smallest = std::numeric_limits<double>::infinity()};
   share(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
-    smallest = std::min(smallest, infsup_constant(primal, t) / stability_bound(primal, t).on);
+    const StabilityBound bound = stability_bound(check.coordinates, t);
+    const double off = infsup_constant(check.coordinates, t);
+    result.smallest = std::min(result.smallest, off / bound.sharp);
+    if (!(off >= bound.sharp - round_off * bound.c)) ++result.exceptions;
   });
-  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
-  return smallest;
+  MPI_Allreduce(MPI_IN_PLACE, &result.smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &result.exceptions, 1, MPI_INT, MPI_SUM, comm);
+  return result;
+}
+
+std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
+                                          const StabilityCheck &check, const std::vector<Mu> &set,
+                                          const std::vector<int> &counts) {
+  std::vector<double> sigma(counts.size(), 0), bound(counts.size(), 1), ratio(counts.size(), 1);
+  share(comm, set.size() * counts.size(), [&](std::size_t task) {
+    const std::size_t k = task % counts.size();
+    const Matrix t =
+        supremizers_at(problem, check.space, check.dual, {set[task / counts.size()]}).front();
+    const Matrix primal = check.coordinates.leftCols(check.modes + counts[k]);
+    const StabilityBound here = stability_bound(primal, t);
+    sigma[k] = std::max(sigma[k], here.sigma);
+    bound[k] = std::min(bound[k], here.sharp / here.on);
+    ratio[k] = std::min(ratio[k], infsup_constant(primal, t) / here.on);
+  });
+  const int size = static_cast<int>(counts.size());
+  MPI_Allreduce(MPI_IN_PLACE, sigma.data(), size, MPI_DOUBLE, MPI_MAX, comm);
+  MPI_Allreduce(MPI_IN_PLACE, bound.data(), size, MPI_DOUBLE, MPI_MIN, comm);
+  MPI_Allreduce(MPI_IN_PLACE, ratio.data(), size, MPI_DOUBLE, MPI_MIN, comm);
+  std::vector<StabilityRow> rows;
+  for (std::size_t k = 0; k < counts.size(); ++k)
+    rows.push_back({counts[k], sigma[k], bound[k], ratio[k]});
+  return rows;
 }
 
 int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set, double fraction) {
-  int enough = static_cast<int>(check.coordinates.cols()) - check.modes, few = -1;
-  if (smallest_ratio(comm, problem, check, set, enough) < fraction) return -1;
-  while (enough - few > 1) {
-    const int middle = few + (enough - few) / 2;
-    (smallest_ratio(comm, problem, check, set, middle) >= fraction ? enough : few) = middle;
-  }
-  return enough;
+  const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
+  int fewest = 0; // enough for every mu so far; all + 1: nothing is
+  share(comm, set.size(), [&](std::size_t p) {
+    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
+    const double needed = fraction * singular_values(t).minCoeff();
+    const auto enough = [&](int supremizers) {
+      return infsup_constant(check.coordinates.leftCols(check.modes + supremizers), t) >= needed;
+    };
+    if (fewest > all || enough(fewest)) return;
+    int few = fewest;
+    fewest = enough(all) ? all : all + 1;
+    while (fewest - few > 1 && fewest <= all) {
+      const int middle = few + (fewest - few) / 2;
+      (enough(middle) ? fewest : few) = middle;
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &fewest, 1, MPI_INT, MPI_MAX, comm);
+  return fewest <= all ? fewest : -1;
 }
 
 } // namespace rbvi

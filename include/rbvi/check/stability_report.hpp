@@ -23,12 +23,31 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<Mu> &set, bool b_is_scaled);
 
-/// Smallest beta_off / beta_on over the set with the first `supremizers` columns. Collective.
-double smallest_ratio(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                      const std::vector<Mu> &set, int supremizers);
+/// What the model's space guarantees over a set: beta_off >= sqrt(1 - sigma^2) beta_on.
+struct BoundCheck {
+  double smallest = 0; ///< beta_off over its bound, at worst
+  int exceptions = 0;  ///< parameters at which it falls short by more than round-off
+};
 
-/// The fewest supremizers with smallest_ratio >= fraction, by bisection (the ratio grows with every
-/// supremizer); -1 if all are not enough. Collective.
+/// The bound at every mu of the set, shared among the ranks. Collective on `comm`.
+BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
+                       const std::vector<Mu> &set);
+
+/// What the first supremizers achieve, the worst over a set.
+struct StabilityRow {
+  int supremizers = 0;
+  double sigma = 0; ///< largest sigma_S(mu) (2.21)
+  double bound = 0; ///< smallest sqrt(1 - sigma^2)
+  double ratio = 0; ///< smallest beta_off / beta_on
+};
+
+/// One row for each number of supremizers in `counts`. Collective on `comm`.
+std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
+                                          const StabilityCheck &check, const std::vector<Mu> &set,
+                                          const std::vector<int> &counts);
+
+/// The fewest supremizers with beta_off >= fraction * beta_on at every mu of the set; -1 if all are
+/// not enough. beta_off grows with every supremizer. Collective on `comm`.
 int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set, double fraction);
 
