@@ -39,8 +39,9 @@ install_missing() {
   "${as_root[@]}" apt-get -qq install -y --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# build TARGET...
 build() {
-  say "building Release in build/ with $(nproc) cores"
+  say "building in build/ (Release) with $(nproc) cores: $*"
   cmake -S . -B build -DCMAKE_BUILD_TYPE=Release >/dev/null
-  cmake --build build --parallel "$(nproc)"
+  cmake --build build --parallel "$(nproc)" --target "$@"
 }
