@@ -1,6 +1,6 @@
 // Runs GoogleTest on every rank. Rank 0 prints as usual; the others print their failures, marked
 // with their rank; the status is that of the worst rank.
-#include "rbvi/par/petsc.hpp"
+#include "rbvi/par/session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ public:
   explicit OtherRankPrinter(int rank) : rank_(rank) {}
   void OnTestPartResult(const testing::TestPartResult &result) override {
     if (result.failed())
-      std::cerr << "[rank " << rank_ << "] " << (result.file_name() ? result.file_name() : "?") << ":"
-                << result.line_number() << ": " << result.summary() << "\n";
+      std::cerr << "[rank " << rank_ << "] " << (result.file_name() ? result.file_name() : "?")
+                << ":" << result.line_number() << ": " << result.summary() << "\n";
   }
 
 private:
@@ -25,7 +25,7 @@ private:
 
 int main(int argc, char **argv) {
   testing::InitGoogleTest(&argc, argv);
-  if (SlepcInitialize(&argc, &argv, nullptr, nullptr) != 0) return 1;
+  const rbvi::Session session(argc, argv);
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   if (rank != 0) {
@@ -35,6 +35,5 @@ int main(int argc, char **argv) {
   }
   int status = RUN_ALL_TESTS();
   MPI_Allreduce(MPI_IN_PLACE, &status, 1, MPI_INT, MPI_MAX, PETSC_COMM_WORLD);
-  SlepcFinalize();
   return status;
 }

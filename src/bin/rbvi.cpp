@@ -38,8 +38,11 @@ int main(int argc, char **argv) {
     char **values = arguments.data();
     Session session(count, values);
     return finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
-  } catch (const Error &error) {
-    std::fprintf(stderr, "rbvi: %s\n", error.what());
+  } catch (const Error &error) { // PETSc did not start
+    int rank = 0, has_ranks = 0;
+    MPI_Initialized(&has_ranks);
+    if (has_ranks != 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (rank == 0) std::fprintf(stderr, "rbvi: %s\n", error.what());
     return static_cast<int>(error.status());
   }
 }

@@ -42,8 +42,7 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
     result.a.reduced.col(q) = congruence(model.a.reduced.col(q), c);
   result.b.reduced.resize(r * k, model.b.size());
   for (Index q = 0; q < model.b.size(); ++q)
-    result.b.reduced.col(q) =
-        (model.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
+    result.b.reduced.col(q) = (model.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
   result.f.reduced = c.transpose() * model.f.reduced;
   result.contact_trace = model.contact_trace * c;
   result.primal_basis.resize(0, 0);
@@ -52,7 +51,8 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
 
 } // namespace
 
-Truths make_truths(Problem &problem, const ReducedModel &model, const std::vector<Sample> &samples) {
+Truths make_truths(Problem &problem, const ReducedModel &model,
+                   const std::vector<Sample> &samples) {
   const Index n = model.primal_size(), count = static_cast<Index>(samples.size());
   Mat v = problem.v_product();
   std::vector<Handle<Vec>> basis;
@@ -62,14 +62,19 @@ Truths make_truths(Problem &problem, const ReducedModel &model, const std::vecto
     raw.push_back(basis.back().get());
   }
   const Handle<Vec> scratch = make_vector(problem.dofs());
-  Truths truths{{}, Matrix(n, count), Vector(count), Vector(count), Matrix(model.dual_basis.rows(), count),
+  Truths truths{{},
+                Matrix(n, count),
+                Vector(count),
+                Vector(count),
+                Matrix(model.dual_basis.rows(), count),
                 Vector(count)};
   for (Index p = 0; p < count; ++p) {
     const Sample &sample = samples[static_cast<std::size_t>(p)];
     const Handle<Vec> u = from_natural(problem.dofs(), sample.u);
     truths.u_norm[p] = std::sqrt(product(v, u.get(), u.get(), scratch.get()));
     RBVI_CALL(MatMult(v, u.get(), scratch.get()));
-    RBVI_CALL(VecMDot(scratch.get(), static_cast<PetscInt>(n), raw.data(), truths.coordinates.col(p).data()));
+    RBVI_CALL(VecMDot(scratch.get(), static_cast<PetscInt>(n), raw.data(),
+                      truths.coordinates.col(p).data()));
     const Vector back = -truths.coordinates.col(p);
     RBVI_CALL(VecMAXPY(u.get(), static_cast<PetscInt>(n), back.data(), raw.data()));
     truths.remainder[p] = std::sqrt(std::max(0.0, product(v, u.get(), u.get(), scratch.get())));
@@ -108,8 +113,8 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
     const double scale = truths.lambda_norm[p] > 0 ? truths.lambda_norm[p] : 1;
     errors.lambda[p] = std::sqrt(difference.dot(w_product * difference)) / scale;
   }
-  const Vector distance =
-      distances_to_cone(truths.lambda, {model.dual_basis}, w_product) * truths.lambda_norm.maxCoeff();
+  const Vector distance = distances_to_cone(truths.lambda, {model.dual_basis}, w_product) *
+                          truths.lambda_norm.maxCoeff();
   errors.lambda_floor = distance.cwiseQuotient(truths.lambda_norm.cwiseMax(1e-300));
   std::sort(seconds.begin(), seconds.end());
   errors.seconds = seconds[seconds.size() / 2];
@@ -130,8 +135,8 @@ SubModel enriched_pair(const ReducedModel &model, int n, int r) {
 }
 
 ValidationErrors summary(const ModelErrors &errors) {
-  return {static_cast<int>(errors.u.size()), errors.u.mean(), errors.u.maxCoeff(), errors.lambda.mean(),
-          errors.lambda.maxCoeff()};
+  return {static_cast<int>(errors.u.size()), errors.u.mean(), errors.u.maxCoeff(),
+          errors.lambda.mean(), errors.lambda.maxCoeff()};
 }
 
 } // namespace rbvi

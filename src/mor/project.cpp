@@ -135,7 +135,6 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
 
   Mat basis = nullptr;
   RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
-  model.gap_scale = 0;
   const Index n = model.primal_size(), generators = model.generators;
   const Matrix trace = restrict_to(problem.trace(), basis); // contact dofs x n
   model.a = start_terms(affine.a, affine.sample_a, n * (n + 1) / 2);
@@ -161,8 +160,6 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
       sum_over_ranks(problem.comm(), f);
       accumulate(affine.f, p, f, model.f.reduced);
     }
-    model.gap_scale =
-        std::max(model.gap_scale, op.g.cwiseQuotient(op.weights).cwiseAbs().maxCoeff());
   }
 
   const auto &contact = problem.contact();

@@ -67,8 +67,8 @@ ErrorRecorder::~ErrorRecorder() {
 }
 
 Session::Session(int &argc, char **&argv, const char *help) {
-  RBVI_CALL(SlepcInitialize(&argc, &argv, nullptr, help));
   recorder_.emplace();
+  RBVI_CALL(SlepcInitialize(&argc, &argv, nullptr, help));
 }
 
 Session::~Session() {

@@ -3,18 +3,34 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 
 namespace rbvi {
 
 namespace {
 using Seconds = std::chrono::duration<double>;
 constexpr Seconds between_lines{5}, between_updates{0.1};
+
+/// Open MPI gives its processes terminals of their own: what counts is where mpirun writes to.
+bool writes_to_terminal() {
+  if (isatty(STDOUT_FILENO) != 1) return false;
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") == nullptr) return true;
+  std::error_code error;
+  const auto target =
+      std::filesystem::read_symlink("/proc/" + std::to_string(getppid()) + "/fd/1", error).string();
+  return !error && (target.starts_with("/dev/pts/") || target.starts_with("/dev/tty"));
+}
 } // namespace
 
 Progress::Progress(std::string what, int total, bool reports)
     : what_(std::move(what)), total_(total), reports_(reports),
-      terminal_(isatty(STDOUT_FILENO) == 1), start_(std::chrono::steady_clock::now()),
+      terminal_(reports && writes_to_terminal()), start_(std::chrono::steady_clock::now()),
       last_(start_) {}
+
+Progress::~Progress() {
+  if (terminal_ && last_ != start_) std::printf("\n");
+}
 
 void Progress::update(int done, const std::string &detail) {
   if (!reports_ || done == 0) return;
@@ -23,14 +39,9 @@ void Progress::update(int done, const std::string &detail) {
   last_ = now;
   const double elapsed = Seconds(now - start_).count();
   const double left = elapsed / done * (total_ - done);
-  std::printf("%s  %d of %d %s, %.1f s, %.1f s left%s%s%s", terminal_ ? "\r" : "", done, total_,
-              what_.c_str(), elapsed, left, detail.empty() ? "" : ", ", detail.c_str(),
-              terminal_ ? "\x1b[K" : "\n");
+  std::printf("%s  %d of %d %s, %s%.1f s, %.1f s left%s", terminal_ ? "\r" : "", done, total_,
+              what_.c_str(), detail.c_str(), elapsed, left, terminal_ ? "\x1b[K" : "\n");
   std::fflush(stdout);
-}
-
-void Progress::finish() {
-  if (reports_ && terminal_) std::printf("\n");
 }
 
 } // namespace rbvi

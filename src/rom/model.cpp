@@ -100,7 +100,6 @@ void check_model(const ReducedModel &model) {
   require(model.primal_offset.allFinite(), "fields/offset has an entry that is not finite");
   if (model.primal_offset.size() > 0)
     require_indices(model.contact_nodes, model.primal_offset.size(), "contact/nodes");
-  require(model.gap_scale > 0, "gap_scale is not positive");
   check_fields(model, dim);
 }
 

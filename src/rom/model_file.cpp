@@ -14,7 +14,7 @@
 //   T/contributions                                   triples entry, cell, local
 //   T/error                                           e_EIM reached (B.32)
 //   contact/{dual_basis,trace,points,lumped_weights}  c x R, c x n, c x d, c x J of b
-//   contact/{nodes,gap_scale}                         mesh node of each dual dof; a number
+//   contact/nodes                                     mesh node of each dual dof
 //   fields/{primal_basis,offset}                      dofs x n; dofs or empty
 //   fields/{points,cells,contact_cells}               nodes x d; lists of d + 1 numbers per cell
 //   validation/{enriched,decorrelated}                count, then mean and max error of u, of
@@ -161,7 +161,6 @@ void write_fields(H5Writer &file, const ReducedModel &model) {
   file.write("contact/points", model.contact_points);
   file.write("contact/lumped_weights", model.lumped_weights);
   file.write("contact/nodes", model.contact_nodes);
-  file.write("contact/gap_scale", model.gap_scale);
   file.write("fields/primal_basis", model.primal_basis);
   file.write("fields/offset", model.primal_offset);
   file.write("fields/points", model.mesh_points);
@@ -175,7 +174,6 @@ void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
   model.contact_points = file.matrix("contact/points");
   model.lumped_weights = file.matrix("contact/lumped_weights");
   model.contact_nodes = file.ints("contact/nodes");
-  model.gap_scale = file.number("contact/gap_scale");
   model.primal_offset = file.vector("fields/offset");
   if (!all) return;
   model.primal_basis = file.matrix("fields/primal_basis");

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/names.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/vtu.hpp"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <chrono>
 #include <iomanip>
-#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -47,31 +47,15 @@ constexpr Option options[] = {{"mu", &OnlineArguments::mu, nullptr},
                               {"help", nullptr, &OnlineArguments::help},
                               {"version", nullptr, &OnlineArguments::version}};
 
-/// Levenshtein distance.
-std::size_t distance(const std::string &from, const std::string &to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 0; j < to.size(); ++j) {
-      const std::size_t replaced = diagonal + (from[i] == to[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
 const Option &find_option(const std::string &name) {
   const auto found = std::find_if(std::begin(options), std::end(options),
                                   [&](const Option &option) { return name == option.name; });
   if (found != std::end(options)) return *found;
-  const auto nearest =
-      std::min_element(std::begin(options), std::end(options), [&](const auto &a, const auto &b) {
-        return distance(name, a.name) < distance(name, b.name);
-      });
-  throw bad_input("unknown option --" + name + "; the nearest one is --" + nearest->name +
-                  " (--help lists all)");
+  std::vector<std::string> names;
+  for (const Option &option : options)
+    names.emplace_back(option.name);
+  throw bad_input("unknown option --" + name + "; the nearest one is --" +
+                  nearest_name(name, names) + " (--help lists all)");
 }
 
 void check_combination(const OnlineArguments &given) {

@@ -6,17 +6,25 @@ namespace rbvi {
 
 namespace {
 
-/// E^T A^-1 E B^T(:, which): the contact trace of the response to unit multipliers.
+constexpr std::size_t block = 128; ///< right-hand sides at a time: bounds the memory
+
+/// B A^-1 B^T(:, which): the constraint values that unit multipliers cause.
 Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                          const std::vector<Index> &which) {
-  Matrix loads = Matrix::Zero(op.b.cols(), static_cast<Index>(which.size()));
-  for (std::size_t k = 0; k < which.size(); ++k)
-    loads.col(static_cast<Index>(k)) = op.b.row(which[k]).transpose();
-  const Handle<Mat> rhs = extension(trace, loads, op.a);
-  Handle<Mat> response;
-  RBVI_CALL(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, response.put()));
-  RBVI_CALL(KSPMatSolve(ksp, rhs.get(), response.get()));
-  return op.b * restrict_to(trace, response.get());
+  Matrix columns(op.b.rows(), static_cast<Index>(which.size()));
+  for (std::size_t first = 0; first < which.size(); first += block) {
+    const std::size_t count = std::min(block, which.size() - first);
+    Matrix loads = Matrix::Zero(op.b.cols(), static_cast<Index>(count));
+    for (std::size_t k = 0; k < count; ++k)
+      loads.col(static_cast<Index>(k)) = op.b.row(which[first + k]).transpose();
+    const Handle<Mat> rhs = extension(trace, loads, op.a);
+    Handle<Mat> response;
+    RBVI_CALL(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, response.put()));
+    RBVI_CALL(KSPMatSolve(ksp, rhs.get(), response.get()));
+    columns.middleCols(static_cast<Index>(first), static_cast<Index>(count)) =
+        op.b * restrict_to(trace, response.get());
+  }
+  return columns;
 }
 
 } // namespace

@@ -100,7 +100,6 @@ MethodResult solve_vi(const Problem &problem, const Operators &op) {
   Handle<Mat> tangent;
   RBVI_CALL(MatDuplicate(op.a, MAT_COPY_VALUES, tangent.put()));
   RBVI_CALL(SNESSetJacobian(snes.get(), tangent.get(), tangent.get(), jacobian, &context));
-  RBVI_CALL(SNESSetObjective(snes.get(), energy, &context));
   RBVI_CALL(SNESSetTolerances(snes.get(), 1e-14, 1e-12, 0, 200, PETSC_DEFAULT));
   KSP ksp = nullptr;
   PC pc = nullptr;
@@ -110,6 +109,12 @@ MethodResult solve_vi(const Problem &problem, const Operators &op) {
   RBVI_CALL(PCSetType(pc, PCLU));
   RBVI_CALL(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   RBVI_CALL(SNESSetFromOptions(snes.get()));
+  // The energy measures progress where iterates are feasible; the semismooth method leaves the
+  // bounds on its way and has a merit function of its own.
+  PetscBool semismooth = PETSC_FALSE;
+  RBVI_CALL(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(snes.get()), SNESVINEWTONSSLS,
+                                   &semismooth));
+  if (semismooth == PETSC_FALSE) RBVI_CALL(SNESSetObjective(snes.get(), energy, &context));
   RBVI_CALL(SNESVISetVariableBounds(snes.get(), lower.get(), upper.get()));
   RBVI_CALL(SNESSolve(snes.get(), nullptr, result.u.get()));
 

@@ -10,6 +10,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 namespace rbvi {
 
@@ -56,6 +57,13 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// "12.3 ms each, "
+std::string each(double seconds) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.1f ms each, ", 1e3 * seconds);
+  return text;
+}
+
 /// The numbers of `set` that have no sample yet, agreed by rank 0 for all.
 std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
                                  const fs::path &directory, bool reuse) {
@@ -96,6 +104,46 @@ void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directo
   });
 }
 
+/// Each group solves its share of the missing samples.
+void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
+                   const std::vector<Mu> &set, const std::vector<int> &missing,
+                   const fs::path &directory, const Settings &settings) {
+  const auto total = static_cast<int>(missing.size());
+  const int begin = total * groups.mine() / groups.count();
+  const int end = total * (groups.mine() + 1) / groups.count();
+  int rank = 0;
+  MPI_Comm_rank(world, &rank);
+  // The first group tells of all: it knows its own share, and takes the others to be as far.
+  Progress progress(groups.count() == 1
+                        ? "samples"
+                        : "samples (about), " + std::to_string(groups.count()) + " groups",
+                    total, rank == 0);
+  HighFidelity solver(problem, options);
+  collectively(world, [&] {
+    const double start = MPI_Wtime();
+    for (int k = begin; k < end; ++k) {
+      const Mu &mu = set[static_cast<std::size_t>(missing[static_cast<std::size_t>(k)])];
+      collectively(groups.comm(), [&] {
+        solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
+                     settings);
+      });
+      const int done = k + 1 - begin;
+      progress.update(total * done / (end - begin), each((MPI_Wtime() - start) / done));
+    }
+  });
+}
+
+double median_seconds(const std::vector<Sample> &samples, const std::vector<Mu> &set,
+                      const std::vector<int> &numbers) {
+  std::set<Mu> wanted;
+  for (const int i : numbers)
+    wanted.insert(set[static_cast<std::size_t>(i)]);
+  std::vector<double> seconds;
+  for (const Sample &sample : samples)
+    if (wanted.contains(sample.mu)) seconds.push_back(sample.outputs.seconds.value_or(0));
+  return median(std::move(seconds));
+}
+
 } // namespace
 
 Settings sample_settings(const Problem &problem, const HfOptions &options) {
@@ -131,41 +179,20 @@ Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const Hf
                 const std::vector<Mu> &set, const fs::path &directory, bool reuse) {
   const Settings settings = sample_settings(problem, options);
   const std::vector<int> missing = missing_samples(world, set, directory, reuse);
-  Sweep sweep;
   if (missing.size() < set.size()) { // other options are noticed before any work is done
     Sweep present;
     collect(world, set, directory, settings, present);
-    sweep.report.reused = static_cast<int>(set.size() - missing.size());
   }
 
   MPI_Barrier(world);
   const double start = MPI_Wtime();
-  const auto total = static_cast<int>(missing.size());
-  const int begin = total * groups.mine() / groups.count();
-  const int end = total * (groups.mine() + 1) / groups.count();
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
-  Progress progress("samples per group", end - begin, rank == 0);
-  HighFidelity solver(problem, options);
-  collectively(world, [&] {
-    for (int k = begin; k < end; ++k) {
-      const Mu &mu = set[static_cast<std::size_t>(missing[static_cast<std::size_t>(k)])];
-      collectively(groups.comm(), [&] {
-        solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
-                     settings);
-      });
-      progress.update(k + 1 - begin, std::to_string(groups.count()) + " groups");
-    }
-  });
-  progress.finish();
+  solve_missing(world, groups, problem, options, set, missing, directory, settings);
+  Sweep sweep;
   sweep.report.seconds = MPI_Wtime() - start;
-
   collect(world, set, directory, settings, sweep);
-  sweep.report.solved = total - static_cast<int>(sweep.report.failed.size());
-  std::vector<double> seconds;
-  for (const Sample &sample : sweep.samples)
-    seconds.push_back(sample.outputs.seconds.value_or(0));
-  sweep.report.seconds_per_solve = median(seconds);
+  sweep.report.reused = static_cast<int>(set.size() - missing.size());
+  sweep.report.solved = static_cast<int>(missing.size() - sweep.report.failed.size());
+  sweep.report.seconds_per_solve = median_seconds(sweep.samples, set, missing);
   return sweep;
 }
 

@@ -1,7 +1,179 @@
+// rbvi bench: run time against error, on one rank, over the validation set.
+#include "rbvi/check/bench.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/tool/commands.hpp"
+#include "rbvi/tool/tables.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
 
 namespace rbvi {
 
-void command_bench(const ToolOptions &) {}
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text(const char *format, double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, format, value);
+  return buffer;
+}
+
+std::string error_text(double value) {
+  return value < 0 ? "" : text("%.1e", value);
+}
+
+/// Queries from which the seconds spent offline are won back; "" if never or not applicable.
+std::string threshold(const BenchRow &row, double best) {
+  if (row.offline == 0 || row.median >= best) return "";
+  return text("%.0f", std::ceil(row.offline / (best - row.median)));
+}
+
+const std::vector<std::string> header{"method",     "includes", "queries",     "median_ms",
+                                      "p95_ms",     "u_mean",   "u_max",       "lambda_mean",
+                                      "lambda_max", "speed_up", "benefit_from"};
+
+std::vector<std::string> cells(const BenchRow &row, double best) {
+  const bool answers = row.u_mean >= 0;
+  return {row.method,
+          row.includes,
+          std::to_string(row.queries),
+          text("%.3f", 1e3 * row.median),
+          text("%.3f", 1e3 * row.slow),
+          error_text(row.u_mean),
+          error_text(row.u_max),
+          error_text(row.lambda_mean),
+          error_text(row.lambda_max),
+          answers ? text("%.3g", best / row.median) : "",
+          threshold(row, best)};
+}
+
+std::string joined(const std::vector<std::string> &parts, const std::string &begin,
+                   const std::string &between, const std::string &end) {
+  std::string line = begin;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    line += (i > 0 ? between : "") + parts[i];
+  return line + end + "\n";
+}
+
+std::string markdown(const std::vector<BenchRow> &rows, double best) {
+  std::string table = joined(header, "| ", " | ", " |") +
+                      joined(std::vector<std::string>(header.size(), "---"), "|", "|", "|");
+  for (const BenchRow &row : rows)
+    table += joined(cells(row, best), "| ", " | ", " |");
+  return table;
+}
+
+std::string csv(const std::vector<BenchRow> &rows, double best) {
+  std::string table = joined(header, "", ",", "");
+  for (const BenchRow &row : rows)
+    table += joined(cells(row, best), "\"", "\",\"", "\"");
+  return table;
+}
+
+std::vector<Sample> samples_of(Problem &problem, const ToolOptions &options,
+                               const std::string &set) {
+  const Groups alone(PETSC_COMM_SELF, 1);
+  HfOptions truth = options.hf;
+  truth.method = HfMethod::active_set;
+  Sweep sweep = run_sweep(PETSC_COMM_SELF, alone, problem, truth,
+                          parse_set(options.scene.parameters, set), options.out / "samples");
+  if (!sweep.report.failed.empty())
+    throw failure("a high-fidelity solve failed: " + sweep.report.failed.front().second);
+  return std::move(sweep.samples);
+}
+
+/// One core's seconds: the snapshots count by their own solve times, because a resumed sweep does
+/// not repeat them.
+double offline_seconds(const ReducedModel &model, const std::vector<Sample> &snapshots) {
+  double sum = 0;
+  for (const Sample &snapshot : snapshots)
+    sum += snapshot.outputs.seconds.value_or(0);
+  for (const auto &[stage, seconds] : model.stage_seconds)
+    if (stage != "snapshots") sum += seconds;
+  return sum;
+}
+
+std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &options,
+                                      const std::vector<Sample> &truths) {
+  constexpr std::size_t few_slow = 3, few = 8;
+  std::vector<BenchRow> rows;
+  HfOptions hf = options.hf;
+  hf.method = HfMethod::active_set;
+  rows.push_back(bench_solver(problem, hf, truths, truths.size(), false));
+  for (BenchRow &part : bench_parts(problem, truths))
+    rows.push_back(std::move(part));
+  rows.push_back(bench_solver(problem, hf, truths, truths.size(), true));
+  hf.method = HfMethod::uzawa;
+  hf.uzawa_accelerated = true;
+  rows.push_back(bench_solver(problem, hf, truths, few, true));
+  hf.uzawa_accelerated = false;
+  rows.push_back(bench_solver(problem, hf, truths, few_slow, true));
+  if (options.scene.options.contains("lumped")) {
+    SceneOptions lumped = options.scene.options;
+    lumped["lumped"] = "yes";
+    Scene scene = make_scene(options.scene.name, lumped);
+    scene.parameters = options.scene.parameters;
+    Problem vertex_quadrature(PETSC_COMM_SELF, scene, options.mesh);
+    std::vector<Mu> set;
+    for (std::size_t p = 0; p < std::min(few, truths.size()); ++p)
+      set.push_back(truths[p].mu);
+    rows.push_back(bench_vi(vertex_quadrature, set));
+  }
+  return rows;
+}
+
+void bench(const ToolOptions &options, int ranks) {
+  const ReducedModel model = read_model(options.out / "model.h5");
+  if (model.scene_options != options.scene.options || model.scene_name != options.scene.name)
+    throw bad_input("the model in " + options.out.string() +
+                    " was made with other options of its scene");
+  Problem problem(PETSC_COMM_SELF, options.scene, options.mesh);
+  if (problem.mesh().fingerprint != model.mesh_fingerprint)
+    throw bad_input("the model in " + options.out.string() + " was made on another mesh");
+  const std::vector<Sample> snapshots = samples_of(problem, options, options.train);
+  const std::vector<Sample> truths = samples_of(problem, options, options.valid);
+
+  std::vector<BenchRow> rows = bench_baselines(problem, options, truths);
+  const double best = rows.front().median, offline = offline_seconds(model, snapshots);
+  rows.push_back(bench_interpolation(problem, snapshots, truths));
+  for (BenchRow &row : bench_models(problem, model, truths, offline))
+    rows.push_back(std::move(row));
+
+  std::ostringstream head;
+  head << "Scene " << model.scene_name << ", " << problem.mesh().total_vertices << " nodes, "
+       << truths.size() << " validation parameters, timed on 1 of " << ranks << " ranks.\n"
+       << "Errors are relative to active_set (vi: on the lumped scene), u in V, lambda in W; "
+          "reduced (N+S, R).\n"
+       << "speed_up: against the first row; benefit_from: queries from which "
+       << text("%.2f", offline) << " s offline are won back\n"
+       << "(" << snapshots.size() << " snapshots by their solve times, plus the other stages).\n\n";
+  const std::string table = head.str() + markdown(rows, best);
+  fs::create_directories(options.out / "bench");
+  write_atomically(options.out / "bench" / "table.md", table);
+  write_atomically(options.out / "bench" / "table.csv", csv(rows, best));
+  std::printf("%s\nTables: %s\n", table.c_str(), (options.out / "bench").c_str());
+}
+
+} // namespace
+
+void command_bench(const ToolOptions &options) {
+  const MPI_Comm world = PETSC_COMM_WORLD;
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(world, &rank);
+  MPI_Comm_size(world, &ranks);
+  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
+  collectively(world, [&] {
+    if (rank != 0) return;
+    if (!fs::exists(options.out / "model.h5"))
+      throw bad_input("no model in " + options.out.string() +
+                      ": make it by rbvi offline with the same options first");
+    bench(options, ranks);
+  });
+}
 
 } // namespace rbvi

@@ -4,6 +4,8 @@
 #include "rbvi/core/names.hpp"
 #include "rbvi/tool/options.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 
@@ -27,6 +29,13 @@ std::optional<int> first_failure(MPI_Comm world, bool failed) {
   return done != 0 ? std::optional<int>(first) : std::nullopt;
 }
 
+Invocation left_over(const std::string &word) {
+  Invocation result;
+  result.status = static_cast<int>(Status::bad_input);
+  result.message = "rbvi: '" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)";
+  return result;
+}
+
 } // namespace
 
 std::vector<char *> Invocation::pointers() const {
@@ -38,11 +47,13 @@ std::vector<char *> Invocation::pointers() const {
 }
 
 Invocation read_invocation(int argc, char **argv) {
-  static const std::vector<std::string> commands{"offline", "solve", "verify", "bench",
+  static const std::vector<std::string> commands{"offline", "solve",   "verify", "bench",
                                                  "list",    "inspect", "help"};
   Invocation result;
   std::vector<std::string> given = normalised_arguments(argc, argv);
-  const auto has = [&](const char *name) { return std::find(given.begin(), given.end(), name) != given.end(); };
+  const auto has = [&](const char *name) {
+    return std::find(given.begin(), given.end(), name) != given.end();
+  };
   if (has("-version")) {
     result.status = 0;
     result.message = "rbvi " RBVI_VERSION;
@@ -60,6 +71,11 @@ Invocation read_invocation(int argc, char **argv) {
     return result;
   }
   given.erase(given.begin() + 1);
+  const std::size_t words = result.command == "inspect" ? 2 : 1;
+  for (std::size_t i = words; i < given.size(); ++i)
+    if (!is_option(given[i]) && !is_option(given[i - 1])) return left_over(given[i]);
+  if ((result.command == "list" || result.command == "help") && given.size() > 1)
+    return left_over(given[1]);
   if (result.command == "inspect") {
     if (given.size() != 2) {
       result.status = static_cast<int>(Status::bad_input);
@@ -91,9 +107,15 @@ int finish(MPI_Comm world, const std::function<void()> &work) {
     message = error.what();
     status = static_cast<int>(Status::failed);
   }
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0 && status == 0) {
+    message = "cannot write to standard output";
+    status = static_cast<int>(Status::failed);
+  }
   const std::optional<int> first = first_failure(world, status != 0);
-  if (status != 0 && first.value_or(rank) == rank) std::fprintf(stderr, "rbvi: %s\n", message.c_str());
+  // Where several ranks fail and others hang, the lowest comes first and ends the rest.
+  if (!first) usleep(static_cast<useconds_t>(std::min(rank, 20)) * 200000);
+  if (status != 0 && first.value_or(rank) == rank)
+    std::fprintf(stderr, "rbvi: %s\n", message.c_str());
   if (!first) MPI_Abort(world, status);
   int worst = status;
   MPI_Allreduce(&status, &worst, 1, MPI_INT, MPI_MAX, world);

@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 namespace rbvi {
 
 namespace {
 
-/// Options of PETSc and SLEPc as a whole; objects have the prefixes below.
-const std::vector<std::string> general_prefixes{"log_", "info",   "help",  "malloc", "options_", "on_error",
-                                                "mat_", "vec_",   "dm_",   "petsc",  "bv_",      "svd_",
-                                                "fp_",  "skip_p", "check", "memory", "version",  "nox",
-                                                "saws", "get_",   "stack", "debug",  "eps_"};
+/// Options of PETSc itself that it reads only at its end.
+const std::vector<std::string> late_options{"options_left", "options_view"};
+/// Options of PETSc objects: check_solver_options.
 const std::vector<std::string> object_prefixes{"hf_", "vi_", "v_"};
 
 bool starts_with_any(const std::string &name, const std::vector<std::string> &prefixes) {
@@ -24,23 +23,28 @@ bool starts_with_any(const std::string &name, const std::vector<std::string> &pr
                      [&](const std::string &prefix) { return name.rfind(prefix, 0) == 0; });
 }
 
-/// The names (without dash) of all options in PETSc's database.
-std::vector<std::string> given_names() {
+/// The names (without dash) of all options in a database of PETSc (nullptr: the global one).
+std::vector<std::string> given_names(PetscOptions database = nullptr) {
   char *all = nullptr;
-  RBVI_CALL(PetscOptionsGetAll(nullptr, &all));
+  RBVI_CALL(PetscOptionsGetAll(database, &all));
   std::istringstream words(all);
   RBVI_CALL(PetscFree(all));
   std::vector<std::string> names;
   for (std::string word; words >> word;)
-    if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0)
-      names.push_back(word.substr(1));
+    if (is_option(word)) names.push_back(word.substr(1));
   return names;
 }
 
-std::string text_of(const std::string &name, const std::string &otherwise = "") {
+bool contains(const std::vector<std::string> &list, const std::string &name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+std::string text_of(const std::string &name, const std::string &otherwise = "",
+                    PetscOptions database = nullptr) {
   char value[4096];
   PetscBool set = PETSC_FALSE;
-  RBVI_CALL(PetscOptionsGetString(nullptr, nullptr, ("-" + name).c_str(), value, sizeof value, &set));
+  RBVI_CALL(
+      PetscOptionsGetString(database, nullptr, ("-" + name).c_str(), value, sizeof value, &set));
   return set == PETSC_TRUE ? value : otherwise;
 }
 
@@ -55,7 +59,8 @@ bool flag_of(const std::string &name) {
 
 const std::string &default_of(const std::string &name) {
   const auto &options = tool_options();
-  return std::find_if(options.begin(), options.end(), [&](const OptionHelp &o) { return o.name == name; })
+  return std::find_if(options.begin(), options.end(),
+                      [&](const OptionHelp &o) { return o.name == name; })
       ->default_value;
 }
 
@@ -65,7 +70,8 @@ double number_of(const std::string &name, double lower, double upper) {
   const double value = parse_number(text, "option -" + name);
   if (value < lower || value > upper) {
     std::ostringstream message;
-    message << "option -" << name << " is " << text << ": use a number from " << lower << " to " << upper;
+    message << "option -" << name << " is " << text << ": use a number from " << lower << " to "
+            << upper;
     throw bad_input(message.str());
   }
   return value;
@@ -90,18 +96,36 @@ int choice_of(const std::string &name, const std::vector<std::string> &choices) 
   return static_cast<int>(found - choices.begin());
 }
 
-void insert_case_file(MPI_Comm comm) {
-  const std::string file = text_of("case");
+struct DestroyOptions {
+  void operator()(PetscOptions options) const { (void)PetscOptionsDestroy(&options); }
+};
+
+/// -case, or the options that a run directory was made with.
+std::string case_file_name() {
+  std::string file = text_of("case");
+  const std::string out = text_of("out");
+  if (file.empty() && !out.empty() && std::filesystem::exists(case_of_run(out)))
+    file = case_of_run(out);
   if (file.empty()) throw bad_input("no case is named: use -case cases/<scene>/case.yaml");
+  if (std::filesystem::is_directory(file))
+    throw bad_input("the case file " + file + " is a directory");
   if (!std::ifstream(file)) throw bad_input("the case file " + file + " cannot be read");
-  if (std::filesystem::is_directory(file)) throw bad_input("the case file " + file + " is a directory");
-  char *command_line = nullptr;
-  RBVI_CALL(PetscOptionsGetAll(nullptr, &command_line));
-  const std::string given(command_line);
-  RBVI_CALL(PetscFree(command_line));
-  if (PetscOptionsInsertFileYAML(comm, nullptr, file.c_str(), PETSC_TRUE) != 0)
-    throw bad_input("the case file " + file + " is malformed: one 'option: value' per line is expected");
-  RBVI_CALL(PetscOptionsInsertString(nullptr, given.c_str())); // the command line wins
+  return file;
+}
+
+void insert_case_file(MPI_Comm comm) {
+  const std::string file = case_file_name();
+  PetscOptions raw = nullptr;
+  RBVI_CALL(PetscOptionsCreate(&raw));
+  const std::unique_ptr<std::remove_pointer_t<PetscOptions>, DestroyOptions> database(raw);
+  if (PetscOptionsInsertFileYAML(comm, raw, file.c_str(), PETSC_TRUE) != 0)
+    throw bad_input("the case file " + file +
+                    " is malformed: one 'option: value' per line is expected");
+  const std::vector<std::string> command_line = given_names();
+  for (const std::string &name : given_names(raw))
+    if (!contains(command_line, name))
+      RBVI_CALL(
+          PetscOptionsSetValue(nullptr, ("-" + name).c_str(), text_of(name, "", raw).c_str()));
 }
 
 SceneOptions scene_options_of(const std::string &scene) {
@@ -117,30 +141,76 @@ SceneOptions scene_options_of(const std::string &scene) {
   return options;
 }
 
-/// "-radius 0.2" gives the value, "-radius 0.18,0.22" the bounds; "-parameters" says which are free.
-void adapt_parameters(ParameterSpace &space) {
-  for (Parameter &parameter : space.all) {
-    const std::string text = text_of(parameter.name);
-    if (text.empty()) continue;
-    const std::vector<std::string> parts = split(text, ',');
-    const std::string what = "option -" + parameter.name;
-    if (parts.size() == 1) {
-      parameter.value = parse_number(parts[0], what);
-    } else if (parts.size() == 2) {
-      parameter.lower = parse_number(parts[0], what);
-      parameter.upper = parse_number(parts[1], what);
-      parameter.value = std::clamp(parameter.value, parameter.lower, parameter.upper);
-      if (!(parameter.lower < parameter.upper))
-        throw bad_input(what + " is '" + text + "': the lower bound comes first");
-    } else {
-      throw bad_input(what + " is '" + text + "': give one value, or two bounds");
-    }
+/// "-radius 0.2" fixes a parameter, "-radius 0.18,0.22" gives its bounds. Returns whether it is
+/// fixed.
+bool adapt_parameter(Parameter &parameter) {
+  const std::string text = text_of(parameter.name);
+  const std::vector<std::string> parts = split(text, ',');
+  const std::string what = "option -" + parameter.name;
+  if (text.empty()) return false;
+  if (parts.size() == 1) {
+    parameter.value = parse_number(parts[0], what);
+    return true;
   }
-  const std::string free = text_of("parameters");
-  if (!free.empty()) space = free_only(space, free);
+  if (parts.size() != 2)
+    throw bad_input(what + " is '" + text + "': give one value, or two bounds");
+  parameter.lower = parse_number(parts[0], what);
+  parameter.upper = parse_number(parts[1], what);
+  if (!(parameter.lower < parameter.upper))
+    throw bad_input(what + " is '" + text + "': the lower bound comes first");
+  parameter.value = std::clamp(parameter.value, parameter.lower, parameter.upper);
+  return false;
 }
 
-void check_names(const Scene &scene) {
+/// "-parameters" says which are free; without it, all that are not fixed.
+void adapt_parameters(ParameterSpace &space) {
+  std::string unfixed;
+  std::vector<std::string> fixed;
+  for (Parameter &parameter : space.all) {
+    if (adapt_parameter(parameter))
+      fixed.push_back(parameter.name);
+    else
+      unfixed += (unfixed.empty() ? "" : ",") + parameter.name;
+  }
+  const std::string free = text_of("parameters");
+  space = free_only(space, free.empty() ? unfixed : free);
+  for (int i = 0; i < space.size(); ++i)
+    if (contains(fixed, space.at(i).name))
+      throw bad_input("parameter " + space.at(i).name + " is freed by -parameters and fixed by -" +
+                      space.at(i).name + " " + text_of(space.at(i).name) + ": give two bounds");
+}
+
+/// PETSc has read its own options when it started.
+bool known_to_petsc(const std::string &name) {
+  PetscBool used = PETSC_FALSE;
+  RBVI_CALL(PetscOptionsUsed(nullptr, name.c_str(), &used));
+  return used == PETSC_TRUE || contains(late_options, name);
+}
+
+/// All that PETSc does not know as its own. To be called before anything asks for an option.
+std::vector<std::string> own_names() {
+  std::vector<std::string> names = given_names();
+  std::erase_if(names, known_to_petsc);
+  return names;
+}
+
+/// The options as a case file, without those of one command.
+std::string as_case_file(const std::vector<std::string> &names) {
+  const std::vector<std::string> of_command{"case", "out", "plan", "mu", "vtu", "csv"};
+  std::string text = "# The options of this run.\n";
+  for (const std::string &name : names) {
+    if (contains(of_command, name)) continue;
+    const std::string value = text_of(name), option = "-" + name;
+    text += name + ": " + value + "\n";
+    // Asking has marked the option as used, which check_solver_options must not see.
+    RBVI_CALL(PetscOptionsClearValue(nullptr, option.c_str()));
+    RBVI_CALL(PetscOptionsSetValue(nullptr, option.c_str(), value.c_str()));
+  }
+  return text;
+}
+
+/// Throws bad_input unless each name is one of ours or of the scene.
+void check_names(const std::vector<std::string> &names, const Scene &scene) {
   std::vector<std::string> known;
   for (const OptionHelp &option : tool_options())
     known.push_back(option.name);
@@ -148,12 +218,10 @@ void check_names(const Scene &scene) {
     known.push_back(name);
   for (const Parameter &parameter : scene.parameters.all)
     known.push_back(parameter.name);
-  for (const std::string &name : given_names()) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    if (starts_with_any(name, object_prefixes) || starts_with_any(name, general_prefixes)) continue;
-    throw bad_input("unknown option -" + name + "; the nearest one is -" + nearest_name(name, known) +
-                    " (-help lists all)");
-  }
+  for (const std::string &name : names)
+    if (!contains(known, name) && !starts_with_any(name, object_prefixes))
+      throw bad_input("unknown option -" + name + "; the nearest one is -" +
+                      nearest_name(name, known) + " (-help lists all)");
 }
 
 ReduceOptions reduce_options() {
@@ -186,7 +254,9 @@ HfOptions hf_options() {
 
 const std::vector<OptionHelp> &tool_options() {
   static const std::vector<OptionHelp> options{
-      {"case", "", "case file (YAML, one 'option: value' per line); the command line beats it"},
+      {"case", "",
+       "case file (YAML, one 'option: value' per line); the command line beats it. Without it: "
+       "that of -out"},
       {"scene", "", "name of the scene (rbvi list)"},
       {"out", "", "run directory"},
       {"parameters", "", "names of the free parameters; the others keep their value"},
@@ -218,22 +288,32 @@ const std::vector<OptionHelp> &tool_options() {
   return options;
 }
 
+bool is_option(const std::string &word) {
+  return word.size() > 1 && word[0] == '-' &&
+         std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
+std::filesystem::path case_of_run(const std::filesystem::path &out) {
+  return out / "case.yaml";
+}
+
 std::vector<std::string> normalised_arguments(int argc, char **argv) {
   std::vector<std::string> arguments(argv, argv + argc);
   for (std::string &argument : arguments)
-    if (argument.size() > 2 && argument[0] == '-' && argument[1] == '-' &&
-        std::isalpha(static_cast<unsigned char>(argument[2])) != 0)
-      argument.erase(0, 1);
+    if (argument.starts_with("--") && is_option(argument.substr(1))) argument.erase(0, 1);
   return arguments;
 }
 
 ToolOptions read_options(MPI_Comm comm) {
   insert_case_file(comm);
+  const std::vector<std::string> names = own_names();
   ToolOptions options;
   const std::string scene = text_of("scene");
-  if (scene.empty()) throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
+  if (scene.empty())
+    throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
   options.scene = make_scene(scene, scene_options_of(scene));
-  check_names(options.scene);
+  check_names(names, options.scene);
+  options.case_file = as_case_file(names);
   adapt_parameters(options.scene.parameters);
   options.mesh.file = text_of("mesh");
   options.mesh.refine = integer_of("mesh_refine", 0, 6);
@@ -248,17 +328,6 @@ ToolOptions read_options(MPI_Comm comm) {
   options.csv = text_of("csv");
   options.plan = flag_of("plan");
   return options;
-}
-
-void check_used(const std::string &prefix) {
-  PetscInt count = 0;
-  char **names = nullptr, **values = nullptr;
-  RBVI_CALL(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  std::string unused;
-  for (PetscInt i = 0; i < count; ++i)
-    if (std::string(names[i]).rfind(prefix, 0) == 0) unused += " -" + std::string(names[i]);
-  RBVI_CALL(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
-  if (!unused.empty()) throw bad_input("no solver knows the option" + unused);
 }
 
 void print_help() {
@@ -278,12 +347,13 @@ void print_help() {
       std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
                   option.default_value.c_str());
     for (const Parameter &p : make_scene(scene.name).parameters.all)
-      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(), p.lower,
-                  p.upper, p.unit.c_str());
+      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
+                  p.lower, p.upper, p.unit.c_str());
   }
-  std::printf("\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
-              "(Riesz representers), -log_view, ...\n"
-              "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
+  std::printf(
+      "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
+      "(Riesz representers), -log_view, ...\n"
+      "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
 }
 
 } // namespace rbvi

@@ -15,8 +15,8 @@ namespace rbvi {
 namespace {
 
 /// The undistributed mesh of a problem, mapped by h(mu), as a reduced model stores it.
-void write_solution(const Problem &problem, const ReducedModel &mesh, const HfSolution &solution, const Mu &mu,
-                    const std::filesystem::path &path) {
+void write_solution(const Problem &problem, const ReducedModel &mesh, const HfSolution &solution,
+                    const Mu &mu, const std::filesystem::path &path) {
   const Scene &scene = problem.scene();
   const Mu all = expand(scene.parameters, mu);
   const auto mapped = [&](const Matrix &points) {
@@ -50,8 +50,8 @@ void command_solve(const ToolOptions &options) {
   const ParameterSpace &space = options.scene.parameters;
   const Mu mu = parse_mu(space, options.mu);
   Problem problem(world, options.scene, options.mesh);
+  check_solver_options(problem, options.hf);
   HighFidelity solver(problem, options.hf);
-  check_used("hf_");
   const HfSolution solution =
       while_doing("solving " + describe(space, mu), [&] { return solver.solve(mu); });
   ReducedModel mesh;
@@ -63,7 +63,8 @@ void command_solve(const ToolOptions &options) {
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
     std::printf("stopped: %s\n", solution.reason.c_str());
-    if (!options.csv.empty()) write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});
+    if (!options.csv.empty())
+      write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});
     if (!options.vtu.empty()) write_solution(problem, mesh, solution, mu, options.vtu);
   });
 }

@@ -4,11 +4,13 @@
 
 namespace rbvi {
 
-Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options, StageTimes &times)
+Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+                     StageTimes &times)
     : world_(world), options_(options), shared_(groups.count() == 1) {
   const Stage stage("mesh", times);
   collectively(world, [&] {
     group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh);
+    check_solver_options(*group_, options.hf);
   });
 }
 

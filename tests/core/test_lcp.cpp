@@ -1,30 +1,19 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/lcp.hpp"
 
+#include "random_matrix.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
-#include <random>
 #include <set>
 
 using namespace rbvi;
 
 namespace {
 
-class Random {
-public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double operator()() { return uniform_(engine_); }
-  Matrix matrix(Index rows, Index columns) {
-    return Matrix::NullaryExpr(rows, columns, [this] { return (*this)(); });
-  }
-  Vector vector(Index size) { return matrix(size, 1); }
-
-private:
-  std::mt19937 engine_;
-  std::uniform_real_distribution<double> uniform_{-1, 1};
-};
+;
 
 /// Hands out columns of a dense H and fails the test when one is asked for twice.
 ColumnSource once(const Matrix &h, std::set<Index> &given) {

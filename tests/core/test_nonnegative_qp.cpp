@@ -1,29 +1,18 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/nonnegative_qp.hpp"
 
+#include "random_matrix.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 using namespace rbvi;
 
 namespace {
 
-class Random {
-public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double operator()() { return uniform_(engine_); }
-  Matrix matrix(Index rows, Index columns) {
-    return Matrix::NullaryExpr(rows, columns, [this] { return (*this)(); });
-  }
-  Vector vector(Index size) { return matrix(size, 1); }
-
-private:
-  std::mt19937 engine_;
-  std::uniform_real_distribution<double> uniform_{-1, 1};
-};
+;
 
 double objective(const Matrix &y, const Vector &c, const Vector &g, const Vector &x) {
   return 0.5 * (y * x - c).squaredNorm() + g.dot(x);

@@ -24,8 +24,8 @@ template <class Fx, class Fy> double quadratic(const Membrane &m, Mat matrix, Fx
     Vector natural = Vector::Zero(m.dofs.total);
     for (std::size_t v = 0; v < m.mesh.points.size(); ++v)
       if (m.mesh.owned_vertex[v]) natural[m.mesh.natural_vertex[v]] = function(m.mesh.points[v]);
-    MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPI_DOUBLE, MPI_SUM,
-                  m.mesh.comm);
+    MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPI_DOUBLE,
+                  MPI_SUM, m.mesh.comm);
     return from_natural(m.dofs, natural);
   };
   const Handle<Vec> left = field(x), right = field(y), image = make_vector(m.dofs);
@@ -35,7 +35,9 @@ template <class Fx, class Fy> double quadratic(const Membrane &m, Mat matrix, Fx
   return value;
 }
 
-double bubble(const Point &x) { return (0.25 - x[0] * x[0]) * (0.25 - x[1] * x[1]); }
+double bubble(const Point &x) {
+  return (0.25 - x[0] * x[0]) * (0.25 - x[1] * x[1]);
+}
 
 TEST(Dofs, NumberEveryInteriorVertexOnce) {
   const Membrane m;
@@ -44,7 +46,8 @@ TEST(Dofs, NumberEveryInteriorVertexOnce) {
   std::vector<int> count(static_cast<std::size_t>(m.dofs.total), 0);
   for (const PetscInt natural : m.dofs.natural_owned)
     ++count[static_cast<std::size_t>(natural)];
-  MPI_Allreduce(MPI_IN_PLACE, count.data(), static_cast<int>(count.size()), MPI_INT, MPI_SUM, m.mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, count.data(), static_cast<int>(count.size()), MPI_INT, MPI_SUM,
+                m.mesh.comm);
   int free = 0;
   for (const int c : count) {
     EXPECT_LE(c, 1);

@@ -48,7 +48,6 @@ ReducedModel full_model() {
   model.parameters.all[1].value = 0.01;
   model.settings = {{"-pod_tolerance", "1e-3"}, {"-cone", "mcpg"}};
   model.mesh_fingerprint = "0123456789abcdef";
-  model.gap_scale = 0.3;
   model.primal_offset = Vector::LinSpaced(5, 0, 1);
   model.a.error = 1e-3;
   model.histories = {{"pod/error", {1, 0.1}}, {"cone/e_orth", {}}};
@@ -79,7 +78,6 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_EQ(copy.contact_trace, model.contact_trace);
   EXPECT_EQ(copy.contact_points, model.contact_points);
   EXPECT_EQ(copy.lumped_weights, model.lumped_weights);
-  EXPECT_EQ(copy.gap_scale, model.gap_scale);
   EXPECT_EQ(copy.primal_basis, model.primal_basis);
   EXPECT_EQ(copy.primal_offset, model.primal_offset);
   EXPECT_EQ(copy.mesh_points, model.mesh_points);
@@ -170,7 +168,6 @@ TEST(CheckModel, NamesWhatDoesNotFit) {
   EXPECT_TRUE(refused([](M &m) { m.b.sample.contributions.back().entry = 2; }));
   EXPECT_TRUE(refused([](M &m) { m.lumped_weights.conservativeResize(3, 1); }));
   EXPECT_TRUE(refused([](M &m) { m.a = {}; }));
-  EXPECT_TRUE(refused([](M &m) { m.gap_scale = 0; }));
 }
 
 /// The leading part of A, B, F, G as dense matrices is the top left corner of the whole.

@@ -17,7 +17,9 @@ HfSolution solve(MPI_Comm comm, const Mu &mu, const HfOptions &options = {},
   return HighFidelity(problem, options).solve(mu);
 }
 
-double relative(double value, double exact) { return std::abs(value / exact - 1); }
+double relative(double value, double exact) {
+  return std::abs(value / exact - 1);
+}
 
 // Exact energy, force and area: 1D Newton on the radial solution (tests/check) and, for the shifted
 // disc, a solution without a mesh (errors <= 1e-11).
@@ -41,16 +43,10 @@ TEST(ActiveSet, ReachesTheExactValues) {
 
 TEST(ActiveSet, EnergyConvergesAtSecondOrder) {
   for (const Exact &e : exact) {
-    double previous = 0;
-    for (int refine : {0, 1, 2}) {
-      const HfSolution s = solve(PETSC_COMM_WORLD, e.mu, {}, {}, refine);
-      const double error = relative(*s.outputs.energy, e.energy);
-      if (refine > 0) {
-        EXPECT_GT(std::log2(previous / error), 1.8) << "refinement " << refine;
-        EXPECT_LT(std::log2(previous / error), 2.3) << "refinement " << refine;
-      }
-      previous = error;
-    }
+    const double coarse = relative(*solve(PETSC_COMM_WORLD, e.mu).outputs.energy, e.energy);
+    const double fine =
+        relative(*solve(PETSC_COMM_WORLD, e.mu, {}, {}, 1).outputs.energy, e.energy);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.2);
   }
 }
 
@@ -68,7 +64,8 @@ TEST(ActiveSet, AWarmStartChangesTheCostOnly) {
 }
 
 TEST(ActiveSet, DoesNotDependOnTheNumberOfRanks) {
-  const HfSolution alone = solve(PETSC_COMM_SELF, shifted), world = solve(PETSC_COMM_WORLD, shifted);
+  const HfSolution alone = solve(PETSC_COMM_SELF, shifted),
+                   world = solve(PETSC_COMM_WORLD, shifted);
   EXPECT_LE((alone.u - world.u).norm(), 1e-10 * alone.u.norm());
   EXPECT_LE((alone.lambda - world.lambda).norm(), 1e-10 * alone.lambda.norm());
 }
@@ -80,7 +77,7 @@ TEST(ActiveSet, BothDiscMapsSolveTheSameProblem) {
   EXPECT_LE(relative(*graded.outputs.normal_force, *similarity.outputs.normal_force), 1e-3);
 }
 
-TEST(ActiveSet, WithoutLoadNothingIsPressed) {
+TEST(ActiveSet, AnUpwardLoadPressesNothing) {
   const HfSolution s = solve(PETSC_COMM_WORLD, centred, {}, {{"load", "5"}});
   EXPECT_EQ(s.lambda.norm(), 0);
   EXPECT_TRUE(s.active.empty());
@@ -116,20 +113,34 @@ TEST(Vi, SaysThatItNeedsNodalBounds) {
   }
 }
 
-TEST(Uzawa, ReachesItsToleranceBothWays) {
-  const HfSolution truth = solve(PETSC_COMM_WORLD, shifted);
+/// Relative error of the multiplier left by Uzawa, whose criterion bounds the last step only: the
+/// slowest component still has about as many steps to go as it has made.
+double uzawa_error(bool accelerated, double tolerance, const HfSolution &truth) {
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_tolerance = 1e-5;
-  const HfSolution fixed = solve(PETSC_COMM_WORLD, shifted, options);
+  options.uzawa_tolerance = tolerance;
+  options.uzawa_accelerated = accelerated;
+  const HfSolution s = solve(PETSC_COMM_WORLD, shifted, options);
+  EXPECT_GE(s.lambda.minCoeff(), 0);
+  EXPECT_LE(relative(*s.outputs.energy, *truth.outputs.energy), 10 * tolerance);
+  return (s.lambda - truth.lambda).norm() / truth.lambda.norm();
+}
+
+TEST(Uzawa, ConvergesToTheActiveSetSolution) {
+  const HfSolution truth = solve(PETSC_COMM_WORLD, shifted);
+  const double fixed = uzawa_error(false, 1e-5, truth);
+  EXPECT_LE(fixed, 0.1);
+  EXPECT_LT(uzawa_error(true, 1e-5, truth), fixed);
+  EXPECT_LE(uzawa_error(true, 1e-8, truth), 1e-4);
+}
+
+TEST(Uzawa, AccelerationSavesIterations) {
+  HfOptions options;
+  options.method = HfMethod::uzawa;
+  options.uzawa_tolerance = 1e-4;
+  const int fixed = solve(PETSC_COMM_WORLD, centred, options).iterations;
   options.uzawa_accelerated = true;
-  const HfSolution accelerated = solve(PETSC_COMM_WORLD, shifted, options);
-  EXPECT_LT(accelerated.iterations, fixed.iterations);
-  for (const HfSolution *s : {&fixed, &accelerated}) {
-    EXPECT_LE(relative(*s->outputs.energy, *truth.outputs.energy), 1e-4);
-    EXPECT_LE((s->lambda - truth.lambda).norm(), 2e-2 * truth.lambda.norm());
-    EXPECT_GE(s->lambda.minCoeff(), 0);
-  }
+  EXPECT_LT(2 * solve(PETSC_COMM_WORLD, centred, options).iterations, fixed);
 }
 
 TEST(Uzawa, StoppingEarlyIsAnError) {

@@ -10,9 +10,11 @@ class Progress {
 public:
   /// `what`: "samples"; `total` steps in all; a rank that does not report stays silent.
   Progress(std::string what, int total, bool reports);
-  /// `done` of the total are finished; `detail` follows the time left.
+  ~Progress(); ///< ends the line
+  Progress(const Progress &) = delete;
+  Progress &operator=(const Progress &) = delete;
+  /// `done` of the total are finished; `detail` ("0.1 s each, ") stands before the times.
   void update(int done, const std::string &detail = "");
-  void finish(); ///< ends the line
 
 private:
   std::string what_;

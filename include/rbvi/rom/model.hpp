@@ -66,7 +66,6 @@ struct ReducedModel {
   Matrix contact_trace;  ///< dual dofs x n: primal basis at the nodes of the contact region
   Matrix contact_points; ///< dual dofs x dim, reference coordinates
   Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
-  double gap_scale = 1;  ///< max |G| / weight over training: scale of the feasibility residual
 
   // Full order, for reconstruction.
   Matrix primal_basis;            ///< dofs x n, fixed dofs included

@@ -45,7 +45,8 @@ struct HfSolution {
   std::string reason; ///< why the solver stopped
 };
 
-/// Solves at many mu; remembers the active sets it has met and starts from that of the nearest mu.
+/// Solves at many mu; remembers the active sets it has met and starts from that of the nearest mu,
+/// the first time from where a few accelerated Uzawa steps see contact.
 class HighFidelity {
 public:
   /// Collective. KSP options under -hf_, SNES options under -vi_.
@@ -61,7 +62,7 @@ private:
     Mu mu;
     std::vector<Index> active;
   };
-  std::vector<Index> nearest_active_set(const Mu &mu) const;
+  std::vector<Index> nearest_active_set(const Mu &mu, const Operators &op) const;
 
   Problem &problem_;
   HfOptions options_;

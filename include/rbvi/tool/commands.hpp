@@ -11,8 +11,8 @@ void command_offline(const ToolOptions &options);
 /// One high-fidelity solve. Collective on the world.
 void command_solve(const ToolOptions &options);
 
-/// Reduced against high-fidelity over the validation set; writes tables and the measured errors into
-/// the model file. Collective on the world.
+/// Reduced against high-fidelity over the validation set; writes tables and the measured errors
+/// into the model file. Collective on the world.
 void command_verify(const ToolOptions &options);
 
 /// Run time against error. Collective on the world.

@@ -1,5 +1,5 @@
-// Options of the rbvi tool: read from PETSc's options database (command line over case file), checked
-// before any work starts.
+// Options of the rbvi tool: read from PETSc's options database (command line over case file),
+// checked before any work starts.
 #pragma once
 
 #include "rbvi/mor/reduce.hpp"
@@ -18,6 +18,7 @@ struct ToolOptions {
   ReduceOptions reduce;
   int ranks_per_solve = 1;
   std::filesystem::path out; ///< run directory; "" where none is given
+  std::string case_file;     ///< all options of the run, for its own case file (case_of_run)
   std::string mu, vtu, csv;
   bool plan = false;
 };
@@ -30,16 +31,25 @@ struct OptionHelp {
 /// All options of rbvi that are not a scene's own.
 const std::vector<OptionHelp> &tool_options();
 
-/// "--name" becomes "-name"; what PETSc would take for itself stays. To be called before PETSc starts.
+/// "-name": a dash and a letter, as PETSc sees it.
+bool is_option(const std::string &word);
+
+/// "--name" becomes "-name"; what PETSc would take for itself stays. To be called before PETSc
+/// starts.
 std::vector<std::string> normalised_arguments(int argc, char **argv);
 
 /// Collective. Inserts the case file under the command line and reads everything. Throws bad_input
-/// for an unknown option (naming the nearest one), a missing or malformed case file, or a value that
-/// does not fit.
+/// for an unknown option (naming the nearest one), a missing or malformed case file, or a value
+/// that does not fit.
 ToolOptions read_options(MPI_Comm comm);
 
-/// Throws bad_input if an option with this prefix was given but no PETSc object has asked for it.
-void check_used(const std::string &prefix);
+/// The case file that a run leaves in its directory, read where no other is named.
+std::filesystem::path case_of_run(const std::filesystem::path &out);
+
+/// Collective on the communicator of `problem`. Throws bad_input if an option under -hf_, -vi_ or
+/// -v_ was given that no PETSc object asks for, or whose value it refuses. Costs nothing where none
+/// is given, and one solve where the objects alone cannot tell.
+void check_solver_options(Problem &problem, const HfOptions &options);
 
 /// Prints the usage, the options above and those of the scenes.
 void print_help();

@@ -12,7 +12,7 @@ namespace rbvi {
 
 class Workspace {
 public:
-  /// Collective on `world`. Makes the group's problem.
+  /// Collective on `world`. Makes the group's problem and checks the options of its solvers.
   Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options, StageTimes &times);
   Problem &group_problem() { return *group_; }
   /// Made at the first call. Collective on the world.

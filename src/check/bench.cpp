@@ -1,0 +1,195 @@
+#include "rbvi/check/bench.hpp"
+
+#include "rbvi/check/interpolation.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/methods.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+/// Errors of fields u and multipliers lambda, collected query by query.
+class Errors {
+public:
+  explicit Errors(Problem &problem) : problem_(problem) {}
+
+  void add(const Vector &u, const Vector &lambda, const Vector &true_u, const Vector &true_lambda) {
+    u_.push_back(v_norm(u - true_u) / v_norm(true_u));
+    lambda_.push_back(w_norm(lambda - true_lambda) / w_norm(true_lambda));
+  }
+  void store(BenchRow &row) const {
+    row.u_mean = mean(u_);
+    row.u_max = *std::max_element(u_.begin(), u_.end());
+    row.lambda_mean = mean(lambda_);
+    row.lambda_max = *std::max_element(lambda_.begin(), lambda_.end());
+  }
+
+private:
+  static double mean(const std::vector<double> &values) {
+    return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size())).mean();
+  }
+  double v_norm(const Vector &natural) {
+    const Handle<Vec> u = from_natural(problem_.dofs(), natural);
+    Handle<Vec> vu;
+    RBVI_CALL(VecDuplicate(u.get(), vu.put()));
+    RBVI_CALL(MatMult(problem_.v_product(), u.get(), vu.get()));
+    PetscScalar square = 0;
+    RBVI_CALL(VecDot(u.get(), vu.get(), &square));
+    return std::sqrt(square);
+  }
+  double w_norm(const Vector &lambda) const {
+    return std::sqrt(lambda.dot(problem_.w_product() * lambda));
+  }
+
+  Problem &problem_;
+  std::vector<double> u_, lambda_;
+};
+
+BenchRow timed_row(std::string method, std::string includes, const std::vector<double> &seconds) {
+  BenchRow row;
+  row.method = std::move(method);
+  row.includes = std::move(includes);
+  row.queries = static_cast<int>(seconds.size());
+  row.median = quantile(seconds, 0.5);
+  row.slow = quantile(seconds, 0.95);
+  return row;
+}
+
+std::string solver_name(const HfOptions &options, bool cold) {
+  switch (options.method) {
+  case HfMethod::active_set:
+    return cold ? "active_set cold" : "active_set warm-started";
+  case HfMethod::uzawa:
+    return options.uzawa_accelerated ? "uzawa accelerated" : "uzawa fixed step";
+  case HfMethod::vi:
+    return "vi on the lumped scene";
+  }
+  return "";
+}
+
+std::vector<Index> support(const Vector &lambda) {
+  std::vector<Index> active;
+  for (Index i = 0; i < lambda.size(); ++i)
+    if (lambda[i] > 0) active.push_back(i);
+  return active;
+}
+
+std::vector<Mu> parameters_of(const std::vector<Sample> &samples) {
+  std::vector<Mu> set;
+  for (const Sample &sample : samples)
+    set.push_back(sample.mu);
+  return set;
+}
+
+} // namespace
+
+std::vector<double> seconds_each(const std::vector<Mu> &set,
+                                 const std::function<void(const Mu &)> &answer) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> seconds;
+  for (const Mu &mu : set) {
+    const auto start = Clock::now();
+    answer(mu);
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return seconds;
+}
+
+double quantile(std::vector<double> values, double fraction) {
+  if (values.empty()) throw failure("no query was measured");
+  std::sort(values.begin(), values.end());
+  const double last = static_cast<double>(values.size() - 1);
+  return values[static_cast<std::size_t>(std::ceil(fraction * last))];
+}
+
+BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vector<Sample> &truths,
+                      std::size_t count, bool cold) {
+  HighFidelity solver(problem, options);
+  Errors errors(problem);
+  std::vector<Mu> set = parameters_of(truths);
+  set.resize(std::min(count, set.size()));
+  std::vector<HfSolution> answers;
+  const std::vector<double> seconds = seconds_each(set, [&](const Mu &mu) {
+    if (cold) solver.forget();
+    answers.push_back(solver.solve(mu));
+  });
+  for (std::size_t p = 0; p < answers.size(); ++p)
+    errors.add(answers[p].u, answers[p].lambda, truths[p].u, truths[p].lambda);
+  BenchRow row = timed_row(solver_name(options, cold), "assembly, field, outputs", seconds);
+  errors.store(row);
+  return row;
+}
+
+std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &truths) {
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  const std::vector<std::string> names{"assembly", "factorisation", "two linear solves",
+                                       "columns and LCP"};
+  std::vector<std::vector<double>> seconds(names.size());
+  for (const Sample &truth : truths) {
+    const std::vector<Index> active = support(truth.lambda);
+    std::vector<double> at{MPI_Wtime()};
+    const Operators &op = problem.assemble(truth.mu);
+    at.push_back(MPI_Wtime());
+    RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+    RBVI_CALL(KSPSetUp(ksp.get()));
+    at.push_back(MPI_Wtime());
+    Handle<Vec> u;
+    RBVI_CALL(VecDuplicate(op.f, u.put()));
+    solve_linear(ksp.get(), op.f, u.get());
+    solve_linear(ksp.get(), op.f, u.get());
+    at.push_back(MPI_Wtime());
+    solve_active_set(ksp.get(), problem.trace(), op, active);
+    const double both = MPI_Wtime() - at.back();
+    for (std::size_t k = 0; k < 3; ++k)
+      seconds[k].push_back(at[k + 1] - at[k]);
+    seconds[3].push_back(std::max(0.0, both - seconds[2].back()));
+  }
+  std::vector<BenchRow> rows;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    rows.push_back(timed_row("active_set: " + names[k], "this part alone", seconds[k]));
+  return rows;
+}
+
+BenchRow bench_vi(Problem &lumped, const std::vector<Mu> &set) {
+  HfOptions options;
+  HighFidelity active_set(lumped, options);
+  options.method = HfMethod::vi;
+  std::vector<Sample> truths;
+  for (const Mu &mu : set) {
+    HfSolution truth = active_set.solve(mu);
+    truths.push_back({mu, std::move(truth.u), std::move(truth.lambda), {}});
+  }
+  return bench_solver(lumped, options, truths, truths.size(), true);
+}
+
+BenchRow bench_interpolation(Problem &problem, const std::vector<Sample> &snapshots,
+                             const std::vector<Sample> &truths) {
+  const std::vector<Mu> training = parameters_of(snapshots), set = parameters_of(truths);
+  const TrainingGrid grid = find_grid(training);
+  const ParameterSpace &space = problem.scene().parameters;
+  std::vector<Sample> answers;
+  const std::vector<double> seconds = seconds_each(set, [&](const Mu &mu) {
+    Sample answer{
+        mu, Vector::Zero(truths.front().u.size()), Vector::Zero(truths.front().lambda.size()), {}};
+    for (const auto &[number, weight] : interpolation_weights(grid, training, space, mu)) {
+      answer.u += weight * snapshots[number].u;
+      answer.lambda += weight * snapshots[number].lambda;
+    }
+    answers.push_back(std::move(answer));
+  });
+  Errors errors(problem);
+  for (std::size_t p = 0; p < answers.size(); ++p)
+    errors.add(answers[p].u, answers[p].lambda, truths[p].u, truths[p].lambda);
+  BenchRow row = timed_row(grid.ticks.empty() ? "nearest snapshot" : "multilinear interpolation",
+                           "field; constraints not enforced", seconds);
+  errors.store(row);
+  for (const Sample &snapshot : snapshots)
+    row.offline += snapshot.outputs.seconds.value_or(0);
+  return row;
+}
+
+} // namespace rbvi

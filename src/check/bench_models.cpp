@@ -1,0 +1,94 @@
+// The rows of reduced models: several pairs (N, R), enriched and not.
+#include "rbvi/check/bench.hpp"
+#include "rbvi/check/errors.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr int passes = 5; ///< over the whole set: a query is much shorter than a high-fidelity one
+
+BenchRow timed_model(const ReducedModel &model, const std::string &includes,
+                     const std::vector<Mu> &set,
+                     const std::function<void(const Mu &, OnlineSolver &)> &answer) {
+  OnlineSolver solver(model);
+  std::vector<double> seconds;
+  for (int pass = 0; pass <= passes; ++pass) {
+    const auto measured = seconds_each(set, [&](const Mu &mu) { answer(mu, solver); });
+    if (pass > 0) seconds.insert(seconds.end(), measured.begin(), measured.end());
+  }
+  BenchRow row;
+  row.method = "reduced (" + std::to_string(model.modes) + "+" + std::to_string(model.supremizers) +
+               ", " + std::to_string(model.generators) + ")";
+  row.includes = includes;
+  row.queries = static_cast<int>(seconds.size());
+  row.median = quantile(seconds, 0.5);
+  row.slow = quantile(seconds, 0.95);
+  return row;
+}
+
+void answer_alone(const Mu &mu, OnlineSolver &solver) {
+  solver.solve(mu, true);
+}
+
+void store(const ModelErrors &errors, BenchRow &row) {
+  row.u_mean = errors.u.mean();
+  row.u_max = errors.u.maxCoeff();
+  row.lambda_mean = errors.lambda.mean();
+  row.lambda_max = errors.lambda.maxCoeff();
+}
+
+/// The pairs of the published tables that the model contains, and two smaller ones.
+std::vector<std::pair<int, int>> pairs_of(const ReducedModel &model) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto &[n, r] : {std::pair{5, 10}, {10, 20}, {19, 50}, {51, 70}}) {
+    const std::pair<int, int> pair{std::min(n, model.modes), std::min(r, model.generators)};
+    if (pair.first < model.modes) pairs.push_back(pair);
+  }
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+} // namespace
+
+std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
+                                   const std::vector<Sample> &samples, double offline) {
+  const Truths truths = make_truths(problem, model, samples);
+  std::vector<BenchRow> rows;
+  const auto add = [&](const ReducedModel &part, const Matrix &embedding) {
+    rows.push_back(timed_model(part, "coefficients", truths.mu, answer_alone));
+    store(model_errors(part, embedding, truths, problem.w_product()), rows.back());
+  };
+  for (const auto &[n, r] : pairs_of(model)) {
+    if (model.b.size() == 1) {
+      const SubModel pair = enriched_pair(model, n, r);
+      add(pair.model, pair.embedding);
+    }
+    add(leading(model, n, r), {});
+  }
+  add(leading(model, model.modes, model.generators), {});
+  add(model, {});
+  const BenchRow whole = rows.back();
+  const auto with = [&](const std::string &includes, const auto &answer) {
+    BenchRow row = timed_model(model, includes, truths.mu, answer);
+    row.u_mean = whole.u_mean;
+    row.u_max = whole.u_max;
+    row.lambda_mean = whole.lambda_mean;
+    row.lambda_max = whole.lambda_max;
+    rows.push_back(row);
+  };
+  with("outputs",
+       [](const Mu &mu, OnlineSolver &solver) { solver.outputs(mu, solver.solve(mu, true)); });
+  with("outputs, field", [](const Mu &mu, OnlineSolver &solver) {
+    const ReducedSolution answer = solver.solve(mu, true);
+    solver.outputs(mu, answer);
+    solver.field(answer);
+  });
+  for (BenchRow &row : rows)
+    row.offline = offline;
+  return rows;
+}
+
+} // namespace rbvi

@@ -1,0 +1,136 @@
+#include "rbvi/tool/stages.hpp"
+
+#include "rbvi/tool/tables.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace rbvi {
+
+namespace {
+
+std::string count(int number, const std::string &noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+StageRow mesh_row(const ToolOptions &options) {
+  return {"mesh",
+          (options.mesh.file.empty() ? "built in: " + options.scene.mesh.generator
+                                     : "file " + options.mesh.file) +
+              (options.mesh.refine > 0 ? ", refined " + count(options.mesh.refine, "time") : "")};
+}
+
+StageRow snapshot_row(const ToolOptions &options, std::size_t training, int groups,
+                      const OfflineResult *result) {
+  const std::string shared =
+      " by " + count(groups, "group") + " of " + count(options.ranks_per_solve, "rank");
+  if (result == nullptr)
+    return {"snapshots", std::to_string(training) + " high-fidelity solves" + shared +
+                             ", those that are there reused"};
+  const SweepReport &sweep = result->sweep;
+  if (sweep.solved == 0 && sweep.failed.empty())
+    return {"snapshots", "all " + std::to_string(sweep.reused) + " were there", true};
+  std::string what = std::to_string(sweep.solved) + " solved" + shared;
+  if (sweep.solved > 0) what += ", median " + short_number(1e3 * sweep.seconds_per_solve) + " ms";
+  if (sweep.reused > 0) what += "; " + std::to_string(sweep.reused) + " reused";
+  if (!sweep.failed.empty()) what += "; " + std::to_string(sweep.failed.size()) + " failed";
+  return {"snapshots", what};
+}
+
+std::string terms(const char *name, const Eim &eim) {
+  return std::string(name) + " " + std::to_string(eim.size()) +
+         (eim.reason.starts_with("separable") ? " (exact)" : "");
+}
+
+StageRow interpolation_row(const ToolOptions &options, const OfflineResult *result) {
+  const std::string tolerance = "to " + short_number(options.reduce.eim.tolerance);
+  const bool load = static_cast<bool>(options.scene.f);
+  if (result == nullptr)
+    return {"interpolation", std::string(load ? "A, B, F, G " : "A, B, G ") + tolerance +
+                                 "; a sum of few terms ends there"};
+  const AffineOperators &affine = result->affine;
+  return {"interpolation", "terms: " + terms("A", affine.a) + ", " + terms("B", affine.b) + ", " +
+                               (load ? terms("F", affine.f) + ", " : "") + terms("G", affine.g) +
+                               "; " + tolerance};
+}
+
+StageRow pod_row(const ToolOptions &options, const OfflineResult *result) {
+  const std::string tolerance = "to " + short_number(options.reduce.pod.tolerance);
+  if (result == nullptr) return {"POD", "displacements " + tolerance};
+  const ReducedBases &bases = result->bases;
+  const double error = bases.pod.error[static_cast<std::size_t>(bases.modes)];
+  return {"POD", "N = " + count(bases.modes, "mode") + ", error " + short_number(error)};
+}
+
+StageRow cone_row(const ToolOptions &options, const OfflineResult *result) {
+  const ConeOptions &cone = options.reduce.cone;
+  const std::string name = cone.type == ConeType::mcpg ? "mcpg" : "cpg";
+  if (result == nullptr)
+    return {"cone", name + " for the multipliers, to " + short_number(cone.tolerance)};
+  const Cone &made = result->bases.cone;
+  return {"cone", "R = " + count(static_cast<int>(made.basis.generators.cols()), "generator") +
+                      " (" + name + "), error " + short_number(made.history.error.back()) + ", " +
+                      made.history.reason};
+}
+
+StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
+  const PgaOptions &pga = options.reduce.pga;
+  if (result == nullptr)
+    return {"PGA",
+            "supremizers until " +
+                (pga.tolerance > 0 ? "sigma <= " + short_number(pga.tolerance)
+                                   : "beta_off >= " + short_number(pga.stability) + " beta_on") +
+                "; one SVD if B only scales"};
+  const ReducedBases &bases = result->bases;
+  return {"PGA", "S = " + count(bases.supremizers, "supremizer") + ", sigma " +
+                     short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};
+}
+
+StageRow sweep_of_supremizers_row(const OfflineResult *result) {
+  if (result == nullptr) return {"supremizers at all mu", "only if B does more than scale"};
+  if (result->affine.b.size() == 1)
+    return {"supremizers at all mu", "B only scales: one set and one SVD serve all mu", true};
+  return {"supremizers at all mu", "B depends on mu: part of PGA"};
+}
+
+} // namespace
+
+std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t training, int groups,
+                                     const OfflineResult *result) {
+  std::vector<StageRow> rows{mesh_row(options), snapshot_row(options, training, groups, result)};
+  if (groups == 1)
+    rows.push_back({"distributed mesh", "the one group holds all ranks", true});
+  else
+    rows.push_back({"distributed mesh", "for the reduction on all ranks"});
+  rows.push_back(interpolation_row(options, result));
+  if (!options.scene.f) rows.push_back({"load vector", "the scene has no load", true});
+  rows.push_back(pod_row(options, result));
+  rows.push_back(cone_row(options, result));
+  rows.push_back({"Riesz representers", "one factorisation of V for all mu"});
+  rows.push_back(pga_row(options, result));
+  rows.push_back(sweep_of_supremizers_row(result));
+  rows.push_back({"tangential multipliers", "the scene has no friction", true});
+  rows.push_back({"projection", "the separated operators onto the bases"});
+  rows.push_back({"writing", "model.h5, samples.csv"});
+  rows.push_back({"reconstruction", "online, only when asked", true});
+  return rows;
+}
+
+void print_stages(const std::vector<StageRow> &rows, const StageTimes &times) {
+  std::printf("%-24s %9s  %s\n", "Stage", "seconds", "what");
+  double total = 0;
+  for (const StageRow &row : rows) {
+    const auto time = std::find_if(times.begin(), times.end(),
+                                   [&](const auto &entry) { return entry.first == row.stage; });
+    char seconds[16] = "";
+    if (time != times.end()) {
+      std::snprintf(seconds, sizeof seconds, "%.3f", time->second);
+      total += time->second;
+    }
+    std::printf("  %-22s %9s  %s%s\n", row.stage.c_str(), seconds, row.skipped ? "skipped: " : "",
+                row.what.c_str());
+  }
+  if (!times.empty()) std::printf("  %-22s %9.3f\n", "total", total);
+}
+
+} // namespace rbvi

@@ -1,0 +1,219 @@
+// Bad input: one line of ours, the documented status, nothing written, on 1 and 2 ranks.
+#include "rbvi/core/h5.hpp"
+#include "run.hpp"
+
+#include <future>
+
+namespace rbvi {
+namespace {
+
+struct Case {
+  std::string arguments;
+  std::string part; ///< of the message
+  int status = 2;
+};
+
+/// Every file below `directory` with its bytes, but for those of commands that still run.
+std::vector<std::pair<std::string, std::string>> everything() {
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const auto &entry : fs::recursive_directory_iterator(".")) {
+    const std::string name = entry.path().string();
+    if (name.ends_with(".stdout") || name.ends_with(".stderr")) continue;
+    files.emplace_back(name, entry.is_regular_file() ? slurp(name) : "directory");
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+void expect_refused(const Case &c, const Finished &run, int ranks) {
+  SCOPED_TRACE("rbvi " + c.arguments + ", " + std::to_string(ranks) + " ranks: status " +
+               std::to_string(run.status) + "\n" + run.err);
+  EXPECT_EQ(run.status, c.status);
+  EXPECT_TRUE(contains(run.err, c.part)) << "expected: " << c.part;
+  EXPECT_EQ(lines_with(run.err, "rbvi: "), 1);
+  for (const char *noise : {"PETSC ERROR", "WARNING!", "terminate called", "MPI_ABORT"})
+    EXPECT_FALSE(contains(run.err, noise));
+  if (ranks == 1) EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
+}
+
+class BadInput : public InDirectory, public testing::WithParamInterface<int> {
+protected:
+  /// Runs all, four at a time, and checks each; nothing in the directory may change.
+  void refuse(const std::vector<Case> &cases) const {
+    const auto before = everything();
+    constexpr std::size_t at_once = 4;
+    for (std::size_t begin = 0; begin < cases.size(); begin += at_once) {
+      std::vector<std::future<Finished>> runs;
+      const std::size_t end = std::min(begin + at_once, cases.size());
+      for (std::size_t i = begin; i < end; ++i)
+        runs.push_back(std::async(std::launch::async, [&, i] {
+          return shell(rbvi(GetParam(), cases[i].arguments), std::to_string(i));
+        }));
+      for (std::size_t i = begin; i < end; ++i)
+        expect_refused(cases[i], runs[i - begin].get(), GetParam());
+    }
+    EXPECT_TRUE(everything() == before) << "files were written or changed";
+  }
+  /// A good run in run/.
+  void make_run() const {
+    const Finished run = shell(rbvi(GetParam(), "offline -case case.yaml -out run"));
+    ASSERT_EQ(run.status, 0) << run.err;
+  }
+};
+
+TEST_P(BadInput, Commands) {
+  refuse({{"oflfine", "nearest one is 'offline'"},
+          {"inspect", "one model file"},
+          {"list more", "'more' is left over"},
+          {"offline case.yaml", "'case.yaml' is left over"},
+          {"solve -case case.yaml -mu 0.2 0 0", "'0' is left over"}});
+}
+
+TEST_P(BadInput, ScenesAndOptions) {
+  refuse(
+      {{"offline -case case.yaml -scene membrane -out run", "unknown scene 'membrane'"},
+       {"offline -case case.yaml -trian grid:2,2,2 -out run", "nearest one is -train"},
+       {"offline -case case.yaml --pod_tolernace 1e-3 -out run", "nearest one is -pod_tolerance"},
+       {"offline -case case.yaml -pod_tolerance small -out run", "'small': not a number"},
+       {"offline -case case.yaml -pod_tolerance -1 -out run", "use a number from 0 to 1"},
+       {"offline -case case.yaml -cone_type cone -out run", "use one of cpg, mcpg"},
+       {"offline -case case.yaml -disc_map round -out run", "use one of similarity, graded"},
+       {"offline -case case.yaml -load heavy -out run", "'heavy': not a number"},
+       {"offline -case case.yaml -plan maybe -out run", "use yes or no"},
+       {"offline -case case.yaml -log_veiw -out run", "unknown option -log_veiw"},
+       {"offline -case case.yaml -sweep_ranks_per_solve 3 -out run", "a number that divides the"},
+       {"offline -case case.yaml -train grid:2,2 -out run", "2 counts for 3"},
+       {"offline -case case.yaml -radius 0.24,0.16 -out run", "the lower bound comes first"},
+       {"offline -case case.yaml -radius 0.2 -out run", "3 counts for 2 free parameters"},
+       {"offline -case case.yaml -radius 0.2 -parameters radius -out run", "fixed by -radius 0.2"},
+       {"offline -case case.yaml -options_file nofile -out run", "nofile"},
+       {"offline -case case.yaml", "use -out"}});
+}
+
+TEST_P(BadInput, OptionsOfSolvers) {
+  refuse({{"offline -case case.yaml -hf_pc_tpye lu -out run", "-hf_pc_tpye"},
+          {"offline -case case.yaml -hf_mat_mumps_icntl14 50 -out run", "-hf_mat_mumps_icntl14"},
+          {"offline -case case.yaml -v_ksp_tpye cg -out run", "-v_ksp_tpye"},
+          {"offline -case case.yaml -vi_snes_max_its 9 -out run", "-vi_snes_max_its"},
+          {"offline -case case.yaml -hf_pc_type nothing -out run", "nothing"},
+          {"solve -case case.yaml -mu 0.2,0,0 -hf_pc_tpye lu -csv x.csv", "-hf_pc_tpye"}});
+}
+
+TEST_P(BadInput, Mu) {
+  const std::string solve = "solve -case case.yaml -csv x.csv ";
+  refuse({{solve, "use -mu"},
+          {solve + "-mu 0.2,0", "2 values for 3"},
+          {solve + "-mu 0.2,0,0,0", "4 values for 3"},
+          {solve + "-mu 0.25,0,0", "radius = 0.25 is outside [0.16, 0.24]"},
+          {solve + "-mu nan,0,0", "not finite"},
+          {solve + "-mu a,0,0", "'a': not a number"},
+          {solve + "-mu radius=0.2,centre=0", "no parameter 'centre'"}});
+}
+
+TEST_P(BadInput, CaseFiles) {
+  spill("text.yaml", "membrane_obstacle\n");
+  spill("brackets.yaml", "scene: membrane_obstacle\ntrain: [grid\n");
+  spill("tab.yaml", "scene: membrane_obstacle\n\tload: -25\n");
+  spill("list.yaml", "- scene\n- train\n");
+  spill("alias.yaml", "scene: *membrane\n");
+  spill("bytes.yaml", std::string("\0\1\377\376scene", 9));
+  spill("empty.yaml", "");
+  spill("key.yaml", "scene: membrane_obstacle\ntrian: grid:2,2,2\n");
+  spill("nested.yaml", "scene: membrane_obstacle\npod: {tolernace: 1}\n");
+  fs::create_directory("directory.yaml");
+  refuse({{"offline -out run", "no case is named"},
+          {"offline -case no.yaml -out run", "no.yaml cannot be read"},
+          {"offline -case directory.yaml -out run", "directory.yaml is a directory"},
+          {"offline -case text.yaml -out run", "text.yaml is malformed"},
+          {"offline -case brackets.yaml -out run", "brackets.yaml is malformed"},
+          {"offline -case tab.yaml -out run", "tab.yaml is malformed"},
+          {"offline -case list.yaml -out run", "list.yaml is malformed"},
+          {"offline -case alias.yaml -out run", "alias.yaml is malformed"},
+          {"offline -case bytes.yaml -out run", ""},
+          {"offline -case empty.yaml -out run", "no scene is named"},
+          {"offline -case key.yaml -out run", "unknown option -trian"},
+          {"offline -case nested.yaml -out run", "unknown option -pod_tolernace"}});
+}
+
+TEST_P(BadInput, Meshes) {
+  spill("edge.msh", coarse_gmsh("edge"));
+  spill("half.msh", coarse_gmsh().substr(0, 4000));
+  spill("text.msh", "not a mesh\n");
+  refuse({{"offline -case case.yaml -mesh no.msh -out run", "no.msh"},
+          {"offline -case case.yaml -mesh text.msh -out run", "not a Gmsh mesh"},
+          {"offline -case case.yaml -mesh half.msh -out run", "half.msh"},
+          {"offline -case case.yaml -mesh edge.msh -out run", "no physical boundary 'boundary'"}});
+}
+
+TEST_P(BadInput, Models) {
+  make_run();
+  const std::string good = slurp("run/model.h5");
+  std::string flipped = good;
+  flipped[good.size() / 2] = static_cast<char>(flipped[good.size() / 2] ^ 1);
+  H5Writer other_schema, sample;
+  other_schema.write("scene", std::string("membrane_obstacle"));
+  other_schema.commit("other_schema.h5", "model", 999);
+  const std::pair<std::string, std::string> models[] = {
+      {good.substr(0, good.size() / 2), "truncated"},
+      {flipped, "damaged"},
+      {"\211HDF\r\n\032\n and more", "not an rbvi file"},
+      {slurp("other_schema.h5"), "999"}};
+  for (const auto &[bytes, part] : models) {
+    spill("run/model.h5", bytes);
+    refuse({{"verify -out run", part}, {"inspect run/model.h5", part}});
+  }
+  fs::remove("run/model.h5");
+  refuse({{"verify -out run", "run/model.h5 does not exist"},
+          {"verify -case case.yaml", "use -out"},
+          {"inspect run/model.h5", "does not exist"},
+          {"inspect run", "is a directory"}});
+}
+
+TEST_P(BadInput, RunsOfOtherOptions) {
+  make_run();
+  spill("finer.msh", coarse_gmsh());
+  refuse({{"offline -case case.yaml -out run -load -20", "load = -25, now it is -20"},
+          {"offline -case case.yaml -out run -hf_method uzawa",
+           "hf_method = active_set, now it is uzawa"},
+          {"offline -case case.yaml -out run -mesh_refine 1", "mesh = "},
+          {"offline -case case.yaml -out run -center_x 0 -train grid:2,2", "center_x"},
+          {"verify -out run -load -20", "other options"},
+          {"verify -out run -mesh_refine 1", "another mesh"}});
+  const fs::path sample = fs::directory_iterator("run/samples")->path();
+  const std::string good = slurp(sample);
+  spill(sample, good.substr(0, 1000));
+  refuse({{"offline -case case.yaml -out run", sample.filename().string() + " is truncated"}});
+  spill(sample, good.substr(0, good.size() - 9) + "!" + good.substr(good.size() - 8));
+  refuse({{"offline -case case.yaml -out run", sample.filename().string() + " is damaged"}});
+}
+
+TEST_P(BadInput, NotWritable) {
+  refuse({{"offline -case case.yaml -out coarse.msh", "cannot make the directory", 1},
+          {"offline -case case.yaml -out coarse.msh/run", "cannot make the directory", 1},
+          {"solve -case case.yaml -mu 0.2,0,0 -csv no/x.csv", "cannot write no/x.csv", 1},
+          {"solve -case case.yaml -mu 0.2,0,0 -csv /dev/full", "No space left", 1},
+          {"solve -case case.yaml -mu 0.2,0,0 -vtu no/u.vtu", "cannot write no/u.vtu", 1}});
+}
+
+/// What was written before stays whole, and the run goes on once there is room.
+TEST_P(BadInput, DiskFull) {
+  fs::create_directory("disk");
+  if (shell("unshare -rm mount -t tmpfs none disk").status != 0)
+    GTEST_SKIP() << "a small file system cannot be mounted here";
+  const Finished run = shell("unshare -rm sh -c 'mount -t tmpfs -o size=60k none disk; " +
+                             rbvi(GetParam(), "offline -case case.yaml -out disk/run") +
+                             "; status=$?; cp -r disk/run kept; exit $status'");
+  expect_refused({"offline on a full disk", "No space left", 1}, run, GetParam());
+  for (const auto &entry : fs::directory_iterator("kept/samples"))
+    EXPECT_EQ(entry.path().extension(), ".h5") << entry.path();
+  EXPECT_FALSE(fs::exists("kept/model.h5"));
+  const Finished resumed = shell(rbvi(GetParam(), "offline -case case.yaml -out kept"));
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_TRUE(contains(resumed.out, "reused")) << resumed.out;
+}
+
+INSTANTIATE_TEST_SUITE_P(Ranks, BadInput, testing::Values(1, 2),
+                         [](const auto &info) { return "np" + std::to_string(info.param); });
+
+} // namespace
+} // namespace rbvi

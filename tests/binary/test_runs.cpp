@@ -1,0 +1,216 @@
+// Whole runs: what the tools print, the same model from any ranks, resume after a kill.
+#include "rbvi/core/parameters.hpp"
+#include "run.hpp"
+
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+namespace rbvi {
+namespace {
+
+struct Runs : InDirectory {
+  /// The answers of a model at a few mu: energy, forces, pressure, and the field's minimum.
+  std::vector<double> answers(const std::string &run) const {
+    const Finished online =
+        shell(rbvi_online(run + "/model.h5 --queries random:6:3 --full --out " + run + ".csv"));
+    EXPECT_EQ(online.status, 0) << online.err;
+    std::istringstream lines(slurp(run + ".csv"));
+    std::string line;
+    std::getline(lines, line);
+    const std::vector<std::string> names = split(line, ',');
+    std::vector<double> values;
+    while (std::getline(lines, line)) {
+      const std::vector<std::string> entries = split(line, ',');
+      for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i] != "seconds" && names[i] != "kkt_residual")
+          values.push_back(parse_number(entries[i], names[i]));
+    }
+    EXPECT_GE(values.size(), 6U * 8U);
+    return values;
+  }
+
+  void expect_same(const std::string &run, const std::vector<double> &expected) const {
+    const std::vector<double> got = answers(run);
+    ASSERT_EQ(got.size(), expected.size());
+    for (std::size_t i = 0; i < got.size(); ++i)
+      EXPECT_NEAR(got[i], expected[i], 1e-10 * (1 + std::abs(expected[i])))
+          << run << ", value " << i;
+  }
+
+  void offline(int ranks, const std::string &arguments) const {
+    const Finished run = shell(rbvi(ranks, "offline -case case.yaml " + arguments));
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    EXPECT_FALSE(contains(run.out, "\x1b")) << "escape sequences in a file";
+  }
+};
+
+TEST_F(Runs, TheSameModelFromAnyRanks) {
+  for (const std::string map : {"similarity", "graded"}) {
+    const std::string common =
+        "-train grid:3,3,3 -pod_tolerance 1e-4 -cone_tolerance 5e-2 -disc_map " + map + " -out " +
+        map;
+    offline(1, common + "1");
+    const std::vector<double> expected = answers(map + "1");
+    for (int ranks = 2; ranks <= 4; ++ranks) {
+      offline(ranks, common + std::to_string(ranks));
+      expect_same(map + std::to_string(ranks), expected);
+    }
+    offline(2, common + "_together -sweep_ranks_per_solve 2");
+    expect_same(map + "_together", expected);
+    offline(4, common + "_pairs -sweep_ranks_per_solve 2");
+    expect_same(map + "_pairs", expected);
+  }
+}
+
+/// Kills `command` as soon as `samples` are in killed/samples; false if it was done before.
+bool kill_after(const std::string &command, std::size_t samples, bool one_rank) {
+  const pid_t child = fork();
+  if (child == 0) {
+    setpgid(0, 0);
+    execl("/bin/sh", "sh", "-c", ("exec " + command + " >killed.txt 2>&1").c_str(), nullptr);
+    _exit(127);
+  }
+  int status = 0;
+  for (;;) {
+    std::error_code error;
+    std::size_t count = 0;
+    for (const auto &entry : fs::directory_iterator("killed/samples", error))
+      count += entry.path().extension() == ".h5" ? 1 : 0;
+    if (count >= samples) break;
+    if (waitpid(child, &status, WNOHANG) == child) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  if (one_rank)
+    shell("pkill -KILL -n -P " + std::to_string(child));
+  else
+    kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  // Open MPI's processes notice that mpirun is gone a moment later.
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  return true;
+}
+
+std::size_t count_samples(const std::string &run) {
+  std::size_t count = 0;
+  for (const auto &entry : fs::directory_iterator(run + "/samples"))
+    count += entry.path().extension() == ".h5" ? 1 : 0;
+  return count;
+}
+
+TEST_F(Runs, ResumesAfterAKill) {
+  const std::string sweep = "offline -case case.yaml -mesh_refine 2 -train grid:4,4,4 "
+                            "-pod_tolerance 1e-3 -cone_tolerance 1e-1 -out ";
+  ASSERT_EQ(shell(rbvi(2, sweep + "whole")).status, 0);
+  const std::vector<double> expected = answers("whole");
+  for (const bool one_rank : {false, true}) {
+    fs::remove_all("killed");
+    ASSERT_TRUE(kill_after(rbvi(2, sweep + "killed"), 10, one_rank)) << "the run ended too early";
+    EXPECT_FALSE(fs::exists("killed/model.h5"));
+    const std::size_t present = count_samples("killed");
+    ASSERT_LT(present, 64U);
+    const Finished resumed = shell(rbvi(2, sweep + "killed"));
+    EXPECT_EQ(resumed.status, 0) << resumed.err;
+    EXPECT_TRUE(contains(resumed.out, "; " + std::to_string(present) + " reused")) << resumed.out;
+    EXPECT_TRUE(contains(resumed.out, std::to_string(64 - present) + " solved")) << resumed.out;
+    expect_same("killed", expected);
+  }
+}
+
+TEST_F(Runs, AFailingSampleIsNamedAndTheOthersServe) {
+  const std::string arguments = "offline -case case.yaml -radius 0.16,0.6 -out run";
+  for (const int ranks : {1, 2}) {
+    const Finished run = shell(rbvi(ranks, arguments));
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(contains(run.out, "failed at radius=0.6 center_x=-0.05 center_y=-0.05: "))
+        << run.out;
+    EXPECT_TRUE(contains(run.out, "inverts a cell")) << run.out;
+    EXPECT_TRUE(contains(run.out, "4 failed")) << run.out;
+  }
+  EXPECT_EQ(count_samples("run"), 4U);
+  const Finished none = shell(rbvi(2, "offline -case case.yaml -radius 0.6,0.61 -out none"));
+  EXPECT_EQ(none.status, 1);
+  EXPECT_EQ(lines_with(none.err, "rbvi: no sample succeeded"), 1) << none.err;
+  EXPECT_FALSE(fs::exists("none/model.h5"));
+}
+
+TEST_F(Runs, PlanAndEndAreOneTable) {
+  const Finished plan = shell(rbvi(2, "offline -case case.yaml -load 0 -plan"));
+  EXPECT_EQ(plan.status, 0);
+  EXPECT_TRUE(
+      contains(plan.out, "load vector                       skipped: the scene has no load"))
+      << plan.out;
+  EXPECT_TRUE(contains(plan.out, "8 high-fidelity solves by 2 groups of 1 rank")) << plan.out;
+  EXPECT_FALSE(contains(plan.out, "total"));
+  const Finished run = shell(rbvi(2, "offline -case case.yaml -out run"));
+  for (const char *stage :
+       {"mesh", "snapshots", "interpolation", "POD", "cone", "PGA", "projection"})
+    EXPECT_EQ(lines_with(run.out, std::string("  ") + stage + " "), 2) << stage << run.out;
+  EXPECT_TRUE(contains(run.out, "skipped: B only scales")) << run.out;
+  EXPECT_TRUE(contains(run.out, "8 of 8 samples")) << run.out;
+  const Finished again = shell(rbvi(1, "offline -out run"));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(contains(again.out, "skipped: all 8 were there")) << again.out;
+  EXPECT_TRUE(contains(again.out, "skipped: the one group holds all ranks")) << again.out;
+}
+
+TEST_F(Runs, ARunKeepsItsOptions) {
+  EXPECT_EQ(
+      shell(rbvi(1, "offline -case case.yaml -load -20 --hf_pc_type lu "
+                    "-hf_pc_factor_mat_solver_type mumps -hf_mat_mumps_icntl_14 50 -out 'a run'"))
+          .status,
+      0);
+  fs::remove("case.yaml");
+  const Finished verify = shell(rbvi(2, "verify -out 'a run'"));
+  EXPECT_EQ(verify.status, 0) << verify.err;
+  EXPECT_TRUE(contains(slurp("a run/case.yaml"), "load: -20\n"));
+  EXPECT_TRUE(contains(slurp("a run/case.yaml"), "hf_mat_mumps_icntl_14: 50\n"));
+  const Finished model = shell(rbvi_online("'a run/model.h5'"));
+  EXPECT_TRUE(contains(model.out, "load -20")) << model.out;
+}
+
+TEST_F(Runs, FixedParameters) {
+  const std::string run = "offline -case case.yaml -train grid:4 -out ";
+  EXPECT_EQ(shell(rbvi(1, run + "a -center_x 0.01 -center_y 0")).status, 0);
+  EXPECT_EQ(shell(rbvi(1, run + "b -parameters radius")).status, 0);
+  EXPECT_TRUE(contains(shell(rbvi_online("a/model.h5")).out, "0.01 (fixed)"));
+  EXPECT_TRUE(contains(shell(rbvi_online("b/model.h5")).out, "0 (fixed)"));
+  EXPECT_EQ(shell(rbvi_online("a/model.h5 --mu 0.2")).status, 0);
+}
+
+TEST_F(Runs, HelpVersionAndListWithOneAndTwoDashes) {
+  for (const int ranks : {1, 2})
+    for (const std::string dashes : {"-", "--"}) {
+      const Finished help = shell(rbvi(ranks, dashes + "help"));
+      EXPECT_EQ(help.status, 0);
+      EXPECT_EQ(lines_with(help.out, "rbvi COMMAND"), 1) << help.out;
+      EXPECT_TRUE(contains(help.out, "-sweep_ranks_per_solve"));
+      EXPECT_EQ(shell(rbvi(ranks, "offline " + dashes + "help")).status, 0);
+      const Finished version = shell(rbvi(ranks, dashes + "version"));
+      EXPECT_EQ(version.status, 0);
+      EXPECT_TRUE(contains(version.out, "rbvi " RBVI_VERSION "\n"));
+      const Finished solve = shell(rbvi(ranks, "solve " + dashes + "case case.yaml " + dashes +
+                                                   "mu 0.2,0,0 " + dashes + "csv u.csv"));
+      EXPECT_EQ(solve.status, 0) << solve.err;
+      EXPECT_EQ(solve.err, "");
+      EXPECT_TRUE(contains(slurp("u.csv"), "radius,center_x,center_y,energy"));
+    }
+  const Finished list = shell(rbvi(2, "list"));
+  EXPECT_EQ(list.status, 0);
+  EXPECT_EQ(lines_with(list.out, "membrane_obstacle"), 1);
+  EXPECT_EQ(shell(rbvi(1, "list > /dev/full")).status, 1);
+}
+
+/// One rank fails while the others wait for it: one line, its status, and no hang.
+TEST_F(Runs, ALostRankEndsAll) {
+  const Finished run = shell(RBVI_MPIRUN " -n 3 " RBVI_TEST_TOOL " --gtest_also_run_disabled_tests "
+                                         "--gtest_filter=*ARankLeavesTheOthersWaiting");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_EQ(lines_with(run.err, "rbvi: this rank is lost"), 1) << run.err;
+  EXPECT_FALSE(contains(run.out + run.err, "should have been ended"));
+}
+
+} // namespace
+} // namespace rbvi

@@ -1,0 +1,159 @@
+// From snapshots to a reduced model: it reproduces its own training set, and what verify measures
+// is what a direct computation gives.
+#include "rbvi/check/errors.hpp"
+#include "rbvi/check/stability_report.hpp"
+#include "rbvi/mor/reduce.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+std::vector<Sample> solve_all(Problem &problem, const std::vector<Mu> &set) {
+  HighFidelity solver(problem, {});
+  std::vector<Sample> samples;
+  for (const Mu &mu : set) {
+    const HfSolution s = solver.solve(mu);
+    samples.push_back({mu, s.u, s.lambda, s.outputs});
+  }
+  return samples;
+}
+
+struct Reduced {
+  Problem problem;
+  std::vector<Sample> samples;
+  AffineOperators affine;
+  ReducedBases bases;
+  ReducedModel model;
+
+  Reduced(const SceneOptions &scene, const std::string &training, const ReduceOptions &options)
+      : problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle", scene), {}) {
+    const std::vector<Mu> set = parse_set(problem.scene().parameters, training);
+    samples = solve_all(problem, set);
+    affine = separate(problem, set, options.eim);
+    StageTimes times;
+    bases = build_bases(problem, samples, options, affine.b.size() == 1, times);
+    model = project(problem, samples, affine, bases);
+  }
+};
+
+ReduceOptions everything() {
+  ReduceOptions options;
+  options.pod.tolerance = 0;
+  options.cone.tolerance = 1e-12;
+  options.pga.tolerance = 1e-9;
+  options.eim.tolerance = 1e-13;
+  return options;
+}
+
+class BothMaps : public testing::TestWithParam<const char *> {};
+INSTANTIATE_TEST_SUITE_P(Maps, BothMaps, testing::Values("similarity", "graded"));
+
+TEST_P(BothMaps, ABasisOfAllSnapshotsReturnsThem) {
+  Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", everything());
+  const Truths truths = make_truths(r.problem, r.model, r.samples);
+  const ModelErrors errors = model_errors(r.model, {}, truths, r.problem.w_product());
+  EXPECT_LE(errors.u.maxCoeff(), 1e-9);
+  EXPECT_LE(errors.lambda.maxCoeff(), 1e-7);
+  EXPECT_LE(errors.kkt_residual, 1e-12);
+}
+
+TEST_P(BothMaps, OutputsOfTheReducedModelAreThoseOfItsSnapshots) {
+  Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", everything());
+  OnlineSolver online(r.model);
+  for (const Sample &sample : r.samples) {
+    const ReducedSolution answer = online.solve(sample.mu);
+    const Outputs outputs = online.outputs(sample.mu, answer);
+    EXPECT_NEAR(*outputs.energy, *sample.outputs.energy, 1e-9 * std::abs(*sample.outputs.energy));
+    EXPECT_NEAR(*outputs.normal_force, *sample.outputs.normal_force, 1e-7);
+    EXPECT_NEAR(*outputs.peak_pressure, *sample.outputs.peak_pressure, 1e-4);
+    EXPECT_NEAR(*outputs.max_penetration, *sample.outputs.max_penetration, 1e-8);
+    EXPECT_LE((online.field(answer) - sample.u).norm(), 1e-8 * sample.u.norm());
+  }
+}
+
+TEST_P(BothMaps, TheSharpBoundHoldsAtEveryTrainingParameter) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-4;
+  for (const double fraction : {0.3, 0.9}) {
+    options.pga.stability = fraction;
+    Reduced r({{"disc_map", GetParam()}}, "grid:3,3,3", options);
+    const StabilityCheck check = make_stability_check(r.problem, r.model);
+    for (const Sample &sample : r.samples) {
+      const Matrix t = supremizers_at(r.problem, check.space, check.dual, {sample.mu}).front();
+      const StabilityBound bound = stability_bound(check.coordinates, t);
+      const double off = infsup_constant(check.coordinates, t);
+      EXPECT_GE(off, (1 - 1e-9) * bound.sharp);
+      EXPECT_GE(off, bound.classic);
+      EXPECT_GE(bound.sharp, (fraction - 1e-9) * bound.on);
+    }
+  }
+}
+
+TEST_P(BothMaps, ConstantsComeInTheirOrder) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-3;
+  Reduced r({{"disc_map", GetParam()}}, "grid:3,2,2", options);
+  const StabilityCheck check = make_stability_check(r.problem, r.model);
+  const std::vector<Mu> set = parse_set(r.problem.scene().parameters, "random:6:3");
+  for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, set, false)) {
+    EXPECT_GE(c.on * (1 + 1e-9), c.off);
+    EXPECT_GE(c.off * (1 + 1e-9), c.dec);
+    EXPECT_GE(c.on * (1 + 1e-9), c.hf);
+    EXPECT_GT(c.off, 0);
+  }
+}
+
+TEST(Reduce, ErrorsAgreeWithADirectComputation) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-2;
+  options.cone.tolerance = 0.1;
+  Reduced r({}, "grid:3,2,2", options);
+  const std::vector<Sample> valid = solve_all(r.problem, {{0.21, 0.01, 0.02}});
+  const Truths truths = make_truths(r.problem, r.model, valid);
+  const ModelErrors errors = model_errors(r.model, {}, truths, r.problem.w_product());
+  OnlineSolver online(r.model);
+  const ReducedSolution answer = online.solve(valid[0].mu);
+  const auto norm = [&](const Vector &natural) {
+    const Handle<Vec> x = from_natural(r.problem.dofs(), natural),
+                      y = make_vector(r.problem.dofs());
+    PetscScalar value = 0;
+    RBVI_CALL(MatMult(r.problem.v_product(), x.get(), y.get()));
+    RBVI_CALL(VecDot(x.get(), y.get(), &value));
+    return std::sqrt(value);
+  };
+  const double direct = norm(online.field(answer) - valid[0].u) / norm(valid[0].u);
+  EXPECT_NEAR(errors.u[0], direct, 1e-9 * direct);
+  EXPECT_LE(errors.u_floor[0], errors.u[0] * (1 + 1e-12));
+  EXPECT_LE(errors.lambda_floor[0], errors.lambda[0] * (1 + 1e-9));
+}
+
+TEST(Reduce, AnEnrichedPairOfFullSizeIsTheModelItself) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-3;
+  options.pga.tolerance = 1e-9;
+  Reduced r({}, "grid:3,2,2", options);
+  const SubModel pair = enriched_pair(r.model, r.model.modes, r.model.generators);
+  const Truths truths =
+      make_truths(r.problem, r.model, solve_all(r.problem, {{0.17, -0.04, 0.03}}));
+  const ModelErrors whole = model_errors(r.model, {}, truths, r.problem.w_product());
+  const ModelErrors part = model_errors(pair.model, pair.embedding, truths, r.problem.w_product());
+  EXPECT_NEAR(part.u[0], whole.u[0], 1e-6 * whole.u[0]);
+  EXPECT_NEAR(part.lambda[0], whole.lambda[0], 1e-6 * whole.lambda[0]);
+}
+
+TEST(Separate, RanksAreThoseOfTheMaps) {
+  const std::vector<Mu> set = parse_set(make_scene("membrane_obstacle").parameters, "grid:3,3,3");
+  Problem similarity(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {});
+  const AffineOperators affine = separate(similarity, set, {1e-3, 0});
+  EXPECT_EQ(affine.b.size(), 1); // b and g scale with the area of the disc
+  EXPECT_EQ(affine.g.size(), 1);
+  EXPECT_GT(affine.a.size(), 5);
+  Problem graded(PETSC_COMM_WORLD, make_scene("membrane_obstacle", {{"disc_map", "graded"}}), {});
+  EXPECT_GT(separate(graded, set, {1e-3, 0}).b.size(), 3);
+}
+
+} // namespace
+} // namespace rbvi

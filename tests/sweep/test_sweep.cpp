@@ -1,0 +1,253 @@
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+#include "rbvi/sweep/sweep.hpp"
+
+#include "../coarse_mesh.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+namespace rbvi {
+namespace {
+
+namespace fs = std::filesystem;
+
+int rank_in_world() {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  return rank;
+}
+
+int ranks_in_world() {
+  int size = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
+
+/// A box in which the map inverts cells near radius = 0.6.
+Scene wide_scene() {
+  Scene scene = make_scene("membrane_obstacle");
+  scene.parameters.all[0].upper = 0.6;
+  return scene;
+}
+
+const std::vector<Mu> five{
+    {0.2, 0, 0}, {0.18, 0.02, -0.01}, {0.17, -0.05, 0.05}, {0.24, 0.05, 0.05}, {0.21, 0, 0.03}};
+const Mu impossible{0.6, 0.05, 0.05};
+
+/// A directory for the whole world, with a coarse mesh in it. Collective.
+struct SweepTest : testing::Test {
+  fs::path directory, samples, mesh;
+
+  void SetUp() override {
+    int process = static_cast<int>(getpid());
+    MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    directory = fs::temp_directory_path() / ("rbvi_sweep_" + std::to_string(process));
+    samples = directory / "samples";
+    mesh = directory / "coarse.msh";
+    alone([&] {
+      fs::create_directories(directory);
+      std::ofstream(mesh) << coarse_gmsh();
+    });
+  }
+  void TearDown() override {
+    alone([&] { fs::remove_all(directory); });
+  }
+
+  /// By rank 0, before the others go on.
+  void alone(const std::function<void()> &work) const {
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank_in_world() == 0) work();
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+
+  Sweep sweep(const std::vector<Mu> &set, int ranks_per_group = 1,
+              const Scene &scene = wide_scene(), const HfOptions &options = {},
+              const std::string &where = "samples") const {
+    const Groups groups(PETSC_COMM_WORLD, ranks_per_group);
+    Problem problem(groups.comm(), scene, {mesh.string(), 0});
+    return run_sweep(PETSC_COMM_WORLD, groups, problem, options, set, directory / where);
+  }
+
+  /// What sweeping `five` throws on this rank.
+  Error refusal(const Scene &scene = wide_scene(), const HfOptions &options = {}) const {
+    try {
+      (void)sweep(five, 1, scene, options);
+    } catch (const Error &error) {
+      return error;
+    }
+    return {Status::done, "nothing was thrown"};
+  }
+
+  std::string bytes(const fs::path &file) const {
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+  }
+};
+
+bool contains(const std::string &text, const std::string &part) {
+  return text.find(part) != std::string::npos;
+}
+
+double relative(const Vector &a, const Vector &b) {
+  return (a - b).norm() / b.norm();
+}
+
+TEST_F(SweepTest, SameSamplesForAnyGroups) {
+  std::vector<HfSolution> alone_solved;
+  {
+    Problem problem(PETSC_COMM_SELF, wide_scene(), {mesh.string(), 0});
+    HighFidelity solver(problem, {});
+    for (const Mu &mu : five)
+      alone_solved.push_back(solver.solve(mu));
+  }
+  for (int k = 1; k <= ranks_in_world(); ++k) {
+    if (ranks_in_world() % k != 0) continue;
+    const Sweep result = sweep(five, k, wide_scene(), {}, "groups_of_" + std::to_string(k));
+    EXPECT_EQ(result.report.solved, 5);
+    EXPECT_EQ(result.report.reused, 0);
+    EXPECT_GT(result.report.seconds_per_solve, 0);
+    ASSERT_EQ(result.samples.size(), five.size());
+    for (std::size_t i = 0; i < five.size(); ++i) {
+      const Sample &sample = result.samples[i];
+      EXPECT_EQ(sample.mu, five[i]);
+      EXPECT_LE(relative(sample.u, alone_solved[i].u), 1e-10) << k << " ranks per group";
+      EXPECT_LE(relative(sample.lambda, alone_solved[i].lambda), 1e-10) << k << " ranks per group";
+      EXPECT_NEAR(*sample.outputs.energy, *alone_solved[i].outputs.energy, 1e-10);
+    }
+  }
+}
+
+TEST_F(SweepTest, GroupsMustDivideTheRanks) {
+  EXPECT_THROW((void)sweep(five, ranks_in_world() + 1), Error);
+  EXPECT_THROW((void)sweep(five, 0), Error);
+  if (ranks_in_world() == 3) {
+    EXPECT_THROW((void)sweep(five, 2), Error);
+  }
+}
+
+TEST_F(SweepTest, FewerSamplesThanGroups) {
+  EXPECT_EQ(sweep({five[0]}).samples.size(), 1u);
+  EXPECT_EQ(sweep({five[0]}).report.reused, 1);
+}
+
+TEST_F(SweepTest, ResumeRecomputesOnlyWhatIsMissing) {
+  const Sweep first = sweep(five);
+  std::vector<std::string> before;
+  for (const Mu &mu : five)
+    before.push_back(bytes(sample_file(samples, mu)));
+  alone([&] {
+    fs::remove(sample_file(samples, five[1]));
+    fs::remove(sample_file(samples, five[4]));
+  });
+  const Sweep second = sweep(five);
+  EXPECT_EQ(second.report.reused, 3);
+  EXPECT_EQ(second.report.solved, 2);
+  ASSERT_EQ(second.samples.size(), 5u);
+  for (std::size_t i = 0; i < five.size(); ++i) {
+    EXPECT_LE(relative(second.samples[i].u, first.samples[i].u), 1e-10);
+    // The wall time in the file tells a sample that was solved again.
+    EXPECT_EQ(bytes(sample_file(samples, five[i])) == before[i], i != 1 && i != 4) << i;
+  }
+  const Sweep third = sweep(five);
+  EXPECT_EQ(third.report.solved, 0);
+  EXPECT_EQ(third.report.seconds_per_solve, 0);
+}
+
+TEST_F(SweepTest, OneFilePerSampleAndNothingElse) {
+  (void)sweep(five);
+  std::size_t files = 0;
+  for (const auto &entry : fs::directory_iterator(samples)) {
+    EXPECT_EQ(entry.path().extension(), ".h5") << entry.path();
+    ++files;
+  }
+  EXPECT_EQ(files, five.size());
+}
+
+TEST_F(SweepTest, DamagedSamplesAreRefusedByName) {
+  (void)sweep(five);
+  const fs::path file = sample_file(samples, five[2]);
+  const std::string good = bytes(file);
+  const auto put = [&](const std::string &content) {
+    alone([&] { std::ofstream(file, std::ios::binary) << content; });
+  };
+  std::string flipped = good;
+  flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 4);
+  const std::pair<std::string, std::string> cases[] = {
+      {good.substr(0, good.size() / 2), "truncated"}, {flipped, "damaged"}, {"", "is empty"}};
+  for (const auto &[content, reason] : cases) {
+    put(content);
+    const Error error = refusal();
+    EXPECT_EQ(error.status(), Status::bad_input) << error.what();
+    EXPECT_TRUE(contains(error.what(), file.filename().string())) << error.what();
+    EXPECT_TRUE(contains(error.what(), reason)) << error.what();
+    EXPECT_FALSE(contains(error.what(), "\n")) << error.what();
+    alone([&] { EXPECT_EQ(bytes(file), content); });
+  }
+  put(good);
+  EXPECT_EQ(sweep(five).report.reused, 5);
+}
+
+TEST_F(SweepTest, SamplesOfOtherOptionsAreRefused) {
+  (void)sweep({five[0]});
+  const Scene other_load = make_scene("membrane_obstacle", {{"load", "-20"}});
+  Error error = refusal(other_load);
+  EXPECT_EQ(error.status(), Status::bad_input);
+  EXPECT_TRUE(contains(error.what(), "load = -25, now it is -20")) << error.what();
+
+  Scene fixed = wide_scene();
+  fixed.parameters = free_only(fixed.parameters, "center_x,center_y");
+  EXPECT_EQ(refusal(fixed).status(), Status::bad_input);
+
+  HfOptions uzawa;
+  uzawa.method = HfMethod::uzawa;
+  error = refusal(wide_scene(), uzawa);
+  EXPECT_TRUE(contains(error.what(), "hf_method = active_set, now it is uzawa")) << error.what();
+  alone([&] { EXPECT_FALSE(fs::exists(sample_file(samples, five[1]))); });
+}
+
+TEST_F(SweepTest, AFailingSampleIsRecordedAndRetried) {
+  const std::vector<Mu> set{five[0], impossible, five[1], five[2], five[3], five[4]};
+  for (int k = 1; k <= ranks_in_world(); ++k) {
+    if (ranks_in_world() % k != 0) continue;
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      const Sweep result = sweep(set, k, wide_scene(), {}, "groups_of_" + std::to_string(k));
+      EXPECT_EQ(result.samples.size(), 5u);
+      EXPECT_EQ(result.report.solved, attempt == 0 ? 5 : 0);
+      ASSERT_EQ(result.report.failed.size(), 1u);
+      EXPECT_EQ(result.report.failed[0].first, impossible);
+      const std::string &reason = result.report.failed[0].second;
+      EXPECT_TRUE(contains(reason, "inverts a cell")) << reason;
+      EXPECT_TRUE(contains(reason, "radius=0.6 center_x=0.05 center_y=0.05")) << reason;
+    }
+  }
+}
+
+TEST_F(SweepTest, ARetriedSampleThatSucceedsLosesItsReason) {
+  (void)sweep({five[0]});
+  const fs::path failed = sample_file(samples, five[1]).replace_extension("failed");
+  alone([&] { std::ofstream(failed) << "power cut\n"; });
+  const Sweep result = sweep({five[0], five[1]});
+  EXPECT_EQ(result.report.solved, 1);
+  EXPECT_TRUE(result.report.failed.empty());
+  alone([&] { EXPECT_FALSE(fs::exists(failed)); });
+}
+
+TEST_F(SweepTest, ADirectoryThatCannotBeMadeFailsEverywhere) {
+  try {
+    (void)sweep(five, 1, wide_scene(), {}, "coarse.msh/samples");
+    FAIL() << "nothing was thrown";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::failed);
+    EXPECT_TRUE(contains(error.what(), "coarse.msh/samples")) << error.what();
+  }
+}
+
+} // namespace
+} // namespace rbvi
