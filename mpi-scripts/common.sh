@@ -40,8 +40,9 @@ install_missing() {
   "${as_root[@]}" apt-get -qq install -y --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# build TARGET...
 build() {
-  say "building Release in build/ with $cores cores"
+  say "building in build/ (Release) with $cores cores: $*"
   cmake -S . -B build -DCMAKE_BUILD_TYPE=Release >/dev/null
-  cmake --build build --parallel "$cores"
+  cmake --build build --parallel "$cores" --target "$@"
 }

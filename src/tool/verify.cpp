@@ -181,8 +181,8 @@ void write_stability(const fs::path &path, const std::vector<StabilityRow> &rows
 
 /// 0 to `last` in about `count` equal steps, both ends included.
 std::vector<int> spread(int last, int count) {
-  std::set<int> values;
-  for (int k = 0; k <= count; ++k)
+  std::set<int> values{0};
+  for (int k = 1; k <= count; ++k)
     values.insert(static_cast<int>(static_cast<long>(k) * last / count));
   return {values.begin(), values.end()};
 }
@@ -256,9 +256,10 @@ ReducedModel model_of(const ToolOptions &options, MPI_Comm world) {
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   ReducedModel model;
   collectively(world, [&] { model = read_model(options.out / "model.h5"); });
-  if (model.scene_options != options.scene.options || model.scene_name != options.scene.name)
+  if (model.scene_options != options.scene.options || model.scene_name != options.scene.name ||
+      model.parameters.free != options.scene.parameters.free)
     throw bad_input("the model in " + options.out.string() +
-                    " was made with other options of its scene");
+                    " was made with other options of its scene or other free parameters");
   return model;
 }
 
