@@ -4,8 +4,6 @@
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/finish.hpp"
 
-#include <cstdio>
-
 namespace {
 
 using namespace rbvi;
@@ -31,18 +29,16 @@ void run(const std::string &command, const std::string &file) {
 
 int main(int argc, char **argv) {
   const Invocation invocation = read_invocation(argc, argv);
-  if (invocation.status) return report_without_mpi(invocation);
+  if (invocation.status) return report_once(*invocation.status, invocation.message);
   try {
     std::vector<char *> arguments = invocation.pointers();
     int count = static_cast<int>(arguments.size()) - 1;
     char **values = arguments.data();
     Session session(count, values);
     return finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
-  } catch (const Error &error) { // PETSc did not start
-    int rank = 0, has_ranks = 0;
-    MPI_Initialized(&has_ranks);
-    if (has_ranks != 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (rank == 0) std::fprintf(stderr, "rbvi: %s\n", error.what());
-    return static_cast<int>(error.status());
+  } catch (const Error &error) { // PETSc does not start with these options
+    const int status = finish(MPI_COMM_WORLD, [&] { throw bad_input(error.what()); });
+    MPI_Finalize();
+    return status;
   }
 }

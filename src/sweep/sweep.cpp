@@ -64,9 +64,18 @@ std::string each(double seconds) {
   return text;
 }
 
+/// One sample tells what all of a directory were made with, those of other sets included.
+void check_directory(const fs::path &directory, const Settings &settings) {
+  for (const auto &entry : fs::directory_iterator(directory)) {
+    if (entry.path().extension() != ".h5") continue;
+    (void)read_sample(entry.path(), settings);
+    return;
+  }
+}
+
 /// The numbers of `set` that have no sample yet, agreed by rank 0 for all.
 std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
-                                 const fs::path &directory, bool reuse) {
+                                 const fs::path &directory, const Settings &settings, bool reuse) {
   std::vector<int> missing(set.size(), 1);
   collectively(world, [&] {
     int rank = 0;
@@ -76,6 +85,7 @@ std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
     fs::create_directories(directory, error);
     if (error)
       throw failure("cannot make the directory " + directory.string() + ": " + error.message());
+    check_directory(directory, settings);
     for (std::size_t i = 0; i < set.size(); ++i)
       missing[i] = !reuse || !fs::exists(sample_file(directory, set[i]));
   });
@@ -178,7 +188,7 @@ fs::path sample_file(const fs::path &directory, const Mu &mu) {
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
                 const std::vector<Mu> &set, const fs::path &directory, bool reuse) {
   const Settings settings = sample_settings(problem, options);
-  const std::vector<int> missing = missing_samples(world, set, directory, reuse);
+  const std::vector<int> missing = missing_samples(world, set, directory, settings, reuse);
   if (missing.size() < set.size()) { // other options are noticed before any work is done
     Sweep present;
     collect(world, set, directory, settings, present);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 
 namespace rbvi {
 
@@ -29,11 +30,15 @@ std::optional<int> first_failure(MPI_Comm world, bool failed) {
   return done != 0 ? std::optional<int>(first) : std::nullopt;
 }
 
-Invocation left_over(const std::string &word) {
+Invocation refused(const std::string &reason) {
   Invocation result;
   result.status = static_cast<int>(Status::bad_input);
-  result.message = "rbvi: '" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)";
+  result.message = "rbvi: " + reason;
   return result;
+}
+
+Invocation left_over(const std::string &word) {
+  return refused("'" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)");
 }
 
 } // namespace
@@ -64,24 +69,22 @@ Invocation read_invocation(int argc, char **argv) {
     given.emplace_back("help");
   }
   result.command = given[1];
-  if (std::find(commands.begin(), commands.end(), result.command) == commands.end()) {
-    result.status = static_cast<int>(Status::bad_input);
-    result.message = "rbvi: unknown command '" + result.command + "'; the nearest one is '" +
-                     nearest_name(result.command, commands) + "' (rbvi -help lists all)";
-    return result;
-  }
+  if (std::find(commands.begin(), commands.end(), result.command) == commands.end())
+    return refused("unknown command '" + result.command + "'; the nearest one is '" +
+                   nearest_name(result.command, commands) + "' (rbvi -help lists all)");
   given.erase(given.begin() + 1);
   const std::size_t words = result.command == "inspect" ? 2 : 1;
   for (std::size_t i = words; i < given.size(); ++i)
     if (!is_option(given[i]) && !is_option(given[i - 1])) return left_over(given[i]);
+  // PETSc reads these on one rank alone while the others wait.
+  for (std::size_t i = 1; i < given.size(); ++i)
+    if (given[i - 1].starts_with("-options_file") && !std::ifstream(given[i]))
+      return refused("the options file " + given[i] + " cannot be read");
   if ((result.command == "list" || result.command == "help") && given.size() > 1)
     return left_over(given[1]);
   if (result.command == "inspect") {
-    if (given.size() != 2) {
-      result.status = static_cast<int>(Status::bad_input);
-      result.message = "rbvi: inspect takes one model file: rbvi inspect run/obstacle/model.h5";
-      return result;
-    }
+    if (given.size() != 2)
+      return refused("inspect takes one model file: rbvi inspect run/obstacle/model.h5");
     result.file = given[1];
     given.resize(1);
   }
@@ -89,9 +92,16 @@ Invocation read_invocation(int argc, char **argv) {
   return result;
 }
 
-int report_without_mpi(const Invocation &invocation) {
-  std::fprintf(*invocation.status == 0 ? stdout : stderr, "%s\n", invocation.message.c_str());
-  return *invocation.status;
+int report_once(int status, const std::string &message) {
+  int rank = 0;
+  MPI_Init(nullptr, nullptr);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  std::FILE *stream = status == 0 ? stdout : stderr;
+  if (rank == 0) std::fprintf(stream, "%s\n", message.c_str());
+  if (std::fflush(stream) != 0) status = static_cast<int>(Status::failed);
+  MPI_Barrier(MPI_COMM_WORLD); // mpirun ends all at the first status that is not zero
+  MPI_Finalize();
+  return status;
 }
 
 int finish(MPI_Comm world, const std::function<void()> &work) {

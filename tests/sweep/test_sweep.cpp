@@ -210,6 +210,7 @@ TEST_F(SweepTest, SamplesOfOtherOptionsAreRefused) {
   error = refusal(wide_scene(), uzawa);
   EXPECT_TRUE(contains(error.what(), "hf_method = active_set, now it is uzawa")) << error.what();
   alone([&] { EXPECT_FALSE(fs::exists(sample_file(samples, five[1]))); });
+  EXPECT_THROW((void)sweep({five[1]}, 1, other_load), Error) << "no sample of this set is there";
 }
 
 TEST_F(SweepTest, AFailingSampleIsRecordedAndRetried) {

@@ -19,10 +19,12 @@ struct Invocation {
   std::vector<char *> pointers() const;       ///< argv for PETSc, null-terminated
 };
 
-/// Reads the command; -version, -help and mistakes of the command itself need no MPI.
+/// Reads the command; -version, -help and mistakes of the command itself need no PETSc.
 Invocation read_invocation(int argc, char **argv);
 
-int report_without_mpi(const Invocation &invocation);
+/// Prints a message once for all ranks (to standard error unless the status is 0), ends MPI and
+/// returns the status. Starts MPI itself: for what is known before PETSc runs. Collective.
+int report_once(int status, const std::string &message);
 
 /// Runs `work` on every rank and returns the exit status. A failure that all ranks share is printed
 /// once; one that leaves other ranks waiting ends them all after a moment (MPI_Abort).
