@@ -106,6 +106,30 @@ TEST_P(BothMaps, ConstantsComeInTheirOrder) {
   }
 }
 
+TEST_P(BothMaps, TheFewestSupremizersAreJustEnough) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-2; // few modes, so that supremizers are needed
+  options.pga.tolerance = 1e-3;
+  Reduced r({{"disc_map", GetParam()}}, "grid:3,3,2", options);
+  const StabilityCheck check = make_stability_check(r.problem, r.model);
+  const std::vector<Mu> set = parse_set(r.problem.scene().parameters, "random:7:5");
+  const MPI_Comm world = PETSC_COMM_WORLD;
+  const int fewest = fewest_supremizers(world, r.problem, check, set, 0.9);
+  ASSERT_GT(fewest, 0);
+  const std::vector<StabilityRow> rows =
+      stability_along(world, r.problem, check, set, {fewest - 1, fewest, r.model.supremizers});
+  EXPECT_LT(rows[0].ratio, 0.9);
+  EXPECT_GE(rows[1].ratio, 0.9);
+  for (const StabilityRow &row : rows) {
+    EXPECT_GE(row.ratio, (1 - 1e-9) * row.bound);
+    EXPECT_NEAR(row.bound, std::sqrt(1 - row.sigma * row.sigma), 1e-6);
+  }
+  EXPECT_EQ(fewest_supremizers(world, r.problem, check, set, 1 + 1e-6), -1);
+  const BoundCheck bound = check_bound(world, r.problem, check, set);
+  EXPECT_EQ(bound.exceptions, 0);
+  EXPECT_GE(bound.smallest, 1 - 1e-9);
+}
+
 TEST(Reduce, ErrorsAgreeWithADirectComputation) {
   ReduceOptions options;
   options.pod.tolerance = 1e-2;
