@@ -299,6 +299,8 @@ std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside) {
   if (text.starts_with("grid:")) return grid(space, text.substr(5));
   if (text.starts_with("random:")) return random_set(space, text.substr(7));
+  if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos)
+    return random_set(space, text + ":1");
   return csv_file(space, text, allow_outside);
 }
 

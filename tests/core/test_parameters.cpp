@@ -106,6 +106,7 @@ TEST(RandomSet, UniformInTheBoxAndTheSameEverywhere) {
   const std::vector<Mu> set = parse_set(space(), "random:4000:1");
   EXPECT_EQ(set, parse_set(space(), "random:4000:1"));
   EXPECT_NE(set, parse_set(space(), "random:4000:2"));
+  EXPECT_EQ(set, parse_set(space(), "4000"));
   double mean = 0, square = 0, product = 0;
   for (const Mu &mu : set) {
     check_mu(space(), mu);

@@ -49,8 +49,9 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside = fa
 Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_outside = false);
 
 /// Reads "grid:5,5,5" (box ends included, last parameter fastest; a count of 1 is the middle),
-/// "random:200:seed" (uniform, the same on every machine), or the name of a CSV file with a header
-/// of parameter names, in any order. Every mu is checked. Throws bad_input, naming the line.
+/// "random:200:seed" or "200" for seed 1 (uniform, the same on every machine), or the name of a CSV
+/// file with a header of parameter names, in any order. Every mu is checked. Throws bad_input,
+/// naming the line.
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false);
 
