@@ -150,7 +150,7 @@ def bases(run):
     figure, axes = plt.subplots(1, 4, figsize=(12.5, 3), constrained_layout=True)
     pod = pod[pod > 1e-14]
     axes[0].plot(np.arange(len(pod)), pod, color=GREY)
-    log_axis(axes[0], "modes N", "largest relative error", "displacement, POD")
+    log_axis(axes[0], "modes N", "relative error", "displacement, POD")
     panels = (("error", "largest relative error", "multiplier, projection on the cone"),
               ("e_orth", "distance to the cone before", "new generator, e_orth"),
               ("gram_condition", "condition number", "Gram matrix of the generators"))
