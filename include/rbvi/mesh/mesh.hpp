@@ -48,7 +48,7 @@ struct SerialMesh {
 };
 
 /// Unit square [-1/2, 1/2]^2 with a fitted disc of radius 0.2 about its centre (region "obstacle",
-/// boundary "boundary"): 3573 nodes, 469 of them in the closed disc, aspect ratios <= 1.5.
+/// boundary "boundary"): 3573 nodes, 469 of them in the closed disc, aspect ratios <= 1.55.
 /// Deterministic: concentric rings of 6 k nodes in the disc, then 23 rings that turn from the
 /// circle into the square.
 SerialMesh square_with_disc();
