@@ -85,7 +85,7 @@ TEST(SquareWithDisc, IsWellShapedAndNearlyUniform) {
       longest = std::max(longest, edge);
     }
   }
-  EXPECT_GT(shortest, 0.0149);
+  EXPECT_GT(shortest, 0.0126);
   EXPECT_LT(longest, 0.0285);
 }
 
