@@ -75,7 +75,7 @@ void check_directory(const fs::path &directory, const Settings &settings) {
 
 /// The numbers of `set` that have no sample yet, agreed by rank 0 for all.
 std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
-                                 const fs::path &directory, const Settings &settings, bool reuse) {
+                                 const fs::path &directory, const Settings &settings) {
   std::vector<int> missing(set.size(), 1);
   collectively(world, [&] {
     int rank = 0;
@@ -87,7 +87,7 @@ std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
       throw failure("cannot make the directory " + directory.string() + ": " + error.message());
     check_directory(directory, settings);
     for (std::size_t i = 0; i < set.size(); ++i)
-      missing[i] = !reuse || !fs::exists(sample_file(directory, set[i]));
+      missing[i] = !fs::exists(sample_file(directory, set[i]));
   });
   MPI_Bcast(missing.data(), static_cast<int>(missing.size()), MPI_INT, 0, world);
   std::vector<int> numbers;
@@ -186,9 +186,9 @@ fs::path sample_file(const fs::path &directory, const Mu &mu) {
 }
 
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                const std::vector<Mu> &set, const fs::path &directory, bool reuse) {
+                const std::vector<Mu> &set, const fs::path &directory) {
   const Settings settings = sample_settings(problem, options);
-  const std::vector<int> missing = missing_samples(world, set, directory, settings, reuse);
+  const std::vector<int> missing = missing_samples(world, set, directory, settings);
   if (missing.size() < set.size()) { // other options are noticed before any work is done
     Sweep present;
     collect(world, set, directory, settings, present);

@@ -46,10 +46,8 @@ std::filesystem::path sample_file(const std::filesystem::path &directory, const 
 
 /// Collective on `world`. `problem` lives on the communicator of this rank's group. Samples of
 /// `directory` that are there already are reused; throws bad_input, naming the setting and both
-/// values, if one was made with other settings. `reuse` false solves all anew (times are then
-/// comparable).
+/// values, if one was made with other settings.
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                const std::vector<Mu> &set, const std::filesystem::path &directory,
-                bool reuse = true);
+                const std::vector<Mu> &set, const std::filesystem::path &directory);
 
 } // namespace rbvi
