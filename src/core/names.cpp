@@ -24,9 +24,10 @@ std::size_t edits(const std::string &from, const std::string &to) {
 } // namespace
 
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names) {
-  const auto nearest = std::min_element(
-      names.begin(), names.end(),
-      [&](const std::string &a, const std::string &b) { return edits(given, a) < edits(given, b); });
+  const auto nearest =
+      std::min_element(names.begin(), names.end(), [&](const std::string &a, const std::string &b) {
+        return edits(given, a) < edits(given, b);
+      });
   return nearest == names.end() ? "" : *nearest;
 }
 

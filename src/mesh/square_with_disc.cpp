@@ -48,12 +48,13 @@ Point on_hexagon(double t) {
   const double corner = std::floor(6 * t), along = 6 * t - corner;
   const Point c = on_circle(corner / 6), d = on_circle((corner + 1) / 6);
   const double size = std::sqrt(2 * std::numbers::pi / (3 * std::sqrt(3.0)));
-  return {size * ((1 - along) * c[0] + along * d[0]), size * ((1 - along) * c[1] + along * d[1]), 0};
+  return {size * ((1 - along) * c[0] + along * d[0]), size * ((1 - along) * c[1] + along * d[1]),
+          0};
 }
 
-/// Ring at the fraction rho of the radius: a lattice of equilateral triangles near the centre, which
-/// turns into the circle. It is turned and shifted a little: a mesh whose rings are concentric with
-/// the contact set would gain or lose whole rings of contact nodes at once.
+/// Ring at the fraction rho of the radius: a lattice of equilateral triangles near the centre,
+/// which turns into the circle. It is turned and shifted a little: a mesh whose rings are
+/// concentric with the contact set would gain or lose whole rings of contact nodes at once.
 Point in_disc(double rho, double t) {
   constexpr double turn = 0.4 / circle_nodes;
   constexpr std::array shift{0.0061, 0.0043};

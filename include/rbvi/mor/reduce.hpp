@@ -8,7 +8,6 @@
 #include "rbvi/par/stage.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
-
 namespace rbvi {
 
 struct ReduceOptions {

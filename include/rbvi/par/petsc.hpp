@@ -24,18 +24,42 @@ namespace rbvi {
 namespace rbvi {
 
 namespace detail {
-inline PetscErrorCode destroy(Vec *x) { return VecDestroy(x); }
-inline PetscErrorCode destroy(Mat *x) { return MatDestroy(x); }
-inline PetscErrorCode destroy(KSP *x) { return KSPDestroy(x); }
-inline PetscErrorCode destroy(SNES *x) { return SNESDestroy(x); }
-inline PetscErrorCode destroy(DM *x) { return DMDestroy(x); }
-inline PetscErrorCode destroy(IS *x) { return ISDestroy(x); }
-inline PetscErrorCode destroy(VecScatter *x) { return VecScatterDestroy(x); }
-inline PetscErrorCode destroy(PetscSection *x) { return PetscSectionDestroy(x); }
-inline PetscErrorCode destroy(PetscViewer *x) { return PetscViewerDestroy(x); }
-inline PetscErrorCode destroy(BV *x) { return BVDestroy(x); }
-inline PetscErrorCode destroy(EPS *x) { return EPSDestroy(x); }
-inline PetscErrorCode destroy(SVD *x) { return SVDDestroy(x); }
+inline PetscErrorCode destroy(Vec *x) {
+  return VecDestroy(x);
+}
+inline PetscErrorCode destroy(Mat *x) {
+  return MatDestroy(x);
+}
+inline PetscErrorCode destroy(KSP *x) {
+  return KSPDestroy(x);
+}
+inline PetscErrorCode destroy(SNES *x) {
+  return SNESDestroy(x);
+}
+inline PetscErrorCode destroy(DM *x) {
+  return DMDestroy(x);
+}
+inline PetscErrorCode destroy(IS *x) {
+  return ISDestroy(x);
+}
+inline PetscErrorCode destroy(VecScatter *x) {
+  return VecScatterDestroy(x);
+}
+inline PetscErrorCode destroy(PetscSection *x) {
+  return PetscSectionDestroy(x);
+}
+inline PetscErrorCode destroy(PetscViewer *x) {
+  return PetscViewerDestroy(x);
+}
+inline PetscErrorCode destroy(BV *x) {
+  return BVDestroy(x);
+}
+inline PetscErrorCode destroy(EPS *x) {
+  return EPSDestroy(x);
+}
+inline PetscErrorCode destroy(SVD *x) {
+  return SVDDestroy(x);
+}
 } // namespace detail
 
 /// Owns one reference to a PETSc or SLEPc object; move-only. `get()` hands out the raw handle.
