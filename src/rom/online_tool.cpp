@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
-#include "rbvi/core/names.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/vtu.hpp"

@@ -1,6 +1,7 @@
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
@@ -137,7 +138,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   solution.reason = result.reason;
   solution.outputs.seconds = MPI_Wtime() - start;
   if (options_.method == HfMethod::active_set && solution.kkt.largest() > 1e-10)
-    throw failure("the KKT residual is " + std::to_string(solution.kkt.largest()) +
+    throw failure("the KKT residual is " + short_number(solution.kkt.largest()) +
                   ", above 1e-10: is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");
   solved_.push_back({mu, solution.active});

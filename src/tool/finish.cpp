@@ -1,7 +1,7 @@
 #include "rbvi/tool/finish.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/names.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/tool/options.hpp"
 
 #include <unistd.h>

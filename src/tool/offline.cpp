@@ -1,6 +1,7 @@
 // rbvi offline: from a case file to a model file.
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/stages.hpp"

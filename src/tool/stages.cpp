@@ -1,6 +1,6 @@
 #include "rbvi/tool/stages.hpp"
 
-#include "rbvi/tool/tables.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cstdio>

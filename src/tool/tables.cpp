@@ -2,16 +2,9 @@
 
 #include "rbvi/core/h5.hpp"
 
-#include <cstdio>
 #include <sstream>
 
 namespace rbvi {
-
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 void write_columns(const std::filesystem::path &path, const std::vector<std::string> &names,
                    const std::vector<std::vector<double>> &columns) {

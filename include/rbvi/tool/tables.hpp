@@ -9,9 +9,6 @@
 
 namespace rbvi {
 
-/// "%.4g".
-std::string short_number(double value);
-
 /// Columns of equal length under a header, as CSV, atomically. Throws failure.
 void write_columns(const std::filesystem::path &path, const std::vector<std::string> &names,
                    const std::vector<std::vector<double>> &columns);

@@ -1,10 +1,13 @@
-// Suggestions for mistyped names.
+// Text for messages: short numbers, suggestions for mistyped names.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace rbvi {
+
+/// "%.4g".
+std::string short_number(double value);
 
 /// The name with the fewest single-letter edits (Levenshtein); "" if there is none.
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names);

@@ -1,6 +1,7 @@
-#include "rbvi/core/names.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <numeric>
 
 namespace rbvi {
@@ -22,6 +23,12 @@ std::size_t edits(const std::string &from, const std::string &to) {
 }
 
 } // namespace
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
 
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names) {
   const auto nearest =
