@@ -222,8 +222,10 @@ Pga projected_greedy(const RieszSpace &space, const Matrix &modes, std::vector<M
   else
     sweep(result, enriched, std::move(supremizers), target);
   result.coordinates = enriched.in_use();
-  result.representers = space.factor.transpose().triangularView<Eigen::Upper>().solve(
-      enriched.sources.leftCols(enriched.size - enriched.modes));
+  const Index added = enriched.size - enriched.modes;
+  result.representers = enriched.sources.leftCols(added);
+  if (added > 0)
+    space.factor.transpose().triangularView<Eigen::Upper>().solveInPlace(result.representers);
   return result;
 }
 
