@@ -72,6 +72,8 @@ TEST(SquareWithDisc, FillsSquareAndPolygon) {
   EXPECT_NEAR(length, 4, 1e-13);
 }
 
+// The lattice that keeps the disc's rings from being concentric with the contact set costs a little
+// shape: measured 1.543 and edges from 0.0127, against 1.434 and 0.015 with circular rings.
 TEST(SquareWithDisc, IsWellShapedAndNearlyUniform) {
   const SerialMesh mesh = square_with_disc();
   double shortest = 1, longest = 0;

@@ -134,13 +134,14 @@ TEST(Uzawa, ConvergesToTheActiveSetSolution) {
   EXPECT_LE(uzawa_error(true, 1e-8, truth), 1e-4);
 }
 
+/// The plain criterion stops the fixed step early where it is loose: 1e-5 compares like with like.
 TEST(Uzawa, AccelerationSavesIterations) {
   HfOptions options;
   options.method = HfMethod::uzawa;
-  options.uzawa_tolerance = 1e-4;
-  const int fixed = solve(PETSC_COMM_WORLD, centred, options).iterations;
+  options.uzawa_tolerance = 1e-5;
+  const int fixed = solve(PETSC_COMM_WORLD, shifted, options).iterations;
   options.uzawa_accelerated = true;
-  EXPECT_LT(2 * solve(PETSC_COMM_WORLD, centred, options).iterations, fixed);
+  EXPECT_LT(4 * solve(PETSC_COMM_WORLD, shifted, options).iterations, fixed);
 }
 
 TEST(Uzawa, StoppingEarlyIsAnError) {
