@@ -37,8 +37,8 @@ struct ConeHistory {
   std::vector<double> error;  ///< over all snapshots, (2.13), (2.34): 1 for no generator
   std::vector<double> e_orth; ///< greedy types: distance of generator r + 1 to the cone of the
                               ///< first r (2.41)
-  std::vector<double> gram_condition; ///< condition number of the Gram matrix of the first r >= 1;
-                                      ///< infinite if they are dependent
+  std::vector<double> gram_condition; ///< condition number of the Gram matrix of the generators at
+                                      ///< each size but the first; infinite if they are dependent
   std::vector<int> selected;          ///< greedy types: snapshot taken at each step
   std::string reason; ///< "tolerance reached", "round-off reached", "size reached", "stagnation"
 };

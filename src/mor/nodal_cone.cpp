@@ -1,0 +1,53 @@
+#include "cone_tools.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double contact = 1e-10; ///< of the largest multiplier: below it a node was never active
+
+/// Adds the nodes that `product` couples with one that is in the set.
+void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product) {
+  const std::vector<bool> before = inside;
+  for (Index i = 0; i < product.outerSize(); ++i)
+    for (SparseMatrix::InnerIterator entry(product, i); entry; ++entry)
+      if (before[static_cast<std::size_t>(i)]) inside[static_cast<std::size_t>(entry.col())] = true;
+}
+
+} // namespace
+
+Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options) {
+  const Matrix factor = product_factor(product);
+  const Vector largest = snapshots.rowwise().maxCoeff();
+  std::vector<bool> inside;
+  for (const double value : largest)
+    inside.push_back(value > contact * largest.maxCoeff());
+  for (int layer = 0; layer < options.ring; ++layer)
+    add_neighbours(inside, product);
+
+  std::vector<Index> nodes;
+  Matrix outside = snapshots;
+  for (Index i = 0; i < snapshots.rows(); ++i)
+    if (inside[static_cast<std::size_t>(i)]) {
+      nodes.push_back(i);
+      outside.row(i).setZero();
+    }
+  const auto count = static_cast<Index>(nodes.size());
+  Cone cone;
+  cone.basis.generators = Matrix::Zero(snapshots.rows(), count);
+  for (Index k = 0; k < count; ++k) {
+    const Index i = nodes[static_cast<std::size_t>(k)];
+    cone.basis.generators(i, k) = 1 / factor.col(i).norm();
+  }
+  cone.history.size = {0, static_cast<int>(count)};
+  // The snapshots without what is outside lie in the cone: a bound, 0 or next to it.
+  const double left = (factor * outside).colwise().norm().maxCoeff();
+  cone.history.error = {1, left / (factor * snapshots).colwise().norm().maxCoeff()};
+  cone.history.gram_condition = {gram_condition(factor * cone.basis.generators)};
+  cone.history.reason = "round-off reached";
+  return cone;
+}
+
+} // namespace rbvi
