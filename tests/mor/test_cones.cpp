@@ -2,6 +2,8 @@
 #include "rbvi/core/nonnegative_qp.hpp"
 #include "rbvi/mor/cones.hpp"
 
+#include "multipliers.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,52 +13,9 @@
 #include <random>
 
 using namespace rbvi;
+using namespace rbvi::testing_multipliers;
 
 namespace {
-
-SparseMatrix sparse(const Matrix &dense) {
-  return dense.sparseView();
-}
-
-SparseMatrix identity(Index n) {
-  return sparse(Matrix::Identity(n, n));
-}
-
-/// Consistent mass of bilinear elements on a square grid: side^2 nodes on the unit square.
-SparseMatrix grid_mass(Index side) {
-  Matrix line = Matrix::Zero(side, side);
-  for (Index i = 0; i + 1 < side; ++i) {
-    line.block(i, i, 2, 2) += Matrix{{2, 1}, {1, 2}} / (6 * static_cast<double>(side - 1));
-  }
-  Matrix mass(side * side, side * side);
-  for (Index i = 0; i < side; ++i)
-    for (Index j = 0; j < side; ++j)
-      mass.block(i * side, j * side, side, side) = line(i, j) * line;
-  return sparse(mass);
-}
-
-/// Multipliers like those of an obstacle: bumps whose support grows and moves, exact zeros outside.
-/// count^3 columns; `travel`: how far centres move, as a fraction of the square.
-Matrix moving_bumps(Index side, int count, double travel) {
-  Matrix result(side * side, count * count * count);
-  Index p = 0;
-  const auto at = [&](int k) { return count > 1 ? 2.0 * k / (count - 1) - 1 : 0.0; };
-  for (int a = 0; a < count; ++a)
-    for (int b = 0; b < count; ++b)
-      for (int c = 0; c < count; ++c, ++p)
-        for (Index i = 0; i < side * side; ++i) {
-          const double radius = 0.32 + 0.04 * at(a);
-          const double h = 1 / static_cast<double>(side - 1);
-          const double x = static_cast<double>(i / side) * h - 0.5 - travel * at(b);
-          const double y = static_cast<double>(i % side) * h - 0.5 - travel * at(c);
-          result(i, p) = std::max(0.0, 1 - (x * x + y * y) / (radius * radius)) / radius;
-        }
-  return result;
-}
-
-double norm(const Vector &v, const SparseMatrix &product) {
-  return std::sqrt(v.dot(Vector(product * v)));
-}
 
 void expect_cone(const Cone &cone, const SparseMatrix &product) {
   const Matrix &generators = cone.basis.generators;
@@ -67,6 +26,9 @@ void expect_cone(const Cone &cone, const SparseMatrix &product) {
     EXPECT_NEAR(norm(column, product), 1, 1e-12);
   const ConeHistory &history = cone.history;
   ASSERT_EQ(history.error.size(), count + 1);
+  ASSERT_EQ(history.size.size(), count + 1);
+  for (std::size_t r = 0; r <= count; ++r)
+    EXPECT_EQ(history.size[r], static_cast<int>(r));
   ASSERT_EQ(history.e_orth.size(), count);
   ASSERT_EQ(history.selected.size(), count);
   ASSERT_EQ(history.gram_condition.size(), count);
@@ -79,10 +41,6 @@ void expect_cone(const Cone &cone, const SparseMatrix &product) {
 
 ConeBasis leading(const ConeBasis &basis, Index r) {
   return {basis.generators.leftCols(r)};
-}
-
-double largest_distance(const Matrix &values, const ConeBasis &basis, const SparseMatrix &product) {
-  return distances_to_cone(values, basis, product).maxCoeff();
 }
 
 /// Everything that holds for a cone built without clipping.
@@ -287,18 +245,6 @@ TEST(Cones, RefuseWhatIsNoMultiplier) {
   negative(1, 1) = std::numeric_limits<double>::infinity();
   EXPECT_THROW(build_cone(negative, product, {}), Error);
   EXPECT_THROW(build_cone(Matrix::Ones(3, 2), -1.0 * product, {}), Error);
-}
-
-TEST(Cones, DistancesToNothingAndOfNothing) {
-  const SparseMatrix product = identity(2);
-  const Matrix values{{3, 0, -1}, {4, 0, -1}};
-  const ConeBasis empty{Matrix(2, 0)};
-  EXPECT_LT((distances_to_cone(values, empty, product) - Vector{{1, 0, std::sqrt(2.0) / 5}}).norm(),
-            1e-15);
-  const ConeBasis axes{Matrix::Identity(2, 2)};
-  EXPECT_LT((distances_to_cone(values, axes, product) - Vector{{0, 0, std::sqrt(2.0) / 5}}).norm(),
-            1e-15);
-  EXPECT_EQ(distances_to_cone(Matrix::Zero(2, 3), axes, product), Vector::Zero(3));
 }
 
 TEST(LargestPartBelow, SatisfiesTheOptimalityConditions) {
