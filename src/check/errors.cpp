@@ -1,10 +1,13 @@
 #include "rbvi/check/errors.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/stability.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
+#include <optional>
 
 namespace rbvi {
 
@@ -49,6 +52,15 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   return result;
 }
 
+/// The answer at one validation mu, nothing if the model has none.
+std::optional<ReducedSolution> answer_at(OnlineSolver &solver, const Truths &truths, Index p) {
+  try {
+    return solver.solve(truths.mu[static_cast<std::size_t>(p)], true);
+  } catch (const Error &) {
+    return std::nullopt;
+  }
+}
+
 } // namespace
 
 Truths make_truths(Problem &problem, const ReducedModel &model,
@@ -90,39 +102,54 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
   using Clock = std::chrono::steady_clock;
   const Index count = static_cast<Index>(truths.mu.size()), k = model.primal_size();
   OnlineSolver solver(model);
-  ModelErrors errors{Vector(count), Vector(count), Vector(count), Vector(count), 0, 0};
+  ModelErrors errors{Vector(count), Vector(count), Vector(count), Vector(count), 0, 0, 0};
   std::vector<double> seconds;
   for (Index p = 0; p < count; ++p) {
-    const auto start = Clock::now();
-    const ReducedSolution answer = solver.solve(truths.mu[static_cast<std::size_t>(p)], true);
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    errors.kkt_residual = std::max(errors.kkt_residual, answer.kkt_residual);
-    Vector c = Vector::Zero(truths.coordinates.rows());
-    if (embedding.size() > 0)
-      c = embedding * answer.u;
-    else
-      c.head(k) = answer.u;
     const Vector coordinates = truths.coordinates.col(p);
     const Vector inside = embedding.size() > 0 ? Vector(embedding.transpose() * coordinates)
                                                : Vector(coordinates.head(k));
     const double outside = coordinates.squaredNorm() - inside.squaredNorm();
     const double remainder = truths.remainder[p] * truths.remainder[p];
-    errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
     errors.u_floor[p] = std::sqrt(std::max(0.0, outside) + remainder) / truths.u_norm[p];
-    const Vector difference = solver.multiplier(answer) - truths.lambda.col(p);
+    errors.u[p] = errors.lambda[p] = std::numeric_limits<double>::infinity();
+    const auto start = Clock::now();
+    const std::optional<ReducedSolution> answer = answer_at(solver, truths, p);
+    if (!answer) {
+      ++errors.failed;
+      continue;
+    }
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    errors.kkt_residual = std::max(errors.kkt_residual, answer->kkt_residual);
+    Vector c = Vector::Zero(truths.coordinates.rows());
+    if (embedding.size() > 0)
+      c = embedding * answer->u;
+    else
+      c.head(k) = answer->u;
+    errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
+    const Vector difference = solver.multiplier(*answer) - truths.lambda.col(p);
     const double scale = truths.lambda_norm[p] > 0 ? truths.lambda_norm[p] : 1;
     errors.lambda[p] = std::sqrt(difference.dot(w_product * difference)) / scale;
   }
-  const Vector distance = distances_to_cone(truths.lambda, {model.dual_basis}, w_product) *
-                          truths.lambda_norm.maxCoeff();
+  const Index bounded = model.generators - model.free_modes;
+  const Vector distance =
+      distances_to_cone(truths.lambda, {model.dual_basis.leftCols(bounded)}, w_product,
+                        {model.dual_basis.rightCols(model.free_modes)}) *
+      truths.lambda_norm.maxCoeff();
   errors.lambda_floor = distance.cwiseQuotient(truths.lambda_norm.cwiseMax(1e-300));
   std::sort(seconds.begin(), seconds.end());
-  errors.seconds = seconds[seconds.size() / 2];
+  if (!seconds.empty()) errors.seconds = seconds[seconds.size() / 2];
   return errors;
 }
 
 SubModel enriched_pair(const ReducedModel &model, int n, int r) {
   ReducedModel part = leading(model, model.primal_size(), r);
+  const auto product = model.settings.find("pga_product");
+  if (model.b.size() > 1 || (product != model.settings.end() && product->second == "energy")) {
+    Matrix kept = Matrix::Zero(model.primal_size(), n + model.supremizers);
+    kept.topLeftCorner(n, n).setIdentity();
+    kept.bottomRightCorner(model.supremizers, model.supremizers).setIdentity();
+    return {rebased(part, kept, n), kept};
+  }
   Matrix vectors = Matrix::Zero(model.primal_size(), n + r);
   vectors.leftCols(n).setIdentity();
   vectors.rightCols(r) = part.b.reduced.col(0).reshaped(r, model.primal_size()).transpose();

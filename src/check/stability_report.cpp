@@ -10,6 +10,9 @@ namespace rbvi {
 
 namespace {
 
+/// Of a singular value, relative to the largest: what the arithmetic leaves.
+constexpr double round_off = 1e-10;
+
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
   const Handle<Vec> like = make_vector(problem.dofs());
@@ -74,13 +77,11 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
 
 BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set) {
-  // Of the product of singular values, relative to the largest: what the arithmetic leaves.
-  constexpr double round_off = 1e-10;
   BoundCheck result{.smallest = std::numeric_limits<double>::infinity()};
   share(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
-    const StabilityBound bound = stability_bound(check.coordinates, t);
-    const double off = infsup_constant(check.coordinates, t);
+    const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
+    const auto [bound, off] = stability_path(check.coordinates, check.modes, {all}, t).front();
     result.smallest = std::min(result.smallest, off / bound.sharp);
     if (!(off >= bound.sharp - round_off * bound.c)) ++result.exceptions;
   });
@@ -92,24 +93,33 @@ BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &ch
 std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
                                           const StabilityCheck &check, const std::vector<Mu> &set,
                                           const std::vector<int> &counts) {
-  std::vector<double> sigma(counts.size(), 0), bound(counts.size(), 1), ratio(counts.size(), 1);
-  share(comm, set.size() * counts.size(), [&](std::size_t task) {
-    const std::size_t k = task % counts.size();
-    const Matrix t =
-        supremizers_at(problem, check.space, check.dual, {set[task / counts.size()]}).front();
-    const Matrix primal = check.coordinates.leftCols(check.modes + counts[k]);
-    const StabilityBound here = stability_bound(primal, t);
-    sigma[k] = std::max(sigma[k], here.sigma);
-    bound[k] = std::min(bound[k], here.sharp / here.on);
-    ratio[k] = std::min(ratio[k], infsup_constant(primal, t) / here.on);
+  // Columns: what the worst is the largest of. Smallest values enter with their sign changed.
+  enum { sigma, condition, minus_classic, minus_bound, minus_ratio, minus_beta, columns };
+  const auto size = static_cast<Index>(counts.size());
+  Matrix worst = Matrix::Constant(size, columns, -std::numeric_limits<double>::infinity());
+  std::vector<int> exceptions(counts.size(), 0);
+  share(comm, set.size(), [&](std::size_t p) {
+    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
+    const auto steps = stability_path(check.coordinates, check.modes, counts, t);
+    for (Index k = 0; k < size; ++k) {
+      const auto &[bound, off] = steps[static_cast<std::size_t>(k)];
+      Vector here(static_cast<Index>(columns));
+      here << bound.sigma, bound.sigma * bound.c / bound.on, -bound.classic / bound.on,
+          -bound.sharp / bound.on, -off / bound.on, -off;
+      worst.row(k) = worst.row(k).cwiseMax(here.transpose());
+      if (!(off >= bound.sharp - round_off * bound.c)) ++exceptions[static_cast<std::size_t>(k)];
+    }
   });
-  const int size = static_cast<int>(counts.size());
-  MPI_Allreduce(MPI_IN_PLACE, sigma.data(), size, MPI_DOUBLE, MPI_MAX, comm);
-  MPI_Allreduce(MPI_IN_PLACE, bound.data(), size, MPI_DOUBLE, MPI_MIN, comm);
-  MPI_Allreduce(MPI_IN_PLACE, ratio.data(), size, MPI_DOUBLE, MPI_MIN, comm);
+  MPI_Allreduce(MPI_IN_PLACE, worst.data(), static_cast<int>(worst.size()), MPI_DOUBLE, MPI_MAX,
+                comm);
+  MPI_Allreduce(MPI_IN_PLACE, exceptions.data(), static_cast<int>(size), MPI_INT, MPI_SUM, comm);
   std::vector<StabilityRow> rows;
-  for (std::size_t k = 0; k < counts.size(); ++k)
-    rows.push_back({counts[k], sigma[k], bound[k], ratio[k]});
+  for (Index k = 0; k < size; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    rows.push_back({counts[at], worst(k, sigma), worst(k, condition), -worst(k, minus_classic),
+                    -worst(k, minus_bound), -worst(k, minus_ratio), -worst(k, minus_beta),
+                    exceptions[at]});
+  }
   return rows;
 }
 

@@ -14,6 +14,8 @@ namespace rbvi {
 
 namespace {
 
+constexpr double open_below = 1e-10; ///< of the largest multiplier: at or below it a node is open
+
 /// From the triangular factor of the coordinates, not from the Gram matrix: squares would lose
 /// half of the digits.
 double condition(const Matrix &triangular) {
@@ -162,6 +164,27 @@ Cone GreedyCone::take() {
   cone_.basis.generators = generators();
   cone_.history.gram_condition = gram_conditions(coordinates());
   return std::move(cone_);
+}
+
+std::vector<bool> ever_in_contact(const Matrix &snapshots) {
+  std::vector<bool> result;
+  for (const double largest : Vector(snapshots.rowwise().maxCoeff()))
+    result.push_back(largest > open_below * snapshots.maxCoeff());
+  return result;
+}
+
+std::vector<bool> ever_open(const Matrix &snapshots) {
+  std::vector<bool> result;
+  for (const double least : Vector(snapshots.rowwise().minCoeff()))
+    result.push_back(least <= open_below * snapshots.maxCoeff());
+  return result;
+}
+
+void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product) {
+  const std::vector<bool> before = inside;
+  for (Index i = 0; i < product.outerSize(); ++i)
+    for (SparseMatrix::InnerIterator entry(product, i); entry; ++entry)
+      if (before[static_cast<std::size_t>(i)]) inside[static_cast<std::size_t>(entry.col())] = true;
 }
 
 } // namespace rbvi

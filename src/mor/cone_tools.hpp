@@ -80,6 +80,13 @@ private:
   double distance_ = 0, scale_ = 0;
 };
 
+/// Per node: whether some multiplier is positive there; whether some is zero.
+std::vector<bool> ever_in_contact(const Matrix &snapshots);
+std::vector<bool> ever_open(const Matrix &snapshots);
+
+/// Adds the nodes that `product` couples with one that is in the set.
+void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product);
+
 // The types: `snapshots` are checked ones.
 Cone projected_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,
                            const ConeOptions &options);

@@ -1,29 +1,10 @@
 #include "cone_tools.hpp"
 
-#include <cmath>
-
 namespace rbvi {
-
-namespace {
-
-constexpr double contact = 1e-10; ///< of the largest multiplier: below it a node was never active
-
-/// Adds the nodes that `product` couples with one that is in the set.
-void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product) {
-  const std::vector<bool> before = inside;
-  for (Index i = 0; i < product.outerSize(); ++i)
-    for (SparseMatrix::InnerIterator entry(product, i); entry; ++entry)
-      if (before[static_cast<std::size_t>(i)]) inside[static_cast<std::size_t>(entry.col())] = true;
-}
-
-} // namespace
 
 Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options) {
   const Matrix factor = product_factor(product);
-  const Vector largest = snapshots.rowwise().maxCoeff();
-  std::vector<bool> inside;
-  for (const double value : largest)
-    inside.push_back(value > contact * largest.maxCoeff());
+  std::vector<bool> inside = ever_in_contact(snapshots);
   for (int layer = 0; layer < options.ring; ++layer)
     add_neighbours(inside, product);
 

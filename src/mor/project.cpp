@@ -129,7 +129,9 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.parameters = problem.scene().parameters;
   model.modes = bases.modes;
   model.supremizers = bases.supremizers;
-  model.dual_basis = bases.cone.basis.generators;
+  model.online_enriched = bases.online_enriched;
+  model.dual_basis = bases.cone.all();
+  model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
   describe_mesh(problem, model);
 
@@ -178,6 +180,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     model.contact_trace.row(r) =
         model.primal_basis.row(contact.natural_vertex[static_cast<std::size_t>(r)]);
   model.histories["pod/error"] = bases.pod.error;
+  model.histories["cone/size"] = {bases.cone.history.size.begin(), bases.cone.history.size.end()};
   model.histories["cone/error"] = bases.cone.history.error;
   model.histories["cone/e_orth"] = bases.cone.history.e_orth;
   model.histories["cone/gram_condition"] = bases.cone.history.gram_condition;

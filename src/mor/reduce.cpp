@@ -1,6 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
 
@@ -51,7 +52,78 @@ Handle<Mat> supremizer_fields(const RieszSpace &riesz, const Matrix &representer
   return fields;
 }
 
+Mu centre(const ParameterSpace &space) {
+  Mu mu;
+  for (int i = 0; i < space.size(); ++i)
+    mu.push_back((space.at(i).lower + space.at(i).upper) / 2);
+  return mu;
+}
+
+Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
+                      const ConeOptions &options) {
+  if (options.type != ConeType::hybrid) return build_cone(snapshots, problem.w_product(), options);
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  const Operators &op = problem.assemble(reference);
+  RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+  return build_cone(snapshots, problem.w_product(), options, [&](const std::vector<Index> &which) {
+    return condensed_columns(ksp.get(), problem.trace(), op, which);
+  });
+}
+
+/// A copy of the modes, orthonormal in another product.
+LinearBasis orthonormalised(const LinearBasis &modes, Mat product) {
+  LinearBasis copy;
+  RBVI_CALL(BVDuplicate(modes.columns.get(), copy.columns.put()));
+  RBVI_CALL(BVCopy(modes.columns.get(), copy.columns.get()));
+  RBVI_CALL(BVSetMatrix(copy.columns.get(), product, PETSC_FALSE));
+  RBVI_CALL(BVOrthogonalize(copy.columns.get(), nullptr));
+  RBVI_CALL(BVOrthogonalize(copy.columns.get(), nullptr)); // the modes can be far from orthogonal
+  return copy;
+}
+
+/// For online enrichment: sigma below this, the span holds every S_R(mu) of training.
+constexpr double whole_span = 1e-6;
+
+/// Supremizers of the greedy, or the span of all of them, after the modes.
+void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
+                     const ReduceOptions &options, ReducedBases &bases, StageTimes &times) {
+  const bool energy = options.product == SupremizerProduct::energy;
+  bases.online_enriched = options.enrichment == Enrichment::online;
+  Handle<Mat> stiffness;
+  RieszSpace riesz;
+  {
+    const Stage stage("Riesz representers", times);
+    if (energy)
+      RBVI_CALL(MatDuplicate(problem.assemble(reference).a, MAT_COPY_VALUES, stiffness.put()));
+    riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace());
+  }
+  const Stage stage("PGA", times);
+  const Matrix dual = orthonormal_dual_basis(bases.cone.all(), problem.w_product());
+  const Matrix modes =
+      energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()),
+                                problem.trace())
+             : mode_coordinates(riesz, bases.pod.basis, problem.trace());
+  PgaOptions pga = options.pga;
+  if (bases.online_enriched) pga = {.tolerance = whole_span};
+  bases.pga = projected_greedy(riesz, modes, supremizers_at(problem, riesz, dual, training), pga);
+  if (bases.pga.representers.cols() == 0) return;
+  bases.supremizers = static_cast<int>(
+      append_orthonormalised(bases.pod.basis,
+                             supremizer_fields(riesz, bases.pga.representers).get(), 1e-10)
+          .size());
+}
+
 } // namespace
+
+const std::vector<std::string> &enrichment_names() {
+  static const std::vector<std::string> names{"decorrelated", "online", "offline"};
+  return names;
+}
+
+const std::vector<std::string> &product_names() {
+  static const std::vector<std::string> names{"v", "energy"};
+  return names;
+}
 
 std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
                                    const std::vector<Mu> &set) {
@@ -67,6 +139,8 @@ std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, co
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTimes &times) {
   if (samples.empty()) throw failure("there is no sample to build a basis from");
+  const Mu reference =
+      options.reference.empty() ? centre(problem.scene().parameters) : options.reference;
   ReducedBases bases;
   {
     const Stage stage("POD", times);
@@ -75,29 +149,14 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
   }
   {
     const Stage stage("cone", times);
-    bases.cone = build_cone(multipliers(samples), problem.w_product(), options.cone);
-    bases.dual = orthonormal_dual_basis(bases.cone.basis.generators, problem.w_product());
+    bases.cone = build_dual_basis(problem, reference, multipliers(samples), options.cone);
   }
-  {
-    const Stage stage("Riesz representers", times);
-    bases.riesz = make_riesz_space(problem.v_product(), problem.trace());
-  }
-  {
-    const Stage stage("PGA", times);
-    std::vector<Mu> training;
-    for (const Sample &sample : samples)
-      training.push_back(sample.mu);
-    if (b_is_scaled) training.resize(1);
-    const Matrix modes = mode_coordinates(bases.riesz, bases.pod.basis, problem.trace());
-    bases.pga =
-        projected_greedy(bases.riesz, modes,
-                         supremizers_at(problem, bases.riesz, bases.dual, training), options.pga);
-    if (bases.pga.representers.cols() > 0)
-      bases.supremizers = static_cast<int>(
-          append_orthonormalised(
-              bases.pod.basis, supremizer_fields(bases.riesz, bases.pga.representers).get(), 1e-10)
-              .size());
-  }
+  if (options.enrichment == Enrichment::decorrelated) return bases;
+  std::vector<Mu> training;
+  for (const Sample &sample : samples)
+    training.push_back(sample.mu);
+  if (b_is_scaled) training.resize(1);
+  add_supremizers(problem, training, reference, options, bases, times);
   return bases;
 }
 

@@ -34,6 +34,13 @@ Handle<Vec> wrapped_column(Matrix &matrix, Index column) {
   return vector;
 }
 
+/// A square matrix with the same singular values: LAPACK's SVD forms vectors of full length.
+Matrix triangular_factor(const Matrix &matrix) {
+  if (matrix.rows() <= matrix.cols()) return matrix;
+  const Eigen::HouseholderQR<Matrix> qr(matrix);
+  return qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
+}
+
 } // namespace
 
 Handle<Mat> sequential_dense(const Matrix &matrix) {
@@ -66,7 +73,7 @@ SmallSvd small_svd(const Matrix &matrix) {
 Vector singular_values(const Matrix &matrix) {
   Vector values(std::min(matrix.rows(), matrix.cols()));
   if (values.size() == 0) return values;
-  const Handle<SVD> svd = solved(matrix);
+  const Handle<SVD> svd = solved(triangular_factor(matrix));
   for (Index k = 0; k < values.size(); ++k)
     RBVI_CALL(
         SVDGetSingularTriplet(svd.get(), static_cast<PetscInt>(k), &values(k), nullptr, nullptr));

@@ -156,6 +156,18 @@ double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_con
   return smallest_stretch(supremizer_coordinates(space, b_contact, x));
 }
 
+/// The triangular factor of a matrix that gets more rows.
+void add_rows(Matrix &factor, const Matrix &rows) {
+  Matrix stacked(factor.rows() + rows.rows(), rows.cols());
+  stacked << factor, rows;
+  if (stacked.rows() <= stacked.cols()) {
+    factor = stacked;
+    return;
+  }
+  const Eigen::HouseholderQR<Matrix> qr(stacked);
+  factor = qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+}
+
 } // namespace
 
 InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact,
@@ -183,6 +195,35 @@ StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers
   bound.sharp = std::min(infsup_constant(enriched, range), 1.0) * bound.on;
   bound.classic = (bound.on - bound.c * bound.sigma) / (1 + bound.sigma);
   return bound;
+}
+
+std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes,
+                                          const std::vector<int> &counts,
+                                          const Matrix &supremizers) {
+  const Matrix range = orthonormal_range(supremizers);
+  const auto contact = coordinates.topRows(supremizers.rows());
+  const Matrix work = contact.transpose() * supremizers, cosines = contact.transpose() * range;
+  const Vector stretch = singular_values(supremizers);
+  const double on = smallest_stretch(supremizers);
+  Matrix work_factor(0, work.cols()), cosine_factor(0, range.cols());
+  Index seen = 0;
+  std::vector<StabilityStep> steps;
+  for (const int count : counts) {
+    const Index fresh = modes + count - seen;
+    add_rows(work_factor, work.middleRows(seen, fresh));
+    add_rows(cosine_factor, cosines.middleRows(seen, fresh));
+    seen += fresh;
+    const double cosine = std::min(smallest_stretch(cosine_factor), 1.0);
+    StabilityStep step{};
+    step.off = smallest_stretch(work_factor);
+    step.bound.sigma = std::sqrt((1 - cosine) * (1 + cosine));
+    step.bound.c = stretch.size() > 0 ? stretch(0) : 0;
+    step.bound.on = on;
+    step.bound.sharp = cosine * on;
+    step.bound.classic = (on - step.bound.c * step.bound.sigma) / (1 + step.bound.sigma);
+    steps.push_back(step);
+  }
+  return steps;
 }
 
 } // namespace rbvi

@@ -91,7 +91,9 @@ void check_model(const ReducedModel &model) {
   check_terms(model.f, n, dim, "f");
   check_terms(model.g, r, dim, "g");
   require_shape(model.dual_basis, contact, r, "contact/dual_basis");
-  require(model.dual_basis.minCoeff() >= 0, "contact/dual_basis has a negative entry");
+  require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
+  require(model.free_modes > 0 || model.dual_basis.minCoeff() >= 0,
+          "contact/dual_basis has a negative entry");
   require_shape(model.contact_trace, contact, n, "contact/trace");
   require(static_cast<Index>(model.contact_nodes.size()) == contact,
           "contact/nodes does not fit contact/dual_basis");
@@ -111,7 +113,9 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   ReducedModel result = model;
   result.modes = std::min(n, model.modes);
   result.supremizers = n - result.modes;
+  result.online_enriched = model.online_enriched && result.supremizers > 0;
   result.generators = r;
+  result.free_modes = std::max(0, r - (model.generators - model.free_modes));
   result.a.reduced = leading_triangle(model.a.reduced, model.primal_size(), n);
   result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
   if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);

@@ -1,4 +1,4 @@
-// Layout of model.h5 (schema 1). n = modes + supremizers, R generators, c = dual dofs of the
+// Layout of model.h5 (schema 2). n = modes + supremizers, R generators, c = dual dofs of the
 // contact region, d = dimension; every term set T = a, b, f, g has its own J.
 //
 //   scene/name, scene/options/{names,values}          text
@@ -6,7 +6,8 @@
 //   parameters/{lower,upper,value}                    bounds; value while fixed
 //   parameters/free                                   indices of the free ones
 //   settings/{names,values}, mesh/fingerprint         text
-//   size/{modes,supremizers,generators}               integers
+//   size/{modes,supremizers,generators,free_modes}    integers
+//   size/online_enriched                              1: V_N + S_R(mu) is made online
 //   T/reduced                                         entries x J: a packed lower triangle by
 //                                                     columns, b R x n by columns, f n, g R
 //   T/interpolation                                   J x J unit lower triangular (B.34)
@@ -192,6 +193,8 @@ ReducedModel read_members(const H5Reader &file, bool with_fields) {
   model.modes = file.integer("size/modes");
   model.supremizers = file.integer("size/supremizers");
   model.generators = file.integer("size/generators");
+  model.free_modes = file.integer("size/free_modes");
+  model.online_enriched = file.integer("size/online_enriched") != 0;
   model.a = read_terms(file, "a");
   model.b = read_terms(file, "b");
   model.f = read_terms(file, "f");
@@ -214,6 +217,8 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   file.write("size/modes", model.modes);
   file.write("size/supremizers", model.supremizers);
   file.write("size/generators", model.generators);
+  file.write("size/free_modes", model.free_modes);
+  file.write("size/online_enriched", model.online_enriched ? 1 : 0);
   write_terms(file, "a", model.a);
   write_terms(file, "b", model.b);
   write_terms(file, "f", model.f);

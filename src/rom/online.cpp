@@ -2,6 +2,9 @@
 
 #include "rbvi/core/error.hpp"
 
+#include <Eigen/QR>
+
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -10,6 +13,8 @@ namespace rbvi {
 namespace {
 
 constexpr double largest_residual = 1e-8;
+constexpr double largest_pull =
+    1e-2; ///< of the peak: negative pressure where contact is taken for sure
 constexpr double active_fraction = 1e-6; ///< of the peak: below it a node counts as free
 
 void unpack(const Vector &packed, Matrix &lower) {
@@ -25,6 +30,12 @@ double ratio(const Vector &theta, const Vector &reference) {
   return std::isfinite(quotient) && quotient > 0 ? quotient : 0;
 }
 
+/// Number of primal functions of one query.
+Index solved_size(const ReducedModel &model) {
+  if (!model.online_enriched) return model.primal_size();
+  return model.modes + std::min(model.supremizers, model.generators);
+}
+
 void check_kernel(const AffineTerms &terms, const Form &form, const std::string &name) {
   if (terms.size() > 0 && !form)
     throw bad_input("the model has terms of " + name + ", its scene in this build has not");
@@ -35,40 +46,51 @@ void check_kernel(const AffineTerms &terms, const Form &form, const std::string 
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
-    : model_(model), scene_(std::move(scene)), qp_(model.primal_size()) {
-  const Index n = model.primal_size(), r = model.generators;
+    : model_(model), scene_(std::move(scene)), qp_(solved_size(model), model.free_modes) {
   check_kernel(model.a, scene_.a, "a");
   check_kernel(model.b, scene_.b, "b");
   check_kernel(model.f, scene_.f, "f");
   check_kernel(model.g, scene_.g, "g");
-  packed_.resize(n * (n + 1) / 2);
-  a_.resize(n, n);
-  l_.resize(n, n);
-  b_.resize(r, n);
-  y_.resize(n, r);
-  f_ = Vector::Zero(n);
-  g_ = Vector::Zero(r);
-  c_.resize(n);
+  packed_.resize(model.a.reduced.rows());
+  g_ = Vector::Zero(model.generators);
+}
+
+void OnlineSolver::enrich() {
+  const Index modes = model_.modes, n = model_.primal_size();
+  const Index added = solved_size(model_) - modes;
+  const Eigen::HouseholderQR<Matrix> qr(b_.rightCols(n - modes).transpose());
+  enrichment_ = Matrix::Zero(n, modes + added);
+  enrichment_.topLeftCorner(modes, modes).setIdentity();
+  enrichment_.bottomRightCorner(n - modes, added) =
+      qr.householderQ() * Matrix::Identity(n - modes, added);
+  a_ = (enrichment_.transpose() * (a_.selfadjointView<Eigen::Lower>() * enrichment_)).eval();
+  b_ = (b_ * enrichment_).eval();
 }
 
 void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b) {
-  const double a_ratio = ratio(theta_a, theta_a_), b_ratio = ratio(theta_b, theta_b_);
+  const bool anew = model_.online_enriched;
+  const double a_ratio = anew ? 0 : ratio(theta_a, theta_a_);
+  const double b_ratio = anew ? 0 : ratio(theta_b, theta_b_);
+  const Index n = model_.primal_size();
   a_scale_ = a_ratio > 0 ? std::sqrt(a_ratio) : 1;
   b_scale_ = b_ratio > 0 ? b_ratio : 1;
+  if (b_ratio == 0) {
+    b_.resize(model_.generators, n);
+    Eigen::Map<Vector>(b_.data(), b_.size()).noalias() = model_.b.reduced * theta_b;
+    theta_b_ = theta_b;
+  }
   if (a_ratio == 0) {
-    packed_.noalias() = model_.a.reduced * theta_a;
-    unpack(packed_, a_);
-    l_.triangularView<Eigen::Lower>() = a_;
     theta_a_.resize(0);
+    packed_.noalias() = model_.a.reduced * theta_a;
+    a_.resize(n, n);
+    unpack(packed_, a_);
+    if (anew) enrich();
+    l_ = a_;
     const Eigen::LLT<Eigen::Ref<Matrix>> factor(l_);
     if (factor.info() != Eigen::Success)
       throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
                     "-eim_tolerance, or stay closer to the training set");
     theta_a_ = theta_a;
-  }
-  if (b_ratio == 0) {
-    Eigen::Map<Vector>(b_.data(), b_.size()).noalias() = model_.b.reduced * theta_b;
-    theta_b_ = theta_b;
   }
   if (a_ratio == 0 || b_ratio == 0) {
     y_ = b_.transpose();
@@ -96,12 +118,14 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
 }
 
 double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
-                    const Vector &g, const Vector &x) {
+                    const Vector &g, const Vector &x, Index free) {
   const auto relative = [](double error, double scale) { return error == 0 ? 0 : error / scale; };
   const double stationarity = relative((au + btx - f).norm(), f.norm() + btx.norm());
   const double scale = std::max(g.lpNorm<Eigen::Infinity>(), bu.lpNorm<Eigen::Infinity>());
-  const double infeasible = relative(std::max(0.0, (bu - g).maxCoeff()), scale);
-  const double gap = relative(std::abs(x.dot(bu - g)), scale * x.sum());
+  const Vector excess = bu - g;
+  const double unequal = free > 0 ? excess.tail(free).cwiseAbs().maxCoeff() : 0;
+  const double infeasible = relative(std::max({0.0, excess.maxCoeff(), unequal}), scale);
+  const double gap = relative(std::abs(x.dot(excess)), scale * x.lpNorm<1>());
   return std::max({stationarity, infeasible, gap});
 }
 
@@ -110,12 +134,23 @@ void OnlineSolver::check(ReducedSolution &solution) {
   const Vector btx = b_scale_ * (b_.transpose() * solution.x);
   const Vector bu = b_scale_ * (b_ * solution.u);
   solution.energy = 0.5 * solution.u.dot(au) - f_.dot(solution.u);
-  solution.kkt_residual = kkt_residual(au, btx, f_, bu, g_, solution.x);
+  solution.kkt_residual = kkt_residual(au, btx, f_, bu, g_, solution.x, model_.free_modes);
   if (!(solution.kkt_residual <= largest_residual))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
                    << solution.kkt_residual
                    << ": reduce again with fewer generators or more supremizers")
                       .str());
+  if (model_.free_modes == 0) return;
+  const Vector pressure = multiplier(solution);
+  Index node = 0;
+  if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
+  throw failure((std::ostringstream("the pressure is negative at the contact node of reference "
+                                    "coordinates ",
+                                    std::ios::ate)
+                 << model_.contact_points.row(node)
+                 << ": contact opens there, and never did in training; reduce again with more "
+                    "training parameters or a larger -cone_ring")
+                    .str());
 }
 
 ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
@@ -125,10 +160,13 @@ ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
   ReducedSolution solution;
   solution.theta_b = theta(model_.b, scene_.b);
   update_operators(theta(model_.a, scene_.a), solution.theta_b);
+  f_ = Vector::Zero(model_.primal_size());
   if (model_.f.size() > 0) f_.noalias() = model_.f.reduced * theta(model_.f, scene_.f);
+  if (model_.online_enriched) f_ = (enrichment_.transpose() * f_).eval();
   if (model_.g.size() > 0) g_.noalias() = model_.g.reduced * theta(model_.g, scene_.g);
   solve_dual(solution);
   check(solution);
+  if (model_.online_enriched) solution.u = (enrichment_ * solution.u).eval();
   return solution;
 }
 

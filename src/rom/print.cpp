@@ -61,8 +61,10 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "options") << joined(model.scene_options) << '\n';
   print_parameters(out, model.parameters);
   label(out, "modes") << model.modes << '\n';
-  label(out, "supremizers") << model.supremizers << '\n';
-  label(out, "cone generators") << model.generators << '\n';
+  label(out, "supremizers") << model.supremizers
+                            << (model.online_enriched ? " (the space is made online)" : "") << '\n';
+  label(out, "cone generators") << model.generators - model.free_modes << '\n';
+  if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
   print_terms(out, "a", model.a);
   print_terms(out, "b", model.b);
   print_terms(out, "f", model.f);

@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::size_t block = 128; ///< right-hand sides at a time: bounds the memory
 
-/// B A^-1 B^T(:, which): the constraint values that unit multipliers cause.
+} // namespace
+
 Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                          const std::vector<Index> &which) {
   Matrix columns(op.b.rows(), static_cast<Index>(which.size()));
@@ -26,8 +27,6 @@ Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
   }
   return columns;
 }
-
-} // namespace
 
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
                               const std::vector<Index> &start) {

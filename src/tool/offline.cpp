@@ -15,16 +15,20 @@ namespace rbvi {
 namespace {
 
 std::map<std::string, std::string> model_settings(const ToolOptions &options, std::size_t samples) {
-  return {{"training", options.train},
-          {"samples", std::to_string(samples)},
-          {"mesh_refine", std::to_string(options.mesh.refine)},
-          {"pod_tolerance", short_number(options.reduce.pod.tolerance)},
-          {"cone_type", options.reduce.cone.type == ConeType::mcpg ? "mcpg" : "cpg"},
-          {"cone_tolerance", short_number(options.reduce.cone.tolerance)},
-          {"cone_feasibility", short_number(options.reduce.cone.feasibility)},
-          {"pga_tolerance", short_number(options.reduce.pga.tolerance)},
-          {"pga_beta_fraction", short_number(options.reduce.pga.stability)},
-          {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
+  return {
+      {"training", options.train},
+      {"samples", std::to_string(samples)},
+      {"mesh_refine", std::to_string(options.mesh.refine)},
+      {"pod_tolerance", short_number(options.reduce.pod.tolerance)},
+      {"cone_type", cone_type_names()[static_cast<std::size_t>(options.reduce.cone.type)]},
+      {"cone_tolerance", short_number(options.reduce.cone.tolerance)},
+      {"cone_feasibility", short_number(options.reduce.cone.feasibility)},
+      {"cone_ring", std::to_string(options.reduce.cone.ring)},
+      {"pga_enrichment", enrichment_names()[static_cast<std::size_t>(options.reduce.enrichment)]},
+      {"pga_product", product_names()[static_cast<std::size_t>(options.reduce.product)]},
+      {"pga_tolerance", short_number(options.reduce.pga.tolerance)},
+      {"pga_beta_fraction", short_number(options.reduce.pga.stability)},
+      {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
 }
 
 void print_failures(const SweepReport &report, const ParameterSpace &space) {

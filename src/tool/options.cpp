@@ -224,14 +224,22 @@ void check_names(const std::vector<std::string> &names, const Scene &scene) {
                       nearest_name(name, known) + " (-help lists all)");
 }
 
-ReduceOptions reduce_options() {
+ReduceOptions reduce_options(const ParameterSpace &space) {
   ReduceOptions options;
   options.pod.tolerance = number_of("pod_tolerance", 0, 1);
   options.pod.max_size = integer_of("pod_max_size", 0, 100000);
-  options.cone.type = static_cast<ConeType>(choice_of("cone_type", {"cpg", "mcpg"}));
+  options.cone.type = static_cast<ConeType>(choice_of("cone_type", cone_type_names()));
   options.cone.tolerance = number_of("cone_tolerance", 0, 1);
   options.cone.max_size = integer_of("cone_max_size", 0, 100000);
   options.cone.feasibility = number_of("cone_feasibility", 0, 1);
+  options.cone.ring = integer_of("cone_ring", 0, 1000);
+  options.enrichment = static_cast<Enrichment>(choice_of("pga_enrichment", enrichment_names()));
+  options.product = static_cast<SupremizerProduct>(choice_of("pga_product", product_names()));
+  if (options.enrichment == Enrichment::online && options.product == SupremizerProduct::energy)
+    throw bad_input("-pga_enrichment online takes supremizers in the V product: leave out "
+                    "-pga_product energy");
+  const std::string reference = text_of("reference_mu");
+  if (!reference.empty()) options.reference = parse_mu(space, reference);
   options.pga.tolerance = number_of("pga_tolerance", 0, 1);
   options.pga.stability = number_of("pga_beta_fraction", 0, 1 - 1e-12);
   options.pga.max_size = integer_of("pga_max_size", 0, 100000);
@@ -276,14 +284,20 @@ const std::vector<OptionHelp> &tool_options() {
       {"sweep_ranks_per_solve", "1", "ranks that share one solve; divides the ranks"},
       {"pod_tolerance", "1e-6", "relative error of the displacement modes (2.11)"},
       {"pod_max_size", "0", "most modes; 0 is no bound"},
-      {"cone_type", "mcpg", "cone of multipliers: mcpg | cpg"},
-      {"cone_tolerance", "1e-2", "relative error of the cone (2.34)"},
+      {"cone_type", "hybrid",
+       "dual basis: cpg | mcpg | angle_greedy | nmf | nodal | hybrid (README)"},
+      {"cone_tolerance", "1e-4", "relative error of the cone (2.34); not used by nodal"},
       {"cone_max_size", "0", "most generators; 0 is no bound"},
       {"cone_feasibility", "0", "mcpg: tolerated negative part, as a fraction of the maximum"},
+      {"cone_ring", "1", "nodal, hybrid: layers of nodes around moving contact"},
+      {"pga_enrichment", "offline", "supremizers: decorrelated (none) | online | offline"},
+      {"pga_product", "v", "they are taken in the V product or in energy: v | energy"},
+      {"reference_mu", "",
+       "mu of that energy, and of the hybrid cone's; default: centre of the box"},
       {"pga_tolerance", "0", "on max sigma (2.27); 0 uses -pga_beta_fraction"},
       {"pga_beta_fraction", "0.9", "stop when beta_off >= this fraction of beta_on is sure"},
       {"pga_max_size", "0", "most supremizers; 0 is no bound"},
-      {"eim_tolerance", "1e-3", "relative error of the separated operators (B.32)"},
+      {"eim_tolerance", "1e-4", "relative error of the separated operators (B.32)"},
       {"eim_max_size", "0", "most terms; 0 is no bound"}};
   return options;
 }
@@ -320,7 +334,7 @@ ToolOptions read_options(MPI_Comm comm) {
   options.train = text_of("train", options.scene.training);
   options.valid = text_of("valid", options.scene.validation);
   options.hf = hf_options();
-  options.reduce = reduce_options();
+  options.reduce = reduce_options(options.scene.parameters);
   options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
   options.out = text_of("out");
   options.mu = text_of("mu");

@@ -64,33 +64,46 @@ StageRow pod_row(const ToolOptions &options, const OfflineResult *result) {
 
 StageRow cone_row(const ToolOptions &options, const OfflineResult *result) {
   const ConeOptions &cone = options.reduce.cone;
-  const std::string name = cone.type == ConeType::mcpg ? "mcpg" : "cpg";
+  const std::string &name = cone_type_names()[static_cast<std::size_t>(cone.type)];
   if (result == nullptr)
-    return {"cone", name + " for the multipliers, to " + short_number(cone.tolerance)};
+    return {"cone",
+            name + " for the multipliers" +
+                (cone.type == ConeType::nodal ? "" : ", to " + short_number(cone.tolerance))};
   const Cone &made = result->bases.cone;
+  const auto modes = static_cast<int>(made.modes.columns.cols());
   return {"cone", "R = " + count(static_cast<int>(made.basis.generators.cols()), "generator") +
-                      " (" + name + "), error " + short_number(made.history.error.back()) + ", " +
+                      (modes > 0 ? " + " + count(modes, "free mode") : "") + " (" + name +
+                      "), error " + short_number(made.history.error.back()) + ", " +
                       made.history.reason};
 }
 
 StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
-  const PgaOptions &pga = options.reduce.pga;
-  if (result == nullptr)
-    return {"PGA",
-            "supremizers until " +
-                (pga.tolerance > 0 ? "sigma <= " + short_number(pga.tolerance)
-                                   : "beta_off >= " + short_number(pga.stability) + " beta_on") +
-                "; one SVD if B only scales"};
+  const ReduceOptions &reduce = options.reduce;
+  if (reduce.enrichment == Enrichment::decorrelated)
+    return {"PGA", "no supremizers are wanted (-pga_enrichment)", true};
+  const bool online = reduce.enrichment == Enrichment::online;
+  const std::string product = reduce.product == SupremizerProduct::energy ? " in energy" : "";
+  if (result == nullptr) {
+    if (online) return {"PGA", "the span of all supremizers" + product};
+    return {"PGA", "supremizers" + product + " until " +
+                       (reduce.pga.tolerance > 0
+                            ? "sigma <= " + short_number(reduce.pga.tolerance)
+                            : "beta_off >= " + short_number(reduce.pga.stability) + " beta_on") +
+                       "; one SVD if B only scales"};
+  }
   const ReducedBases &bases = result->bases;
-  return {"PGA", "S = " + count(bases.supremizers, "supremizer") + ", sigma " +
+  return {"PGA", "S = " + count(bases.supremizers, "supremizer") + product + ", sigma " +
                      short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};
 }
 
-StageRow sweep_of_supremizers_row(const OfflineResult *result) {
-  if (result == nullptr) return {"supremizers at all mu", "only if B does more than scale"};
+StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResult *result) {
+  const char *stage = "supremizers at all mu";
+  if (options.reduce.enrichment == Enrichment::decorrelated)
+    return {stage, "no supremizers are wanted", true};
+  if (result == nullptr) return {stage, "only if B does more than scale"};
   if (result->affine.b.size() == 1)
-    return {"supremizers at all mu", "B only scales: one set and one SVD serve all mu", true};
-  return {"supremizers at all mu", "B depends on mu: part of PGA"};
+    return {stage, "B only scales: one set and one SVD serve all mu", true};
+  return {stage, "B depends on mu: part of PGA"};
 }
 
 } // namespace
@@ -106,9 +119,12 @@ std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t tra
   if (!options.scene.f) rows.push_back({"load vector", "the scene has no load", true});
   rows.push_back(pod_row(options, result));
   rows.push_back(cone_row(options, result));
-  rows.push_back({"Riesz representers", "one factorisation of V for all mu"});
+  if (options.reduce.enrichment != Enrichment::decorrelated)
+    rows.push_back({"Riesz representers", options.reduce.product == SupremizerProduct::energy
+                                              ? "one factorisation of A at the reference mu"
+                                              : "one factorisation of V for all mu"});
   rows.push_back(pga_row(options, result));
-  rows.push_back(sweep_of_supremizers_row(result));
+  rows.push_back(sweep_of_supremizers_row(options, result));
   rows.push_back({"tangential multipliers", "the scene has no friction", true});
   rows.push_back({"projection", "the separated operators onto the bases"});
   rows.push_back({"writing", "model.h5, samples.csv"});

@@ -21,6 +21,15 @@ void write_columns(const std::filesystem::path &path, const std::vector<std::str
   write_atomically(path, out.str());
 }
 
+void Table::add(const ParameterSpace &space, const std::vector<Mu> &set) {
+  for (int i = 0; i < space.size(); ++i) {
+    std::vector<double> values;
+    for (const Mu &mu : set)
+      values.push_back(mu[static_cast<std::size_t>(i)]);
+    add(space.at(i).name, values);
+  }
+}
+
 void write_sample_table(const std::filesystem::path &path, const ParameterSpace &space,
                         const std::vector<Sample> &samples) {
   std::vector<Mu> mus;

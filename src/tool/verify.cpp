@@ -1,7 +1,7 @@
 // rbvi verify: a finished model against high-fidelity solves over the validation set.
 #include "rbvi/check/errors.hpp"
-#include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/par/collective.hpp"
@@ -9,10 +9,13 @@
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
+#include "verify_stability.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <set>
+#include <iomanip>
+#include <sstream>
 
 namespace rbvi {
 
@@ -20,43 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Columns under their names.
-struct Table {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-
-  template <class Values> void add(const std::string &name, const Values &values) {
-    names.push_back(name);
-    columns.emplace_back(values.begin(), values.end());
-  }
-  void add(const ParameterSpace &space, const std::vector<Mu> &set) {
-    for (int i = 0; i < space.size(); ++i) {
-      std::vector<double> values;
-      for (const Mu &mu : set)
-        values.push_back(mu[static_cast<std::size_t>(i)]);
-      add(space.at(i).name, values);
-    }
-  }
-  void write(const fs::path &path) const { write_columns(path, names, columns); }
-};
-
-/// One column: a member of every row.
-template <class Row, class Value>
-std::vector<double> column(const std::vector<Row> &rows, Value Row::*member) {
-  std::vector<double> values;
-  for (const Row &row : rows)
-    values.push_back(static_cast<double>(row.*member));
-  return values;
-}
-
-double smallest(const std::vector<double> &values) {
-  return *std::min_element(values.begin(), values.end());
-}
-
 void print_errors(const char *name, const ModelErrors &e) {
-  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(),
-              e.u.maxCoeff(), e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds,
-              e.kkt_residual);
+  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e", name, e.u.mean(), e.u.maxCoeff(),
+              e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds, e.kkt_residual);
+  if (e.failed > 0) std::printf("   no answer at %d of %d", e.failed, static_cast<int>(e.u.size()));
+  std::printf("\n");
 }
 
 /// Those of `wanted` below `last`, then `last`.
@@ -68,24 +39,85 @@ std::vector<int> sizes_up_to(int last, const std::vector<int> &wanted) {
   return sizes;
 }
 
-/// Rows (N, R) of errors; needs a b that is only scaled (enriched_pair).
-void write_error_map(const fs::path &path, const ReducedModel &model, const Truths &truths,
-                     const SparseMatrix &w) {
-  std::vector<std::vector<double>> columns(9);
-  for (const int n : sizes_up_to(model.modes, {5, 10, 19, 35, 51, 70}))
-    for (const int r : sizes_up_to(model.generators, {10, 20, 30, 40, 50})) {
+/// The R at which the model's dual basis means something on its own.
+std::vector<int> generator_counts(const ReducedModel &model) {
+  const auto type = model.settings.find("cone_type");
+  if (type != model.settings.end() && (type->second == "nodal" || type->second == "nmf"))
+    return {model.generators};
+  const int cone = model.generators - model.free_modes;
+  if (model.free_modes > 0) return sizes_up_to(model.generators, {cone, cone + 4, cone + 8});
+  return sizes_up_to(model.generators, {20, 50, 70, 100});
+}
+
+/// Rows (N, R) of errors, see enriched_pair. Collective: the pairs are shared among the ranks.
+void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model,
+                     const Truths &truths, const SparseMatrix &w) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const int n : sizes_up_to(model.modes, {10, 19, 51}))
+    for (const int r : generator_counts(model))
+      pairs.emplace_back(n, r);
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(world, &rank);
+  MPI_Comm_size(world, &ranks);
+  const auto count = static_cast<int>(pairs.size());
+  Matrix rows = Matrix::Zero(count, 10);
+  collectively(world, [&] {
+    for (int k = rank; k < count; k += ranks) {
+      const auto [n, r] = pairs[static_cast<std::size_t>(k)];
       const SubModel pair = enriched_pair(model, n, r);
       const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w);
-      const double row[] = {static_cast<double>(n), static_cast<double>(r), e.u.mean(),
-                            e.u.maxCoeff(),         e.u_floor.mean(),       e.lambda.mean(),
-                            e.lambda.maxCoeff(),    e.lambda_floor.mean(),  e.seconds};
-      for (std::size_t j = 0; j < columns.size(); ++j)
-        columns[j].push_back(row[j]);
+      rows.row(k) << n, r, e.u.mean(), e.u.maxCoeff(), e.u_floor.mean(), e.lambda.mean(),
+          e.lambda.maxCoeff(), e.lambda_floor.mean(), e.seconds, e.failed;
     }
-  write_columns(path,
-                {"N", "R", "u_mean", "u_max", "u_floor_mean", "lambda_mean", "lambda_max",
-                 "lambda_floor_mean", "seconds"},
-                columns);
+  });
+  MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPI_DOUBLE, MPI_SUM,
+                world);
+  collectively(world, [&] {
+    if (rank != 0) return;
+    std::vector<std::vector<double>> columns;
+    for (const auto &column : rows.colwise())
+      columns.emplace_back(column.begin(), column.end());
+    write_columns(path,
+                  {"N", "R", "u_mean", "u_max", "u_floor_mean", "lambda_mean", "lambda_max",
+                   "lambda_floor_mean", "seconds", "failed"},
+                  columns);
+  });
+}
+
+/// The pressure where the multiplier is worst, and what it should be.
+void write_worst_pressure(const fs::path &path, const ReducedModel &model, const Truths &truths,
+                          const ModelErrors &errors) {
+  Index worst = 0;
+  errors.lambda.maxCoeff(&worst);
+  const Mu &mu = truths.mu[static_cast<std::size_t>(worst)];
+  OnlineSolver solver(model);
+  const Vector pressure = solver.multiplier(solver.solve(mu, true)),
+               truth = truths.lambda.col(worst);
+  Table table;
+  table.add(model.parameters, std::vector<Mu>(static_cast<std::size_t>(truth.size()), mu));
+  for (Index k = 0; k < model.contact_points.cols(); ++k)
+    table.add(std::string(1, static_cast<char>('x' + k)), Vector(model.contact_points.col(k)));
+  table.add("high_fidelity", truth);
+  table.add("reduced", pressure);
+  table.write(path);
+}
+
+/// One row per way to answer.
+void write_summary(const fs::path &path,
+                   const std::vector<std::pair<std::string, const ModelErrors *>> &rows,
+                   const ReducedModel &model) {
+  std::ostringstream text;
+  text << std::setprecision(10)
+       << "model,N,S,R,free_modes,u_mean,u_max,u_floor_mean,u_floor_max,lambda_mean,lambda_max,"
+          "lambda_floor_mean,lambda_floor_max,seconds,kkt_residual,failed\n";
+  for (const auto &[name, e] : rows)
+    text << name << ',' << model.modes << ',' << (name == "decorrelated" ? 0 : model.supremizers)
+         << ',' << model.generators << ',' << model.free_modes << ',' << e->u.mean() << ','
+         << e->u.maxCoeff() << ',' << e->u_floor.mean() << ',' << e->u_floor.maxCoeff() << ','
+         << e->lambda.mean() << ',' << e->lambda.maxCoeff() << ',' << e->lambda_floor.mean() << ','
+         << e->lambda_floor.maxCoeff() << ',' << e->seconds << ',' << e->kkt_residual << ','
+         << e->failed << '\n';
+  write_atomically(path, text.str());
 }
 
 void write_errors(const fs::path &path, const ParameterSpace &space, const Truths &truths,
@@ -131,123 +163,32 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
   });
 }
 
-/// Both greedy cones over the training multipliers, step by step.
-void write_cones(const fs::path &path, const std::vector<Sample> &training, const SparseMatrix &w,
-                 ConeOptions options) {
-  Matrix multipliers(w.rows(), static_cast<Index>(training.size()));
-  for (std::size_t p = 0; p < training.size(); ++p)
-    multipliers.col(static_cast<Index>(p)) = training[p].lambda;
-  std::vector<std::vector<double>> columns(5);
-  for (const ConeType type : {ConeType::cpg, ConeType::mcpg}) {
-    options.type = type;
-    const ConeHistory history = build_cone(multipliers, w, options).history;
-    for (std::size_t r = 1; r < history.error.size(); ++r) {
-      const double row[] = {type == ConeType::mcpg ? 1.0 : 0.0, static_cast<double>(r),
-                            history.error[r], history.e_orth[r - 1], history.gram_condition[r - 1]};
-      for (std::size_t j = 0; j < columns.size(); ++j)
-        columns[j].push_back(row[j]);
-    }
-    std::printf("Cone %s: %zu generators, error %.2e (%s)\n",
-                type == ConeType::mcpg ? "mcpg" : "cpg", history.error.size() - 1,
-                history.error.back(), history.reason.c_str());
-  }
-  write_columns(path, {"mcpg", "R", "error", "e_orth", "gram_condition"}, columns);
-}
-
-void report_constants(const fs::path &path, const ParameterSpace &space, const std::vector<Mu> &set,
-                      const std::vector<InfSup> &constants) {
-  Table table;
-  table.add(space, set);
-  table.add("beta_hf", column(constants, &InfSup::hf));
-  table.add("beta_dec", column(constants, &InfSup::dec));
-  table.add("beta_on", column(constants, &InfSup::on));
-  table.add("beta_off", column(constants, &InfSup::off));
-  table.write(path);
-  std::printf("Inf-sup constants over the span, smallest over %zu validation mu\n"
-              "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n",
-              constants.size(), smallest(column(constants, &InfSup::hf)),
-              smallest(column(constants, &InfSup::on)), smallest(column(constants, &InfSup::off)),
-              smallest(column(constants, &InfSup::dec)));
-}
-
-void write_stability(const fs::path &path, const std::vector<StabilityRow> &rows) {
-  Table table;
-  table.add("S", column(rows, &StabilityRow::supremizers));
-  table.add("sigma_max", column(rows, &StabilityRow::sigma));
-  table.add("bound_min", column(rows, &StabilityRow::bound));
-  table.add("ratio_min", column(rows, &StabilityRow::ratio));
-  table.write(path);
-}
-
-/// 0 to `last` in about `count` equal steps, both ends included.
-std::vector<int> spread(int last, int count) {
-  std::set<int> values{0};
-  for (int k = 1; k <= count; ++k)
-    values.insert(static_cast<int>(static_cast<long>(k) * last / count));
-  return {values.begin(), values.end()};
-}
-
-std::vector<Mu> subset(const std::vector<Mu> &set, int count) {
-  std::vector<Mu> result;
-  for (const int p : spread(static_cast<int>(set.size()) - 1, count - 1))
-    result.push_back(set[static_cast<std::size_t>(p)]);
-  return result;
-}
-
-/// What the model promises about stability, checked at every training and validation mu.
-void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
-                     const std::vector<Mu> &training, const std::vector<Mu> &validation,
-                     const fs::path &out) {
-  const bool scaled = model.b.size() == 1;
-  const StabilityCheck check = make_stability_check(problem, model);
-  const std::vector<InfSup> constants = infsup_over(world, problem, check, validation, scaled);
-  std::vector<Mu> all = training;
-  all.insert(all.end(), validation.begin(), validation.end());
-  const BoundCheck bound = check_bound(world, problem, check, all);
-  // Where b is only scaled every mu has the same ratios.
-  const std::vector<Mu> different = scaled ? std::vector<Mu>{all.front()} : all;
-  const std::vector<StabilityRow> rows =
-      stability_along(world, problem, check, subset(different, 8),
-                      spread(model.supremizers, scaled ? model.supremizers : 20));
-  const int fewest = fewest_supremizers(world, problem, check, different, 0.9);
-  collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
-    report_constants(out / "infsup.csv", problem.scene().parameters, validation, constants);
-    write_stability(out / "stability.csv", rows);
-    std::printf("  beta_off over its bound sqrt(1 - sigma^2) beta_on: at least %.6f, %d exceptions "
-                "among %zu training and validation mu\n",
-                bound.smallest, bound.exceptions, all.size());
-    if (fewest >= 0)
-      std::printf("  fewest supremizers with beta_off >= 0.9 beta_on at all of them: %d of %d\n",
-                  fewest, model.supremizers);
-    else
-      std::printf("  all %d supremizers leave beta_off < 0.9 beta_on somewhere: lower "
-                  "-pga_tolerance\n",
-                  model.supremizers);
-  });
-}
-
 /// Errors of the model with and without supremizers and of its leading parts, into tables, and the
 /// summaries into the model file.
 void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
                   const ToolOptions &options, const fs::path &out) {
   const SparseMatrix &w = problem.w_product();
-  const ModelErrors enriched = model_errors(model, {}, truths, w);
+  const ModelErrors whole = model_errors(model, {}, truths, w);
   const ModelErrors plain =
-      model_errors(leading(model, model.modes, model.generators), {}, truths, w);
+      model.supremizers == 0
+          ? whole
+          : model_errors(leading(model, model.modes, model.generators), {}, truths, w);
+  const std::string name = model.supremizers == 0  ? "decorrelated"
+                           : model.online_enriched ? "online-enriched"
+                                                   : "offline-enriched";
+  std::vector<std::pair<std::string, const ModelErrors *>> rows{{name, &whole}};
+  if (model.supremizers > 0) rows.emplace_back("decorrelated", &plain);
   std::printf("Relative errors over %zu validation mu\n"
               "  %-18s %9s %9s   %9s %9s   %9s   %9s\n",
               truths.mu.size(), "", "u mean", "max", "lambda m.", "max", "ms/query", "KKT");
-  print_errors("offline-enriched", enriched);
-  print_errors("decorrelated", plain);
-  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e\n", "bases alone", enriched.u_floor.mean(),
-              enriched.u_floor.maxCoeff(), enriched.lambda_floor.mean(),
-              enriched.lambda_floor.maxCoeff());
-  write_errors(out / "errors.csv", options.scene.parameters, truths, enriched, plain);
-  if (model.b.size() == 1) write_error_map(out / "error_map.csv", model, truths, w);
-  model.validation_enriched = summary(enriched);
+  for (const auto &[label, errors] : rows)
+    print_errors(label.c_str(), *errors);
+  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e\n", "bases alone", whole.u_floor.mean(),
+              whole.u_floor.maxCoeff(), whole.lambda_floor.mean(), whole.lambda_floor.maxCoeff());
+  write_errors(out / "errors.csv", options.scene.parameters, truths, whole, plain);
+  write_summary(out / "summary.csv", rows, model);
+  if (whole.failed == 0) write_worst_pressure(out / "worst_pressure.csv", model, truths, whole);
+  model.validation_enriched = model.supremizers > 0 ? summary(whole) : ValidationErrors{};
   model.validation_decorrelated = summary(plain);
   write_model(model, options.out / "model.h5");
 }
@@ -275,16 +216,13 @@ void command_verify(const ToolOptions &options) {
   Workspace work(world, groups, options, times);
   if (work.group_problem().mesh().fingerprint != model.mesh_fingerprint)
     throw bad_input("the model in " + options.out.string() + " was made on another mesh");
-  const auto samples = [&](const std::vector<Mu> &set) {
-    const Sweep sweep =
-        run_sweep(world, groups, work.group_problem(), options.hf, set, options.out / "samples");
-    if (!sweep.report.failed.empty())
-      throw failure("no high-fidelity answer at " +
-                    describe(options.scene.parameters, sweep.report.failed.front().first) + ": " +
-                    sweep.report.failed.front().second);
-    return sweep.samples;
-  };
-  const std::vector<Sample> snapshots = samples(training), answers = samples(validation);
+  const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
+                                options.out / "samples");
+  if (!sweep.report.failed.empty())
+    throw failure("no high-fidelity answer at " +
+                  describe(options.scene.parameters, sweep.report.failed.front().first) + ": " +
+                  sweep.report.failed.front().second);
+  const std::vector<Sample> &answers = sweep.samples;
   Problem &problem = work.world_problem(times);
   const Truths truths = make_truths(problem, model, answers);
   const fs::path out = options.out / "verify";
@@ -295,8 +233,11 @@ void command_verify(const ToolOptions &options) {
     fs::create_directories(out);
     check_errors(model, problem, truths, options, out);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
-    write_cones(out / "cones.csv", snapshots, problem.w_product(), options.reduce.cone);
   });
+  // Elsewhere the supremizers of smaller pairs are others.
+  const bool every_pair = model.b.size() == 1 && options.reduce.product == SupremizerProduct::v &&
+                          model.supremizers > 0;
+  if (every_pair) write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
   check_stability(world, problem, model, training, validation, out);
   int rank = 0;

@@ -27,6 +27,7 @@ struct ModelErrors {
   Vector u_floor, lambda_floor; ///< of the projections on the space and on the cone
   double seconds = 0;           ///< median per query, outputs and reconstruction left out
   double kkt_residual = 0;      ///< largest
+  int failed = 0;               ///< queries without an answer: their errors are infinite
 };
 
 /// Serial. `embedding`: coordinates of the sub-model's basis in the basis of the truths (n x k,
@@ -40,9 +41,9 @@ struct SubModel {
   Matrix embedding;
 };
 
-/// The pair of the first n modes and the first r generators, enriched by the supremizers of those
-/// generators within the model's space. Needs a b that depends on mu by a factor only: then the
-/// coordinates of T chi_r are row r of the reduced b.
+/// The pair of the first n modes and the first r generators, enriched. Where b depends on mu by a
+/// factor only, by the supremizers of those generators (in the V product the coordinates of T chi_r
+/// are row r of the reduced b); elsewhere by all that the model has.
 SubModel enriched_pair(const ReducedModel &model, int n, int r);
 
 ValidationErrors summary(const ModelErrors &errors);

@@ -36,12 +36,16 @@ BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &ch
 /// What the first supremizers achieve, the worst over a set.
 struct StabilityRow {
   int supremizers = 0;
-  double sigma = 0; ///< largest sigma_S(mu) (2.21)
-  double bound = 0; ///< smallest sqrt(1 - sigma^2)
-  double ratio = 0; ///< smallest beta_off / beta_on
+  double sigma = 0;     ///< largest sigma_S(mu) (2.21)
+  double condition = 0; ///< largest sigma_S c_S / beta_on: (2.23) holds where it is below 1
+  double classic = 0;   ///< smallest beta_S^* / beta_on (2.24): no statement where negative
+  double bound = 0;     ///< smallest sqrt(1 - sigma^2)
+  double ratio = 0;     ///< smallest beta_off / beta_on
+  double beta = 0;      ///< smallest beta_off
+  int exceptions = 0;   ///< mu with beta_off < sqrt(1 - sigma^2) beta_on by more than round-off
 };
 
-/// One row for each number of supremizers in `counts`. Collective on `comm`.
+/// One row for each number of supremizers in `counts` (increasing). Collective on `comm`.
 std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
                                           const StabilityCheck &check, const std::vector<Mu> &set,
                                           const std::vector<int> &counts);

@@ -57,8 +57,8 @@ enum class ConeType { cpg, mcpg, angle_greedy, nmf, nodal, hybrid };
 const std::vector<std::string> &cone_type_names();
 
 struct ConeOptions {
-  ConeType type = ConeType::mcpg;
-  double tolerance = 1e-2; ///< stop when the error (2.34) is at or below; nodal: not used
+  ConeType type = ConeType::hybrid;
+  double tolerance = 1e-4; ///< stop when the error (2.34) is at or below; nodal: not used
   int max_size = 0;        ///< 0: no bound but the number of snapshots; nodal: not used
   double feasibility = 0;  ///< mcpg, line 9: theta - Upsilon >= -feasibility * max theta
   int ring = 1;            ///< nodal, hybrid: layers of neighbours on either side of moving contact

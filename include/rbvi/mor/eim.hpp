@@ -22,7 +22,7 @@ struct EntryKey {
 };
 
 struct EimOptions {
-  double tolerance = 1e-3; ///< on (B.32)
+  double tolerance = 1e-4; ///< on (B.32)
   int max_size = 0;        ///< 0: no bound
 };
 

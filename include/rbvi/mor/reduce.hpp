@@ -10,22 +10,41 @@
 
 namespace rbvi {
 
+/// What is added to the modes.
+enum class Enrichment {
+  decorrelated, ///< nothing: V_N
+  online,       ///< S_R(mu), made for each query (2.17); the model holds the span of all S_R(mu)
+  offline,      ///< the supremizers of the projected greedy (2.30)
+};
+
+/// The product in which supremizers represent b(mu; ., eta).
+enum class SupremizerProduct {
+  v,     ///< the V product: beta and sigma are those of the theory
+  energy ///< a(reference; ., .): the response of u to eta, exact where A does not vary
+};
+
+/// Their names, in order.
+const std::vector<std::string> &enrichment_names();
+const std::vector<std::string> &product_names();
+
 struct ReduceOptions {
   PodOptions pod;
   ConeOptions cone;
   PgaOptions pga;
   EimOptions eim;
+  Enrichment enrichment = Enrichment::offline;
+  SupremizerProduct product = SupremizerProduct::v;
+  Mu reference; ///< free parameters of that a, and of the hybrid cone's; empty: centre of the box
 };
 
-/// A basis pair with what is known about its stability. Coordinates as in mor/stability.hpp.
+/// A basis pair and how it was found.
 struct ReducedBases {
   Pod pod; ///< basis: N modes, then the S supremizers, V-orthonormal
   Cone cone;
-  RieszSpace riesz;
   Pga pga;
-  Matrix dual;         ///< orthonormal basis of the span of the cone
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
+  bool online_enriched = false;
 };
 
 /// Collective. `world_problem`: on all ranks. `b_is_scaled`: b depends on mu by a factor only, so

@@ -66,6 +66,18 @@ struct StabilityBound {
 /// `enriched`: coordinates of V_N + S; `supremizers`: T(mu) X for an orthonormal dual basis X.
 StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers);
 
+/// What the first supremizers guarantee, and what they reach.
+struct StabilityStep {
+  StabilityBound bound; ///< sigma from its cosine: nothing below 1e-8 is meant
+  double off;           ///< beta_off(mu), or beta_{S^n}(mu) of (2.42)
+};
+
+/// One step for each number of supremizers in `counts` (increasing). `coordinates`: of V_N and then
+/// all of them. Triangular factors grow by the new rows, so that a step costs two small SVDs.
+std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes,
+                                          const std::vector<int> &counts,
+                                          const Matrix &supremizers);
+
 /// Orthonormal columns that span those of `vectors` (directions below 1e-12 of the largest left
 /// out): rows x rank.
 Matrix orthonormal_range(const Matrix &vectors);

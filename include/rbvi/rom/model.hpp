@@ -54,6 +54,9 @@ struct ReducedModel {
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
   int generators = 0;  ///< R
+  int free_modes = 0;  ///< the last of the R: their coefficients take either sign
+  /// V_N + S_R(mu) is made for each mu (2.17); the supremizers span S_R(mu) for every mu.
+  bool online_enriched = false;
   int primal_size() const { return modes + supremizers; }
 
   AffineTerms a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x J
@@ -62,7 +65,7 @@ struct ReducedModel {
   AffineTerms g; ///< R x J
 
   // Full order, for outputs: the contact region.
-  Matrix dual_basis;     ///< dual dofs x R, entries >= 0
+  Matrix dual_basis;     ///< dual dofs x R; entries >= 0 where there are no free modes
   Matrix contact_trace;  ///< dual dofs x n: primal basis at the nodes of the contact region
   Matrix contact_points; ///< dual dofs x dim, reference coordinates
   Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
@@ -80,7 +83,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 1;
+inline constexpr int model_schema = 2;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

@@ -4,10 +4,11 @@
 //   min over x >= 0 of  1/2 |Y x - c|^2 + g . x,    then  u = L^-T (c - Y x)
 //
 // What does not depend on mu is done once: the factor L where A has one term, Y where B has one
-// term too.
+// term too. Free modes have equations in place of inequalities. An online-enriched model is first
+// reduced to V_N + S_R(mu) (2.17): the rows of B are the coordinates of T(mu) chi_r.
 #pragma once
 
-#include "rbvi/core/nonnegative_qp.hpp"
+#include "rbvi/core/mixed_qp.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/rom/model.hpp"
 
@@ -15,7 +16,7 @@ namespace rbvi {
 
 struct ReducedSolution {
   Vector u;                ///< n coefficients
-  Vector x;                ///< R coefficients, >= 0
+  Vector x;                ///< R coefficients, >= 0 but for those of the free modes
   Vector theta_b;          ///< coefficients of b at this mu
   double energy = 0;       ///< a(u,u)/2 - f(u) of the combination of the basis, without the offset
   double kkt_residual = 0; ///< see kkt_residual()
@@ -30,7 +31,8 @@ public:
   OnlineSolver(const ReducedModel &model, Scene scene);
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`. Throws
   /// failure, saying what to try, if the reduced constraints contradict each other, if the reduced
-  /// stiffness is not positive definite, or if the KKT residual exceeds 1e-8.
+  /// stiffness is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the
+  /// free modes take to be in contact is pulled at by more than 1 % of the peak pressure.
   ReducedSolution solve(const Mu &mu, bool extrapolate = false);
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
@@ -46,16 +48,18 @@ public:
 private:
   ReducedSolution solve_at(const Mu &all_parameters);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
+  void enrich();
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
 
   const ReducedModel &model_;
   Scene scene_;
-  NonnegativeQp qp_;
+  MixedQp qp_;
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.
   Vector packed_, theta_a_, theta_b_;
   Matrix a_, l_, b_, y_;
+  Matrix enrichment_; ///< online-enriched: V_N + S_R(mu) in the n functions, which a_ ... f_ are in
   double a_scale_ = 1, b_scale_ = 1;
   Vector f_, g_, c_;
 };
@@ -65,9 +69,10 @@ Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Sce
                            const Mu &all_parameters);
 
 /// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
-/// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum x), with
-/// s = max(|g|, |B u|) in the maximum norm. au = A u, bu = B u, btx = B^T x.
+/// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with
+/// s = max(|g|, |B u|) in the maximum norm. au = A u, bu = B u, btx = B^T x. The last `free` rows
+/// are equations: B u = g.
 double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
-                    const Vector &g, const Vector &x);
+                    const Vector &g, const Vector &x, Index free = 0);
 
 } // namespace rbvi

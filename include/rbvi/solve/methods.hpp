@@ -26,6 +26,11 @@ void solve_linear(KSP ksp, Vec rhs, Vec x);
 /// F - B^T lambda. Collective.
 Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda);
 
+/// B A^-1 B^T(:, which), dual x which.size(), on every rank: the constraint values that unit
+/// multipliers cause. `ksp`: with op.a as its operator. Collective.
+Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
+                         const std::vector<Index> &which);
+
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
                               const std::vector<Index> &start);
 

@@ -13,6 +13,30 @@ namespace rbvi {
 void write_columns(const std::filesystem::path &path, const std::vector<std::string> &names,
                    const std::vector<std::vector<double>> &columns);
 
+/// Columns under their names.
+struct Table {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+
+  template <class Values> void add(const std::string &name, const Values &values) {
+    names.push_back(name);
+    columns.emplace_back(values.begin(), values.end());
+  }
+  /// One column per free parameter.
+  void add(const ParameterSpace &space, const std::vector<Mu> &set);
+  /// Throws failure.
+  void write(const std::filesystem::path &path) const { write_columns(path, names, columns); }
+};
+
+/// One column: a member of every row.
+template <class Row, class Value>
+std::vector<double> column(const std::vector<Row> &rows, Value Row::*member) {
+  std::vector<double> values;
+  for (const Row &row : rows)
+    values.push_back(static_cast<double>(row.*member));
+  return values;
+}
+
 /// One row per sample: parameters, outputs.
 void write_sample_table(const std::filesystem::path &path, const ParameterSpace &space,
                         const std::vector<Sample> &samples);

@@ -1,0 +1,17 @@
+// The part of verify that is about stability.
+#pragma once
+
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/model.hpp"
+
+#include <filesystem>
+
+namespace rbvi {
+
+/// What the model promises about stability, checked at every training and validation mu: infsup.csv
+/// and stability.csv into `out`, a summary to standard output. Collective.
+void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
+                     const std::vector<Mu> &training, const std::vector<Mu> &validation,
+                     const std::filesystem::path &out);
+
+} // namespace rbvi
