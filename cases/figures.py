@@ -144,23 +144,51 @@ def solution(run):
 
 
 def bases(run):
-    """How fast the two bases converge, and how well conditioned the cone is."""
-    cones = table(run, "cones.csv")
+    """How fast the two bases converge, and how well conditioned the dual one is."""
+    size, error = history(run, "cone/size"), history(run, "cone/error")
+    orthogonality, condition = history(run, "cone/e_orth"), history(run, "cone/gram_condition")
     pod = history(run, "pod/error")
-    figure, axes = plt.subplots(1, 4, figsize=(12.5, 3), constrained_layout=True)
     pod = pod[pod > 1e-14]
-    axes[0].plot(np.arange(len(pod)), pod, color=GREY)
-    log_axis(axes[0], "modes N", "relative error", "displacement, POD")
-    panels = (("error", "largest relative error", "multiplier, projection on the cone"),
-              ("e_orth", "distance to the cone before", "new generator, e_orth"),
-              ("gram_condition", "condition number", "Gram matrix of the generators"))
-    for axis, (column, ylabel, title) in zip(axes[1:], panels):
-        for flag, label, colour, style in ((0, "CPG", ORANGE, "--"), (1, "mCPG", BLUE, "-")):
-            rows = cones[cones["mcpg"] == flag]
-            axis.plot(rows["R"], rows[column], style, color=colour, label=label)
-        log_axis(axis, "generators R", ylabel, title)
-        axis.legend()
+    panels = [(np.arange(len(pod)), pod, "modes N", "relative error", "displacement, POD"),
+              (size, error, "dual functions R", "largest relative error", "multiplier")]
+    if len(orthogonality) > 0:
+        panels.append((size[1:], orthogonality, "dual functions R", "distance to the cone before",
+                       "new generator, e_orth"))
+    panels.append((size[1:], condition, "dual functions R", "condition number", "Gram matrix"))
+    figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels), 3),
+                                constrained_layout=True)
+    for axis, (x, y, xlabel, ylabel, title) in zip(axes, panels):
+        axis.plot(x, y, "." if len(x) < 30 else "-", color=BLUE)
+        log_axis(axis, xlabel, ylabel, title)
     save(figure, run, "bases.png")
+
+
+def draw_contact_field(figure, axis, points, cells, values, colours, limits, title):
+    filled = axis.tripcolor(points[:, 0], points[:, 1], cells, values, shading="gouraud",
+                            cmap=colours, vmin=limits[0], vmax=limits[1])
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.set_title(title, loc="left")
+    figure.colorbar(filled, ax=axis, shrink=0.8, format="%.3g")
+
+
+def contact_cells(run):
+    with h5py.File(run / "model.h5", "r") as model:
+        return model["fields/contact_cells"][()].reshape(-1, 3)
+
+
+def pressure(run):
+    """Pressure and its error at the validation parameter where the error is largest."""
+    data, cells = table(run, "worst_pressure.csv"), contact_cells(run)
+    points = np.column_stack([data["x"], data["y"]])
+    error = data["reduced"] - data["high_fidelity"]
+    figure, axes = plt.subplots(1, 2, figsize=(8, 3.4), constrained_layout=True)
+    top, bound = data["high_fidelity"].max(), np.abs(error).max()
+    draw_contact_field(figure, axes[0], points, cells, data["reduced"], "Blues", (0, top),
+                       "reduced pressure, reference disc")
+    draw_contact_field(figure, axes[1], points, cells, error, "RdBu_r", (-bound, bound),
+                       "its error, worst of the validation set")
+    save(figure, run, "pressure.png")
 
 
 def infsup(run):
@@ -182,6 +210,9 @@ def infsup(run):
                  label=r"smallest $\beta_{off}/\beta_{on}$")
     axes[1].plot(steps["S"], steps["bound_min"], "--", color=GREEN,
                  label=r"bound $\sqrt{1-\sigma^2}$")
+    positive = steps["classic_min"] > 0
+    axes[1].plot(steps["S"][positive], steps["classic_min"][positive], ".", color=PURPLE,
+                 label="bound (2.24), where positive")
     log_axis(axes[1], "supremizers S'", "", "along the supremizers")
     axes[1].legend()
     save(figure, run, "infsup.png")
@@ -200,18 +231,18 @@ def draw_family(axis, data, field, along, across):
 
 
 def error_map(run):
-    """Error of the enriched models over (N, R), with what the bases alone would allow. Where b
-    depends on mu by more than a factor the supremizers of sub-models are not known, and verify
-    writes no such table."""
-    if len(history(run, "eim/b")) > 2 and not (run / "verify" / "error_map.csv").is_file():
-        print("error_map.png: left out, b(mu) is not a multiple of one form")
+    """Error of the enriched models over (N, R), with what the bases alone would allow. verify
+    writes the table where supremizers of smaller pairs are known: b(mu) a multiple of one form."""
+    if not (run / "verify" / "error_map.csv").is_file():
+        print("error_map.png: left out, the supremizers of smaller pairs are not known")
         return
     data = table(run, "error_map.csv")
+    data = data[np.isfinite(data["u_mean"])]
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), constrained_layout=True)
     draw_family(axes[0], data, "u", "N", "R")
     log_axis(axes[0], "modes N", "mean relative error", "displacement u")
     draw_family(axes[1], data, "lambda", "R", "N")
-    log_axis(axes[1], "generators R", "mean relative error", "multiplier")
+    log_axis(axes[1], "dual functions R", "mean relative error", "multiplier")
     save(figure, run, "error_map.png")
 
 
@@ -240,7 +271,10 @@ def errors(run):
               ("_floor", "projection on the basis", "black", ":"))
     for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", "multiplier")):
         for suffix, label, colour, style in curves:
-            axis.plot(np.sort(data[field + suffix]), style, color=colour, label=label)
+            values = np.sort(data[field + suffix])
+            missing = np.sum(~np.isfinite(values))
+            label += f", {missing} without an answer" if missing else ""
+            axis.plot(values[np.isfinite(values)], style, color=colour, label=label)
         log_axis(axis, "validation parameters, sorted", "relative error", title)
     axes[0].legend()
     save(figure, run, "errors.png")
@@ -255,7 +289,7 @@ def main(arguments):
         print(f"figures.py: there is no run directory {run}", file=sys.stderr)
         return 2
     status = 0
-    for draw in (solution, bases, infsup, error_map, mesh_quality, errors):
+    for draw in (solution, bases, pressure, infsup, error_map, mesh_quality, errors):
         try:
             draw(run)
         except Missing as missing:

@@ -81,8 +81,20 @@ LinearBasis orthonormalised(const LinearBasis &modes, Mat product) {
   return copy;
 }
 
-/// For online enrichment: sigma below this, the span holds every S_R(mu) of training.
-constexpr double whole_span = 1e-6;
+/// Vectors that span S_R(mu) for every mu, in coordinates: T X itself where b only scales, else the
+/// representers of all contact dofs that b couples with X at some training mu.
+Matrix span_of_supremizers(const RieszSpace &riesz, const std::vector<Matrix> &supremizers) {
+  if (supremizers.size() == 1) return supremizers.front();
+  const auto factor = riesz.factor.triangularView<Eigen::Lower>();
+  Vector coupling = Vector::Zero(riesz.factor.rows());
+  for (const Matrix &t : supremizers)
+    coupling =
+        coupling.cwiseMax(Matrix(factor.transpose().solve(t)).rowwise().lpNorm<Eigen::Infinity>());
+  std::vector<Index> touched;
+  for (Index i = 0; i < coupling.size(); ++i)
+    if (coupling[i] > 1e-12 * coupling.maxCoeff()) touched.push_back(i);
+  return Matrix(riesz.factor.transpose())(Eigen::all, touched);
+}
 
 /// Supremizers of the greedy, or the span of all of them, after the modes.
 void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
@@ -103,9 +115,13 @@ void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu
       energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()),
                                 problem.trace())
              : mode_coordinates(riesz, bases.pod.basis, problem.trace());
+  std::vector<Matrix> supremizers = supremizers_at(problem, riesz, dual, training);
   PgaOptions pga = options.pga;
-  if (bases.online_enriched) pga = {.tolerance = whole_span};
-  bases.pga = projected_greedy(riesz, modes, supremizers_at(problem, riesz, dual, training), pga);
+  if (bases.online_enriched) {
+    supremizers = {span_of_supremizers(riesz, supremizers)};
+    pga = {.tolerance = 1e-9}; // all but what the modes hold
+  }
+  bases.pga = projected_greedy(riesz, modes, std::move(supremizers), pga);
   if (bases.pga.representers.cols() == 0) return;
   bases.supremizers = static_cast<int>(
       append_orthonormalised(bases.pod.basis,

@@ -48,15 +48,6 @@ std::string text_of(const std::string &name, const std::string &otherwise = "",
   return set == PETSC_TRUE ? value : otherwise;
 }
 
-bool flag_of(const std::string &name) {
-  PetscBool value = PETSC_FALSE;
-  const std::string text = text_of(name, "no");
-  if (text.empty()) return true;
-  if (PetscOptionsStringToBool(text.c_str(), &value) != 0)
-    throw bad_input("option -" + name + " is '" + text + "': use yes or no");
-  return value == PETSC_TRUE;
-}
-
 const std::string &default_of(const std::string &name) {
   const auto &options = tool_options();
   return std::find_if(options.begin(), options.end(),
@@ -75,6 +66,15 @@ double number_of(const std::string &name, double lower, double upper) {
     throw bad_input(message.str());
   }
   return value;
+}
+
+bool flag_of(const std::string &name) {
+  PetscBool value = PETSC_FALSE;
+  const std::string text = text_of(name, default_of(name));
+  if (text.empty()) return true;
+  if (PetscOptionsStringToBool(text.c_str(), &value) != 0)
+    throw bad_input("option -" + name + " is '" + text + "': use yes or no");
+  return value == PETSC_TRUE;
 }
 
 int integer_of(const std::string &name, int lower, int upper) {
@@ -274,6 +274,7 @@ const std::vector<OptionHelp> &tool_options() {
       {"vtu", "", "file for the field of one solve"},
       {"csv", "", "file for the table of outputs"},
       {"plan", "no", "print which stages will run, and stop"},
+      {"verify_stability", "yes", "verify inf-sup constants and bounds too, not errors alone"},
       {"mesh", "", "Gmsh file instead of the built-in mesh"},
       {"mesh_refine", "0", "uniform refinements"},
       {"hf_method", "active_set", "high-fidelity solver: active_set | uzawa | vi"},
@@ -341,6 +342,7 @@ ToolOptions read_options(MPI_Comm comm) {
   options.vtu = text_of("vtu");
   options.csv = text_of("csv");
   options.plan = flag_of("plan");
+  options.stability = flag_of("verify_stability");
   return options;
 }
 

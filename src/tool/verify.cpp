@@ -24,10 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 
 void print_errors(const char *name, const ModelErrors &e) {
-  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e", name, e.u.mean(), e.u.maxCoeff(),
-              e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds, e.kkt_residual);
-  if (e.failed > 0) std::printf("   no answer at %d of %d", e.failed, static_cast<int>(e.u.size()));
-  std::printf("\n");
+  if (e.failed > 0)
+    std::printf("  %-18s no answer at %d of %d\n", name, e.failed, static_cast<int>(e.u.size()));
+  else
+    std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(),
+                e.u.maxCoeff(), e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds,
+                e.kkt_residual);
 }
 
 /// Those of `wanted` below `last`, then `last`.
@@ -239,7 +241,7 @@ void command_verify(const ToolOptions &options) {
                           model.supremizers > 0;
   if (every_pair) write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
-  check_stability(world, problem, model, training, validation, out);
+  if (options.stability) check_stability(world, problem, model, training, validation, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
   if (rank == 0) std::printf("Tables: %s\n", out.c_str());

@@ -21,6 +21,7 @@ struct ToolOptions {
   std::string case_file;     ///< all options of the run, for its own case file (case_of_run)
   std::string mu, vtu, csv;
   bool plan = false;
+  bool stability = true; ///< verify: inf-sup constants and bounds too
 };
 
 /// One option for -help.

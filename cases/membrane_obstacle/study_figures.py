@@ -1,0 +1,166 @@
+"""Figures of study.py."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, contact_cells, draw_contact_field, history,
+                     log_axis, plt, table, whole_decades)
+
+import numpy as np
+
+STYLES = {"cpg": (ORANGE, "--"), "mcpg": (BLUE, "-"), "mcpg, tolerance 0.001": (BLUE, ":"),
+          "angle_greedy": (PURPLE, "--"), "nmf": (GREY, "-"), "nodal": ("black", ":"),
+          "hybrid": (GREEN, "-")}
+PAIRS = ((19, 50), (51, 70), (89, 50))
+
+
+def same_decades(axes):
+    """One range for all, in whole decades."""
+    low, high = (f([axis.dataLim.intervaly for axis in axes]) for f in (np.min, np.max))
+    for axis in axes:
+        axis.set_ylim(10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(high)))
+
+
+def save(figure, directory, name):
+    for axis in figure.axes:
+        if axis.get_yscale() == "log" and axis.get_autoscaley_on():
+            whole_decades(axis)
+    figure.savefig(directory / name, bbox_inches="tight")
+    plt.close(figure)
+    print(directory / name)
+
+
+def bases(runs, directory):
+    """Convergence on the training set, similarity map."""
+    figure, axes = plt.subplots(1, 4, figsize=(13, 3.2), constrained_layout=True)
+    pod = history(runs["similarity", "mcpg", "offline"], "pod/error")
+    pod = pod[pod > 1e-14]
+    axes[0].plot(np.arange(len(pod)), pod, color=GREY)
+    log_axis(axes[0], "modes N", "relative error", "displacement, e_POD")
+    for name, (colour, style) in STYLES.items():
+        run = runs.get(("similarity", "fine " + name))
+        if run is None:
+            continue
+        size, error = history(run, "cone/size"), history(run, "cone/error")
+        first = 1 if name in ("nmf", "hybrid") else 0  # no size in between
+        marks = "." if first else ""
+        axes[1].plot(size[first:], np.maximum(error[first:], 1e-8), style + marks, color=colour,
+                     label=name)
+        axes[3].plot(size[1:], history(run, "cone/gram_condition"), style, color=colour)
+        if name in ("cpg", "mcpg"):
+            axes[2].plot(size[1:], history(run, "cone/e_orth"), style, color=colour)
+    log_axis(axes[1], "dual functions R", "largest relative error", "multiplier, training set")
+    log_axis(axes[2], "generators R", "distance to the cone before", "e_orth")
+    log_axis(axes[3], "dual functions R", "condition number", "Gram matrix")
+    axes[1].legend(fontsize=7)
+    save(figure, directory, "bases.png")
+
+
+def floors(runs, rows_of, directory):
+    """What each dual basis allows and what its model reaches, over the validation set."""
+    figure, axes = plt.subplots(1, 2, figsize=(10, 3.4), constrained_layout=True)
+    for axis, disc_map in zip(axes, ("similarity", "graded")):
+        for k, name in enumerate(STYLES):
+            s = rows_of(runs[disc_map, name, "offline"])
+            axis.plot([k, k], [max(s["lambda_floor_max"], 1e-7), s["lambda_max"]], color="#bbbbbb")
+            axis.plot(k, max(s["lambda_floor_max"], 1e-7), "o", color=ORANGE,
+                      label="floor: projection alone" if k == 0 else None)
+            axis.plot(k, s["lambda_max"], "s", color=BLUE, label="reached" if k == 0 else None)
+            axis.plot(k, s["u_max"], "^", color=GREEN, label="displacement" if k == 0 else None)
+        log_axis(axis, "", "largest relative error", f"{disc_map} map, 64 validation mu")
+        axis.set_xticks(range(len(STYLES)), [f"{name.replace(', ', chr(10))}\nR = "
+                        f"{rows_of(runs[disc_map, name, 'offline'])['R']:.0f}" for name in STYLES],
+                        fontsize=7)
+    axes[0].legend(fontsize=8)
+    same_decades(axes)
+    save(figure, directory, "floors.png")
+
+
+def greedy(runs, directory):
+    """sigma and beta along the projected greedy; the two bounds."""
+    figure, axes = plt.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
+    for row, disc_map in zip(axes, ("similarity", "graded")):
+        for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
+            steps = table(runs[disc_map, pair, "tight"], "stability.csv")
+            loose = table(runs[disc_map, pair, "loose"], "stability.csv")
+            label = f"({pair[0]}, {pair[1]})"
+            row[0].plot(steps["S"], np.maximum(steps["sigma_max"], 1e-8), color=colour, label=label)
+            row[1].plot(steps["S"], np.maximum(steps["beta_min"], 1e-16), color=colour, label=label)
+            row[0].plot(loose["S"][-1], loose["sigma_max"][-1], "o", color=colour)
+            row[1].plot(loose["S"][-1], loose["beta_min"][-1], "o", color=colour)
+            row[2].plot(steps["S"], steps["ratio_min"], color=colour)
+            row[2].plot(steps["S"], steps["bound_min"], "--", color=colour)
+            holds = steps["classic_min"] > 0
+            row[2].plot(steps["S"][holds], steps["classic_min"][holds], ":", color=colour)
+        log_axis(row[0], "supremizers", r"largest $\sigma$", f"{disc_map}; dots: loose tolerance")
+        log_axis(row[1], "supremizers", r"smallest $\beta_{off}$", "inf-sup constant")
+        row[2].set_ylim(0, 1.05)
+        row[2].set_xlabel("supremizers")
+        row[2].set_title(r"$\beta_{off}/\beta_{on}$; -- $\sqrt{1-\sigma^2}$; ... (2.24)", loc="left")
+        row[0].legend(title="(N, R)")
+    save(figure, directory, "pga.png")
+
+
+def constants(runs, directory):
+    figure, axes = plt.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
+    curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
+              ("beta_off", r"$\beta_{off}$", BLUE, "--"), ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
+    for row, disc_map in zip(axes, ("similarity", "graded")):
+        for axis, pair in zip(row, PAIRS):
+            beta = table(runs[disc_map, pair, "loose"], "infsup.csv")
+            order = np.argsort(beta["beta_on"])
+            for column, label, colour, style in curves:
+                if beta[column].max() > 1e-9:
+                    axis.plot(beta[column][order], style, color=colour, label=label)
+                else:
+                    axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
+                              transform=axis.transAxes)
+            log_axis(axis, "validation parameters, sorted", "inf-sup constant",
+                     f"{disc_map}, (N, R) = {pair}")
+    axes[0, 0].legend()
+    same_decades(axes.ravel())
+    save(figure, directory, "infsup.png")
+
+
+def modes(runs, rows_of, directory):
+    """Error of u and lambda over N."""
+    figure, axes = plt.subplots(1, 4, figsize=(13, 3.2), constrained_layout=True)
+    for pair, disc_map in ((axes[:2], "similarity"), (axes[2:], "graded")):
+        for axis, field in zip(pair, ("u", "lambda")):
+            for name, (colour, style) in STYLES.items():
+                rows = [rows_of(runs[disc_map, name, key]) for key in (19, 51, "offline")]
+                axis.plot([row["N"] for row in rows], [row[field + "_max"] for row in rows],
+                          style, marker="o", color=colour, label=name)
+            log_axis(axis, "modes N", "largest relative error", f"{field}, {disc_map}")
+    axes[3].legend(fontsize=7)
+    same_decades(axes)
+    save(figure, directory, "modes.png")
+
+
+def pressures(runs, directory):
+    """Pressure and its error at the worst validation parameter, mCPG and hybrid."""
+    figure, axes = plt.subplots(2, 3, figsize=(12, 6.4), constrained_layout=True)
+    for row, name in zip(axes, ("mcpg", "hybrid")):
+        run = runs["similarity", name, "offline"]
+        data, cells = table(run, "worst_pressure.csv"), contact_cells(run)
+        points = np.column_stack([data["x"], data["y"]])
+        error = data["reduced"] - data["high_fidelity"]
+        top, bound = data["high_fidelity"].max(), np.abs(error).max()
+        for axis, column in zip(row, ("high_fidelity", "reduced")):
+            draw_contact_field(figure, axis, points, cells, data[column], "Blues", (0, top),
+                               f"{name}: {column.replace('_', '-')} pressure")
+        draw_contact_field(figure, row[2], points, cells, error, "RdBu_r", (-bound, bound),
+                           f"{name}: error")
+    save(figure, directory, "pressure.png")
+
+
+def draw_all(runs, summary, directory):
+    directory.mkdir(exist_ok=True)
+    bases(runs, directory)
+    floors(runs, summary, directory)
+    greedy(runs, directory)
+    constants(runs, directory)
+    modes(runs, summary, directory)
+    pressures(runs, directory)
