@@ -60,9 +60,9 @@ class Study:
             "OMPI_MCA_hwloc_base_binding_policy": "none", "OPENBLAS_NUM_THREADS": "1",
             "OMP_NUM_THREADS": "1"}
 
-    def call(self, ranks, *arguments):
-        done = subprocess.run(["mpirun", "-n", str(ranks), self.rbvi, *arguments],
-                              env=self.environment, capture_output=True, text=True, check=False)
+    def call(self, *arguments):
+        done = subprocess.run([self.rbvi, *arguments], env=self.environment, capture_output=True,
+                              text=True, check=False)
         if done.returncode != 0:
             sys.exit(f"study.py: rbvi {' '.join(map(str, arguments))}\n{done.stderr}")
         return done.stdout
@@ -77,9 +77,9 @@ class Study:
         samples.mkdir(exist_ok=True)
         if not (run / "samples").is_symlink():
             (run / "samples").symlink_to("../samples")
-        self.call(1, "offline", "-case", CASE, "-disc_map", disc_map, "-out", run, *options,
+        self.call("offline", "-case", CASE, "-disc_map", disc_map, "-out", run, *options,
                   *self.options)
-        self.call(1, "verify", "-out", run, "-verify_stability", "yes" if stability else "no")
+        self.call("verify", "-out", run, "-verify_stability", "yes" if stability else "no")
         return run
 
 
