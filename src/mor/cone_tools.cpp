@@ -52,10 +52,10 @@ double gram_condition(const Matrix &coordinates) {
   return condition(triangular_factor(coordinates));
 }
 
-std::vector<double> gram_conditions(const Matrix &coordinates) {
+std::vector<double> gram_conditions(const Matrix &coordinates, Index smallest) {
   const Matrix triangular = triangular_factor(coordinates);
   std::vector<double> result;
-  for (Index r = 1; r <= coordinates.cols(); ++r)
+  for (Index r = smallest; r <= coordinates.cols(); ++r)
     result.push_back(condition(triangular.topLeftCorner(std::min(r, triangular.rows()), r)));
   return result;
 }

@@ -20,8 +20,8 @@ Matrix checked(const Matrix &snapshots, const SparseMatrix &product);
 /// infinite if there are more of them than coordinates.
 double gram_condition(const Matrix &coordinates);
 
-/// The same of the first 1, 2, ... of them.
-std::vector<double> gram_conditions(const Matrix &coordinates);
+/// The same of the first `smallest`, smallest + 1, ... of them.
+std::vector<double> gram_conditions(const Matrix &coordinates, Index smallest = 1);
 
 /// Exact distances of the snapshots to a growing cone. They never increase, so an old one is a
 /// bound: only those that can still be the largest are brought up to date.

@@ -15,6 +15,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/SVD>
 
+#include <algorithm>
 #include <string>
 
 namespace rbvi {
@@ -42,6 +43,7 @@ ContactZones zones_of(const Matrix &snapshots, const SparseMatrix &product, int 
 /// E: permanent x moving nodes.
 Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
   if (zones.permanent.empty()) return Matrix(0, static_cast<Index>(zones.moving.size()));
+  if (!condensed) throw failure("a hybrid cone needs columns of the condensed operator");
   const Matrix columns = condensed(zones.permanent);
   const Matrix block = columns(zones.permanent, Eigen::all);
   const Eigen::LLT<Matrix> factor((block + block.transpose()) / 2);
@@ -62,8 +64,14 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
   const auto splits = [&](Index modes) {
     return modes > 0 && modes < values.size() && values[modes] > (1 - 1e-8) * values[modes - 1];
   };
-  const Index bound = options.max_size > 0 ? options.max_size - generators : values.size();
-  for (Index modes = 0;; ++modes) {
+  Index bound = values.size();
+  if (options.max_size > 0) bound = std::min(bound, options.max_size - generators);
+  while (splits(bound))
+    --bound;
+  if (generators + bound == 0)
+    throw bad_input("the first singular values of the multipliers are equal and more than the cone "
+                    "may have: raise -cone_max_size");
+  for (Index modes = generators > 0 ? 0 : 1;; ++modes) {
     const double left = parts.bottomRows(parts.rows() - modes).colwise().norm().maxCoeff();
     history.size.push_back(static_cast<int>(generators + modes));
     history.error.push_back(left / largest);
@@ -71,7 +79,7 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
       history.reason = "tolerance reached";
     else if (history.error.back() <= round_off || modes == values.size())
       history.reason = "round-off reached";
-    else if (modes >= bound)
+    else if (modes == bound)
       history.reason = "size reached";
     if (!history.reason.empty() && !splits(modes))
       return factor.triangularView<Eigen::Upper>().solve(svd.matrixU().leftCols(modes));
@@ -114,10 +122,7 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
     cone.modes.columns.setZero(snapshots.rows(), modes.cols());
     cone.modes.columns(zones.permanent, Eigen::all) = modes;
   }
-  const std::vector<double> conditions = gram_conditions(factor * cone.all());
-  for (std::size_t k = 1; k < cone.history.size.size(); ++k)
-    cone.history.gram_condition.push_back(
-        conditions[static_cast<std::size_t>(cone.history.size[k] - 1)]);
+  cone.history.gram_condition = gram_conditions(factor * cone.all(), cone.history.size[1]);
   return cone;
 }
 

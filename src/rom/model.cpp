@@ -92,8 +92,6 @@ void check_model(const ReducedModel &model) {
   check_terms(model.g, r, dim, "g");
   require_shape(model.dual_basis, contact, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
-  require(model.free_modes > 0 || model.dual_basis.minCoeff() >= 0,
-          "contact/dual_basis has a negative entry");
   require_shape(model.contact_trace, contact, n, "contact/trace");
   require(static_cast<Index>(model.contact_nodes.size()) == contact,
           "contact/nodes does not fit contact/dual_basis");

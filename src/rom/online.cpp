@@ -53,6 +53,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
   check_kernel(model.g, scene_.g, "g");
   packed_.resize(model.a.reduced.rows());
   g_ = Vector::Zero(model.generators);
+  positive_ = model.free_modes == 0 && (model.dual_basis.array() >= 0).all();
 }
 
 void OnlineSolver::enrich() {
@@ -140,7 +141,7 @@ void OnlineSolver::check(ReducedSolution &solution) {
                    << solution.kkt_residual
                    << ": reduce again with fewer generators or more supremizers")
                       .str());
-  if (model_.free_modes == 0) return;
+  if (positive_) return;
   const Vector pressure = multiplier(solution);
   Index node = 0;
   if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;

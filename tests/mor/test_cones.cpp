@@ -82,7 +82,7 @@ TEST(Cones, ExactExampleInThePlane) {
   EXPECT_NEAR(cpg.history.gram_condition[1], 3, 1e-13); // (1 + cos 60) / (1 - cos 60)
   EXPECT_LT((cpg.basis.generators - Matrix{{1, 0.5}, {0, s}}).norm(), 1e-15);
   // mCPG removes (1, 0) from (1, sqrt 3): the axes remain.
-  const Cone mcpg = build_cone(snapshots, identity(2), {.tolerance = 1e-9});
+  const Cone mcpg = build_cone(snapshots, identity(2), {.type = ConeType::mcpg, .tolerance = 1e-9});
   EXPECT_EQ(mcpg.history.selected, (std::vector<int>{0, 2}));
   EXPECT_LT((mcpg.basis.generators - Matrix::Identity(2, 2)).norm(), 1e-15);
   EXPECT_NEAR(mcpg.history.e_orth[1], 1, 1e-15);
@@ -92,7 +92,7 @@ TEST(Cones, ExactExampleInSpace) {
   // (2, 2, 0) then (1, 1, 1): all of (1, 1, 0) can be removed, (0, 0, 1) remains; (0, 0.5, 0.5)
   // lies sqrt(1/8) from that cone, and no generator is allowed below it but (0, 0, 1).
   const Matrix snapshots{{2, 1, 0}, {2, 1, 0.5}, {0, 1, 0.5}};
-  const Cone cone = build_cone(snapshots, identity(3), {.tolerance = 0});
+  const Cone cone = build_cone(snapshots, identity(3), {.type = ConeType::mcpg, .tolerance = 0});
   EXPECT_EQ(cone.history.selected, (std::vector<int>{0, 1, 2}));
   const double d = std::sqrt(0.5), scale = std::sqrt(8.0);
   EXPECT_LT((cone.basis.generators - Matrix{{d, 0, 0}, {d, 0, 1}, {0, 1, 0}}).norm(), 1e-14);
@@ -125,7 +125,7 @@ TEST(Cones, ModifiedGeneratorsAreFartherFromTheCone) {
   const SparseMatrix product = grid_mass(13);
   const Matrix snapshots = moving_bumps(13, 3, 0.1);
   const Cone cpg = build_cone(snapshots, product, {.type = ConeType::cpg, .tolerance = 0});
-  const Cone mcpg = build_cone(snapshots, product, {.tolerance = 0});
+  const Cone mcpg = build_cone(snapshots, product, {.type = ConeType::mcpg, .tolerance = 0});
   const auto mean = [](const std::vector<double> &values) {
     double sum = 0;
     for (const double value : values)
@@ -141,7 +141,8 @@ TEST(Cones, FeasibilityToleranceClipsAndTellsTheTruth) {
   const Matrix snapshots = moving_bumps(13, 3, 0.05);
   for (const double feasibility : {1e-3, 5e-2, 0.3}) {
     const Cone cone =
-        build_cone(snapshots, product, {.tolerance = 1e-3, .feasibility = feasibility});
+        build_cone(snapshots, product,
+                   {.type = ConeType::mcpg, .tolerance = 1e-3, .feasibility = feasibility});
     expect_cone(cone, product);
     EXPECT_NEAR(largest_distance(snapshots, cone.basis, product), cone.history.error.back(), 1e-12);
     EXPECT_LE(cone.basis.generators.cols(), snapshots.cols());
@@ -179,21 +180,22 @@ TEST(Cones, TiesGoToTheLowestIndex) {
     perturbed.col(favoured) *= 1 + 1e-13;
     perturbed(0, 0) += 0.75;
     perturbed(3, 2) += 0.75;
-    const Cone cone = build_cone(perturbed, identity(4), {.tolerance = 0});
+    const Cone cone = build_cone(perturbed, identity(4), {.type = ConeType::mcpg, .tolerance = 0});
     const auto norms = perturbed.colwise().norm();
     EXPECT_NEAR(norms[0] / norms[2], std::sqrt(3.3125) / std::sqrt(2.5625), 1e-9);
     EXPECT_EQ(cone.history.selected.front(), 0);
   }
   const Matrix symmetric =
       Matrix::Identity(5, 5) * (Vector::Ones(5) + 1e-12 * Vector{{0, 1, 3, 2, 4}}).asDiagonal();
-  const Cone cone = build_cone(symmetric, identity(5), {.tolerance = 0});
+  const Cone cone = build_cone(symmetric, identity(5), {.type = ConeType::mcpg, .tolerance = 0});
   EXPECT_EQ(cone.history.selected, (std::vector<int>{0, 1, 2, 3, 4}));
 }
 
 TEST(Cones, SingleAndDuplicateSnapshots) {
   const SparseMatrix product = grid_mass(9);
   const Matrix bumps = moving_bumps(9, 2, 0.1);
-  const Cone single = build_cone(bumps.leftCols(1), product, {.tolerance = 1e-3});
+  const Cone single =
+      build_cone(bumps.leftCols(1), product, {.type = ConeType::mcpg, .tolerance = 1e-3});
   expect_cone(single, product);
   EXPECT_EQ(single.basis.generators.cols(), 1);
   EXPECT_LT(single.history.error.back(), 1e-14);
@@ -212,7 +214,8 @@ TEST(Cones, DoNotDependOnUnits) {
   const SparseMatrix product = grid_mass(9);
   const Matrix snapshots = moving_bumps(9, 3, 0.1);
   for (const double feasibility : {0.0, 0.01}) {
-    const ConeOptions options{.tolerance = 1e-2, .feasibility = feasibility};
+    const ConeOptions options{
+        .type = ConeType::mcpg, .tolerance = 1e-2, .feasibility = feasibility};
     const Cone plain = build_cone(snapshots, product, options);
     const Cone scaled = build_cone(1e-9 * snapshots, 1e8 * product, options);
     EXPECT_EQ(plain.history.selected, scaled.history.selected);
@@ -225,26 +228,30 @@ TEST(Cones, DoNotDependOnUnits) {
 TEST(Cones, StopAtTheSizeAskedFor) {
   const SparseMatrix product = grid_mass(9);
   const Matrix snapshots = moving_bumps(9, 3, 0.1);
-  const Cone all = build_cone(snapshots, product, {.tolerance = 0});
-  const Cone five = build_cone(snapshots, product, {.tolerance = 0, .max_size = 5});
+  const Cone all = build_cone(snapshots, product, {.type = ConeType::mcpg, .tolerance = 0});
+  const Cone five =
+      build_cone(snapshots, product, {.type = ConeType::mcpg, .tolerance = 0, .max_size = 5});
   EXPECT_EQ(five.history.reason, "size reached");
   EXPECT_LT((five.basis.generators - all.basis.generators.leftCols(5)).norm(), 1e-15);
-  EXPECT_EQ(build_cone(snapshots, product, {.tolerance = 2}).basis.generators.cols(), 1);
+  EXPECT_EQ(build_cone(snapshots, product, {.type = ConeType::mcpg, .tolerance = 2})
+                .basis.generators.cols(),
+            1);
 }
 
 TEST(Cones, RefuseWhatIsNoMultiplier) {
   const SparseMatrix product = identity(3);
-  EXPECT_THROW(build_cone(Matrix(3, 0), product, {}), Error);
-  EXPECT_THROW(build_cone(Matrix::Zero(3, 2), product, {}), Error);
-  EXPECT_THROW(build_cone(Matrix::Ones(2, 2), product, {}), Error);
+  const ConeOptions mcpg{.type = ConeType::mcpg};
+  EXPECT_THROW(build_cone(Matrix(3, 0), product, mcpg), Error);
+  EXPECT_THROW(build_cone(Matrix::Zero(3, 2), product, mcpg), Error);
+  EXPECT_THROW(build_cone(Matrix::Ones(2, 2), product, mcpg), Error);
   Matrix negative = Matrix::Ones(3, 2);
   negative(1, 1) = -1e-6;
-  EXPECT_THROW(build_cone(negative, product, {}), Error);
+  EXPECT_THROW(build_cone(negative, product, mcpg), Error);
   negative(1, 1) = -1e-15;
-  EXPECT_GE(build_cone(negative, product, {}).basis.generators.minCoeff(), 0);
+  EXPECT_GE(build_cone(negative, product, mcpg).basis.generators.minCoeff(), 0);
   negative(1, 1) = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(build_cone(negative, product, {}), Error);
-  EXPECT_THROW(build_cone(Matrix::Ones(3, 2), -1.0 * product, {}), Error);
+  EXPECT_THROW(build_cone(negative, product, mcpg), Error);
+  EXPECT_THROW(build_cone(Matrix::Ones(3, 2), -1.0 * product, mcpg), Error);
 }
 
 TEST(LargestPartBelow, SatisfiesTheOptimalityConditions) {

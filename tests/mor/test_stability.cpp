@@ -217,6 +217,53 @@ TEST(InfSupConstants, smallest_is_not_lost_at_the_root_of_round_off) {
   EXPECT_EQ(infsup_constant(primal.leftCols(3), q.leftCols(4)), 0);
 }
 
+TEST(StabilityPath, agrees_with_a_direct_computation_at_every_count) {
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  for (const Index modes : {0, 1, 4, 9}) { // fewer and more than the 6 dual functions
+    const Matrix x = orthonormal_dual_basis(random_matrix(duals, 6, 13), membrane.w_product);
+    const Matrix supremizers = supremizer_coordinates(space, membrane.b_contact, x);
+    const Matrix basis = orthonormal_range(random_matrix(2 * n + 9, modes + 11, 14));
+    for (const std::vector<int> &counts :
+         {std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {0, 4, 11}, {11}, {7}}) {
+      const auto steps = stability_path(basis, modes, counts, supremizers);
+      ASSERT_EQ(steps.size(), counts.size());
+      for (std::size_t k = 0; k < counts.size(); ++k) {
+        SCOPED_TRACE(std::to_string(modes) + " modes, " + std::to_string(counts[k]));
+        const Matrix part = basis.leftCols(modes + counts[k]);
+        const StabilityBound bound = stability_bound(part, supremizers);
+        const double scale = bound.c;
+        EXPECT_NEAR(steps[k].off, infsup_constant(part, supremizers), 1e-13 * scale);
+        EXPECT_NEAR(steps[k].bound.sharp, bound.sharp, 1e-13 * scale);
+        EXPECT_NEAR(steps[k].bound.on, bound.on, 1e-13 * scale);
+        EXPECT_NEAR(steps[k].bound.c, bound.c, 1e-13 * scale);
+        // sigma from its cosine is right to the root of round-off, as the header says.
+        EXPECT_NEAR(steps[k].bound.sigma, bound.sigma, 1e-7);
+        EXPECT_NEAR(steps[k].bound.classic, bound.classic, 1e-6 * scale);
+      }
+    }
+  }
+}
+
+TEST(StabilityPath, ends_at_the_exact_bound_when_the_supremizers_are_inside) {
+  const Membrane membrane;
+  const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
+  const Matrix x = orthonormal_dual_basis(random_matrix(duals, 5, 15), membrane.w_product);
+  const Matrix supremizers = supremizer_coordinates(space, membrane.b_contact, x);
+  Matrix padded = Matrix::Zero(2 * n + 3, 5);
+  padded.topRows(2 * n) = supremizers;
+  const Matrix modes = Matrix::Identity(2 * n + 3, 2 * n + 3).rightCols(3); // no trace: useless
+  const auto steps =
+      stability_path(beside(modes, orthonormal_range(padded)), 3, {0, 4, 5}, supremizers);
+  EXPECT_EQ(steps[0].off, 0); // three functions against five multipliers
+  EXPECT_EQ(steps[0].bound.sigma, 1);
+  EXPECT_NEAR(steps[1].off, 0, 1e-15 * steps[1].bound.c); // four that are not useless
+  EXPECT_NEAR(steps[2].off, steps[2].bound.on, 1e-13 * steps[2].bound.c);
+  EXPECT_NEAR(steps[2].bound.sigma, 0, 1e-7);
+  const double on = Eigen::JacobiSVD<Matrix>(supremizers).singularValues()(4);
+  EXPECT_NEAR(steps[2].off, on, 1e-13 * steps[2].bound.c);
+}
+
 TEST(InfSupConstants, high_fidelity_only_when_asked) {
   const Membrane membrane;
   const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);

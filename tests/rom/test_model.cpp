@@ -49,6 +49,7 @@ ReducedModel full_model() {
   model.settings = {{"-pod_tolerance", "1e-3"}, {"-cone", "mcpg"}};
   model.mesh_fingerprint = "0123456789abcdef";
   model.primal_offset = Vector::LinSpaced(5, 0, 1);
+  model.free_modes = 1;
   model.a.error = 1e-3;
   model.histories = {{"pod/error", {1, 0.1}}, {"cone/e_orth", {}}};
   model.stage_seconds = {{"snapshots", 12.5}};
@@ -70,6 +71,8 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_EQ(copy.primal_size(), 5);
   EXPECT_EQ(copy.modes, 3);
   EXPECT_EQ(copy.generators, 4);
+  EXPECT_EQ(copy.free_modes, 1);
+  EXPECT_FALSE(copy.online_enriched);
   expect_same(copy.a, model.a);
   expect_same(copy.b, model.b);
   expect_same(copy.f, model.f);
@@ -110,6 +113,34 @@ TEST_F(ModelFile, NoLoadAndNoGapAreModels) {
   OnlineSolver solver(copy);
   EXPECT_EQ(solver.solve({0.2, 0, 0}).u.norm(), 0);
   EXPECT_EQ(leading(copy, 2, 3).f.size(), 0);
+}
+
+TEST_F(ModelFile, OnlineEnrichedModelsAnswerTheSame) {
+  ReducedModel model = full_model();
+  model.online_enriched = true;
+  model.supremizers = 2;
+  write_model(model, path);
+  const ReducedModel copy = read_model(path);
+  EXPECT_TRUE(copy.online_enriched);
+  const Mu mu{0.2, 0.01};
+  EXPECT_EQ(OnlineSolver(copy).solve(mu).u, OnlineSolver(model).solve(mu).u);
+}
+
+/// What the program before wrote: nothing of it is read, and the message says which is which.
+TEST_F(ModelFile, AnOlderSchemaIsRefused) {
+  H5Writer older;
+  older.write("scene/name", std::string("membrane_obstacle"));
+  older.commit(path, "model", 1);
+  try {
+    (void)read_model(path);
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    for (const char *part : {"model.h5", "schema version 1", "version 2", "make it again"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
 }
 
 TEST_F(ModelFile, DamageIsNoticed) {
@@ -159,9 +190,17 @@ TEST(CheckModel, NamesWhatDoesNotFit) {
   };
   using M = ReducedModel;
   EXPECT_FALSE(refused([](M &) {}));
+  // A hybrid cone continues its hats with negative values, and need not have modes.
+  EXPECT_FALSE(refused([](M &m) { m.dual_basis(0, 0) = -1; }));
+  EXPECT_FALSE(refused([](M &m) {
+    m.dual_basis(0, 0) = -1;
+    m.free_modes = 0;
+  }));
   EXPECT_TRUE(refused([](M &m) { m.modes = 4; }));
   EXPECT_TRUE(refused([](M &m) { m.a.reduced(0, 0) = std::nan(""); }));
-  EXPECT_TRUE(refused([](M &m) { m.dual_basis(0, 0) = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.dual_basis(0, 0) = std::nan(""); }));
+  EXPECT_TRUE(refused([](M &m) { m.free_modes = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.free_modes = 5; }));
   EXPECT_TRUE(refused([](M &m) { m.mesh_cells[0] = 5; }));
   EXPECT_TRUE(refused([](M &m) { m.contact_nodes[0] = -1; }));
   EXPECT_TRUE(refused([](M &m) { m.b.sample.contributions[0].cell = 99; }));
@@ -193,6 +232,29 @@ TEST(Leading, IsTheTopLeftCorner) {
   EXPECT_THROW(leading(model, 5, 5), Error);
 }
 
+TEST(Leading, CutsTheModesFirst) {
+  ReducedModel model = full_model();
+  model.free_modes = 2;
+  EXPECT_EQ(leading(model, 5, 4).free_modes, 2);
+  EXPECT_EQ(leading(model, 5, 3).free_modes, 1);
+  EXPECT_EQ(leading(model, 5, 2).free_modes, 0);
+  EXPECT_EQ(leading(model, 5, 1).free_modes, 0);
+}
+
+TEST(Leading, WithoutSupremizersNothingIsMadeOnline) {
+  ReducedModel model = full_model();
+  model.online_enriched = true;
+  EXPECT_TRUE(leading(model, 5, 4).online_enriched);
+  EXPECT_TRUE(leading(model, 4, 4).online_enriched);
+  EXPECT_FALSE(leading(model, 3, 4).online_enriched);
+  EXPECT_FALSE(leading(model, 2, 4).online_enriched);
+  ReducedModel plain = model;
+  plain.online_enriched = false;
+  const ReducedModel cut = leading(model, 3, 4), same = leading(plain, 3, 4);
+  const Mu mu{0.2, 0.01};
+  EXPECT_EQ(OnlineSolver(cut).solve(mu).u, OnlineSolver(same).solve(mu).u);
+}
+
 TEST(Leading, DecorrelatedKeepsItsOwnErrors) {
   ReducedModel model = full_model();
   model.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
@@ -208,6 +270,21 @@ TEST(PrintModel, ShowsParametersSizesAndErrors) {
   for (const char *part : {"membrane_obstacle", "radius", "[0.16, 0.24] m", "0.01 (fixed) m",
                            "supremizers", "-pod_tolerance", "0.0004 max"})
     EXPECT_NE(out.str().find(part), std::string::npos) << part << " in\n" << out.str();
+}
+
+TEST(PrintModel, ShowsModesAndOnlineEnrichmentWhereTheyAre) {
+  const auto printed = [](const ReducedModel &model) {
+    std::ostringstream out;
+    print_model(out, model);
+    return out.str();
+  };
+  ReducedModel model = full_model(); // 3 generators and a mode
+  EXPECT_NE(printed(model).find("free modes"), std::string::npos) << printed(model);
+  EXPECT_EQ(printed(model).find("made online"), std::string::npos);
+  model.free_modes = 0;
+  model.online_enriched = true;
+  EXPECT_EQ(printed(model).find("free modes"), std::string::npos);
+  EXPECT_NE(printed(model).find("made online"), std::string::npos);
 }
 
 /// The numbers of one DataArray.

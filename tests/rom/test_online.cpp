@@ -1,4 +1,4 @@
-#include "synthetic.hpp"
+#include "brute_force.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/online.hpp"
@@ -8,75 +8,7 @@
 namespace rbvi {
 namespace {
 
-/// Positive for every form but, on the left half of the box, b: signs change with mu.
-double smooth(int form, int i, const Mu &mu) {
-  return 1 + 0.3 * form + 0.5 * i * (mu[0] - 0.16) / 0.08 + 0.2 * mu[1] / 0.05;
-}
-
-double flipping(int form, int i, const Mu &mu) {
-  const double value = smooth(form, i, mu);
-  return form == 1 && mu[1] < 0 ? -value : value;
-}
-
-struct Operators {
-  Matrix a, b;
-  Vector f, g;
-};
-
-Vector combine(const AffineTerms &terms, int form, double (*value)(int, int, const Mu &),
-               const Mu &mu) {
-  Vector sum = Vector::Zero(terms.reduced.rows());
-  for (int q = 0; q < terms.size(); ++q)
-    sum += value(form, q, mu) * terms.reduced.col(q);
-  return sum;
-}
-
-Operators assemble(const ReducedModel &model, double (*value)(int, int, const Mu &), const Mu &mu) {
-  const Index n = model.primal_size(), r = model.generators;
-  Operators result;
-  const Vector a = combine(model.a, 0, value, mu), b = combine(model.b, 1, value, mu);
-  result.a.resize(n, n);
-  for (Index j = 0, at = 0; j < n; ++j)
-    for (Index i = j; i < n; ++i, ++at)
-      result.a(i, j) = result.a(j, i) = a[at];
-  result.b = Eigen::Map<const Matrix>(b.data(), r, n);
-  result.f = combine(model.f, 2, value, mu);
-  result.g = combine(model.g, 3, value, mu);
-  return result;
-}
-
-/// Tries every active set: the one whose KKT system gives x >= 0 and B u <= g holds the solution.
-Vector brute_force(const Operators &o) {
-  const Index n = o.a.rows(), r = o.b.rows();
-  for (int set = 0; set < (1 << r); ++set) {
-    std::vector<Index> active;
-    for (Index i = 0; i < r; ++i)
-      if ((set >> i) & 1) active.push_back(i);
-    const auto k = static_cast<Index>(active.size());
-    Matrix system = Matrix::Zero(n + k, n + k);
-    Vector right(n + k);
-    system.topLeftCorner(n, n) = o.a;
-    right.head(n) = o.f;
-    for (Index j = 0; j < k; ++j) {
-      system.row(n + j).head(n) = o.b.row(active[std::size_t(j)]);
-      system.col(n + j).head(n) = o.b.row(active[std::size_t(j)]).transpose();
-      right[n + j] = o.g[active[std::size_t(j)]];
-    }
-    const Eigen::FullPivLU<Matrix> lu(system);
-    if (!lu.isInvertible()) continue;
-    const Vector solution = lu.solve(right);
-    const Vector u = solution.head(n);
-    if ((k == 0 || solution.tail(k).minCoeff() >= 0) &&
-        (o.b * u - o.g).maxCoeff() <= 1e-11 * (1 + u.norm()))
-      return u;
-  }
-  ADD_FAILURE() << "no active set fits";
-  return Vector::Zero(n);
-}
-
-ReducedModel toy_model(const synthetic::Sizes &sizes, unsigned seed) {
-  return synthetic::random_model(sizes, seed, synthetic::toy_scene<smooth>(), true);
-}
+using namespace brute;
 
 /// One solver that goes through many parameters gives the answer found by brute force.
 template <synthetic::Value value> void expect_exact(const synthetic::Sizes &sizes) {

@@ -65,7 +65,7 @@ struct ReducedModel {
   AffineTerms g; ///< R x J
 
   // Full order, for outputs: the contact region.
-  Matrix dual_basis;     ///< dual dofs x R; entries >= 0 where there are no free modes
+  Matrix dual_basis;     ///< dual dofs x R; entries >= 0 but for hybrid cones
   Matrix contact_trace;  ///< dual dofs x n: primal basis at the nodes of the contact region
   Matrix contact_points; ///< dual dofs x dim, reference coordinates
   Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b

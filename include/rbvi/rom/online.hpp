@@ -32,7 +32,7 @@ public:
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`. Throws
   /// failure, saying what to try, if the reduced constraints contradict each other, if the reduced
   /// stiffness is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the
-  /// free modes take to be in contact is pulled at by more than 1 % of the peak pressure.
+  /// dual basis takes to be in contact is pulled at by more than 1 % of the peak pressure.
   ReducedSolution solve(const Mu &mu, bool extrapolate = false);
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
@@ -55,6 +55,7 @@ private:
   const ReducedModel &model_;
   Scene scene_;
   MixedQp qp_;
+  bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.
   Vector packed_, theta_a_, theta_b_;
