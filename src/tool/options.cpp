@@ -239,7 +239,9 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
     throw bad_input("-pga_enrichment online takes supremizers in the V product: leave out "
                     "-pga_product energy");
   const std::string reference = text_of("reference_mu");
-  if (!reference.empty()) options.reference = parse_mu(space, reference);
+  if (!reference.empty())
+    options.reference =
+        while_doing("reading option -reference_mu", [&] { return parse_mu(space, reference); });
   options.pga.tolerance = number_of("pga_tolerance", 0, 1);
   options.pga.stability = number_of("pga_beta_fraction", 0, 1 - 1e-12);
   options.pga.max_size = integer_of("pga_max_size", 0, 100000);

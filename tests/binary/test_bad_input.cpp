@@ -79,7 +79,8 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml --pod_tolernace 1e-3 -out run", "nearest one is -pod_tolerance"},
        {"offline -case case.yaml -pod_tolerance small -out run", "'small': not a number"},
        {"offline -case case.yaml -pod_tolerance -1 -out run", "use a number from 0 to 1"},
-       {"offline -case case.yaml -cone_type cone -out run", "use one of cpg, mcpg"},
+       {"offline -case case.yaml -cone_type cone -out run",
+        "use one of cpg, mcpg, angle_greedy, nmf, nodal, hybrid"},
        {"offline -case case.yaml -disc_map round -out run", "use one of similarity, graded"},
        {"offline -case case.yaml -load heavy -out run", "'heavy': not a number"},
        {"offline -case case.yaml -plan maybe -out run", "use yes or no"},
@@ -91,6 +92,32 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml -radius 0.2 -parameters radius -out run", "fixed by -radius 0.2"},
        {"offline -case case.yaml -options_file no -out run", "options file no"},
        {"offline -case case.yaml", "use -out"}});
+}
+
+TEST_P(BadInput, OptionsOfBases) {
+  const std::string offline = "offline -case case.yaml -out run ";
+  const std::string reference = "while reading option -reference_mu";
+  refuse({{offline + "-cone_ring -1", "use a number from 0 to 1000"},
+          {offline + "-cone_ring 0.5", "must be an integer"},
+          {offline + "-pga_enrichment both", "use one of decorrelated, online, offline"},
+          {offline + "-pga_product w", "use one of v, energy"},
+          {offline + "-pga_enrichment online -pga_product energy", "leave out -pga_product energy"},
+          {offline + "-reference_mu 0.3,0,0", "outside [0.16, 0.24], " + reference},
+          {offline + "-reference_mu 0.2,0", "2 values for 3"},
+          {offline + "-reference_mu 0.2,0", reference},
+          {offline + "-reference_mu a,0,0", "'a': not a number"},
+          {offline + "-reference_mu nan,0,0", reference}});
+}
+
+/// Known only when the snapshots are there: they stay, and no model is written.
+TEST_P(BadInput, AHybridConeThatIsTooSmall) {
+  const Finished run = shell(rbvi(GetParam(), "offline -case case.yaml -out run -cone_max_size 3"));
+  expect_refused({"offline -cone_max_size 3", "needs a larger -cone_max_size"}, run, GetParam());
+  EXPECT_FALSE(fs::exists("run/model.h5"));
+  EXPECT_FALSE(fs::exists("run/samples.csv"));
+  const Finished again = shell(rbvi(GetParam(), "offline -case case.yaml -out run"));
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(contains(again.out, "all 8 were there")) << again.out;
 }
 
 TEST_P(BadInput, OptionsOfSolvers) {
@@ -156,11 +183,15 @@ TEST_P(BadInput, Models) {
   H5Writer other_schema, sample;
   other_schema.write("scene", std::string("membrane_obstacle"));
   other_schema.commit("other_schema.h5", "model", 999);
+  H5Writer older;
+  older.write("scene/name", std::string("membrane_obstacle"));
+  older.commit("older.h5", "model", 1);
   const std::pair<std::string, std::string> models[] = {
       {good.substr(0, good.size() / 2), "truncated"},
       {flipped, "damaged"},
       {"\211HDF\r\n\032\n and more", "not one written by rbvi"},
-      {slurp("other_schema.h5"), "999"}};
+      {slurp("other_schema.h5"), "999"},
+      {slurp("older.h5"), "schema version 1; this build reads version 2"}};
   for (const auto &[bytes, part] : models) {
     spill("run/model.h5", bytes);
     refuse({{"verify -out run", part}, {"inspect run/model.h5", part}});

@@ -51,8 +51,8 @@ struct Runs : InDirectory {
 TEST_F(Runs, TheSameModelFromAnyRanks) {
   for (const std::string map : {"similarity", "graded"}) {
     const std::string common =
-        "-train grid:3,3,3 -pod_tolerance 1e-4 -cone_tolerance 5e-2 -disc_map " + map + " -out " +
-        map;
+        "-train grid:3,3,3 -pod_tolerance 1e-4 -cone_type mcpg -cone_tolerance 5e-2 -disc_map " +
+        map + " -out " + map;
     offline(1, common + "1");
     const std::vector<double> expected = answers(map + "1");
     for (int ranks = 2; ranks <= 4; ++ranks) {
@@ -64,6 +64,79 @@ TEST_F(Runs, TheSameModelFromAnyRanks) {
     offline(4, common + "_pairs -sweep_ranks_per_solve 2");
     expect_same(map + "_pairs", expected);
   }
+}
+
+/// The hybrid cone of the default, with nodes that never leave contact.
+TEST_F(Runs, TheSameHybridModelFromOneAndTwoRanks) {
+  for (const std::string map : {"similarity", "graded"}) {
+    const std::string common = "-cone_ring 0 -load -60 -disc_map " + map + " -out " + map;
+    offline(1, common + "1");
+    offline(2, common + "2");
+    expect_same(map + "2", answers(map + "1"));
+    const Finished model = shell(rbvi_online(map + "1/model.h5"));
+    EXPECT_EQ(lines_with(model.out, "free modes"), 1) << model.out;
+    const Finished inspected = shell(rbvi(2, "inspect " + map + "1/model.h5"));
+    EXPECT_EQ(lines_with(inspected.out, "free modes"), 1) << inspected.out;
+  }
+}
+
+/// The fields of a line of a table.
+std::vector<std::string> row_of(const std::string &table, const std::string &start) {
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(start)) return split(line, ',');
+  ADD_FAILURE() << "no row " << start << " in\n" << table;
+  return std::vector<std::string>(16, "0");
+}
+
+TEST_F(Runs, EveryEnrichmentIsReducedAndVerified) {
+  struct Way {
+    std::string options, row;
+  };
+  for (const std::string map : {"similarity", "graded"})
+    for (const Way &way : {Way{"decorrelated", "decorrelated"}, Way{"online", "online-enriched"},
+                           Way{"offline", "offline-enriched"},
+                           Way{"offline -pga_product energy", "offline-enriched"}}) {
+      SCOPED_TRACE(map + " " + way.options);
+      fs::remove_all("run");
+      offline(2, "-cone_ring 0 -load -60 -disc_map " + map + " -out run -pga_enrichment " +
+                     way.options);
+      const Finished verify = shell(rbvi(2, "verify -out run"));
+      EXPECT_EQ(verify.status, 0) << verify.err;
+      EXPECT_EQ(verify.err, "");
+      const std::string summary = slurp("run/verify/summary.csv");
+      EXPECT_TRUE(summary.starts_with("model,N,S,R,free_modes,u_mean,")) << summary;
+      const std::vector<std::string> row = row_of(summary, way.row);
+      ASSERT_EQ(row.size(), 16U);
+      EXPECT_EQ(row[2] == "0", way.options == "decorrelated") << summary;
+      EXPECT_GT(parse_number(row[4], "free_modes"), 0) << summary;
+      EXPECT_EQ(row[15] == "0", fs::exists("run/verify/worst_pressure.csv")) << summary;
+      for (const char *table : {"errors", "samples", "infsup", "stability", "mesh_quality"})
+        EXPECT_TRUE(fs::exists("run/verify/" + std::string(table) + ".csv")) << table;
+      EXPECT_FALSE(fs::exists("run/verify/cones.csv"));
+      EXPECT_EQ(contains(shell(rbvi_online("run/model.h5")).out, "made online"),
+                way.options == "online");
+    }
+}
+
+/// As many functions as the edge moves over nodes, no mode: a model that can be written and read,
+/// and whose answers are refused.
+TEST_F(Runs, AHybridConeWithoutModesIsAModel) {
+  const std::string common = "offline -case case.yaml -cone_ring 0 -load -60 -out run ";
+  const Finished refused = shell(rbvi(1, common + "-cone_max_size 1"));
+  const std::string words = "moves over ";
+  ASSERT_TRUE(contains(refused.err, words)) << refused.err;
+  const int moving = std::stoi(refused.err.substr(refused.err.find(words) + words.size()));
+  const Finished run = shell(rbvi(1, common + "-cone_max_size " + std::to_string(moving)));
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "R = " + std::to_string(moving) + " generators (hybrid)"))
+      << run.out;
+  const Finished model = shell(rbvi(1, "inspect run/model.h5"));
+  EXPECT_EQ(model.status, 0) << model.err;
+  EXPECT_EQ(lines_with(model.out, "free modes"), 0) << model.out;
+  const Finished answer = shell(rbvi_online("run/model.h5 --mu 0.2,0,0"));
+  EXPECT_EQ(answer.status, 1);
+  EXPECT_TRUE(contains(answer.err, "the pressure is negative")) << answer.err;
 }
 
 std::size_t count_samples(const std::string &run) {
@@ -104,7 +177,7 @@ bool kill_in_the_sweep(const std::string &command, Victim victim) {
 
 TEST_F(Runs, ResumesAfterAKill) {
   const std::string sweep = "offline -case case.yaml -train grid:4,4,4 "
-                            "-pod_tolerance 1e-3 -cone_tolerance 1e-1 -out ";
+                            "-pod_tolerance 1e-3 -cone_type mcpg -cone_tolerance 1e-1 -out ";
   ASSERT_EQ(shell(rbvi(2, sweep + "whole")).status, 0);
   const std::vector<double> expected = answers("whole");
   for (const Victim victim : {Victim::mpirun_and_ranks, Victim::one_rank}) {

@@ -1,0 +1,60 @@
+// A reduced model of the membrane with all that it was made from.
+#pragma once
+
+#include "rbvi/check/errors.hpp"
+#include "rbvi/mor/reduce.hpp"
+
+namespace rbvi::testing_reduced {
+
+inline std::vector<Sample> solve_all(Problem &problem, const std::vector<Mu> &set) {
+  HighFidelity solver(problem, {});
+  std::vector<Sample> samples;
+  for (const Mu &mu : set) {
+    const HfSolution s = solver.solve(mu);
+    samples.push_back({mu, s.u, s.lambda, s.outputs});
+  }
+  return samples;
+}
+
+struct Reduced {
+  Problem problem;
+  std::vector<Sample> samples;
+  AffineOperators affine;
+  ReducedBases bases;
+  ReducedModel model;
+
+  Reduced(const SceneOptions &scene, const std::string &training, const ReduceOptions &options)
+      : Reduced(make_scene("membrane_obstacle", scene), training) {
+    reduce(options);
+  }
+  /// The snapshots alone.
+  Reduced(const Scene &scene, const std::string &training)
+      : problem(PETSC_COMM_WORLD, scene, {}),
+        samples(solve_all(problem, parse_set(problem.scene().parameters, training))) {}
+  void reduce(const ReduceOptions &options) {
+    affine = separate(problem, mus(), options.eim);
+    StageTimes times;
+    bases = build_bases(problem, samples, options, affine.b.size() == 1, times);
+    model = project(problem, samples, affine, bases);
+  }
+  std::vector<Mu> mus() const {
+    std::vector<Mu> set;
+    for (const Sample &sample : samples)
+      set.push_back(sample.mu);
+    return set;
+  }
+  ModelErrors errors_at(const std::vector<Sample> &truth) {
+    return model_errors(model, {}, make_truths(problem, model, truth), problem.w_product());
+  }
+};
+
+inline ReduceOptions everything() {
+  ReduceOptions options;
+  options.pod.tolerance = 0;
+  options.cone.tolerance = 1e-12;
+  options.pga.tolerance = 1e-9;
+  options.eim.tolerance = 1e-13;
+  return options;
+}
+
+} // namespace rbvi::testing_reduced
