@@ -69,8 +69,8 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
   while (splits(bound))
     --bound;
   if (generators + bound == 0)
-    throw bad_input("the first singular values of the multipliers are equal and more than the cone "
-                    "may have: raise -cone_max_size");
+    throw failure("the first singular values of the multipliers are equal and more than the cone "
+                  "may have: raise -cone_max_size");
   for (Index modes = generators > 0 ? 0 : 1;; ++modes) {
     const double left = parts.bottomRows(parts.rows() - modes).colwise().norm().maxCoeff();
     history.size.push_back(static_cast<int>(generators + modes));
@@ -94,8 +94,8 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
   const ContactZones zones = zones_of(snapshots, product, options.ring);
   const auto moving = static_cast<Index>(zones.moving.size());
   if (options.max_size > 0 && options.max_size < moving)
-    throw bad_input("the edge of contact moves over " + std::to_string(moving) +
-                    " nodes: a hybrid cone needs a larger -cone_max_size");
+    throw failure("the edge of contact moves over " + std::to_string(moving) +
+                  " nodes: a hybrid cone needs a larger -cone_max_size");
   const Matrix extension = continuation(zones, condensed);
   Matrix hats = Matrix::Zero(snapshots.rows(), moving);
   for (Index k = 0; k < moving; ++k)

@@ -13,7 +13,7 @@ namespace rbvi {
 namespace {
 
 constexpr double largest_residual = 1e-8;
-constexpr double largest_pull = 1e-2;     ///< of the peak: negative pressure where contact is sure
+constexpr double largest_pull = 1e-2;    ///< of the peak: negative pressure where contact is sure
 constexpr double active_fraction = 1e-6; ///< of the peak: below it a node counts as free
 
 void unpack(const Vector &packed, Matrix &lower) {

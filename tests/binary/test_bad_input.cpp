@@ -112,7 +112,7 @@ TEST_P(BadInput, OptionsOfBases) {
 /// Known only when the snapshots are there: they stay, and no model is written.
 TEST_P(BadInput, AHybridConeThatIsTooSmall) {
   const Finished run = shell(rbvi(GetParam(), "offline -case case.yaml -out run -cone_max_size 3"));
-  expect_refused({"offline -cone_max_size 3", "needs a larger -cone_max_size"}, run, GetParam());
+  expect_refused({"offline -cone_max_size 3", "needs a larger -cone_max_size", 1}, run, GetParam());
   EXPECT_FALSE(fs::exists("run/model.h5"));
   EXPECT_FALSE(fs::exists("run/samples.csv"));
   const Finished again = shell(rbvi(GetParam(), "offline -case case.yaml -out run"));

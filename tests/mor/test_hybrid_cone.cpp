@@ -343,7 +343,7 @@ TEST(HybridCone, SizesItCannotHaveAreRefused) {
     hybrid(snapshots, membrane, {.max_size = moving - 1});
     FAIL() << "accepted";
   } catch (const Error &error) {
-    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_EQ(error.status(), Status::failed);
     EXPECT_NE(std::string(error.what()).find("-cone_max_size"), std::string::npos) << error.what();
   }
 }
