@@ -139,6 +139,27 @@ def modes(runs, rows_of, directory):
     save(figure, directory, "modes.png")
 
 
+def pairs(runs, directory):
+    """Error of lambda over (N, R): decorrelated and online-enriched, similarity map."""
+    names = ("cpg", "mcpg", "angle_greedy", "hybrid")
+    figure, axes = plt.subplots(2, len(names), figsize=(13, 6), constrained_layout=True)
+    for column, name in zip(axes.T, names):
+        data = table(runs["similarity", name, "offline"], "error_map.csv")
+        for axis, kind, title in zip(column, (0, 1), ("decorrelated", "online-enriched")):
+            rows = data[(data["enriched"] == kind) & np.isfinite(data["lambda_max"])]
+            for n, colour in zip(np.unique(data["N"]), (GREY, ORANGE, GREEN, BLUE)):
+                part = rows[rows["N"] == n]
+                axis.plot(part["R"], part["lambda_max"], "o-", color=colour, label=f"N = {n:.0f}")
+                axis.plot(part["R"], part["u_max"], "^:", color=colour)
+            if len(rows) == 0:
+                axis.text(0.5, 0.5, "no answer somewhere\nfor every pair", ha="center",
+                          transform=axis.transAxes)
+            log_axis(axis, "dual functions R", "largest relative error", f"{name}, {title}")
+    axes[1, 0].legend(title="o lambda, ^ u", fontsize=7)
+    same_decades([axis for axis in axes.ravel() if axis.lines and axis.has_data()])
+    save(figure, directory, "pairs.png")
+
+
 def pressures(runs, directory):
     """Pressure and its error at the worst validation parameter, mCPG and hybrid."""
     figure, axes = plt.subplots(2, 3, figsize=(12, 6.4), constrained_layout=True)
@@ -163,4 +184,5 @@ def draw_all(runs, summary, directory):
     greedy(runs, directory)
     constants(runs, directory)
     modes(runs, summary, directory)
+    pairs(runs, directory)
     pressures(runs, directory)

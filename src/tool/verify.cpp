@@ -51,24 +51,30 @@ std::vector<int> generator_counts(const ReducedModel &model) {
   return sizes_up_to(model.generators, {20, 50, 70, 100});
 }
 
-/// Rows (N, R) of errors, see enriched_pair. Collective: the pairs are shared among the ranks.
-void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model,
+/// Errors of the pairs (N, R), decorrelated and (where `enriched`) as enriched_pair makes them.
+/// Collective: the pairs are shared among the ranks.
+void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model, bool enriched,
                      const Truths &truths, const SparseMatrix &w) {
-  std::vector<std::pair<int, int>> pairs;
-  for (const int n : sizes_up_to(model.modes, {10, 19, 51}))
-    for (const int r : generator_counts(model))
-      pairs.emplace_back(n, r);
+  struct Pair {
+    int enriched, n, r;
+  };
+  std::vector<Pair> pairs;
+  for (int kind = 0; kind <= (enriched ? 1 : 0); ++kind)
+    for (const int n : sizes_up_to(model.modes, {10, 19, 51}))
+      for (const int r : generator_counts(model))
+        pairs.push_back({kind, n, r});
   int rank = 0, ranks = 1;
   MPI_Comm_rank(world, &rank);
   MPI_Comm_size(world, &ranks);
   const auto count = static_cast<int>(pairs.size());
-  Matrix rows = Matrix::Zero(count, 10);
+  Matrix rows = Matrix::Zero(count, 11);
   collectively(world, [&] {
     for (int k = rank; k < count; k += ranks) {
-      const auto [n, r] = pairs[static_cast<std::size_t>(k)];
-      const SubModel pair = enriched_pair(model, n, r);
+      const auto [kind, n, r] = pairs[static_cast<std::size_t>(k)];
+      const SubModel pair =
+          kind == 1 ? enriched_pair(model, n, r) : SubModel{leading(model, n, r), {}};
       const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w);
-      rows.row(k) << n, r, e.u.mean(), e.u.maxCoeff(), e.u_floor.mean(), e.lambda.mean(),
+      rows.row(k) << kind, n, r, e.u.mean(), e.u.maxCoeff(), e.u_floor.mean(), e.lambda.mean(),
           e.lambda.maxCoeff(), e.lambda_floor.mean(), e.seconds, e.failed;
     }
   });
@@ -80,8 +86,8 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
     for (const auto &column : rows.colwise())
       columns.emplace_back(column.begin(), column.end());
     write_columns(path,
-                  {"N", "R", "u_mean", "u_max", "u_floor_mean", "lambda_mean", "lambda_max",
-                   "lambda_floor_mean", "seconds", "failed"},
+                  {"enriched", "N", "R", "u_mean", "u_max", "u_floor_mean", "lambda_mean",
+                   "lambda_max", "lambda_floor_mean", "seconds", "failed"},
                   columns);
   });
 }
@@ -237,9 +243,9 @@ void command_verify(const ToolOptions &options) {
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
   });
   // Elsewhere the supremizers of smaller pairs are others.
-  const bool every_pair = model.b.size() == 1 && options.reduce.product == SupremizerProduct::v &&
-                          model.supremizers > 0;
-  if (every_pair) write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
+  const bool enriched = model.b.size() == 1 && options.reduce.product == SupremizerProduct::v &&
+                        model.supremizers > 0;
+  write_error_map(out / "error_map.csv", world, model, enriched, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
   if (options.stability) check_stability(world, problem, model, training, validation, out);
   int rank = 0;

@@ -19,7 +19,7 @@ subprocess.run([sys.executable, study, binaries, out, "-train", "grid:3,2,2", "-
 tables = (out / "tables.md").read_text()
 assert "Order of the constants: 0 exceptions" in tables, tables
 assert tables.count("### ") == 8, tables
-for name in ("bases", "floors", "pga", "infsup", "modes", "pressure"):
+for name in ("bases", "floors", "pga", "infsup", "modes", "pairs", "pressure"):
     assert (out / "figures" / f"{name}.png").stat().st_size > 10000, name
 
 
