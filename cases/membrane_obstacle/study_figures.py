@@ -18,9 +18,10 @@ PAIRS = ((19, 50), (51, 70), (89, 50))
 
 def same_decades(axes):
     """One range for all, in whole decades."""
-    low, high = (f([axis.dataLim.intervaly for axis in axes]) for f in (np.min, np.max))
+    values = np.concatenate([line.get_ydata() for axis in axes for line in axis.lines])
+    low, high = np.log10(np.min(values)), np.log10(np.max(values))
     for axis in axes:
-        axis.set_ylim(10 ** np.floor(np.log10(low)), 10 ** np.ceil(np.log10(high)))
+        axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high))
 
 
 def save(figure, directory, name):
@@ -156,7 +157,7 @@ def pairs(runs, directory):
                           transform=axis.transAxes)
             log_axis(axis, "dual functions R", "largest relative error", f"{name}, {title}")
     axes[1, 0].legend(title="o lambda, ^ u", fontsize=7)
-    same_decades([axis for axis in axes.ravel() if axis.lines and axis.has_data()])
+    same_decades(axes.ravel())
     save(figure, directory, "pairs.png")
 
 
