@@ -247,7 +247,6 @@ def all_runs(study):
                                            ["-pod_tolerance", "0", "-pod_max_size", str(n)], False)
         for name, basis in FINE.items():
             jobs[disc_map, "fine " + name] = (f"{name}.fine", basis + ACCURATE, False)
-        jobs[disc_map, "hybrid", "stability"] = ("hybrid.stability", SETS["hybrid"] + ACCURATE, True)
         for pair, loose in PAIRS.items():
             for tolerance, value in (("tight", TIGHT), ("loose", loose)):
                 jobs[disc_map, pair, tolerance] = (

@@ -76,7 +76,7 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     store(errors, rows.back());
   };
   for (const auto &[n, r] : pairs_of(model)) {
-    if (model.b.size() == 1) {
+    if (knows_enriched_pairs(model)) {
       const SubModel pair = enriched_pair(model, n, r);
       add(pair.model, pair.embedding);
     }

@@ -141,15 +141,14 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
   return errors;
 }
 
+bool knows_enriched_pairs(const ReducedModel &model) {
+  const auto product = model.settings.find("pga_product");
+  const bool energy = product != model.settings.end() && product->second == "energy";
+  return model.b.size() == 1 && model.supremizers > 0 && !energy;
+}
+
 SubModel enriched_pair(const ReducedModel &model, int n, int r) {
   ReducedModel part = leading(model, model.primal_size(), r);
-  const auto product = model.settings.find("pga_product");
-  if (model.b.size() > 1 || (product != model.settings.end() && product->second == "energy")) {
-    Matrix kept = Matrix::Zero(model.primal_size(), n + model.supremizers);
-    kept.topLeftCorner(n, n).setIdentity();
-    kept.bottomRightCorner(model.supremizers, model.supremizers).setIdentity();
-    return {rebased(part, kept, n), kept};
-  }
   Matrix vectors = Matrix::Zero(model.primal_size(), n + r);
   vectors.leftCols(n).setIdentity();
   vectors.rightCols(r) = part.b.reduced.col(0).reshaped(r, model.primal_size()).transpose();

@@ -4,6 +4,8 @@
 
 #include <Eigen/QR>
 
+#include <cmath>
+
 namespace rbvi {
 
 namespace {
@@ -30,6 +32,9 @@ void MixedQp::eliminate(const Matrix &y) {
   bounded_ = y.leftCols(y.cols() - free_);
   coupling_ = q_.transpose() * bounded_;
   bounded_.noalias() -= q_ * coupling_;
+  // What round-off leaves of a column inside the span of the free ones is no direction of its own.
+  for (Index j = 0; j < bounded_.cols(); ++j)
+    if (bounded_.col(j).norm() <= dependence * coupling_.col(j).norm()) bounded_.col(j).setZero();
   stale_ = false;
 }
 
@@ -48,6 +53,9 @@ NonnegativeQpReport MixedQp::solve(const Matrix &y, const Vector &c, const Vecto
     if (uphill.size() > 0 && uphill.cwiseAbs().maxCoeff() > dependence * g_free.norm())
       return {.iterations = 0, .converged = false, .unbounded = true};
     linear = g.head(bounded) - coupling_.transpose() * w;
+    for (Index j = 0; j < bounded; ++j)
+      if (std::abs(linear[j]) <= dependence * (std::abs(g[j]) + coupling_.col(j).norm() * w.norm()))
+        linear[j] = 0;
   }
   const Vector inside = q_.transpose() * c;
   const NonnegativeQpReport report = qp_.solve(bounded_, c - q_ * inside, linear);

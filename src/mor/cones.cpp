@@ -1,12 +1,11 @@
 #include "cone_tools.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/mixed_qp.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <string>
-#include <utility>
 
 namespace rbvi {
 
@@ -23,23 +22,6 @@ Vector remainder(const Vector &theta, const GreedyCone &cone, const ConeOptions 
   Vector left = theta - cone.generators() * part.coefficients;
   left(part.touching).setZero();
   return (left.array() > 1e-13 * largest).select(left, 0.0);
-}
-
-/// Coordinates in which the modes are the first axes, without these. What round-off leaves of a
-/// generator inside the span of the modes is made zero: it would be a direction of its own.
-std::pair<Matrix, Matrix> beside_modes(const Matrix &modes, const Matrix &targets,
-                                       const Matrix &generators) {
-  Eigen::ColPivHouseholderQR<Matrix> qr(modes);
-  qr.setThreshold(round_off);
-  const Index rest = modes.rows() - qr.rank();
-  const auto project = [&](const Matrix &values) {
-    const Matrix rotated = qr.householderQ().adjoint() * values;
-    Matrix left = rotated.bottomRows(rest);
-    for (Index k = 0; k < left.cols(); ++k)
-      if (left.col(k).norm() <= round_off * rotated.col(k).norm()) left.col(k).setZero();
-    return left;
-  };
-  return {project(targets), project(generators)};
 }
 
 } // namespace
@@ -99,13 +81,15 @@ Cone build_cone(const Matrix &snapshots, const SparseMatrix &product, const Cone
 Vector distances_to_cone(const Matrix &values, const ConeBasis &basis, const SparseMatrix &product,
                          const FreeModes &modes) {
   const Matrix factor = product_factor(product);
-  Matrix targets = factor * values, coordinates = factor * basis.generators;
+  const Matrix targets = factor * values;
+  const Index cone = basis.generators.cols(), free = modes.columns.cols();
+  Matrix coordinates(factor.rows(), cone + free);
+  coordinates.leftCols(cone) = factor * basis.generators;
+  if (free > 0) coordinates.rightCols(free) = factor * modes.columns;
   const double scale = targets.colwise().norm().maxCoeff();
   if (scale == 0) return Vector::Zero(values.cols());
-  if (modes.columns.cols() > 0)
-    std::tie(targets, coordinates) = beside_modes(factor * modes.columns, targets, coordinates);
   Vector result(values.cols());
-  NonnegativeQp projection(targets.rows());
+  MixedQp projection(factor.rows(), free);
   for (Index p = 0; p < values.cols(); ++p) {
     if (!projection.solve(coordinates, targets.col(p)).converged)
       throw failure("the projection of a multiplier onto the cone did not converge");

@@ -51,15 +51,16 @@ std::vector<int> generator_counts(const ReducedModel &model) {
   return sizes_up_to(model.generators, {20, 50, 70, 100});
 }
 
-/// Errors of the pairs (N, R), decorrelated and (where `enriched`) as enriched_pair makes them.
+/// Errors of the pairs (N, R), decorrelated and, where that is known, as enriched_pair makes
+/// them.
 /// Collective: the pairs are shared among the ranks.
-void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model, bool enriched,
+void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model,
                      const Truths &truths, const SparseMatrix &w) {
   struct Pair {
     int enriched, n, r;
   };
   std::vector<Pair> pairs;
-  for (int kind = 0; kind <= (enriched ? 1 : 0); ++kind)
+  for (int kind = 0; kind <= (knows_enriched_pairs(model) ? 1 : 0); ++kind)
     for (const int n : sizes_up_to(model.modes, {10, 19, 51}))
       for (const int r : generator_counts(model))
         pairs.push_back({kind, n, r});
@@ -242,10 +243,7 @@ void command_verify(const ToolOptions &options) {
     check_errors(model, problem, truths, options, out);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
   });
-  // Elsewhere the supremizers of smaller pairs are others.
-  const bool enriched = model.b.size() == 1 && options.reduce.product == SupremizerProduct::v &&
-                        model.supremizers > 0;
-  write_error_map(out / "error_map.csv", world, model, enriched, truths, problem.w_product());
+  write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
   if (options.stability) check_stability(world, problem, model, training, validation, out);
   int rank = 0;

@@ -84,6 +84,21 @@ TEST(MixedQp, LeavesOutDependentFreeColumns) {
   EXPECT_TRUE(qp.solve(y, c, g).unbounded);
 }
 
+TEST(MixedQp, ABoundedColumnInTheSpanOfTheFreeOnesIsNoDirection) {
+  Random random(6);
+  Matrix y = random.matrix(10, 6);
+  y.col(1) = 0.3 * y.col(4) - 2 * y.col(5);
+  const Vector c = random.vector(10);
+  MixedQp projection(10, 2);
+  ASSERT_TRUE(projection.solve(y, c).converged);
+  expect_optimal(y, c, Vector::Zero(6), 2, projection);
+  Vector g = random.vector(6);
+  g[1] = 0.3 * g[4] - 2 * g[5]; // along it the objective is constant
+  MixedQp qp(10, 2);
+  ASSERT_TRUE(qp.solve(y, c, g).converged);
+  expect_optimal(y, c, g, 2, qp);
+}
+
 TEST(MixedQp, ChecksItsSizes) {
   MixedQp qp(3, 2);
   EXPECT_THROW(qp.solve(Matrix::Identity(3, 1), Vector::Ones(3)), Error);

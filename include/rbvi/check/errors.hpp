@@ -41,9 +41,13 @@ struct SubModel {
   Matrix embedding;
 };
 
-/// The pair of the first n modes and the first r generators, enriched. Where b depends on mu by a
-/// factor only, by the supremizers of those generators (in the V product the coordinates of T chi_r
-/// are row r of the reduced b); elsewhere by all that the model has.
+/// Whether the supremizers of smaller pairs lie in the model's space and are known: b depends on mu
+/// by a factor only, and they are taken in the V product, so that the coordinates of T chi_r are
+/// row r of the reduced b.
+bool knows_enriched_pairs(const ReducedModel &model);
+
+/// The pair of the first n modes and the first r generators, enriched by the supremizers of those
+/// generators within the model's space. Needs knows_enriched_pairs(model).
 SubModel enriched_pair(const ReducedModel &model, int n, int r);
 
 ValidationErrors summary(const ModelErrors &errors);
