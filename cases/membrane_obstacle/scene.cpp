@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 namespace rbvi {
 
@@ -62,16 +61,16 @@ Scene make(const SceneOptions &options) {
                                {"center_y", "m", -0.05, 0.05, 0}});
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
-  scene.mesh = {"square_with_disc", {"obstacle"}, {"boundary"}};
+  scene.mesh = {"square_with_disc", {"obstacle"}, {"boundary"}, ""};
   scene.map = options.at("disc_map") == "graded" ? graded : similarity;
   scene.snap = [](const Point &x) -> Point {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
     return {scale * x[0], scale * x[1], 0};
   };
-  scene.fixed_boundary = "boundary";
+  scene.fixed = {{"boundary", {}}};
   scene.contact_region = "obstacle";
   scene.lumped = options.at("lumped") == "yes";
-  const double load = std::strtod(options.at("load").c_str(), nullptr);
+  const double load = number_in(options, "load");
   scene.a = laplace("");
   if (load != 0) scene.f = constant_load("", load);
   scene.b = mass("obstacle", Domain::mapped, -1, scene.lumped);

@@ -63,6 +63,32 @@ std::optional<ReducedSolution> answer_at(OnlineSolver &solver, const Truths &tru
 
 } // namespace
 
+double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
+  const Scene &scene = problem.scene();
+  const Mesh &mesh = problem.mesh();
+  const Mu all = expand(scene.parameters, mu);
+  const Index corners = mesh.dim + 1, count = corners * scene.components;
+  Matrix product_of_cell(count, count);
+  Vector local(count);
+  double square = 0;
+  const MappedCells cells = reference_cells(mesh);
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
+    const Cell &cell = cells.cells[k];
+    for (Index i = 0; i < corners; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const Point motion = scene.motion ? scene.motion(all, cell.reference[at]) : Point{};
+      const PetscInt node = mesh.natural_vertex[static_cast<std::size_t>(mesh.cells[k][at])];
+      for (Index c = 0; c < scene.components; ++c)
+        local[i * scene.components + c] =
+            motion[static_cast<std::size_t>(c)] + u[node * scene.components + c];
+    }
+    scene.v_product.kernel({}, cell, product_of_cell.data());
+    square += local.dot(product_of_cell * local);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, problem.comm());
+  return std::sqrt(square);
+}
+
 Truths make_truths(Problem &problem, const ReducedModel &model,
                    const std::vector<Sample> &samples) {
   const Index n = model.primal_size(), count = static_cast<Index>(samples.size());
@@ -83,7 +109,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
   for (Index p = 0; p < count; ++p) {
     const Sample &sample = samples[static_cast<std::size_t>(p)];
     const Handle<Vec> u = from_natural(problem.dofs(), sample.u);
-    truths.u_norm[p] = std::sqrt(product(v, u.get(), u.get(), scratch.get()));
+    truths.u_norm[p] = displacement_norm(problem, sample.mu, sample.u);
     RBVI_CALL(MatMult(v, u.get(), scratch.get()));
     RBVI_CALL(VecMDot(scratch.get(), static_cast<PetscInt>(n), raw.data(),
                       truths.coordinates.col(p).data()));

@@ -1,6 +1,8 @@
 #include "rbvi/core/scene.hpp"
 
 #include "../../cases/membrane_obstacle/scene.hpp"
+#include "../../cases/patch/scene.hpp"
+#include "../../cases/two_disks/scene.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -28,8 +30,36 @@ void check_option(const SceneOption &option, const std::string &value) {
 
 } // namespace
 
+bool constant_stiffness(const Scene &scene) {
+  if (!scene.a_parameters) return false;
+  const std::vector<int> &free = scene.parameters.free;
+  return std::none_of(scene.a_parameters->begin(), scene.a_parameters->end(),
+                      [&](int i) { return std::find(free.begin(), free.end(), i) != free.end(); });
+}
+
+std::vector<SceneOption> pair_options() {
+  return {{"multiplier",
+           "p0",
+           "pressure: constant on pairs of edges (p0) or continuous (p1)",
+           {"p0", "p1"}},
+          {"integration",
+           "intersection",
+           "contact integrals: edges intersected, or Gauss points of the upper body alone",
+           {"intersection", "direct"}}};
+}
+
+PairDiscretisation pair_discretisation(const SceneOptions &options) {
+  return {options.at("multiplier") == "p1" ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
+          options.at("integration") == "direct" ? PairQuadrature::direct
+                                                : PairQuadrature::intersection};
+}
+
+double number_in(const SceneOptions &options, const std::string &name) {
+  return parse_number(options.at(name), "option " + name);
+}
+
 const std::vector<SceneEntry> &scene_catalogue() {
-  static const std::vector<SceneEntry> catalogue{membrane_obstacle()};
+  static const std::vector<SceneEntry> catalogue{membrane_obstacle(), two_disks(), patch()};
   return catalogue;
 }
 

@@ -3,6 +3,7 @@
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/quadrature.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rbvi {
@@ -40,14 +41,19 @@ Form mass(const std::string &region, Domain domain, double factor, bool lumped) 
           }};
 }
 
-Form h1_product(double length) {
-  return {"", [length](const Mu &, const Cell &cell, double *values) {
+Form h1_product(double length, int components) {
+  return {"", [length, components](const Mu &, const Cell &cell, double *values) {
             const Simplex s = simplex(cell.dim, cell.reference);
+            const int stride = (cell.dim + 1) * components;
+            std::fill_n(values, stride * stride, 0.0);
             for (int i = 0; i <= cell.dim; ++i)
-              for (int j = 0; j <= cell.dim; ++j)
-                *values++ =
+              for (int j = 0; j <= cell.dim; ++j) {
+                const double entry =
                     s.volume * (mass_entry(cell.dim, i, j) +
                                 length * length * s.gradients.row(i).dot(s.gradients.row(j)));
+                for (int c = 0; c < components; ++c)
+                  values[(i * components + c) * stride + j * components + c] = entry;
+              }
           }};
 }
 

@@ -37,25 +37,6 @@ Gathered gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<bool
           gather_all(mesh.comm, mine.fixed, MPIU_INT)};
 }
 
-Trace make_trace(const ContactRegion &region, const Dofs &dofs, PetscInt size) {
-  std::map<PetscInt, PetscInt> contact_of_natural;
-  for (std::size_t r = 0; r < region.points.size(); ++r)
-    for (int c = 0; c < region.components; ++c) {
-      const int number = region.contact_dof[r * static_cast<std::size_t>(region.components) +
-                                            static_cast<std::size_t>(c)];
-      if (number >= 0)
-        contact_of_natural[region.natural_vertex[r] * region.components + c] = number;
-    }
-  Trace trace{dofs.comm, size, {}, {}};
-  for (std::size_t row = 0; row < dofs.natural_owned.size(); ++row) {
-    const auto found = contact_of_natural.find(dofs.natural_owned[row]);
-    if (found == contact_of_natural.end()) continue;
-    trace.local_row.push_back(static_cast<PetscInt>(row));
-    trace.index.push_back(found->second);
-  }
-  return trace;
-}
-
 } // namespace
 
 ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std::string &name) {
@@ -75,13 +56,15 @@ ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std:
                                                           all.fixed[k * corners + i] != 0};
     }
   std::map<PetscInt, int> dual_of;
-  PetscInt contact_dofs = 0;
+  std::vector<PetscInt> natural_dofs;
   for (const auto &[number, vertex] : vertices) {
     dual_of[number] = static_cast<int>(region.points.size());
     region.natural_vertex.push_back(number);
     region.points.push_back(vertex.first);
-    for (int c = 0; c < region.components; ++c)
-      region.contact_dof.push_back(vertex.second ? -1 : static_cast<int>(contact_dofs++));
+    for (int c = 0; c < region.components; ++c) {
+      region.contact_dof.push_back(vertex.second ? -1 : static_cast<int>(natural_dofs.size()));
+      if (!vertex.second) natural_dofs.push_back(number * region.components + c);
+    }
   }
 
   std::vector<std::size_t> order(count);
@@ -95,7 +78,7 @@ ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std:
       cell[i] = dual_of.at(all.numbers[k * (corners + 1) + 1 + i]);
     region.cells.push_back(cell);
   }
-  region.trace = make_trace(region, dofs, contact_dofs);
+  region.trace = make_trace(dofs, natural_dofs);
   return region;
 }
 

@@ -1,5 +1,9 @@
 #include "rbvi/fem/dofs.hpp"
 
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -23,38 +27,62 @@ void share_with_ghosts(const Mesh &mesh, std::vector<PetscInt> &first_row) {
     first_row[v] = by_point[static_cast<std::size_t>(mesh.dm_vertex[v])];
 }
 
+/// Per local vertex * components + component.
+std::vector<bool> fixed_components(const Mesh &mesh, int components,
+                                   const std::vector<FixedBoundary> &fixed) {
+  const auto count = static_cast<std::size_t>(components);
+  std::vector<bool> result(mesh.points.size() * count, false);
+  for (const FixedBoundary &part : fixed) {
+    const std::vector<bool> &on_boundary = mesh.boundary.at(part.name);
+    for (std::size_t c = 0; c < count; ++c) {
+      const auto &list = part.components;
+      if (!list.empty() && std::find(list.begin(), list.end(), static_cast<int>(c)) == list.end())
+        continue;
+      for (std::size_t v = 0; v < mesh.points.size(); ++v)
+        if (on_boundary[v]) result[v * count + c] = true;
+    }
+    for (const int c : part.components)
+      if (c < 0 || c >= components)
+        throw bad_input("boundary " + part.name + " fixes component " + std::to_string(c) +
+                        " of a displacement of " + std::to_string(components));
+  }
+  return result;
+}
+
 } // namespace
 
-Dofs number_dofs(const Mesh &mesh, int components, const std::string &fixed_boundary) {
+Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBoundary> &fixed) {
   Dofs dofs;
   dofs.comm = mesh.comm;
   dofs.components = components;
   dofs.total = mesh.total_vertices * components;
-  const std::vector<bool> &fixed = mesh.boundary.at(fixed_boundary);
-  const std::size_t vertices = mesh.points.size();
+  const std::vector<bool> is_fixed = fixed_components(mesh, components, fixed);
+  const std::size_t vertices = mesh.points.size(), count = static_cast<std::size_t>(components);
 
   PetscInt owned = 0;
-  for (std::size_t v = 0; v < vertices; ++v)
-    if (mesh.owned_vertex[v] && !fixed[v]) owned += components;
+  for (std::size_t i = 0; i < is_fixed.size(); ++i)
+    if (mesh.owned_vertex[i / count] && !is_fixed[i]) ++owned;
   MPI_Exscan(&owned, &dofs.first_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
   MPI_Allreduce(&owned, &dofs.total_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
 
   std::vector<PetscInt> first_row(vertices, -1);
   PetscInt next = dofs.first_free;
   for (std::size_t v = 0; v < vertices; ++v) {
-    if (!mesh.owned_vertex[v] || fixed[v]) continue;
+    if (!mesh.owned_vertex[v]) continue;
     first_row[v] = next;
-    next += components;
-    for (int c = 0; c < components; ++c)
-      dofs.natural_owned.push_back(mesh.natural_vertex[v] * components + c);
+    for (std::size_t c = 0; c < count; ++c) {
+      if (is_fixed[v * count + c]) continue;
+      dofs.natural_owned.push_back(mesh.natural_vertex[v] * components + static_cast<PetscInt>(c));
+      ++next;
+    }
   }
   share_with_ghosts(mesh, first_row);
 
-  dofs.free.assign(vertices * static_cast<std::size_t>(components), -1);
-  for (std::size_t v = 0; v < vertices; ++v)
-    for (int c = 0; c < components && first_row[v] >= 0; ++c)
-      dofs.free[v * static_cast<std::size_t>(components) + static_cast<std::size_t>(c)] =
-          first_row[v] + c;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    PetscInt row = first_row[v];
+    for (std::size_t c = 0; c < count; ++c)
+      dofs.free.push_back(is_fixed[v * count + c] ? -1 : row++);
+  }
   return dofs;
 }
 

@@ -1,5 +1,7 @@
 #include "rbvi/fem/trace.hpp"
 
+#include <unordered_map>
+
 namespace rbvi {
 
 namespace {
@@ -11,6 +13,20 @@ void share_entries(MPI_Comm comm, double *values, Index count) {
 }
 
 } // namespace
+
+Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural) {
+  std::unordered_map<PetscInt, PetscInt> contact_of_natural;
+  for (const PetscInt number : natural)
+    contact_of_natural.emplace(number, static_cast<PetscInt>(contact_of_natural.size()));
+  Trace trace{dofs.comm, static_cast<PetscInt>(natural.size()), {}, {}};
+  for (std::size_t row = 0; row < dofs.natural_owned.size(); ++row) {
+    const auto found = contact_of_natural.find(dofs.natural_owned[row]);
+    if (found == contact_of_natural.end()) continue;
+    trace.local_row.push_back(static_cast<PetscInt>(row));
+    trace.index.push_back(found->second);
+  }
+  return trace;
+}
 
 Vector restrict_to(const Trace &trace, Vec u) {
   Vector values = Vector::Zero(trace.size);

@@ -8,6 +8,7 @@
 #include <petscsf.h>
 
 #include <numeric>
+#include <string_view>
 
 namespace rbvi {
 
@@ -31,18 +32,35 @@ struct StarForest {
   ~StarForest() { (void)PetscSFDestroy(&sf); }
 };
 
+struct Generator {
+  std::string_view name;
+  SerialMesh (*make)();
+};
+
+constexpr std::array generators{Generator{"square_with_disc", square_with_disc},
+                                Generator{"two_quarter_discs", two_quarter_discs},
+                                Generator{"two_blocks", two_blocks}};
+
+/// Throws bad_input if this build does not have the scene's generator.
+SerialMesh generated_mesh(const Scene &scene) {
+  std::string names;
+  for (const auto &[name, make] : generators) {
+    if (name == scene.mesh.generator) return make();
+    names.append(names.empty() ? "" : ", ").append(name);
+  }
+  throw bad_input("scene " + scene.name + " asks for the mesh generator '" + scene.mesh.generator +
+                  "': this build has " + names);
+}
+
 SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options) {
   if (options.refine < 0) throw bad_input("the number of mesh refinements is negative");
-  if (options.file.empty() && scene.mesh.generator != "square_with_disc")
-    throw bad_input("scene " + scene.name + " asks for the mesh generator '" +
-                    scene.mesh.generator + "': this build has square_with_disc");
-  SerialMesh mesh = options.file.empty() ? square_with_disc() : read_gmsh(options.file, scene);
+  SerialMesh mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
   const std::string source =
       options.file.empty() ? "the built-in mesh" : "mesh file '" + options.file + "'";
   check_mesh(mesh, source);
   for (int level = 1; level <= options.refine; ++level) {
     mesh = refined(mesh);
-    snap_interface(mesh, scene);
+    snap_curves(mesh, scene);
     check_mesh(mesh, source + ", refined " + std::to_string(level) + " times");
   }
   return mesh;

@@ -71,10 +71,11 @@ Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &re
   Handle<DM> dm = plex_from_cells(comm, mesh);
   for (const std::string &name : label_names(recipe))
     RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
-  for (const auto &[name, cells] : mesh.region) {
+  for (const std::string &name : recipe.regions) {
+    if (!mesh.region.contains(name)) continue;
     DMLabel label = nullptr;
     RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
-    for (const int cell : cells)
+    for (const int cell : mesh.region.at(name))
       RBVI_CALL(DMLabelSetValue(label, cell, 1));
   }
   for (const std::string &name : recipe.boundaries) {

@@ -63,6 +63,21 @@ template <class T> void append(std::string &bytes, const T &value) {
   bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
 }
 
+/// Vertices that a region shares with the rest of the mesh.
+std::vector<bool> interface_of(const SerialMesh &mesh, const std::string &region) {
+  std::vector<bool> inside(mesh.points.size(), false), outside(inside);
+  if (!mesh.region.contains(region)) return inside;
+  std::vector<bool> in_region(mesh.cells.size(), false);
+  for (const int cell : mesh.region.at(region))
+    in_region[at(cell)] = true;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (int i = 0; i <= mesh.dim; ++i)
+      (in_region[c] ? inside : outside)[at(mesh.cells[c][at(i)])] = true;
+  for (std::size_t v = 0; v < inside.size(); ++v)
+    inside[v] = inside[v] && outside[v];
+  return inside;
+}
+
 double extent(const SerialMesh &mesh) {
   double largest = 0;
   for (const Point &x : mesh.points)
@@ -90,17 +105,15 @@ void check_mesh(const SerialMesh &mesh, const std::string &source) {
                     " lie on the same side of their common facet: one of them is inverted");
 }
 
-void snap_interface(SerialMesh &mesh, const Scene &scene) {
-  if (!scene.snap || !mesh.region.contains(scene.contact_region)) return;
-  std::vector<bool> contact_cell(mesh.cells.size(), false);
-  for (const int cell : mesh.region.at(scene.contact_region))
-    contact_cell[at(cell)] = true;
-  std::vector<bool> inside(mesh.points.size(), false), outside(mesh.points.size(), false);
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    for (int i = 0; i <= mesh.dim; ++i)
-      (contact_cell[c] ? inside : outside)[at(mesh.cells[c][at(i)])] = true;
+void snap_curves(SerialMesh &mesh, const Scene &scene) {
+  if (!scene.snap) return;
+  std::vector<bool> on_curve = interface_of(mesh, scene.contact_region);
+  if (mesh.boundary.contains(scene.mesh.curved))
+    for (const auto &facet : mesh.boundary.at(scene.mesh.curved))
+      for (int i = 0; i < mesh.dim; ++i)
+        on_curve[at(facet[at(i)])] = true;
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (inside[v] && outside[v]) mesh.points[v] = scene.snap(mesh.points[v]);
+    if (on_curve[v]) mesh.points[v] = scene.snap(mesh.points[v]);
 }
 
 std::string fingerprint_of(const SerialMesh &mesh) {

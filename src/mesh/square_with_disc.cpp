@@ -1,6 +1,4 @@
-#include "rbvi/mesh/mesh.hpp"
-
-#include "rbvi/element/geometry.hpp"
+#include "rings.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -14,8 +12,6 @@ constexpr int disc_rings = 12;  ///< ring k has 6 k nodes
 constexpr int outer_rings = 23; ///< from the circle's 72 nodes to the square's 200
 constexpr int square_nodes = 200;
 constexpr int circle_nodes = 6 * disc_rings;
-
-using Ring = std::vector<int>;
 
 int nodes_of_outer_ring(int j) {
   return circle_nodes + 8 * ((square_nodes - circle_nodes) * j / (8 * outer_rings));
@@ -67,39 +63,6 @@ Point in_disc(double rho, double t) {
           rotation[1] * x + rotation[0] * y + rest * shift[1], 0};
 }
 
-/// Appends a ring of n nodes given by their turn.
-template <class Curve> Ring add_ring(SerialMesh &mesh, int n, Curve &&curve) {
-  Ring ring;
-  for (int i = 0; i < n; ++i) {
-    ring.push_back(static_cast<int>(mesh.points.size()));
-    mesh.points.push_back(curve(static_cast<double>(i) / n));
-  }
-  return ring;
-}
-
-double quality(const SerialMesh &mesh, const std::array<int, 4> &cell) {
-  std::array<Point, 4> vertices{};
-  for (std::size_t i = 0; i < 3; ++i)
-    vertices[i] = mesh.points[static_cast<std::size_t>(cell[i])];
-  return aspect_ratio(2, vertices);
-}
-
-/// Fills the strip between two rings with triangles. From the edge that joins the two current
-/// nodes, either ring can go one node further: the better triangle of the two is taken. Equal ones
-/// are told apart by a margin far above round-off, so that every machine makes the same mesh.
-void zip(SerialMesh &mesh, const Ring &inner, const Ring &outer) {
-  constexpr double margin = 1e-8;
-  const std::size_t m = inner.size(), n = outer.size();
-  for (std::size_t i = 0, j = 0; i < m || j < n;) {
-    const std::array<int, 4> by_inner{inner[i % m], outer[j % n], inner[(i + 1) % m], -1};
-    const std::array<int, 4> by_outer{inner[i % m], outer[j % n], outer[(j + 1) % n], -1};
-    const bool take_inner =
-        j == n || (i < m && quality(mesh, by_inner) < (1 - margin) * quality(mesh, by_outer));
-    mesh.cells.push_back(take_inner ? by_inner : by_outer);
-    ++(take_inner ? i : j);
-  }
-}
-
 } // namespace
 
 SerialMesh square_with_disc() {
@@ -107,20 +70,20 @@ SerialMesh square_with_disc() {
   mesh.points.push_back(in_disc(0, 0));
   Ring ring;
   for (int k = 1; k <= disc_rings; ++k) {
-    const Ring next = add_ring(
+    const Ring next = add_closed_ring(
         mesh, 6 * k, [&](double t) { return in_disc(static_cast<double>(k) / disc_rings, t); });
     if (k > 1)
       zip(mesh, ring, next);
     else
       for (std::size_t i = 0; i < 6; ++i)
-        mesh.cells.push_back({0, next[i], next[(i + 1) % 6], -1});
+        mesh.cells.push_back({0, next[i], next[i + 1], -1});
     ring = next;
   }
   for (int cell = 0; cell < static_cast<int>(mesh.cells.size()); ++cell)
     mesh.region["obstacle"].push_back(cell);
 
   for (int j = 1; j <= outer_rings; ++j) {
-    const Ring next = add_ring(mesh, nodes_of_outer_ring(j), [&](double t) -> Point {
+    const Ring next = add_closed_ring(mesh, nodes_of_outer_ring(j), [&](double t) -> Point {
       const Point c = on_circle(t), s = on_square(t);
       const double blend = static_cast<double>(j) / outer_rings;
       const double circle = radius * (1 - blend);
@@ -129,8 +92,7 @@ SerialMesh square_with_disc() {
     zip(mesh, ring, next);
     ring = next;
   }
-  for (std::size_t i = 0; i < ring.size(); ++i)
-    mesh.boundary["boundary"].push_back({ring[i], ring[(i + 1) % ring.size()], -1});
+  add_facets(mesh, "boundary", ring);
   return mesh;
 }
 

@@ -3,6 +3,8 @@
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <set>
 
 namespace rbvi {
 
@@ -187,38 +189,71 @@ Vector local_values(Vec vector) {
   return result;
 }
 
+/// The first mu of the set with each value of the parameters that a depends on, by number.
+std::vector<int> different_stiffness(const Problem &problem, const std::vector<Mu> &set) {
+  std::set<Mu> seen;
+  std::vector<int> result;
+  for (std::size_t p = 0; p < set.size(); ++p)
+    if (seen.insert(problem.stiffness_values(expand(problem.scene().parameters, set[p]))).second)
+      result.push_back(static_cast<int>(p));
+  return result;
+}
+
+/// The keys' values at every mu of a training set, column by column.
+struct Snapshots {
+  std::vector<EntryKey> keys;
+  std::vector<int> numbers; ///< of the training mu
+  Matrix values;
+
+  Snapshots(std::vector<EntryKey> k, std::vector<int> n)
+      : keys(std::move(k)), numbers(std::move(n)), values(keys.size(), numbers.size()) {}
+  template <class Values> void add(std::size_t number, Values &&values_at) {
+    const auto found = std::find(numbers.begin(), numbers.end(), static_cast<int>(number));
+    if (found != numbers.end()) values.col(found - numbers.begin()) = values_at();
+  }
+  Eim separate(MPI_Comm comm, const EimOptions &options) const {
+    if (numbers.empty()) return {};
+    Eim result = eim(comm, values, keys, options);
+    for (int &number : result.snapshots)
+      number = numbers[static_cast<std::size_t>(number)];
+    return result;
+  }
+};
+
 } // namespace
 
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options) {
-  const auto count = static_cast<Index>(training.size());
+  std::vector<int> all(training.size()), none;
+  std::iota(all.begin(), all.end(), 0);
+  const bool pair = problem.two_bodies(), load = static_cast<bool>(problem.scene().f);
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());
-  const std::vector<EntryKey> b_keys = nonzero_keys(op.b);
   std::vector<EntryKey> f_keys, g_keys;
   for (const PetscInt natural : problem.dofs().natural_owned)
     f_keys.push_back({natural, 0});
   for (PetscInt i = 0; i < op.g.size(); ++i)
     g_keys.push_back({i, 0});
-
-  Matrix a(triangle.keys().size(), count), b(b_keys.size(), count), f(f_keys.size(), count),
-      g(g_keys.size(), count);
-  for (Index p = 0; p < count; ++p) {
-    problem.assemble(training[static_cast<std::size_t>(p)]);
-    a.col(p) = triangle.values(op.a);
-    b.col(p) = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
-    f.col(p) = local_values(op.f);
-    g.col(p) = op.g;
+  Snapshots a(triangle.keys(), different_stiffness(problem, training));
+  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), pair ? none : all),
+      g(g_keys, pair ? none : all);
+  for (std::size_t p = 0; p < training.size(); ++p) {
+    problem.assemble(training[p]);
+    a.add(p, [&] { return triangle.values(op.a); });
+    f.add(p, [&] { return local_values(op.f); });
+    b.add(p, [&] { return Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros()); });
+    g.add(p, [&] { return op.g; });
   }
 
   AffineOperators result;
-  result.a = eim(problem.comm(), a, triangle.keys(), options);
-  result.b = eim(MPI_COMM_SELF, b, b_keys, options);
-  if (problem.scene().f) result.f = eim(problem.comm(), f, f_keys, options);
-  result.g = eim(MPI_COMM_SELF, g, g_keys, options);
+  result.a = a.separate(problem.comm(), options);
+  result.b = b.separate(MPI_COMM_SELF, options);
+  result.f = f.separate(problem.comm(), options);
+  result.g = g.separate(MPI_COMM_SELF, options);
   result.sample_a = sample_domain(problem, result.a.entries, true);
-  result.sample_b = sample_contact(problem.contact(), result.b.entries, true);
   result.sample_f = sample_domain(problem, result.f.entries, false);
+  if (pair) return result;
+  result.sample_b = sample_contact(problem.contact(), result.b.entries, true);
   result.sample_g = sample_contact(problem.contact(), result.g.entries, false);
   return result;
 }

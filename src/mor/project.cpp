@@ -88,7 +88,6 @@ bool uses(const Eim &eim, int snapshot) {
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
   const Mesh &mesh = problem.mesh();
-  const ContactRegion &contact = problem.contact();
   model.mesh_fingerprint = mesh.fingerprint;
   model.mesh_points = Matrix::Zero(mesh.total_vertices, mesh.dim);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
@@ -109,17 +108,36 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
   for (auto record = all.begin(); record != all.end(); record += corners + 1)
     std::copy(record + 1, record + 1 + corners, model.mesh_cells.begin() + *record * corners);
 
-  model.contact_points.resize(contact.dual_size(), mesh.dim);
-  for (Index r = 0; r < contact.dual_size(); ++r) {
-    model.contact_nodes.push_back(
-        static_cast<int>(contact.natural_vertex[static_cast<std::size_t>(r)]));
+  const std::vector<Point> &points =
+      problem.two_bodies() ? problem.curves().points : problem.contact().points;
+  const std::vector<PetscInt> &vertices =
+      problem.two_bodies() ? problem.curves().natural_vertex : problem.contact().natural_vertex;
+  model.contact_nodes.assign(vertices.begin(), vertices.end());
+  model.contact_points.resize(static_cast<Index>(points.size()), mesh.dim);
+  for (Index r = 0; r < model.contact_points.rows(); ++r)
     for (int c = 0; c < mesh.dim; ++c)
-      model.contact_points(r, c) =
-          contact.points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
-  }
-  for (const auto &cell : contact.cells)
-    model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + corners);
+      model.contact_points(r, c) = points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+  if (problem.two_bodies())
+    model.slave_nodes = static_cast<int>(problem.curves().slave_nodes);
+  else
+    for (const auto &cell : problem.contact().cells)
+      model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + corners);
 }
+
+namespace {
+
+/// The primal basis at the contact nodes: of two bodies its vertical component.
+Matrix contact_trace_of(const Problem &problem, const ReducedModel &model) {
+  const int components = problem.scene().components;
+  const int component = problem.two_bodies() ? components - 1 : 0;
+  Matrix trace(static_cast<Index>(model.contact_nodes.size()), model.primal_size());
+  for (Index r = 0; r < trace.rows(); ++r)
+    trace.row(r) = model.primal_basis.row(
+        model.contact_nodes[static_cast<std::size_t>(r)] * components + component);
+  return trace;
+}
+
+} // namespace
 
 ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases) {
@@ -143,16 +161,19 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.b = start_terms(affine.b, affine.sample_b, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  model.lumped_weights = Matrix::Zero(problem.contact().dual_size(), affine.b.size());
+  model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
 
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
     if (uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.comm(), op.a, basis), model.a.reduced);
-    const Matrix b = model.dual_basis.transpose() * (op.b * trace);
-    accumulate(affine.b, p, b.reshaped(), model.b.reduced);
-    accumulate(affine.b, p, op.weights, model.lumped_weights);
-    accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
+    if (uses(affine.b, p)) {
+      const Matrix b = model.dual_basis.transpose() * (op.b * trace);
+      accumulate(affine.b, p, b.reshaped(), model.b.reduced);
+      accumulate(affine.b, p, op.weights, model.lumped_weights);
+    }
+    if (uses(affine.g, p))
+      accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
     if (uses(affine.f, p)) {
       const PetscScalar *load = nullptr;
       RBVI_CALL(VecGetArrayRead(op.f, &load));
@@ -164,7 +185,6 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     }
   }
 
-  const auto &contact = problem.contact();
   model.primal_basis = Matrix::Zero(problem.dofs().total, n);
   {
     const BorrowedRows rows(basis);
@@ -175,10 +195,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   }
   sum_over_ranks(problem.comm(), model.primal_basis);
   RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
-  model.contact_trace.resize(contact.dual_size(), n);
-  for (Index r = 0; r < contact.dual_size(); ++r)
-    model.contact_trace.row(r) =
-        model.primal_basis.row(contact.natural_vertex[static_cast<std::size_t>(r)]);
+  model.contact_trace = contact_trace_of(problem, model);
   model.histories["pod/error"] = bases.pod.error;
   model.histories["cone/size"] = {bases.cone.history.size.begin(), bases.cone.history.size.end()};
   model.histories["cone/error"] = bases.cone.history.error;

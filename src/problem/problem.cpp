@@ -1,12 +1,13 @@
 #include "rbvi/problem/problem.hpp"
 
+#include "rbvi/element/contact_pair.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
 namespace rbvi {
 
 namespace {
 
-SparseMatrix reference_w_product(const ContactRegion &region, const Scene &scene) {
+SparseMatrix region_product(const ContactRegion &region, const Scene &scene) {
   std::vector<Cell> cells;
   for (const auto &vertices : region.cells) {
     Cell cell{region.dim, {}, {}};
@@ -18,35 +19,82 @@ SparseMatrix reference_w_product(const ContactRegion &region, const Scene &scene
   return matrix.assemble(scene.w_product, {}, cells);
 }
 
+/// -u <= -psi at every node of the region.
+SparseMatrix minus_trace(const ContactRegion &region) {
+  SparseMatrix result(region.dual_size(), region.trace.size);
+  for (Index i = 0; i < region.dual_size(); ++i)
+    if (const int dof = region.contact_dof[static_cast<std::size_t>(i)]; dof >= 0)
+      result.insert(i, dof) = -1;
+  result.makeCompressed();
+  return result;
+}
+
 } // namespace
 
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
     : scene_(std::move(scene)), mesh_(make_mesh(comm, scene_, options)),
-      dofs_(number_dofs(mesh_, scene_.components, scene_.fixed_boundary)),
-      contact_(make_contact_region(mesh_, dofs_, scene_.contact_region)),
-      cells_(reference_cells(mesh_)), a_(make_matrix(mesh_, dofs_, scene_.a.region)),
-      f_(make_vector(dofs_)), b_(contact_, ContactMatrix::Columns::contact_dofs),
-      w_product_(reference_w_product(contact_, scene_)) {}
+      dofs_(number_dofs(mesh_, scene_.components, scene_.fixed)), cells_(reference_cells(mesh_)),
+      a_(make_matrix(mesh_, dofs_, scene_.a.region)), f_(make_vector(dofs_)) {
+  if (scene_.pair) {
+    curves_ = make_contact_curves(mesh_, dofs_, *scene_.pair);
+    const auto slave = curves_->points.begin();
+    w_product_ = multiplier_product({slave, slave + curves_->slave_nodes},
+                                    scene_.pair->discretisation.multiplier);
+  } else {
+    contact_ = make_contact_region(mesh_, dofs_, scene_.contact_region);
+    b_.emplace(*contact_, ContactMatrix::Columns::contact_dofs);
+    w_product_ = region_product(*contact_, scene_);
+    operators_.nodal_b = minus_trace(*contact_);
+  }
+}
+
+void Problem::assemble_obstacle(Operators &operators) {
+  const std::vector<Cell> cells = mapped_contact_cells(*contact_, scene_, operators.mu);
+  operators.b = b_->assemble(scene_.b, operators.mu, cells);
+  operators.g = contact_vector(*contact_, scene_.g, operators.mu, cells);
+  static const Form hat_integrals = constant_load("", 1);
+  operators.weights = contact_vector(*contact_, hat_integrals, operators.mu, cells);
+  operators.nodal_b = operators_.nodal_b;
+  operators.nodal_gap.resize(contact_->dual_size());
+  for (Index r = 0; r < contact_->dual_size(); ++r)
+    operators.nodal_gap[r] = -scene_.obstacle(
+        operators.mu, scene_.map(operators.mu, contact_->points[static_cast<std::size_t>(r)]));
+}
+
+void Problem::assemble_pair(Operators &operators) {
+  PairOperators pair = couple_at(scene_, operators.mu, curves_->points, curves_->slave_nodes);
+  operators.b = std::move(pair.b);
+  operators.g = std::move(pair.g);
+  operators.weights = std::move(pair.weights);
+  operators.nodal_b = std::move(pair.nodal_b);
+  operators.nodal_gap = std::move(pair.nodal_gap);
+}
 
 void Problem::assemble_contact(const Mu &mu, Operators &operators) {
   operators.mu = expand(scene_.parameters, mu);
-  const std::vector<Cell> cells = mapped_contact_cells(contact_, scene_, operators.mu);
-  operators.b = b_.assemble(scene_.b, operators.mu, cells);
-  operators.g = contact_vector(contact_, scene_.g, operators.mu, cells);
-  static const Form hat_integrals = constant_load("", 1);
-  operators.weights = contact_vector(contact_, hat_integrals, operators.mu, cells);
-  operators.obstacle.resize(contact_.dual_size());
-  for (Index r = 0; r < contact_.dual_size(); ++r)
-    operators.obstacle[r] = scene_.obstacle(
-        operators.mu, scene_.map(operators.mu, contact_.points[static_cast<std::size_t>(r)]));
+  if (scene_.pair)
+    assemble_pair(operators);
+  else
+    assemble_obstacle(operators);
+}
+
+Mu Problem::stiffness_values(const Mu &all_parameters) const {
+  if (!scene_.a_parameters) return all_parameters;
+  Mu values;
+  for (const int i : *scene_.a_parameters)
+    values.push_back(all_parameters[static_cast<std::size_t>(i)]);
+  return values;
 }
 
 const Operators &Problem::assemble(const Mu &mu) {
   const Mu all = expand(scene_.parameters, mu);
-  map_cells(scene_, all, mesh_, cells_);
   assemble_contact(mu, operators_);
-  assemble_matrix(scene_.a, all, mesh_, dofs_, cells_, a_.get());
+  const Mu values = stiffness_values(all);
+  const bool new_a = a_made_at_ != values;
+  if (new_a || scene_.f) map_cells(scene_, all, mesh_, cells_);
+  if (new_a) assemble_matrix(scene_.a, all, mesh_, dofs_, cells_, a_.get());
   if (scene_.f) assemble_vector(scene_.f, all, mesh_, dofs_, cells_, f_.get());
+  a_made_at_ = values;
   operators_.a = a_.get();
   operators_.f = f_.get();
   return operators_;

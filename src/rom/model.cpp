@@ -61,16 +61,13 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, const std::strin
 }
 
 void check_fields(const ReducedModel &model, int dim) {
-  const Index nodes = model.mesh_points.rows(), contact = model.dual_basis.rows();
+  const Index nodes = model.mesh_points.rows(), contact = model.contact_points.rows();
   if (nodes == 0 && model.primal_basis.rows() == 0) return;
   require_shape(model.mesh_points, nodes, dim, "fields/points");
   require(nodes > 0 && model.primal_basis.rows() % nodes == 0,
           "fields/primal_basis has no whole number of rows per node");
   require_shape(model.primal_basis, model.primal_basis.rows(), model.primal_size(),
                 "fields/primal_basis");
-  require(model.primal_offset.size() == 0 ||
-              model.primal_offset.size() == model.primal_basis.rows(),
-          "fields/offset does not fit fields/primal_basis");
   require_indices(model.contact_nodes, nodes, "contact/nodes");
   require_indices(model.mesh_cells, nodes, "fields/cells");
   require_indices(model.contact_cells, contact, "fields/contact_cells");
@@ -82,24 +79,27 @@ void check_fields(const ReducedModel &model, int dim) {
 
 void check_model(const ReducedModel &model) {
   const int dim = static_cast<int>(model.contact_points.cols());
-  const Index n = model.primal_size(), r = model.generators, contact = model.dual_basis.rows();
+  const Index n = model.primal_size(), r = model.generators, dual = model.dual_basis.rows(),
+              contact = model.contact_points.rows();
   require(dim == 2 || dim == 3, "contact/points has neither 2 nor 3 columns");
   require(model.modes > 0 && model.supremizers >= 0 && r > 0, "it has no modes or no generators");
-  require(model.a.size() > 0 && model.b.size() > 0, "a or b has no terms");
+  require(model.a.size() > 0, "a has no terms");
+  require(model.slave_nodes >= 0 && model.slave_nodes <= contact,
+          "contact/slave_nodes does not fit");
+  require(model.two_bodies() ? model.b.size() + model.g.size() == 0 : model.b.size() > 0,
+          "b has no terms, or two bodies have some");
+  require(model.two_bodies() || contact == dual, "contact/points does not fit contact/dual_basis");
   check_terms(model.a, n * (n + 1) / 2, dim, "a");
   check_terms(model.b, r * n, dim, "b");
   check_terms(model.f, n, dim, "f");
   check_terms(model.g, r, dim, "g");
-  require_shape(model.dual_basis, contact, r, "contact/dual_basis");
+  require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
   require_shape(model.contact_trace, contact, n, "contact/trace");
   require(static_cast<Index>(model.contact_nodes.size()) == contact,
-          "contact/nodes does not fit contact/dual_basis");
+          "contact/nodes does not fit contact/points");
   require_shape(model.contact_points, contact, dim, "contact/points");
-  require_shape(model.lumped_weights, contact, model.b.size(), "contact/lumped_weights");
-  require(model.primal_offset.allFinite(), "fields/offset has an entry that is not finite");
-  if (model.primal_offset.size() > 0)
-    require_indices(model.contact_nodes, model.primal_offset.size(), "contact/nodes");
+  require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
   check_fields(model, dim);
 }
 
@@ -115,7 +115,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   result.generators = r;
   result.free_modes = std::max(0, r - (model.generators - model.free_modes));
   result.a.reduced = leading_triangle(model.a.reduced, model.primal_size(), n);
-  result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
+  if (model.b.size() > 0) result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
   if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);
   if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
   result.dual_basis = model.dual_basis.leftCols(r);

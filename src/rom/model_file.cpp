@@ -1,4 +1,4 @@
-// Layout of model.h5 (schema 2). n = modes + supremizers, R generators, c = dual dofs of the
+// Layout of model.h5 (schema 3). n = modes + supremizers, R generators, c = dual dofs of the
 // contact region, d = dimension; every term set T = a, b, f, g has its own J.
 //
 //   scene/name, scene/options/{names,values}          text
@@ -14,12 +14,13 @@
 //   T/vertices                                        (sample cells (d + 1)) x d
 //   T/contributions                                   triples entry, cell, local
 //   T/error                                           e_EIM reached (B.32)
-//   contact/{dual_basis,trace,points,lumped_weights}  c x R, c x n, c x d, c x J of b
-//   contact/nodes                                     mesh node of each dual dof
-//   fields/{primal_basis,offset}                      dofs x n; dofs or empty
+//   contact/{dual_basis,lumped_weights}               c x R, c x J of b
+//   contact/{trace,points,nodes}                      k x n, k x d, k: at the k contact nodes
+//   contact/slave_nodes                               of two bodies; 0: one body, k = c
+//   fields/primal_basis                               dofs x n
 //   fields/{points,cells,contact_cells}               nodes x d; lists of d + 1 numbers per cell
-//   validation/{enriched,decorrelated}                count, then mean and max error of u, of
-//   lambda histories/names, histories/values/<name>          convergence histories
+//   validation/{enriched,decorrelated}                count, then mean and max error of u, lambda
+//   histories/names, histories/values/<name>          convergence histories
 //   stages/{names,seconds}                            wall time of each offline stage
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
@@ -162,8 +163,8 @@ void write_fields(H5Writer &file, const ReducedModel &model) {
   file.write("contact/points", model.contact_points);
   file.write("contact/lumped_weights", model.lumped_weights);
   file.write("contact/nodes", model.contact_nodes);
+  file.write("contact/slave_nodes", model.slave_nodes);
   file.write("fields/primal_basis", model.primal_basis);
-  file.write("fields/offset", model.primal_offset);
   file.write("fields/points", model.mesh_points);
   file.write("fields/cells", model.mesh_cells);
   file.write("fields/contact_cells", model.contact_cells);
@@ -175,7 +176,7 @@ void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
   model.contact_points = file.matrix("contact/points");
   model.lumped_weights = file.matrix("contact/lumped_weights");
   model.contact_nodes = file.ints("contact/nodes");
-  model.primal_offset = file.vector("fields/offset");
+  model.slave_nodes = file.integer("contact/slave_nodes");
   if (!all) return;
   model.primal_basis = file.matrix("fields/primal_basis");
   model.mesh_points = file.matrix("fields/points");

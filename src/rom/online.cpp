@@ -42,6 +42,15 @@ void check_kernel(const AffineTerms &terms, const Form &form, const std::string 
 
 } // namespace
 
+std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene) {
+  std::vector<Point> points;
+  const Index count = model.two_bodies() ? model.slave_nodes : model.contact_points.rows();
+  for (Index i = 0; i < count; ++i)
+    points.push_back(point_of(model.contact_points, i));
+  return model.two_bodies() ? multiplier_points(points, scene.pair->discretisation.multiplier)
+                            : points;
+}
+
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
@@ -50,6 +59,20 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
   check_kernel(model.b, scene_.b, "b");
   check_kernel(model.f, scene_.f, "f");
   check_kernel(model.g, scene_.g, "g");
+  if (model.two_bodies() != scene_.pair.has_value() ||
+      (scene_.pair && multiplier_count(model.slave_nodes, scene_.pair->discretisation.multiplier) !=
+                          model.dual_basis.rows()))
+    throw bad_input("the contact curves of the model do not fit its scene in this build");
+  for (Index i = 0; i < model.contact_points.rows() && model.two_bodies(); ++i)
+    curves_.push_back(point_of(model.contact_points, i));
+  const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
+  first_dual_ = 0;
+  Index end = rows.size();
+  while (end > 0 && rows[end - 1] == 0)
+    --end;
+  while (first_dual_ < end && rows[first_dual_] == 0)
+    ++first_dual_;
+  dual_rows_ = end - first_dual_;
   packed_.resize(model.a.reduced.rows());
   g_ = Vector::Zero(model.generators);
   positive_ = model.free_modes == 0 && (model.dual_basis.array() >= 0).all();
@@ -67,6 +90,14 @@ void OnlineSolver::enrich() {
   b_ = (b_ * enrichment_).eval();
 }
 
+void OnlineSolver::assemble_pair(const Mu &all_parameters, ReducedSolution &solution) {
+  solution.pair = couple_at(scene_, all_parameters, curves_, model_.slave_nodes);
+  const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
+  const Matrix traces = solution.pair.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
+  b_.noalias() = basis * traces;
+  g_.noalias() = basis * solution.pair.g.segment(first_dual_, dual_rows_);
+}
+
 void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b) {
   const bool anew = model_.online_enriched;
   const double a_ratio = anew ? 0 : ratio(theta_a, theta_a_);
@@ -74,7 +105,7 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
   const Index n = model_.primal_size();
   a_scale_ = a_ratio > 0 ? std::sqrt(a_ratio) : 1;
   b_scale_ = b_ratio > 0 ? b_ratio : 1;
-  if (b_ratio == 0) {
+  if (b_ratio == 0 && !model_.two_bodies()) {
     b_.resize(model_.generators, n);
     Eigen::Map<Vector>(b_.data(), b_.size()).noalias() = model_.b.reduced * theta_b;
     theta_b_ = theta_b;
@@ -144,10 +175,11 @@ void OnlineSolver::check(ReducedSolution &solution) {
   const Vector pressure = multiplier(solution);
   Index node = 0;
   if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
-  throw failure((std::ostringstream("the pressure is negative at the contact node of reference "
+  const Point at = dual_points(model_, scene_)[static_cast<std::size_t>(node)];
+  throw failure((std::ostringstream("the pressure is negative at the contact point of reference "
                                     "coordinates ",
                                     std::ios::ate)
-                 << model_.contact_points.row(node)
+                 << at[0] << ' ' << at[1] << ' ' << at[2]
                  << ": contact opens there, and never did in training; reduce again with more "
                     "training parameters or a larger -cone_ring")
                     .str());
@@ -158,7 +190,10 @@ ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
     return affine_coefficients(terms, form, scene_, all_parameters);
   };
   ReducedSolution solution;
-  solution.theta_b = theta(model_.b, scene_.b);
+  if (model_.two_bodies())
+    assemble_pair(all_parameters, solution);
+  else
+    solution.theta_b = theta(model_.b, scene_.b);
   update_operators(theta(model_.a, scene_.a), solution.theta_b);
   f_ = Vector::Zero(model_.primal_size());
   if (model_.f.size() > 0) f_.noalias() = model_.f.reduced * theta(model_.f, scene_.f);
@@ -181,36 +216,35 @@ Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
 }
 
 Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) const {
+  const Vector trace = model_.contact_trace * solution.u;
+  if (model_.two_bodies()) return solution.pair.nodal_gap - solution.pair.nodal_b * trace;
   const Mu all = expand(scene_.parameters, mu);
-  Vector gap = model_.contact_trace * solution.u;
-  for (Index i = 0; i < gap.size(); ++i) {
-    if (model_.primal_offset.size() > 0)
-      gap[i] += model_.primal_offset[model_.contact_nodes[static_cast<std::size_t>(i)]];
+  Vector gap = trace;
+  for (Index i = 0; i < gap.size(); ++i)
     gap[i] -= scene_.obstacle(all, scene_.map(all, point_of(model_.contact_points, i)));
-  }
   return gap;
 }
 
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
   if (model_.primal_basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
-  Vector u = model_.primal_basis * solution.u;
-  if (model_.primal_offset.size() > 0) u += model_.primal_offset;
-  return u;
+  return model_.primal_basis * solution.u;
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) const {
   Outputs result;
-  if (model_.primal_offset.size() == 0) result.energy = solution.energy;
+  const double images = scene_.mirror_images;
+  result.energy = images * solution.energy;
   const Vector lambda = multiplier(solution);
-  const Vector weights = model_.lumped_weights * solution.theta_b;
+  const Vector weights = model_.two_bodies() ? solution.pair.weights
+                                             : Vector(model_.lumped_weights * solution.theta_b);
   const double peak = lambda.maxCoeff();
-  result.normal_force = weights.dot(lambda);
+  result.normal_force = images * weights.dot(lambda);
   result.peak_pressure = peak;
   result.contact_measure =
-      peak > 0 ? (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
-  if (scene_.obstacle)
-    result.max_penetration = std::max(0.0, -contact_gap(mu, solution).minCoeff());
+      peak > 0 ? images * (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
+  const Vector gap = contact_gap(mu, solution);
+  result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
   result.kkt_residual = solution.kkt_residual;
   result.iterations = solution.iterations;
   const ValidationErrors &expected = expected_errors(model_);

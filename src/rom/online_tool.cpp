@@ -98,7 +98,9 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
   ReducedSolution solution;
   const Outputs outputs = answer(solver, mu, arguments, solution);
-  if (!arguments.vtu.empty()) write_vtu(arguments.vtu, solver, mu, solution);
+  if (!arguments.vtu.empty())
+    write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu), solver.model(),
+              solver.field(solution), solver.multiplier(solution));
   if (!arguments.out.empty()) write_table(arguments, solver, {{mu}, {outputs}}, out);
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs);

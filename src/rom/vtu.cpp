@@ -46,15 +46,23 @@ void append_cells(std::string &text, const std::vector<int> &cells, int per_cell
   text += "</DataArray>\n</Cells>\n";
 }
 
-void append_field(std::string &text, const NodalField &field, Index nodes) {
-  if (nodes == 0 || field.values.size() == 0 || field.values.size() % nodes != 0)
+void append_field(std::string &text, const Field &field, Index count) {
+  if (count == 0 || field.values.size() == 0 || field.values.size() % count != 0)
     throw failure("field " + field.name + " has " + std::to_string(field.values.size()) +
-                  " values for " + std::to_string(nodes) + " nodes");
-  const Index components = field.values.size() / nodes;
+                  " values for " + std::to_string(count) + " nodes or cells");
+  const Index components = field.values.size() / count;
   open_array(text, "Float64", field.name, components);
   for (Index i = 0; i < field.values.size(); ++i)
     append(text, field.values[i], (i + 1) % components == 0 ? '\n' : ' ');
   text += "</DataArray>\n";
+}
+
+void append_fields(std::string &text, const std::string &where, const std::vector<Field> &fields,
+                   Index count) {
+  text += "<" + where + ">\n";
+  for (const Field &field : fields)
+    append_field(text, field, count);
+  text += "</" + where + ">\n";
 }
 
 Matrix mapped(const Scene &scene, const Mu &all, const Matrix &points) {
@@ -67,10 +75,65 @@ Matrix mapped(const Scene &scene, const Mu &all, const Matrix &points) {
   return result;
 }
 
+/// motion + u at the mesh nodes; vectors with three components, as ParaView warps by.
+Vector displacement(const Scene &scene, const Mu &all, const Matrix &points, const Vector &u) {
+  const Index components = scene.components;
+  if (components == 1) return u;
+  Vector result = Vector::Zero(3 * points.rows());
+  for (Index i = 0; i < points.rows(); ++i) {
+    const Point motion = scene.motion ? scene.motion(all, point_of(points, i)) : Point{};
+    for (Index c = 0; c < components; ++c)
+      result[3 * i + c] = motion[static_cast<std::size_t>(c)] + u[components * i + c];
+  }
+  return result;
+}
+
+void write_region(const std::filesystem::path &path, const Scene &scene, const Mu &all,
+                  const ReducedModel &model, const Vector &u, const Vector &lambda) {
+  const Matrix points = mapped(scene, all, model.contact_points);
+  Vector gap(points.rows());
+  for (Index i = 0; i < gap.size(); ++i)
+    gap[i] = u[model.contact_nodes[static_cast<std::size_t>(i)]] -
+             scene.obstacle(all, point_of(points, i));
+  write_vtu(path, points, model.contact_cells, scene.dim + 1, {{"pressure", lambda}, {"gap", gap}});
+}
+
+void write_curve(const std::filesystem::path &path, const Scene &scene, const Mu &all,
+                 const ReducedModel &model, const Vector &displacements, const Vector &u,
+                 const Vector &lambda) {
+  std::vector<Point> curves;
+  Vector vertical(model.contact_points.rows());
+  for (Index i = 0; i < vertical.size(); ++i) {
+    const int node = model.contact_nodes[static_cast<std::size_t>(i)];
+    curves.push_back(point_of(model.contact_points, i));
+    vertical[i] = u[node * scene.components + scene.components - 1];
+  }
+  const PairOperators pair = couple_at(scene, all, curves, model.slave_nodes);
+  const auto count = static_cast<Index>(pair.paired.size());
+  if (count < 2) return; // nothing of the slave curve faces the master curve
+  const Vector gap = pair.nodal_gap - pair.nodal_b * vertical;
+  const bool constant = scene.pair->discretisation.multiplier == MultiplierSpace::macro_edges;
+  Vector moved(3 * count), pressure(constant ? count - 1 : count);
+  std::vector<int> edges;
+  for (Index k = 0; k < count; ++k) {
+    const Index node = pair.paired[static_cast<std::size_t>(k)];
+    moved.segment(3 * k, 3) =
+        displacements.segment(3 * model.contact_nodes[static_cast<std::size_t>(node)], 3);
+    if (k + 1 < count) edges.insert(edges.end(), {static_cast<int>(k), static_cast<int>(k) + 1});
+    if (k < pressure.size())
+      pressure[k] = lambda[constant ? std::min(node / 2, lambda.size() - 1) : node];
+  }
+  const Matrix points = mapped(scene, all, model.contact_points(pair.paired, Eigen::all));
+  std::vector<Field> nodal{{"u", moved}, {"gap", gap}}, per_edge;
+  (constant ? per_edge : nodal).push_back({"pressure", pressure});
+  write_vtu(path, points, edges, 2, nodal, per_edge);
+}
+
 } // namespace
 
 void write_vtu(const std::filesystem::path &path, const Matrix &points,
-               const std::vector<int> &cells, int per_cell, const std::vector<NodalField> &fields) {
+               const std::vector<int> &cells, int per_cell, const std::vector<Field> &nodal,
+               const std::vector<Field> &per_cell_fields) {
   const Index nodes = points.rows();
   std::string text = "<?xml version=\"1.0\"?>\n"
                      "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">\n<UnstructuredGrid>\n"
@@ -87,10 +150,9 @@ void write_vtu(const std::filesystem::path &path, const Matrix &points,
   }
   text += "</DataArray>\n</Points>\n";
   append_cells(text, cells, per_cell);
-  text += "<PointData>\n";
-  for (const NodalField &field : fields)
-    append_field(text, field, nodes);
-  text += "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+  append_fields(text, "PointData", nodal, nodes);
+  append_fields(text, "CellData", per_cell_fields, static_cast<Index>(cells.size()) / per_cell);
+  text += "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   write_atomically(path, text);
 }
 
@@ -98,17 +160,15 @@ std::filesystem::path contact_file(const std::filesystem::path &path) {
   return path.parent_path() / (path.stem().string() + "_contact" + path.extension().string());
 }
 
-void write_vtu(const std::filesystem::path &path, const OnlineSolver &solver, const Mu &mu,
-               const ReducedSolution &solution) {
-  const ReducedModel &model = solver.model();
-  const Scene &scene = solver.scene();
-  const Mu all = expand(scene.parameters, mu);
+void write_vtu(const std::filesystem::path &path, const Scene &scene, const Mu &all,
+               const ReducedModel &model, const Vector &u, const Vector &lambda) {
+  const Vector moved = displacement(scene, all, model.mesh_points, u);
   write_vtu(path, mapped(scene, all, model.mesh_points), model.mesh_cells, scene.dim + 1,
-            {{"u", solver.field(solution)}});
-  std::vector<NodalField> fields{{"pressure", solver.multiplier(solution)}};
-  if (scene.obstacle) fields.push_back({"gap", solver.contact_gap(mu, solution)});
-  write_vtu(contact_file(path), mapped(scene, all, model.contact_points), model.contact_cells,
-            scene.dim + 1, fields);
+            {{"u", moved}});
+  if (model.two_bodies())
+    write_curve(contact_file(path), scene, all, model, moved, u, lambda);
+  else
+    write_region(contact_file(path), scene, all, model, u, lambda);
 }
 
 } // namespace rbvi

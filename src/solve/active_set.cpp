@@ -1,4 +1,3 @@
-#include "rbvi/core/error.hpp"
 #include "rbvi/core/lcp.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -7,6 +6,15 @@ namespace rbvi {
 namespace {
 
 constexpr std::size_t block = 128; ///< right-hand sides at a time: bounds the memory
+
+/// E^T A^-1 E loads, contact dofs x loads.cols().
+Matrix responses(KSP ksp, const Trace &trace, Mat a, const Matrix &loads) {
+  const Handle<Mat> rhs = extension(trace, loads, a);
+  Handle<Mat> response;
+  RBVI_CALL(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, response.put()));
+  RBVI_CALL(KSPMatSolve(ksp, rhs.get(), response.get()));
+  return restrict_to(trace, response.get());
+}
 
 } // namespace
 
@@ -18,24 +26,69 @@ Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
     Matrix loads = Matrix::Zero(op.b.cols(), static_cast<Index>(count));
     for (std::size_t k = 0; k < count; ++k)
       loads.col(static_cast<Index>(k)) = op.b.row(which[first + k]).transpose();
-    const Handle<Mat> rhs = extension(trace, loads, op.a);
-    Handle<Mat> response;
-    RBVI_CALL(MatDuplicate(rhs.get(), MAT_DO_NOT_COPY_VALUES, response.put()));
-    RBVI_CALL(KSPMatSolve(ksp, rhs.get(), response.get()));
     columns.middleCols(static_cast<Index>(first), static_cast<Index>(count)) =
-        op.b * restrict_to(trace, response.get());
+        op.b * responses(ksp, trace, op.a, loads);
   }
   return columns;
 }
 
+void Compliance::require(KSP ksp, const Trace &trace, Mat a,
+                         const std::vector<Index> &contact_dofs) {
+  slot_.resize(static_cast<std::size_t>(trace.size), -1);
+  std::vector<Index> fresh;
+  for (const Index dof : contact_dofs)
+    if (slot_[static_cast<std::size_t>(dof)] < 0) {
+      slot_[static_cast<std::size_t>(dof)] = count_ + static_cast<Index>(fresh.size());
+      fresh.push_back(dof);
+    }
+  if (count_ + static_cast<Index>(fresh.size()) > columns_.cols())
+    columns_.conservativeResize(
+        trace.size, std::min<Index>(trace.size, 2 * (count_ + static_cast<Index>(fresh.size()))));
+  for (std::size_t first = 0; first < fresh.size(); first += block) {
+    const auto count = static_cast<Index>(std::min(block, fresh.size() - first));
+    Matrix loads = Matrix::Zero(trace.size, count);
+    for (Index k = 0; k < count; ++k)
+      loads(fresh[first + static_cast<std::size_t>(k)], k) = 1;
+    columns_.middleCols(count_, count) = responses(ksp, trace, a, loads);
+    count_ += count;
+  }
+}
+
+Matrix Compliance::condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
+                                     const std::vector<Index> &which) {
+  std::vector<Index> touched;
+  std::vector<Index> position(static_cast<std::size_t>(trace.size), -1);
+  for (const Index row : which)
+    for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
+      if (Index &at = position[static_cast<std::size_t>(entry.col())]; at < 0) {
+        at = static_cast<Index>(touched.size());
+        touched.push_back(entry.col());
+      }
+  require(ksp, trace, op.a, touched);
+  Matrix unit(trace.size, static_cast<Index>(touched.size()));
+  for (std::size_t k = 0; k < touched.size(); ++k)
+    unit.col(static_cast<Index>(k)) = columns_.col(slot_[static_cast<std::size_t>(touched[k])]);
+  const Matrix constraint = op.b * unit;
+  Matrix result = Matrix::Zero(op.b.rows(), static_cast<Index>(which.size()));
+  for (std::size_t k = 0; k < which.size(); ++k)
+    for (SparseMatrix::InnerIterator entry(op.b, which[k]); entry; ++entry)
+      result.col(static_cast<Index>(k)) +=
+          entry.value() * constraint.col(position[static_cast<std::size_t>(entry.col())]);
+  return result;
+}
+
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
-                              const std::vector<Index> &start) {
+                              const std::vector<Index> &start, Compliance *kept) {
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));
-  solve_linear(ksp, op.f, result.u.get());
+  RBVI_CALL(VecZeroEntries(result.u.get()));
+  PetscReal load = 0;
+  RBVI_CALL(VecNorm(op.f, NORM_INFINITY, &load));
+  if (load > 0) solve_linear(ksp, op.f, result.u.get());
   const Vector q = op.g - op.b * restrict_to(trace, result.u.get());
   const auto columns = [&](const std::vector<Index> &which) {
-    return condensed_columns(ksp, trace, op, which);
+    return kept != nullptr ? kept->condensed_columns(ksp, trace, op, which)
+                           : condensed_columns(ksp, trace, op, which);
   };
   LcpResult lcp = solve_lcp(columns, q, start);
   solve_linear(ksp, reaction_rhs(trace, op, lcp.x).get(), result.u.get());

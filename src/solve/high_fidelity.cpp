@@ -30,20 +30,19 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   RBVI_CALL(VecDot(au.get(), result.u.get(), &quadratic));
   RBVI_CALL(VecDot(op.f, result.u.get(), &linear));
 
+  const double images = problem.scene().mirror_images;
   Outputs outputs;
-  outputs.energy = quadratic / 2 - linear;
-  outputs.normal_force = op.weights.dot(result.lambda);
+  outputs.energy = images * (quadratic / 2 - linear);
+  outputs.normal_force = images * op.weights.dot(result.lambda);
   double measure = 0;
   for (const Index i : result.active)
     measure += op.weights[i];
-  outputs.contact_measure = measure;
+  outputs.contact_measure = images * measure;
   outputs.peak_pressure = result.lambda.maxCoeff();
-  outputs.min_u = solution.u.minCoeff();
+  if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
   outputs.kkt_residual = solution.kkt.largest();
-  Vector at_nodes(op.obstacle.size());
-  for (Index i = 0; i < at_nodes.size(); ++i)
-    at_nodes[i] = solution.u[problem.contact().natural_vertex[static_cast<std::size_t>(i)]];
-  outputs.max_penetration = std::max(0.0, (op.obstacle - at_nodes).maxCoeff());
+  const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
+  outputs.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
   outputs.iterations = result.iterations;
   return outputs;
 }
@@ -76,10 +75,15 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
   RBVI_CALL(VecAXPY(r.get(), -1, op.f));
 
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
+  double penetration = 0, gap = 0; // a multiplier without weight has no constraint
+  for (Index i = 0; i < excess.size(); ++i) {
+    if (!(op.weights[i] > 0)) continue;
+    penetration = std::max(penetration, excess[i] / op.weights[i]);
+    gap = std::max(gap, std::abs(op.g[i]) / op.weights[i]);
+  }
   KktResidual kkt;
   kkt.stationarity = ratio(norm(r.get()), norm(op.f) + norm(reaction.get()));
-  kkt.feasibility = ratio(std::max(0.0, excess.cwiseQuotient(op.weights).maxCoeff()),
-                          op.g.cwiseQuotient(op.weights).cwiseAbs().maxCoeff());
+  kkt.feasibility = ratio(penetration, gap);
   kkt.complementarity =
       ratio(lambda.cwiseProduct(excess).cwiseAbs().sum(), lambda.norm() * op.g.norm());
   kkt.sign = std::max(0.0, ratio(-lambda.minCoeff(), lambda.cwiseAbs().maxCoeff()));
@@ -87,7 +91,14 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
 }
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
-    : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {}
+    : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
+  if (options.method == HfMethod::vi && problem.two_bodies())
+    throw bad_input("vi needs a bound at each node, and two bodies bound differences of both: use "
+                    "-hf_method active_set or uzawa");
+  if (constant_stiffness(problem.scene())) compliance_ = std::make_unique<Compliance>();
+}
+
+HighFidelity::~HighFidelity() = default;
 
 std::vector<Index> HighFidelity::nearest_active_set(const Mu &mu, const Operators &op) const {
   if (solved_.empty()) return rough_active_set(ksp_.get(), problem_, op);
@@ -108,22 +119,19 @@ std::vector<Index> HighFidelity::nearest_active_set(const Mu &mu, const Operator
   return nearest->active;
 }
 
+MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
+  const Trace &trace = problem_.trace();
+  if (options_.method == HfMethod::uzawa)
+    return solve_uzawa(ksp_.get(), trace, op, problem_.w_product(), options_);
+  if (options_.method == HfMethod::vi) return solve_vi(problem_, op);
+  return solve_active_set(ksp_.get(), trace, op, nearest_active_set(mu, op), compliance_.get());
+}
+
 HfSolution HighFidelity::solve(const Mu &mu) {
   const double start = MPI_Wtime();
   const Operators &op = problem_.assemble(mu);
   RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
-  MethodResult result;
-  switch (options_.method) {
-  case HfMethod::active_set:
-    result = solve_active_set(ksp_.get(), problem_.trace(), op, nearest_active_set(mu, op));
-    break;
-  case HfMethod::uzawa:
-    result = solve_uzawa(ksp_.get(), problem_.trace(), op, problem_.w_product(), options_);
-    break;
-  case HfMethod::vi:
-    result = solve_vi(problem_, op);
-    break;
-  }
+  const MethodResult result = run(mu, op);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
 

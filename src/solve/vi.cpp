@@ -72,7 +72,7 @@ Vector recover_multiplier(const Trace &trace, const Operators &op, Vec u) {
   Vector lambda = Vector::Zero(op.b.rows());
   for (Index i = 0; i < lambda.size(); ++i) {
     const double diagonal = op.b.coeff(i, i), bound = op.g[i] / diagonal;
-    const double scale = std::max(std::abs(bound), op.obstacle.cwiseAbs().maxCoeff());
+    const double scale = std::max(std::abs(bound), op.nodal_gap.cwiseAbs().maxCoeff());
     if (std::abs(trace_u[i] - bound) <= 1e-12 * scale)
       lambda[i] = std::max(0.0, reaction[i] / diagonal);
   }

@@ -44,14 +44,26 @@ std::string terms(const char *name, const Eim &eim) {
 
 StageRow interpolation_row(const ToolOptions &options, const OfflineResult *result) {
   const std::string tolerance = "to " + short_number(options.reduce.eim.tolerance);
-  const bool load = static_cast<bool>(options.scene.f);
+  const bool load = static_cast<bool>(options.scene.f), pair = options.scene.pair.has_value();
+  const std::string exact = pair ? "; B, G are assembled exactly online" : "";
+  if (constant_stiffness(options.scene) && pair && !load)
+    return {"interpolation", "A does not depend on mu" + exact, true};
   if (result == nullptr)
-    return {"interpolation", std::string(load ? "A, B, F, G " : "A, B, G ") + tolerance +
-                                 "; a sum of few terms ends there"};
+    return {"interpolation", std::string("A") + (pair ? "" : ", B") + (load ? ", F" : "") +
+                                 (pair ? " " : ", G ") + tolerance +
+                                 "; a sum of few terms ends there" + exact};
   const AffineOperators &affine = result->affine;
-  return {"interpolation", "terms: " + terms("A", affine.a) + ", " + terms("B", affine.b) + ", " +
-                               (load ? terms("F", affine.f) + ", " : "") + terms("G", affine.g) +
-                               "; " + tolerance};
+  return {"interpolation",
+          "terms: " + terms("A", affine.a) + (pair ? "" : ", " + terms("B", affine.b)) +
+              (load ? ", " + terms("F", affine.f) : "") +
+              (pair ? "" : ", " + terms("G", affine.g)) + "; " + tolerance + exact};
+}
+
+/// What of the solves is done once for all mu.
+StageRow factorisation_row(const ToolOptions &options) {
+  if (constant_stiffness(options.scene))
+    return {"factorisations", "A does not depend on mu: one for the sweep, one condensed operator"};
+  return {"factorisations", "A depends on mu: one for each solve"};
 }
 
 StageRow pod_row(const ToolOptions &options, const OfflineResult *result) {
@@ -89,7 +101,7 @@ StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
                        (reduce.pga.tolerance > 0
                             ? "sigma <= " + short_number(reduce.pga.tolerance)
                             : "beta_off >= " + short_number(reduce.pga.stability) + " beta_on") +
-                       "; one SVD if B only scales"};
+                       (options.scene.pair ? "" : "; one SVD if B only scales")};
   }
   const ReducedBases &bases = result->bases;
   return {"PGA", "S = " + count(bases.supremizers, "supremizer") + product + ", sigma " +
@@ -100,8 +112,8 @@ StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResul
   const char *stage = "supremizers at all mu";
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return {stage, "no supremizers are wanted", true};
-  if (result == nullptr) return {stage, "only if B does more than scale"};
-  if (result->affine.b.size() == 1)
+  if (result == nullptr && !options.scene.pair) return {stage, "only if B does more than scale"};
+  if (!options.scene.pair && result->affine.b.size() == 1)
     return {stage, "B only scales: one set and one SVD serve all mu", true};
   return {stage, "B depends on mu: part of PGA"};
 }
@@ -110,7 +122,8 @@ StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResul
 
 std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t training, int groups,
                                      const OfflineResult *result) {
-  std::vector<StageRow> rows{mesh_row(options), snapshot_row(options, training, groups, result)};
+  std::vector<StageRow> rows{mesh_row(options), factorisation_row(options),
+                             snapshot_row(options, training, groups, result)};
   if (groups == 1)
     rows.push_back({"distributed mesh", "the one group holds all ranks", true});
   else

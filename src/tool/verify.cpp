@@ -104,8 +104,13 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
                truth = truths.lambda.col(worst);
   Table table;
   table.add(model.parameters, std::vector<Mu>(static_cast<std::size_t>(truth.size()), mu));
-  for (Index k = 0; k < model.contact_points.cols(); ++k)
-    table.add(std::string(1, static_cast<char>('x' + k)), Vector(model.contact_points.col(k)));
+  const std::vector<Point> points = dual_points(model, solver.scene());
+  for (std::size_t k = 0; k < static_cast<std::size_t>(solver.scene().dim); ++k) {
+    std::vector<double> coordinates;
+    for (const Point &x : points)
+      coordinates.push_back(x[k]);
+    table.add(std::string(1, static_cast<char>('x' + k)), coordinates);
+  }
   table.add("high_fidelity", truth);
   table.add("reduced", pressure);
   table.write(path);

@@ -15,7 +15,7 @@ namespace {
 struct Membrane {
   Scene scene = make_scene("membrane_obstacle");
   Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
-  Dofs dofs = number_dofs(mesh, 1, "boundary");
+  Dofs dofs = number_dofs(mesh, 1, {{"boundary", {}}});
 };
 
 /// x^T M y for free-dof fields given by functions of the reference point, zero on the boundary.

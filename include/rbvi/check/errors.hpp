@@ -7,13 +7,17 @@
 
 namespace rbvi {
 
+/// |u|_V of the whole displacement, the motion of the scene included; `u`: all dofs in natural
+/// order, without it. Collective on the problem's communicator.
+double displacement_norm(Problem &problem, const Mu &mu, const Vector &u);
+
 /// High-fidelity answers as a model's V-orthonormal basis sees them: |u - V c|_V^2 =
 /// |coordinates - c|^2 + remainder^2, so that one projection serves every sub-model.
 struct Truths {
   std::vector<Mu> mu;
   Matrix coordinates; ///< n x P
   Vector remainder;   ///< P: distance of u to the basis, in V
-  Vector u_norm;      ///< P, in V
+  Vector u_norm;      ///< P, in V, of the whole displacement
   Matrix lambda;      ///< dual dofs x P
   Vector lambda_norm; ///< P, in W
 };

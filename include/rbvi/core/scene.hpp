@@ -47,9 +47,41 @@ struct SceneOption {
 
 /// Names the built-in mesh generator; `region` and `boundary` are the labels it sets.
 struct MeshRecipe {
-  std::string generator; ///< "square_with_disc"
+  std::string generator; ///< "square_with_disc", "two_quarter_discs" or "two_blocks"
   std::vector<std::string> regions;
   std::vector<std::string> boundaries;
+  std::string curved =
+      ""; ///< boundary whose refined vertices Scene::snap brings back onto its curve
+};
+
+/// A boundary on which some components of the displacement are imposed.
+struct FixedBoundary {
+  std::string name;
+  std::vector<int> components; ///< empty: all
+};
+
+/// Where multipliers of two bodies live (2D).
+enum class MultiplierSpace {
+  macro_edges, ///< constant on macro-edges of two slave edges (local average contact, LAC)
+  nodes        ///< continuous, linear on each slave edge
+};
+
+/// How the integrals over two meshes that do not match are taken.
+enum class PairQuadrature {
+  intersection, ///< exact: slave and master edges are intersected
+  direct        ///< Gauss points of the slave edges alone
+};
+
+struct PairDiscretisation {
+  MultiplierSpace multiplier = MultiplierSpace::macro_edges;
+  PairQuadrature quadrature = PairQuadrature::intersection;
+};
+
+/// Two bodies that meet along two curves. The partner of a point of the slave (upper) curve is the
+/// point of the master (lower) one below it; the gap is measured along e_y (2.49).
+struct PairRecipe {
+  std::string slave, master; ///< boundaries
+  PairDiscretisation discretisation;
 };
 
 struct Scene {
@@ -64,16 +96,29 @@ struct Scene {
 
   /// h(mu), from the reference to the mapped domain.
   std::function<Point(const Mu &, const Point &)> map;
-  /// Brings a refined vertex of the interface of the contact region back onto the exact curve.
+  /// Brings a refined vertex of the interface of the contact region, or of the curved boundary,
+  /// back onto the exact curve.
   std::function<Point(const Point &)> snap;
 
-  std::string fixed_boundary; ///< displacement imposed here
-  std::string contact_region; ///< multipliers live on the vertices of this closed region
+  std::vector<FixedBoundary> fixed;
+  /// Rigid motion of each body at a point of the reference domain, which the displacement is
+  /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
+  /// empty: zero.
+  std::function<Point(const Mu &, const Point &)> motion;
+  /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
+  double mirror_images = 1;
 
-  Form a, b, g;
+  // Contact with an obstacle in a region, or of two bodies.
+  std::string contact_region; ///< multipliers live on the vertices of this closed region
+  std::optional<PairRecipe> pair;
+
+  Form a;
+  /// Parameters (indices into parameters.all) that a depends on; unset: all.
+  std::optional<std::vector<int>> a_parameters;
+  Form b, g;           ///< empty where there is a pair
   Form f;              ///< empty: no load
   Form v_product;      ///< inner product of V on the reference domain
-  Form w_product;      ///< inner product of W on the reference domain
+  Form w_product;      ///< inner product of W on the reference domain; a pair has its own
   bool lumped = false; ///< b, g by vertex quadrature: the constraint is a bound at each node
 
   /// psi(mu) at a point of the mapped domain: u >= psi in the contact region.
@@ -85,6 +130,16 @@ struct SceneEntry {
   std::vector<SceneOption> options;
   Scene (*make)(const SceneOptions &);
 };
+
+/// Whether a is the same for all values of the free parameters.
+bool constant_stiffness(const Scene &scene);
+
+/// The options `multiplier` and `integration` of scenes with a pair, and what they say.
+std::vector<SceneOption> pair_options();
+PairDiscretisation pair_discretisation(const SceneOptions &options);
+
+/// The number in an option.
+double number_in(const SceneOptions &options, const std::string &name);
 
 /// The scenes of this build.
 const std::vector<SceneEntry> &scene_catalogue();

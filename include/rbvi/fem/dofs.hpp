@@ -21,8 +21,8 @@ struct Dofs {
   std::vector<PetscInt> natural_owned; ///< per owned row: its natural number
 };
 
-/// Collective.
-Dofs number_dofs(const Mesh &mesh, int components, const std::string &fixed_boundary);
+/// Collective. Throws bad_input for a component that the displacement does not have.
+Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBoundary> &fixed);
 
 /// Collective. A zero vector of free dofs.
 Handle<Vec> make_vector(const Dofs &dofs);

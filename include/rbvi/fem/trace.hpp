@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/fem/dofs.hpp"
 #include "rbvi/par/petsc.hpp"
 
 #include <vector>
@@ -16,6 +17,9 @@ struct Trace {
   std::vector<PetscInt> local_row; ///< owned free dof, local number (0 = first owned)
   std::vector<PetscInt> index;     ///< its contact dof number, 0 .. n_c - 1
 };
+
+/// `natural`: the natural number of each contact dof, each a free one. Not collective.
+Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural);
 
 /// Collective. E^T u, on every rank.
 Vector restrict_to(const Trace &trace, Vec u);

@@ -13,7 +13,7 @@ namespace rbvi {
 
 struct MeshOptions {
   std::string file; ///< Gmsh file; "" for the scene's built-in generator
-  int refine = 0;   ///< uniform refinements; interface vertices are brought back by Scene::snap
+  int refine = 0;   ///< uniform refinements; vertices of curves are brought back by Scene::snap
 };
 
 /// This rank's part of the mesh: its own cells and their vertices. Numbers called `natural` are
@@ -52,6 +52,21 @@ struct SerialMesh {
 /// Deterministic: concentric rings of 6 k nodes in the disc, then 23 rings that turn from the
 /// circle into the square.
 SerialMesh square_with_disc();
+
+/// Two quarter discs of radius 1, x >= 0. Region "upper": the lower quarter of the disc about
+/// (0, 1.5); region "lower": its image by y -> -y, mesh included. Boundaries: "axis" (x = 0), "top"
+/// and "bottom" (the flat sides y = 1.5 and y = -1.5), "slave" and "master" (the contact arcs of
+/// the upper and of the lower body, from the axis to the polar angle pi/4: 560 equal edges each),
+/// "arc" (all of both circles). 6130 nodes, edges from 0.0014 at the contact arc to about 0.1,
+/// aspect ratios <= 1.65. Deterministic: rings at growing distances from the contact arc, which
+/// turn into the flat side.
+SerialMesh two_quarter_discs();
+
+/// Two blocks with meshes that do not match, for patch tests: region "upper" is
+/// [0, 1] x [0.25, 0.75], "lower" [0, 1] x [-0.75, -0.25]. Boundaries: "sides" (x = 0 and x = 1),
+/// "top", "bottom", "slave" (y = 0.25, 10 edges), "master" (y = -0.25, 7 edges). 106 nodes,
+/// irregular spacing, aspect ratios <= 1.9.
+SerialMesh two_blocks();
 
 /// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the
 /// cell graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws

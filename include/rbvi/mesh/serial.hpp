@@ -14,8 +14,9 @@ SerialMesh read_gmsh(const std::string &file, const Scene &scene);
 /// Every simplex split by DMPlex into 2^dim; regions and boundaries are inherited.
 SerialMesh refined(const SerialMesh &mesh);
 
-/// Moves the vertices that the scene's contact region shares with the rest by Scene::snap.
-void snap_interface(SerialMesh &mesh, const Scene &scene);
+/// Moves by Scene::snap the vertices that the scene's contact region shares with the rest, and
+/// those of the boundary that its recipe names as curved.
+void snap_curves(SerialMesh &mesh, const Scene &scene);
 
 /// Throws bad_input, naming `source`: a degenerate or inverted cell (volume <= 1e-12 times its
 /// longest edge to the power dim), or two cells on the same side of their common facet.
@@ -31,7 +32,8 @@ std::vector<int> partition_cells(const SerialMesh &mesh, int parts);
 
 /// Collective. An interpolated DMPlex that the first rank holds whole (`mesh` is read there alone):
 /// points 0 .. cells-1 are the cells in order, then the vertices in order; one label per region
-/// (cells) and boundary (facets and their closure), with value 1.
+/// (cells) and boundary of the recipe (facets and their closure), with value 1; those of the
+/// mesh that the recipe does not name are left out.
 Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe);
 
 /// The way back, for a DM that one process holds whole: the labels of `recipe` that it has.

@@ -9,12 +9,12 @@
 namespace rbvi {
 
 struct AffineOperators {
-  Eim a, b, f, g; ///< f.size() == 0: no load
+  Eim a, b, f, g; ///< of size 0: f without a load; b and g of two bodies, assembled exactly online
   SampleMesh sample_a, sample_b, sample_f, sample_g;
 };
 
-/// Collective. Assembles the operators at every mu of `training` (A: its lower triangle) and
-/// interpolates each.
+/// Collective. Assembles the operators at every mu of `training` (A: its lower triangle, where the
+/// parameters that it depends on differ) and interpolates each.
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options);
 

@@ -3,10 +3,12 @@
 //   A u + B^T lambda = F,    B u <= G,    lambda >= 0,    lambda . (B u - G) = 0.
 //
 // A and F are distributed over the free dofs; B acts on the contact dofs alone (B u = B_c E^T u)
-// and is replicated, as are G and lambda.
+// and is replicated, as are G and lambda. Where the scene has a motion, u is what is left beside it
+// (w of Scene::motion) and G takes the motion in: it is rigid, so that it does no work in A.
 #pragma once
 
 #include "rbvi/fem/assembly.hpp"
+#include "rbvi/fem/contact_curves.hpp"
 #include "rbvi/fem/contact_region.hpp"
 
 #include <optional>
@@ -17,11 +19,12 @@ namespace rbvi {
 struct Operators {
   Mu mu; ///< all parameters
   Mat a = nullptr;
-  Vec f = nullptr; ///< zero where the scene has no load
-  SparseMatrix b;  ///< dual x contact dofs
-  Vector g;        ///< dual
-  Vector weights;  ///< integral of each hat function over the mapped contact region
-  Vector obstacle; ///< psi at the mapped nodes of the contact region
+  Vec f = nullptr;      ///< zero where the scene has no load
+  SparseMatrix b;       ///< dual x contact dofs
+  Vector g;             ///< dual
+  Vector weights;       ///< integral of each dual basis function over the mapped surface in contact
+  SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
+  Vector nodal_gap;
 };
 
 class Problem {
@@ -33,27 +36,38 @@ public:
   const Scene &scene() const { return scene_; }
   const Mesh &mesh() const { return mesh_; }
   const Dofs &dofs() const { return dofs_; }
-  const ContactRegion &contact() const { return contact_; }
-  const Trace &trace() const { return contact_.trace; }
+  bool two_bodies() const { return curves_.has_value(); }
+  const ContactRegion &contact() const { return contact_.value(); } ///< one body
+  const ContactCurves &curves() const { return curves_.value(); }   ///< two bodies
+  const Trace &trace() const { return curves_ ? curves_->trace : contact_->trace; }
+  Index dual_size() const { return w_product_.rows(); }
 
-  /// Collective. `mu`: the free parameters, inside or outside the box. Throws failure if a cell is
-  /// inverted.
+  /// Collective. `mu`: the free parameters, inside or outside the box. A is assembled again only
+  /// where the parameters that it depends on have changed. Throws failure if a cell is inverted.
   const Operators &assemble(const Mu &mu);
-  /// Not collective: the contact operators alone, B, G, weights and obstacle.
+  /// Not collective: the contact operators alone, B, G, weights and the nodal constraint.
   void assemble_contact(const Mu &mu, Operators &operators);
+
+  /// Values of the parameters that a depends on.
+  Mu stiffness_values(const Mu &all_parameters) const;
 
   Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
   const SparseMatrix &w_product() const { return w_product_; } ///< dual x dual
 
 private:
+  void assemble_obstacle(Operators &operators);
+  void assemble_pair(Operators &operators);
+
   Scene scene_;
   Mesh mesh_;
   Dofs dofs_;
-  ContactRegion contact_;
+  std::optional<ContactRegion> contact_;
+  std::optional<ContactCurves> curves_;
   MappedCells cells_;
   Handle<Mat> a_, v_product_;
+  std::optional<Mu> a_made_at_; ///< stiffness_values
   Handle<Vec> f_;
-  ContactMatrix b_;
+  std::optional<ContactMatrix> b_; ///< one body
   SparseMatrix w_product_;
   Operators operators_;
 };

@@ -5,8 +5,10 @@
 //
 // u: n coefficients of the primal basis (N POD modes, then S supremizers), x: R coefficients of the
 // generators of the dual cone. theta comes from empirical interpolation (B.36): a few entries of
-// the full operator are re-assembled on their few cells. Full-order data are there for outputs and
-// for reconstruction alone. All fields are numbered by the undistributed mesh.
+// the full operator are re-assembled on their few cells. Of two bodies B and G do not separate:
+// they are assembled for each mu on the two contact curves alone, exactly, from the trace of the
+// basis. Other full-order data are there for outputs and for reconstruction alone. All fields are
+// numbered by the undistributed mesh. Where the scene has a motion, u is what is left beside it.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -64,26 +66,28 @@ struct ReducedModel {
   AffineTerms f; ///< n x J; J = 0: no load
   AffineTerms g; ///< R x J
 
-  // Full order, for outputs: the contact region.
+  // The contact nodes: the dual dofs of one body; of two bodies those of the slave curve, then
+  // those of the master curve, each by increasing x.
+  int slave_nodes = 0;   ///< two bodies: number of nodes of the slave curve; 0: one body
   Matrix dual_basis;     ///< dual dofs x R; entries >= 0 but for hybrid cones
-  Matrix contact_trace;  ///< dual dofs x n: primal basis at the nodes of the contact region
-  Matrix contact_points; ///< dual dofs x dim, reference coordinates
+  Matrix contact_trace;  ///< contact nodes x n: primal basis there, of two bodies its vertical part
+  Matrix contact_points; ///< contact nodes x dim, reference coordinates
   Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
+  bool two_bodies() const { return slave_nodes > 0; }
 
   // Full order, for reconstruction.
   Matrix primal_basis;            ///< dofs x n, fixed dofs included
-  Vector primal_offset;           ///< dofs: lifting added to the basis combination (empty: zero)
   Matrix mesh_points;             ///< nodes x dim, reference coordinates
   std::vector<int> mesh_cells;    ///< (dim + 1) node numbers per cell
-  std::vector<int> contact_nodes; ///< mesh node of each dual dof
-  std::vector<int> contact_cells; ///< (dim + 1) dual dof numbers per cell of the contact region
+  std::vector<int> contact_nodes; ///< mesh node of each contact node
+  std::vector<int> contact_cells; ///< one body: (dim + 1) contact nodes per cell of the region
 
   ValidationErrors validation_enriched, validation_decorrelated;
   std::map<std::string, std::vector<double>> histories; ///< "pod/error", "cone/e_orth", ...
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 2;
+inline constexpr int model_schema = 3;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

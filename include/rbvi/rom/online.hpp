@@ -4,12 +4,14 @@
 //   min over x >= 0 of  1/2 |Y x - c|^2 + g . x,    then  u = L^-T (c - Y x)
 //
 // What does not depend on mu is done once: the factor L where A has one term, Y where B has one
-// term too. Free modes have equations in place of inequalities. An online-enriched model is first
-// reduced to V_N + S_R(mu) (2.17): the rows of B are the coordinates of T(mu) chi_r.
+// term too. Of two bodies B and G are assembled anew, on the contact curves alone. Free modes have
+// equations in place of inequalities. An online-enriched model is first reduced to V_N + S_R(mu)
+// (2.17): the rows of B are the coordinates of T(mu) chi_r.
 #pragma once
 
 #include "rbvi/core/mixed_qp.hpp"
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/element/contact_pair.hpp"
 #include "rbvi/rom/model.hpp"
 
 namespace rbvi {
@@ -17,8 +19,9 @@ namespace rbvi {
 struct ReducedSolution {
   Vector u;                ///< n coefficients
   Vector x;                ///< R coefficients, >= 0 but for those of the free modes
-  Vector theta_b;          ///< coefficients of b at this mu
-  double energy = 0;       ///< a(u,u)/2 - f(u) of the combination of the basis, without the offset
+  Vector theta_b;          ///< one body: coefficients of b at this mu
+  PairOperators pair;      ///< two bodies: the contact operators at this mu
+  double energy = 0;       ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
   double kkt_residual = 0; ///< see kkt_residual()
   int iterations = 0;      ///< active-set updates
 };
@@ -38,15 +41,18 @@ public:
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   Vector multiplier(const ReducedSolution &solution) const; ///< at the dual dofs
-  /// u - psi at the nodes of the contact region, for scenes with an obstacle.
+  /// Gap that is left: u - psi at the contact nodes of one body; of two at the slave nodes that
+  /// have a partner (solution.pair.paired), measured vertically.
   Vector contact_gap(const Mu &mu, const ReducedSolution &solution) const;
-  /// At all dofs. Throws failure if the model was read without its fields.
+  /// At all dofs, without the motion of the scene. Throws failure if the model was read without its
+  /// fields.
   Vector field(const ReducedSolution &solution) const;
   const ReducedModel &model() const { return model_; }
   const Scene &scene() const { return scene_; }
 
 private:
   ReducedSolution solve_at(const Mu &all_parameters);
+  void assemble_pair(const Mu &all_parameters, ReducedSolution &solution);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
   void enrich();
   void solve_dual(ReducedSolution &solution);
@@ -56,14 +62,19 @@ private:
   Scene scene_;
   MixedQp qp_;
   bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
+  std::vector<Point> curves_;    ///< two bodies: the contact points
+  Index first_dual_, dual_rows_; ///< the rows of the dual basis that are not zero lie among these
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.
   Vector packed_, theta_a_, theta_b_;
-  Matrix a_, l_, b_, y_;
+  Matrix a_, l_, b_, y_; // of two bodies B is always that of the query
   Matrix enrichment_; ///< online-enriched: V_N + S_R(mu) in the n functions, which a_ ... f_ are in
   double a_scale_ = 1, b_scale_ = 1;
   Vector f_, g_, c_;
 };
+
+/// Where each multiplier is, reference coordinates.
+std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene);
 
 /// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
 Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,

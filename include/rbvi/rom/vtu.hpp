@@ -9,24 +9,28 @@
 
 namespace rbvi {
 
-struct NodalField {
+/// Values per node or per cell, the components of one side by side.
+struct Field {
   std::string name;
-  Vector values; ///< nodes * components, the components of a node side by side
+  Vector values;
 };
 
 /// `points`: nodes x dim (2 or 3); `cells`: `per_cell` node numbers each (2 lines, 3 triangles,
 /// 4 tetrahedra). Written atomically. Throws failure: sizes that do not fit, directory not
 /// writable.
 void write_vtu(const std::filesystem::path &path, const Matrix &points,
-               const std::vector<int> &cells, int per_cell, const std::vector<NodalField> &fields);
+               const std::vector<int> &cells, int per_cell, const std::vector<Field> &nodal,
+               const std::vector<Field> &per_cell_fields = {});
 
 /// "u.vtu" -> "u_contact.vtu".
 std::filesystem::path contact_file(const std::filesystem::path &path);
 
-/// The displacement of an answer on the mesh mapped by h(mu), and in contact_file(path) the
-/// pressure and, where the scene has an obstacle, the gap of the contact region. Throws failure if
-/// the model was read without its fields.
-void write_vtu(const std::filesystem::path &path, const OnlineSolver &solver, const Mu &mu,
-               const ReducedSolution &solution);
+/// One solution, full or reduced: `u` at all dofs (the motion of the scene is added), `lambda` at
+/// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields, contact points, nodes and
+/// cells alone are read). The displacement goes to `path`; to contact_file(path) pressure and gap:
+/// in the contact region, or along the edges of the slave curve that have a partner, with its
+/// displacement. Throws failure if the model was read without its fields.
+void write_vtu(const std::filesystem::path &path, const Scene &scene, const Mu &all_parameters,
+               const ReducedModel &model, const Vector &u, const Vector &lambda);
 
 } // namespace rbvi

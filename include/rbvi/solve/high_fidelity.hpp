@@ -4,12 +4,14 @@
 //               the truth
 //   uzawa       lambda <- Proj(lambda + rho (B u - G)), fixed step or accelerated: the baseline
 //   vi          SNES with its VI extension on the bound-constrained primal problem (scenes with
-//               vertex quadrature in b and g: there the constraint is a bound at each node)
+//               vertex quadrature in b and g: there the constraint is a bound at each node; never
+//               two bodies, whose constraints couple the nodes of both)
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/problem/problem.hpp"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,7 +37,7 @@ struct KktResidual {
 };
 
 struct HfSolution {
-  Vector u;                  ///< all dofs in natural order, on every rank
+  Vector u;                  ///< all dofs in natural order, on every rank; without the motion
   Vector lambda;             ///< dual dofs
   std::vector<Index> active; ///< dual dofs in contact
   KktResidual kkt;
@@ -45,12 +47,17 @@ struct HfSolution {
   std::string reason; ///< why the solver stopped
 };
 
+struct MethodResult;
+class Compliance;
+
 /// Solves at many mu; remembers the active sets it has met and starts from that of the nearest mu,
 /// the first time from where a few accelerated Uzawa steps see contact.
 class HighFidelity {
 public:
-  /// Collective. KSP options under -hf_, SNES options under -vi_.
+  /// Collective. KSP options under -hf_, SNES options under -vi_. Throws bad_input for `vi` with
+  /// two bodies.
   HighFidelity(Problem &problem, const HfOptions &options);
+  ~HighFidelity();
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
   /// not converge; throws bad_input for `vi` on a scene without vertex quadrature.
   HfSolution solve(const Mu &mu);
@@ -63,10 +70,12 @@ private:
     std::vector<Index> active;
   };
   std::vector<Index> nearest_active_set(const Mu &mu, const Operators &op) const;
+  MethodResult run(const Mu &mu, const Operators &op);
 
   Problem &problem_;
   HfOptions options_;
   Handle<KSP> ksp_;
+  std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
   std::vector<Solved> solved_;
 };
 

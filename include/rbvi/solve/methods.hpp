@@ -31,8 +31,25 @@ Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &
 Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                          const std::vector<Index> &which);
 
+/// E^T A^-1 E of one A, column by column when a contact dof is first asked for, and kept: one
+/// factorisation and at most n_c solves for a whole sweep in which B alone changes.
+class Compliance {
+public:
+  /// As condensed_columns. Collective.
+  Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
+                           const std::vector<Index> &which);
+
+private:
+  void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs);
+
+  Matrix columns_; ///< n_c x room
+  Index count_ = 0;
+  std::vector<Index> slot_; ///< per contact dof: its column, -1 if it has none yet
+};
+
+/// `kept`: for a sweep in which A stays the same.
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
-                              const std::vector<Index> &start);
+                              const std::vector<Index> &start, Compliance *kept = nullptr);
 
 MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
                          const SparseMatrix &w_product, const HfOptions &options);

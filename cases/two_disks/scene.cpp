@@ -1,0 +1,80 @@
+// Two elastic half-disks, one of radius 1 above one of radius mu, pressed together without
+// friction. Quarter-disks by symmetry; plane strain; u = (0, -indentation) on the upper flat side,
+// (0, +indentation) on the lower one, u_x = 0 on the axis. On the arc of the upper disk within 45
+// degrees of its lowest point
+//
+//   (u_lower o phi - u_upper) . e_y <= (x - phi(x)) . e_y,
+//
+// phi(x) being the point of the lower disk below x (2.49)-(2.52), held by a pressure lambda >= 0
+// per length of the upper arc. In the reference domain both disks have the radius 1 and are drawn
+// apart: the upper one is centred at (0, 1.5), the lower one at (0, -1.5). A similarity leaves a
+// plane stiffness as it is, so that a does not depend on mu.
+#include "scene.hpp"
+
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double centre = 1.5; ///< of the upper reference disk, height
+
+/// The upper disk is shifted until it is the initial gap above the origin, the lower one shrinks or
+/// grows from its highest point, the origin.
+Point placed(double initial_gap, double radius, const Point &x) {
+  if (x[1] > 0) return {x[0], x[1] - (centre - 1) + initial_gap, 0};
+  return {radius * x[0], radius * (x[1] + (centre - 1)), 0};
+}
+
+Point on_circle(const Point &x) {
+  const double height = x[1] > 0 ? centre : -centre;
+  const double scale = 1 / std::hypot(x[0], x[1] - height);
+  return {scale * x[0], height + scale * (x[1] - height), 0};
+}
+
+Scene make(const SceneOptions &options) {
+  Scene scene;
+  scene.dim = 2;
+  scene.components = 2;
+  scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1}});
+  scene.training = "grid:81";
+  scene.validation = "random:30:1";
+  scene.mesh = {"two_quarter_discs",
+                {"upper", "lower"},
+                {"axis", "top", "bottom", "slave", "master", "arc"},
+                "arc"};
+  const double gap = number_in(options, "initial_gap");
+  const double indentation = number_in(options, "indentation");
+  scene.map = [gap](const Mu &mu, const Point &x) { return placed(gap, mu[0], x); };
+  scene.snap = on_circle;
+  scene.fixed = {{"axis", {0}}, {"top", {}}, {"bottom", {}}};
+  scene.motion = [indentation](const Mu &, const Point &x) -> Point {
+    return {0, x[1] > 0 ? -indentation : indentation, 0};
+  };
+  scene.mirror_images = 2;
+  scene.pair = PairRecipe{"slave", "master", pair_discretisation(options)};
+  scene.a = elasticity("", number_in(options, "young"), number_in(options, "poisson_ratio"));
+  scene.a_parameters = std::vector<int>{};
+  scene.v_product = h1_product(1, 2);
+  return scene;
+}
+
+} // namespace
+
+SceneEntry two_disks() {
+  SceneEntry entry{"two_disks",
+                   "Hertz contact of two elastic half-disks, the lower one of free radius",
+                   pair_options(), make};
+  entry.options.insert(
+      entry.options.end(),
+      {{"indentation", "0.09", "displacement of each flat side towards the other disk", {}},
+       {"initial_gap", "0.001", "between the undeformed disks", {}},
+       {"young", "15", "Young's modulus", {}},
+       {"poisson_ratio", "0.35", "Poisson's ratio", {}}});
+  return entry;
+}
+
+} // namespace rbvi

@@ -1,0 +1,77 @@
+// Polygonal curves for tests of contact operators.
+#pragma once
+
+#include "../core/random_matrix.hpp"
+#include "rbvi/core/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace rbvi {
+
+using Curve = std::vector<Point>;
+
+inline Index size(const Curve &curve) {
+  return static_cast<Index>(curve.size());
+}
+
+/// Edges of random length, and random heights within 0.1 of `height`.
+inline Curve random_curve(Random &random, Index edges, double begin, double end, double height) {
+  Vector x = 0.9 * random.vector(edges + 1).cwiseAbs() + Vector::Constant(edges + 1, 0.1);
+  x[0] = 0;
+  for (Index i = 0; i < edges; ++i)
+    x[i + 1] += x[i];
+  Curve curve;
+  for (Index i = 0; i <= edges; ++i)
+    curve.push_back({begin + (end - begin) * x[i] / x[edges], height + 0.1 * random(), 0});
+  return curve;
+}
+
+/// Edges of equal length.
+inline Curve line(Index edges, double begin, double end, double height) {
+  Curve curve;
+  for (Index i = 0; i <= edges; ++i) {
+    const double s = static_cast<double>(i) / static_cast<double>(edges);
+    curve.push_back({(1 - s) * begin + s * end, height, 0});
+  }
+  return curve;
+}
+
+inline Curve moved(Curve curve, double dx) {
+  for (Point &p : curve)
+    p[0] += dx;
+  return curve;
+}
+
+inline double length(const Curve &curve, Index edge) {
+  const auto i = static_cast<std::size_t>(edge);
+  return std::hypot(curve[i + 1][0] - curve[i][0], curve[i + 1][1] - curve[i][1]);
+}
+
+inline double length(const Curve &curve) {
+  double sum = 0;
+  for (Index edge = 0; edge + 1 < size(curve); ++edge)
+    sum += length(curve, edge);
+  return sum;
+}
+
+/// Values at x of the P1 functions of the curve, by a search of all its edges; zero off the curve.
+inline Vector hats(const Curve &curve, double x) {
+  Vector values = Vector::Zero(size(curve));
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
+    if (curve[i][0] <= x && x < curve[i + 1][0]) {
+      const double t = (x - curve[i][0]) / (curve[i + 1][0] - curve[i][0]);
+      values[static_cast<Index>(i)] = 1 - t;
+      values[static_cast<Index>(i) + 1] = t;
+    }
+  return values;
+}
+
+inline Vector heights(const Curve &curve) {
+  Vector y(size(curve));
+  std::ranges::transform(curve, y.begin(), [](const Point &p) { return p[1]; });
+  return y;
+}
+
+} // namespace rbvi

@@ -1,0 +1,358 @@
+// The built-in meshes of two bodies: quarter discs in contact, and the blocks of the patch test.
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/geometry.hpp"
+#include "rbvi/mesh/serial.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace rbvi {
+namespace {
+
+constexpr double quarter = std::numbers::pi / 4; ///< contact angle, and area of a quarter disc
+constexpr int nodes = 3065, cells = 5507;        ///< of one quarter disc
+
+std::size_t at(PetscInt i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Onto the circle of the body.
+Point onto_circle(const Point &x) {
+  const double centre = x[1] > 0 ? 1.5 : -1.5;
+  const double radius = std::hypot(x[0], x[1] - centre);
+  return {x[0] / radius, centre + (x[1] - centre) / radius, 0};
+}
+
+double distance_to_circle(const Point &x) {
+  return std::abs(std::hypot(x[0], std::abs(x[1]) - 1.5) - 1);
+}
+
+Scene two_discs_scene() {
+  Scene scene;
+  scene.name = "two_discs";
+  scene.components = 2;
+  scene.mesh = {"two_quarter_discs",
+                {"upper", "lower"},
+                {"axis", "top", "bottom", "slave", "master", "arc"},
+                "arc"};
+  scene.snap = onto_circle;
+  return scene;
+}
+
+Scene two_blocks_scene() {
+  Scene scene;
+  scene.name = "two_blocks";
+  scene.components = 2;
+  scene.mesh = {
+      "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}, ""};
+  return scene;
+}
+
+SerialMesh refined_discs(int levels) {
+  const Scene scene = two_discs_scene();
+  SerialMesh mesh = two_quarter_discs();
+  for (int level = 0; level < levels; ++level) {
+    mesh = refined(mesh);
+    snap_curves(mesh, scene);
+  }
+  return mesh;
+}
+
+std::array<Point, 4> corners(const SerialMesh &mesh, int cell) {
+  std::array<Point, 4> points{};
+  for (std::size_t i = 0; i < 3; ++i)
+    points[i] = mesh.points[at(mesh.cells[at(cell)][i])];
+  return points;
+}
+
+double area(const SerialMesh &mesh, const std::string &region) {
+  double sum = 0;
+  for (const int cell : mesh.region.at(region))
+    sum += simplex(2, corners(mesh, cell)).volume;
+  return sum;
+}
+
+double worst_aspect_ratio(const SerialMesh &mesh) {
+  double worst = 0;
+  for (int cell = 0; cell < static_cast<int>(mesh.cells.size()); ++cell)
+    worst = std::max(worst, aspect_ratio(2, corners(mesh, cell)));
+  return worst;
+}
+
+using Edge = std::pair<int, int>;
+
+Edge sorted(int a, int b) {
+  return {std::min(a, b), std::max(a, b)};
+}
+
+std::map<Edge, std::vector<int>> cells_of_edges(const SerialMesh &mesh) {
+  std::map<Edge, std::vector<int>> found;
+  for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c)
+    for (std::size_t i = 0; i < 3; ++i)
+      found[sorted(mesh.cells[at(c)][i], mesh.cells[at(c)][(i + 1) % 3])].push_back(c);
+  return found;
+}
+
+/// Nodes of a boundary by increasing x.
+std::vector<int> nodes_of(const SerialMesh &mesh, const std::string &boundary) {
+  std::set<int> numbers;
+  for (const auto &facet : mesh.boundary.at(boundary))
+    numbers.insert(facet.begin(), facet.begin() + 2);
+  std::vector<int> ordered(numbers.begin(), numbers.end());
+  std::sort(ordered.begin(), ordered.end(),
+            [&](int a, int b) { return mesh.points[at(a)][0] < mesh.points[at(b)][0]; });
+  return ordered;
+}
+
+/// Every facet of one cell alone is once in each boundary that `expected` names, and in no other;
+/// no other facet is in a boundary.
+template <class Expected> void expect_boundaries(const SerialMesh &mesh, Expected &&expected) {
+  std::map<Edge, std::multiset<std::string>> names;
+  for (const auto &[name, facets] : mesh.boundary)
+    for (const auto &facet : facets)
+      names[sorted(facet[0], facet[1])].insert(name);
+  std::size_t outer = 0;
+  for (const auto &[edge, neighbours] : cells_of_edges(mesh)) {
+    if (neighbours.size() != 1) continue;
+    ++outer;
+    const Point &x = mesh.points[at(edge.first)], &y = mesh.points[at(edge.second)];
+    EXPECT_EQ(names[edge], expected(x, y)) << x[0] << " " << x[1] << ", " << y[0] << " " << y[1];
+  }
+  EXPECT_EQ(names.size(), outer);
+}
+
+std::multiset<std::string> boundaries_of_discs(const Point &x, const Point &y) {
+  const bool upper = x[1] > 0;
+  if (x[0] == 0 && y[0] == 0) return {"axis"};
+  if (std::abs(x[1]) == 1.5 && x[1] == y[1]) return {upper ? "top" : "bottom"};
+  if (std::max(distance_to_circle(x), distance_to_circle(y)) > 1e-14) return {};
+  const double lowest = 1.5 - std::cos(quarter) + 1e-14;
+  if (std::max(std::abs(x[1]), std::abs(y[1])) > lowest) return {"arc"};
+  return {"arc", upper ? "slave" : "master"};
+}
+
+std::multiset<std::string> boundaries_of_blocks(const Point &x, const Point &y) {
+  if (x[0] == y[0] && (x[0] == 0 || x[0] == 1)) return {"sides"};
+  if (x[1] != y[1]) return {};
+  const std::map<double, std::string> names{
+      {0.75, "top"}, {0.25, "slave"}, {-0.25, "master"}, {-0.75, "bottom"}};
+  return {names.at(x[1])};
+}
+
+TEST(TwoQuarterDiscs, HasTheCountsOfItsRings) {
+  const SerialMesh mesh = two_quarter_discs();
+  EXPECT_NO_THROW(check_mesh(mesh, "discs"));
+  EXPECT_EQ(mesh.points.size(), at(2 * nodes));
+  EXPECT_EQ(mesh.cells.size(), at(2 * cells));
+  for (const std::string region : {"upper", "lower"}) {
+    EXPECT_EQ(mesh.region.at(region).size(), at(cells));
+    std::set<int> own;
+    for (const int c : mesh.region.at(region))
+      own.insert(mesh.cells[at(c)].begin(), mesh.cells[at(c)].begin() + 3);
+    EXPECT_EQ(own.size(), at(nodes));
+    for (const int v : own)
+      EXPECT_EQ(mesh.points[at(v)][1] > 0, region == "upper");
+  }
+}
+
+TEST(TwoQuarterDiscs, ContactArcsHaveEqualEdgesFromTheAxisOn) {
+  const SerialMesh mesh = two_quarter_discs();
+  for (const std::string name : {"slave", "master"}) {
+    const std::vector<int> arc = nodes_of(mesh, name);
+    ASSERT_EQ(arc.size(), 561u);
+    EXPECT_EQ(mesh.boundary.at(name).size(), 560u);
+    EXPECT_EQ(mesh.points[at(arc.front())], (Point{0, name == "slave" ? 0.5 : -0.5, 0}));
+    EXPECT_NEAR(mesh.points[at(arc.back())][0], std::sin(quarter), 1e-15);
+    for (std::size_t i = 0; i < arc.size(); ++i) {
+      const Point &x = mesh.points[at(arc[i])];
+      EXPECT_LE(distance_to_circle(x), 3e-16);
+      if (i == 0) continue;
+      const Point &y = mesh.points[at(arc[i - 1])];
+      EXPECT_GT(x[0], y[0]);
+      EXPECT_NEAR(std::hypot(x[0] - y[0], x[1] - y[1]), 2 * std::sin(quarter / 1120), 1e-15);
+    }
+  }
+}
+
+TEST(TwoQuarterDiscs, BoundariesAreCompleteAndExact) {
+  const SerialMesh mesh = two_quarter_discs();
+  expect_boundaries(mesh, boundaries_of_discs);
+  for (const int v : nodes_of(mesh, "arc"))
+    EXPECT_LE(distance_to_circle(mesh.points[at(v)]), 5e-16);
+  EXPECT_EQ(mesh.points[at(nodes_of(mesh, "top").back())], (Point{1, 1.5, 0}));
+  EXPECT_EQ(mesh.points[at(nodes_of(mesh, "bottom").front())], (Point{0, -1.5, 0}));
+}
+
+TEST(TwoQuarterDiscs, TheLowerBodyIsTheImageOfTheUpperOne) {
+  const SerialMesh mesh = two_quarter_discs();
+  for (std::size_t v = 0; v < nodes; ++v) {
+    const Point &x = mesh.points[v];
+    EXPECT_EQ(mesh.points[nodes + v], (Point{x[0], -x[1], 0}));
+  }
+  for (std::size_t c = 0; c < cells; ++c) {
+    auto upper = mesh.cells[c], lower = mesh.cells[cells + c];
+    std::sort(upper.begin(), upper.begin() + 3);
+    std::sort(lower.begin(), lower.begin() + 3);
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(lower[i], upper[i] + nodes);
+  }
+}
+
+TEST(TwoQuarterDiscs, CellsAreWellShapedAndGrowSmoothly) {
+  const SerialMesh mesh = two_quarter_discs();
+  EXPECT_LE(worst_aspect_ratio(mesh), 1.65);
+  double jump = 0, shortest = 1, longest = 0;
+  for (const auto &[edge, neighbours] : cells_of_edges(mesh)) {
+    const Point &x = mesh.points[at(edge.first)], &y = mesh.points[at(edge.second)];
+    shortest = std::min(shortest, std::hypot(x[0] - y[0], x[1] - y[1]));
+    longest = std::max(longest, std::hypot(x[0] - y[0], x[1] - y[1]));
+    if (neighbours.size() != 2) continue;
+    const double a = simplex(2, corners(mesh, neighbours[0])).volume;
+    const double b = simplex(2, corners(mesh, neighbours[1])).volume;
+    jump = std::max({jump, a / b, b / a});
+  }
+  EXPECT_LE(jump, 1.8);
+  EXPECT_GT(shortest, 0.0012);
+  EXPECT_LT(longest, 0.16);
+}
+
+TEST(TwoQuarterDiscs, RefinementFollowsTheCircles) {
+  std::array<double, 3> error{};
+  for (int level = 0; level < 3; ++level) {
+    const SerialMesh mesh = refined_discs(level);
+    EXPECT_NO_THROW(check_mesh(mesh, "discs"));
+    expect_boundaries(mesh, boundaries_of_discs);
+    EXPECT_LE(worst_aspect_ratio(mesh), 1.7);
+    for (const std::string name : {"slave", "master"})
+      EXPECT_EQ(nodes_of(mesh, name).size(), at((560 << level) + 1));
+    for (const int v : nodes_of(mesh, "arc"))
+      EXPECT_LE(distance_to_circle(mesh.points[at(v)]), 1e-14);
+    for (const int v : nodes_of(mesh, "axis"))
+      EXPECT_EQ(mesh.points[at(v)][0], 0);
+    error[at(level)] = quarter - area(mesh, "upper");
+    EXPECT_NEAR(area(mesh, "lower"), area(mesh, "upper"), 1e-14);
+  }
+  EXPECT_LT(error[0], 1e-3);
+  EXPECT_NEAR(error[0] / error[1], 4, 0.05);
+  EXPECT_NEAR(error[1] / error[2], 4, 0.05);
+}
+
+TEST(TwoQuarterDiscs, WithoutACurvedBoundaryNothingIsMoved) {
+  Scene scene = two_discs_scene();
+  scene.mesh.curved = "";
+  const SerialMesh fine = refined(two_quarter_discs());
+  SerialMesh mesh = fine;
+  snap_curves(mesh, scene);
+  EXPECT_EQ(mesh.points, fine.points);
+}
+
+TEST(TwoBlocks, FillTheBlocksWithMeshesThatDoNotMatch) {
+  const SerialMesh mesh = two_blocks();
+  EXPECT_NO_THROW(check_mesh(mesh, "blocks"));
+  EXPECT_EQ(mesh.points.size(), at(11 * 6 + 8 * 5));
+  EXPECT_EQ(mesh.cells.size(), at(2 * (10 * 5 + 7 * 4)));
+  EXPECT_NEAR(area(mesh, "upper"), 0.5, 1e-15);
+  EXPECT_NEAR(area(mesh, "lower"), 0.5, 1e-15);
+  EXPECT_LE(worst_aspect_ratio(mesh), 1.9);
+  expect_boundaries(mesh, boundaries_of_blocks);
+  expect_boundaries(refined(mesh), boundaries_of_blocks);
+  const std::vector<int> slave = nodes_of(mesh, "slave"), master = nodes_of(mesh, "master");
+  ASSERT_EQ(slave.size(), 11u);
+  ASSERT_EQ(master.size(), 8u);
+  for (std::size_t i = 1; i < 10; ++i)
+    for (std::size_t j = 1; j < 7; ++j)
+      EXPECT_GT(std::abs(mesh.points[at(slave[i])][0] - mesh.points[at(master[j])][0]), 1e-4);
+  double shortest = 1, longest = 0;
+  for (std::size_t i = 1; i < slave.size(); ++i) {
+    const double edge = mesh.points[at(slave[i])][0] - mesh.points[at(slave[i - 1])][0];
+    shortest = std::min(shortest, edge);
+    longest = std::max(longest, edge);
+  }
+  EXPECT_GT(longest, 1.5 * shortest);
+}
+
+/// The mesh on all ranks is, piece by piece, the mesh that one process makes.
+void expect_same_on_all_ranks(const Scene &scene, int refine) {
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {"", refine});
+  const Mesh alone = make_mesh(PETSC_COMM_SELF, scene, {"", refine});
+  EXPECT_EQ(mesh.fingerprint, alone.fingerprint);
+  std::vector<int> owners(at(alone.total_vertices + alone.total_cells), 0);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const PetscInt natural = mesh.natural_vertex[v];
+    EXPECT_EQ(mesh.points[v], alone.points.at(at(natural)));
+    owners[at(natural)] += mesh.owned_vertex[v] ? 1 : 0;
+    for (const auto &[name, marked] : alone.boundary)
+      EXPECT_EQ(mesh.boundary.at(name).at(v), marked[at(natural)]) << name;
+  }
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    const PetscInt natural = mesh.natural_cell[c];
+    ++owners[at(alone.total_vertices + natural)];
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_EQ(mesh.natural_vertex.at(at(mesh.cells[c][i])), alone.cells.at(at(natural))[i]);
+    for (const auto &[name, marked] : alone.region)
+      EXPECT_EQ(mesh.region.at(name).at(c), marked[at(natural)]) << name;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, owners.data(), static_cast<int>(owners.size()), MPI_INT, MPI_SUM,
+                PETSC_COMM_WORLD);
+  EXPECT_EQ(owners, std::vector<int>(owners.size(), 1));
+  const SerialMesh serial =
+      scene.mesh.generator == "two_blocks" ? two_blocks() : two_quarter_discs();
+  for (std::size_t v = 0; refine == 0 && v < serial.points.size(); ++v)
+    EXPECT_EQ(alone.points.at(v), serial.points[v]);
+}
+
+class TwoBodies : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Refinements, TwoBodies, testing::Values(0, 1));
+
+TEST_P(TwoBodies, QuarterDiscsAreTheSameOnAllRanks) {
+  expect_same_on_all_ranks(two_discs_scene(), GetParam());
+}
+
+TEST_P(TwoBodies, BlocksAreTheSameOnAllRanks) {
+  expect_same_on_all_ranks(two_blocks_scene(), GetParam());
+}
+
+TEST(TwoBodiesCounts, MakeMeshRefinesAndSnaps) {
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, two_discs_scene(), {"", 1});
+  EXPECT_EQ(mesh.total_cells, 4 * 2 * cells);
+  EXPECT_EQ(mesh.total_vertices, 2 * nodes + 2 * (nodes + cells - 1)); // one more per edge
+  int slave = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (mesh.boundary.at("slave")[v] && mesh.owned_vertex[v]) ++slave;
+    EXPECT_TRUE(!mesh.boundary.at("arc")[v] || distance_to_circle(mesh.points[v]) <= 1e-14);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &slave, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
+  EXPECT_EQ(slave, 1121);
+}
+
+TEST(TwoBodiesLabels, ASceneNamesThoseThatItNeeds) {
+  Scene scene = two_discs_scene();
+  scene.mesh = {"two_quarter_discs", {"upper"}, {"top", "arc"}, "arc"};
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
+  EXPECT_EQ(mesh.region.size(), 1u);
+  EXPECT_EQ(mesh.boundary.size(), 2u);
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    EXPECT_EQ(mesh.region.at("upper")[c], mesh.points[at(mesh.cells[c][0])][1] > 0);
+}
+
+TEST(TwoBodiesErrors, AnUnknownGeneratorIsAnsweredByThoseThatExist) {
+  Scene scene = two_discs_scene();
+  scene.mesh.generator = "three_quarter_discs";
+  try {
+    (void)make_mesh(PETSC_COMM_WORLD, scene, {});
+    FAIL() << "an unknown generator passed";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    const std::string message = error.what();
+    for (const std::string name :
+         {"three_quarter_discs", "square_with_disc", "two_quarter_discs", "two_blocks"})
+      EXPECT_NE(message.find(name), std::string::npos) << message;
+  }
+}
+
+} // namespace
+} // namespace rbvi
