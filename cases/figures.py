@@ -53,7 +53,8 @@ def history(run, name):
 
 
 def read_vtu(path):
-    """Points (n x 3), triangles (m x 3) and fields by name of a VTU file in ASCII."""
+    """Points (n x 3), cells (m x nodes per cell) and fields by name of a VTU file in ASCII: one
+    number per node or cell, or three per node."""
     if not path.is_file():
         raise Missing(f"{path} is missing: make it with rbvi-online {path.parent}/model.h5 "
                       f"--mu VALUES --vtu {path.parent}/u.vtu")
@@ -63,9 +64,11 @@ def read_vtu(path):
     except (xml.ParseError, StopIteration):
         raise Missing(f"{path} is not a VTU file in ASCII") from None
     numbers = {name: np.array(a.text.split(), float) for name, a in arrays.items()}
-    cells = numbers.pop("connectivity").astype(int).reshape(-1, 3)
+    cells = numbers.pop("connectivity").astype(int).reshape(-1, int(numbers.pop("offsets")[0]))
+    numbers.pop("types")
     coordinates = np.array(points.text.split(), float).reshape(-1, 3)
-    fields = {name: v for name, v in numbers.items() if v.size == len(coordinates)}
+    fields = {name: v.reshape(-1, 3) if v.size == 3 * len(coordinates) else v
+              for name, v in numbers.items() if name != "points"}
     return coordinates, cells, fields
 
 
@@ -131,9 +134,47 @@ def draw_pressure(figure, axis, points, cells, pressure, circle):
     figure.colorbar(filled, ax=axis, shrink=0.8, format="%.3g")
 
 
+def draw_bodies(axis, path):
+    """Deformed bodies in 2D."""
+    points, cells, fields = read_vtu(path)
+    moved = points + fields["u"]
+    axis.tripcolor(moved[:, 0], moved[:, 1], cells, np.linalg.norm(fields["u"], axis=1),
+                   shading="gouraud", cmap="Blues")
+    axis.triplot(moved[:, 0], moved[:, 1], cells, color="black", linewidth=0.15)
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.set_xlabel("x")
+    axis.set_ylabel("y")
+    axis.set_title("deformed bodies, shade: |u|", loc="left")
+
+
+def draw_pressure_curve(axis, path):
+    """Pressure along the slave curve, where it faces the other body."""
+    points, edges, fields = read_vtu(path)
+    if len(fields["pressure"]) == len(edges):
+        axis.stairs(fields["pressure"], points[:, 0], color=BLUE)
+    else:
+        axis.plot(points[:, 0], fields["pressure"], color=BLUE)
+    axis.set_xlabel("x")
+    axis.set_ylabel("pressure")
+    gap = axis.twinx()
+    gap.plot(points[:, 0], fields["gap"], color=ORANGE, linewidth=1)
+    gap.set_ylabel("gap", color=ORANGE)
+    gap.grid(False)
+    axis.set_title("pressure and gap on the contact curve", loc="left")
+
+
 def solution(run):
-    """The membrane and the pressure of one answer (Niakh 2022, figure 2.4)."""
+    """One answer: the membrane and its pressure (Niakh 2022, figure 2.4), or two bodies and the
+    pressure between them (figure 2.10)."""
     points, cells, fields = read_vtu(run / "u.vtu")
+    if fields["u"].ndim == 2:
+        figure, axes = plt.subplots(1, 2, figsize=(9, 4), constrained_layout=True,
+                                    gridspec_kw={"width_ratios": [1, 1.5]})
+        draw_bodies(axes[0], run / "u.vtu")
+        draw_pressure_curve(axes[1], run / "u_contact.vtu")
+        save(figure, run, "solution.png")
+        return
     contact, triangles, pressures = read_vtu(run / "u_contact.vtu")
     circle = outline(contact, triangles)
     figure = plt.figure(figsize=(9, 3.6))
@@ -173,13 +214,30 @@ def draw_contact_field(figure, axis, points, cells, values, colours, limits, tit
 
 
 def contact_cells(run):
+    """Triangles of the contact region; nothing for two bodies."""
     with h5py.File(run / "model.h5", "r") as model:
         return model["fields/contact_cells"][()].reshape(-1, 3)
+
+
+def pressure_curve(run, data):
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
+    axes[0].plot(data["x"], data["high_fidelity"], color=GREY, linewidth=3, label="high-fidelity")
+    axes[0].plot(data["x"], data["reduced"], color=BLUE, label="reduced")
+    axes[0].set_title("pressure, worst of the validation set", loc="left")
+    axes[0].legend()
+    axes[1].plot(data["x"], data["reduced"] - data["high_fidelity"], color=ORANGE)
+    axes[1].set_title("its error", loc="left")
+    for axis in axes:
+        axis.set_xlabel("x")
+    save(figure, run, "pressure.png")
 
 
 def pressure(run):
     """Pressure and its error at the validation parameter where the error is largest."""
     data, cells = table(run, "worst_pressure.csv"), contact_cells(run)
+    if len(cells) == 0:
+        pressure_curve(run, data)
+        return
     points = np.column_stack([data["x"], data["y"]])
     error = data["reduced"] - data["high_fidelity"]
     figure, axes = plt.subplots(1, 2, figsize=(8, 3.4), constrained_layout=True)

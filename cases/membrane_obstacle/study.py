@@ -3,19 +3,21 @@
 
     study.py BIN OUT [OPTION...]     e.g. cases/membrane_obstacle/study.py build/bin run/study
 
-Options go to every run (a coarser -mesh, a smaller -train). Runs rbvi offline and rbvi verify for each combination (two at a time, one rank each), then the
-timed ones alone, and writes OUT/tables.md, OUT/*.csv and OUT/figures/*.png. What is there is kept.
+Options go to every run (a coarser -mesh, a smaller -train). Runs rbvi offline and rbvi verify for
+each combination (two at a time, one rank each), then the timed ones alone, and writes OUT/tables.md
+and OUT/figures/*.png. What is there is kept.
 """
 
-import csv
-import os
-import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import h5py
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from study_tools import (ENRICHMENTS, Study, enrichment_costs, history, markdown, short, summary,
+                         table)
 
 CASE = Path(__file__).parent / "published.yaml"
 MAPS = ("similarity", "graded")
@@ -34,12 +36,6 @@ FINE = {  # the same to 1e-3, for the sizes and the convergence
     for name, options in SETS.items() if name not in ("nodal", "hybrid")
 }
 FINE["hybrid"] = ["-cone_type", "hybrid", "-cone_tolerance", "1e-6", "-cone_ring", "0"]
-ENRICHMENTS = {
-    "decorrelated": ["-pga_enrichment", "decorrelated"],
-    "online": ["-pga_enrichment", "online"],
-    "offline": ["-pga_enrichment", "offline"],
-    "offline, energy": ["-pga_enrichment", "offline", "-pga_product", "energy"],
-}
 ACCURATE = ["-eim_tolerance", "1e-4", "-pga_tolerance", "0"]
 PAIRS = {(19, 50): "0.5", (51, 70): "0.6", (89, 50): "0.95"}  # the published ones, loose tolerance
 TIGHT = "1e-3"
@@ -48,79 +44,6 @@ TIGHT = "1e-3"
 def pair_options(pair):
     return ["-pod_tolerance", "0", "-pod_max_size", str(pair[0]), "-cone_type", "mcpg",
             "-cone_tolerance", "0", "-cone_max_size", str(pair[1])]
-
-
-class Study:
-    def __init__(self, binaries, out, *options):
-        self.rbvi, self.out, self.options = Path(binaries) / "rbvi", Path(out), options
-        self.out.mkdir(parents=True, exist_ok=True)
-        self.environment = {
-            **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
-            "OMPI_MCA_hwloc_base_binding_policy": "none", "OPENBLAS_NUM_THREADS": "1",
-            "OMP_NUM_THREADS": "1"}
-
-    def call(self, *arguments):
-        done = subprocess.run([self.rbvi, *arguments], env=self.environment, capture_output=True,
-                              text=True, check=False)
-        if done.returncode != 0:
-            sys.exit(f"study.py: rbvi {' '.join(map(str, arguments))}\n{done.stderr}")
-        return done.stdout
-
-    def run(self, disc_map, name, options, stability=False):
-        """A run directory, made and verified unless it is there; samples are shared per map."""
-        run = self.out / disc_map / name.replace(", ", "_").replace(" ", "_")
-        if (run / "verify" / "summary.csv").is_file():
-            return run
-        run.mkdir(parents=True, exist_ok=True)
-        samples = self.out / disc_map / "samples"
-        samples.mkdir(exist_ok=True)
-        if not (run / "samples").is_symlink():
-            (run / "samples").symlink_to("../samples")
-        self.call("offline", "-case", CASE, "-disc_map", disc_map, "-out", run, *options,
-                  *self.options)
-        self.call("verify", "-out", run, "-verify_stability", "yes" if stability else "no")
-        return run
-
-
-def rows_of(path):
-    with open(path, newline="") as file:
-        return [{key: value if key == "model" else float(value) for key, value in row.items()}
-                for row in csv.DictReader(file)]
-
-
-def summary(run):
-    """The row of the whole model in verify/summary.csv."""
-    return rows_of(run / "verify" / "summary.csv")[0]
-
-
-def table(run, name):
-    return np.atleast_1d(np.genfromtxt(run / "verify" / name, delimiter=",", names=True))
-
-
-def history(run, name):
-    with h5py.File(run / "model.h5", "r") as model:
-        return model["histories/values/" + name][()].ravel()
-
-
-def stage_seconds(run):
-    with h5py.File(run / "model.h5", "r") as model:
-        names = [name.decode() if isinstance(name, bytes) else name
-                 for name in model["stages/names"][()]]
-        return dict(zip(names, model["stages/seconds"][()].ravel()))
-
-
-def short(value):
-    if not np.isfinite(value):
-        return "no answer"
-    return f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+")
-
-
-def markdown(title, header, rows):
-    lines = [f"### {title}", "", "| " + " | ".join(header) + " |",
-             "|" + "|".join(["---"] * len(header)) + "|"]
-    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
 
 
 def dual_bases(runs):
@@ -212,26 +135,10 @@ def constants(runs):
 
 
 def costs(runs):
-    """Table 2.1: offline seconds (snapshots by their own solve times), 64 queries, threshold."""
-    rows = []
-    for disc_map in MAPS:
-        for pair in PAIRS:
-            seconds, query = {}, {}
-            for enrichment in ("online", "offline"):
-                run = runs[disc_map, pair, enrichment]
-                stages = stage_seconds(run)
-                stages.pop("snapshots", None)
-                solves = np.genfromtxt(run / "samples.csv", delimiter=",", names=True)["seconds"]
-                seconds[enrichment] = sum(stages.values()) + solves.sum()
-                query[enrichment] = summary(run)["seconds"]
-            more, less = (seconds["offline"] - seconds["online"], query["online"] - query["offline"])
-            threshold = "-" if less <= 0 else max(0, int(np.ceil(more / less)))
-            rows.append([disc_map, f"({pair[0]}, {pair[1]})"] +
-                        [f"{seconds[e]:.2f}" for e in ("online", "offline")] +
-                        [f"{64e3 * query[e]:.1f}" for e in ("online", "offline")] + [threshold])
-    return markdown("Table 2.1 with our times: seconds offline, ms for 64 queries",
-                    ["map", "(N, R)", "offline, on", "offline, off", "64 queries, on",
-                     "64 queries, off", "benefit threshold"], rows)
+    """Table 2.1."""
+    return enrichment_costs("Table 2.1 with our times: seconds offline, ms for 64 queries",
+                            lambda key: [key[0], f"({key[1][0]}, {key[1][1]})"], runs,
+                            [(disc_map, pair) for disc_map in MAPS for pair in PAIRS], 64)
 
 
 def all_runs(study):
@@ -274,7 +181,7 @@ def main(arguments):
     if len(arguments) < 2 or arguments[0].startswith("-"):
         print(__doc__, file=sys.stderr)
         return 2
-    study = Study(*arguments)
+    study = Study(CASE, {disc_map: ["-disc_map", disc_map] for disc_map in MAPS}, *arguments)
     runs = all_runs(study)
     parts = [dual_bases(runs), sizes(runs)]
     parts += [enrichments(runs, disc_map) for disc_map in MAPS]

@@ -37,14 +37,25 @@ template <class Visit> void share(MPI_Comm comm, std::size_t count, Visit &&visi
     visit(p);
 }
 
+/// Over the multipliers whose support has a partner everywhere (of one body all): the others press
+/// on nothing, or on next to nothing.
+double beta_hf(const Problem &problem, const RieszSpace &space, const Operators &op) {
+  if (!problem.two_bodies()) return high_fidelity_constant(space, op.b, problem.w_product());
+  const Vector whole = problem.w_product() * Vector::Ones(op.b.rows());
+  std::vector<Index> rows;
+  for (Index i = 0; i < whole.size(); ++i)
+    if (op.weights[i] > (1 - 1e-9) * whole[i]) rows.push_back(i);
+  const Matrix b = Matrix(op.b)(rows, Eigen::all), w = Matrix(problem.w_product())(rows, rows);
+  return high_fidelity_constant(space, b.sparseView(), w.sparseView());
+}
+
 } // namespace
 
 StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model) {
   StabilityCheck check;
   check.modes = model.modes;
   check.space = make_riesz_space(problem.v_product(), problem.trace());
-  check.coordinates =
-      mode_coordinates(check.space, basis_of(problem, model.primal_basis), problem.trace());
+  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis));
   check.dual = orthonormal_dual_basis(model.dual_basis, problem.w_product());
   return check;
 }
@@ -57,13 +68,9 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   share(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p], op);
-    const bool with_hf = !b_is_scaled || hf_per_b == 0;
-    InfSup c = infsup_constants(check.space, op.b, problem.w_product(), modes, check.coordinates,
-                                check.dual, with_hf);
-    if (with_hf)
-      hf_per_b = c.hf / op.b.norm();
-    else
-      c.hf = hf_per_b * op.b.norm();
+    InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
+    if (!b_is_scaled || hf_per_b == 0) hf_per_b = beta_hf(problem, check.space, op) / op.b.norm();
+    c.hf = hf_per_b * op.b.norm();
     std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4,
                 values.begin() + static_cast<long>(4 * p));
   });

@@ -28,6 +28,19 @@ Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural) {
   return trace;
 }
 
+Trace part_of(const Trace &trace, const std::vector<Index> &dofs) {
+  std::vector<PetscInt> number(static_cast<std::size_t>(trace.size), -1);
+  for (std::size_t k = 0; k < dofs.size(); ++k)
+    number[static_cast<std::size_t>(dofs[k])] = static_cast<PetscInt>(k);
+  Trace part{trace.comm, static_cast<PetscInt>(dofs.size()), {}, {}};
+  for (std::size_t k = 0; k < trace.index.size(); ++k)
+    if (const PetscInt at = number[static_cast<std::size_t>(trace.index[k])]; at >= 0) {
+      part.local_row.push_back(trace.local_row[k]);
+      part.index.push_back(at);
+    }
+  return part;
+}
+
 Vector restrict_to(const Trace &trace, Vec u) {
   Vector values = Vector::Zero(trace.size);
   const double *local = nullptr;

@@ -25,33 +25,6 @@ Matrix multipliers(const std::vector<Sample> &samples) {
   return lambda;
 }
 
-/// lift * representers as a dense distributed matrix.
-Handle<Mat> supremizer_fields(const RieszSpace &riesz, const Matrix &representers) {
-  PetscInt rows = 0, total = 0, stride = 0;
-  RBVI_CALL(MatGetLocalSize(riesz.lift.get(), &rows, nullptr));
-  RBVI_CALL(MatGetSize(riesz.lift.get(), &total, nullptr));
-  Handle<Mat> fields;
-  RBVI_CALL(MatCreateDense(PetscObjectComm(reinterpret_cast<PetscObject>(riesz.lift.get())), rows,
-                           PETSC_DECIDE, total, static_cast<PetscInt>(representers.cols()), nullptr,
-                           fields.put()));
-  const PetscScalar *lift = nullptr;
-  PetscScalar *values = nullptr;
-  PetscInt lift_stride = 0;
-  RBVI_CALL(MatDenseGetLDA(riesz.lift.get(), &lift_stride));
-  RBVI_CALL(MatDenseGetLDA(fields.get(), &stride));
-  RBVI_CALL(MatDenseGetArrayRead(riesz.lift.get(), &lift));
-  RBVI_CALL(MatDenseGetArrayWrite(fields.get(), &values));
-  using Stride = Eigen::OuterStride<>;
-  Eigen::Map<Matrix, 0, Stride>(values, rows, representers.cols(), Stride(stride)).noalias() =
-      Eigen::Map<const Matrix, 0, Stride>(lift, rows, representers.rows(), Stride(lift_stride)) *
-      representers;
-  RBVI_CALL(MatDenseRestoreArrayWrite(fields.get(), &values));
-  RBVI_CALL(MatDenseRestoreArrayRead(riesz.lift.get(), &lift));
-  RBVI_CALL(MatAssemblyBegin(fields.get(), MAT_FINAL_ASSEMBLY));
-  RBVI_CALL(MatAssemblyEnd(fields.get(), MAT_FINAL_ASSEMBLY));
-  return fields;
-}
-
 Mu centre(const ParameterSpace &space) {
   Mu mu;
   for (int i = 0; i < space.size(); ++i)
@@ -62,12 +35,13 @@ Mu centre(const ParameterSpace &space) {
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
                       const ConeOptions &options) {
   if (options.type != ConeType::hybrid) return build_cone(snapshots, problem.w_product(), options);
-  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   const Operators &op = problem.assemble(reference);
-  RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
-  return build_cone(snapshots, problem.w_product(), options, [&](const std::vector<Index> &which) {
-    return condensed_columns(ksp.get(), problem.trace(), op, which);
-  });
+  ReplicatedSolver solver(op.a, problem.trace(), "hf_");
+  return build_cone(snapshots, problem.w_product(), options,
+                    [&](const std::vector<Index> &which) -> Matrix {
+                      const Matrix loads = Matrix(op.b.transpose())(Eigen::all, which);
+                      return op.b * solver.responses(loads);
+                    });
 }
 
 /// A copy of the modes, orthonormal in another product.
@@ -96,6 +70,25 @@ Matrix span_of_supremizers(const RieszSpace &riesz, const std::vector<Matrix> &s
   return Matrix(riesz.factor.transpose())(Eigen::all, touched);
 }
 
+/// Contact dofs that b couples with the dual basis at some training mu.
+std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
+                                const std::vector<Mu> &training) {
+  std::vector<char> coupled(static_cast<std::size_t>(problem.trace().size), 0);
+  Operators op;
+  for (const Mu &mu : training) {
+    problem.assemble_contact(mu, op);
+    for (Index i = 0; i < dual.rows(); ++i) {
+      if ((dual.row(i).array() == 0).all()) continue;
+      for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
+        if (entry.value() != 0) coupled[static_cast<std::size_t>(entry.col())] = 1;
+    }
+  }
+  std::vector<Index> dofs;
+  for (std::size_t i = 0; i < coupled.size(); ++i)
+    if (coupled[i] != 0) dofs.push_back(static_cast<Index>(i));
+  return dofs;
+}
+
 /// Supremizers of the greedy, or the span of all of them, after the modes.
 void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
                      const ReduceOptions &options, ReducedBases &bases, StageTimes &times) {
@@ -103,18 +96,18 @@ void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
   RieszSpace riesz;
+  const Matrix dual = orthonormal_dual_basis(bases.cone.all(), problem.w_product());
   {
     const Stage stage("Riesz representers", times);
     if (energy)
       RBVI_CALL(MatDuplicate(problem.assemble(reference).a, MAT_COPY_VALUES, stiffness.put()));
-    riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace());
+    riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(),
+                             coupled_dofs(problem, dual, training));
   }
   const Stage stage("PGA", times);
-  const Matrix dual = orthonormal_dual_basis(bases.cone.all(), problem.w_product());
   const Matrix modes =
-      energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()),
-                                problem.trace())
-             : mode_coordinates(riesz, bases.pod.basis, problem.trace());
+      energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()))
+             : mode_coordinates(riesz, bases.pod.basis);
   std::vector<Matrix> supremizers = supremizers_at(problem, riesz, dual, training);
   PgaOptions pga = options.pga;
   if (bases.online_enriched) {
@@ -125,7 +118,7 @@ void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu
   if (bases.pga.representers.cols() == 0) return;
   bases.supremizers = static_cast<int>(
       append_orthonormalised(bases.pod.basis,
-                             supremizer_fields(riesz, bases.pga.representers).get(), 1e-10)
+                             representer_fields(riesz, bases.pga.representers).get(), 1e-10)
           .size());
 }
 

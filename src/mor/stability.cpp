@@ -14,25 +14,6 @@ namespace {
 
 constexpr double range_tolerance = 1e-12;
 
-Handle<KSP> factorised(Mat product) {
-  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(product));
-  PetscMPIInt ranks = 1;
-  RBVI_CALL(MPI_Comm_size(comm, &ranks));
-  RBVI_CALL(MatSetOption(product, MAT_SPD, PETSC_TRUE));
-  Handle<KSP> solver;
-  PC preconditioner = nullptr;
-  RBVI_CALL(KSPCreate(comm, solver.put()));
-  RBVI_CALL(KSPSetOptionsPrefix(solver.get(), "v_"));
-  RBVI_CALL(KSPSetOperators(solver.get(), product, product));
-  RBVI_CALL(KSPSetType(solver.get(), KSPPREONLY));
-  RBVI_CALL(KSPGetPC(solver.get(), &preconditioner));
-  RBVI_CALL(PCSetType(preconditioner, PCCHOLESKY));
-  RBVI_CALL(
-      PCFactorSetMatSolverType(preconditioner, ranks == 1 ? MATSOLVERCHOLMOD : MATSOLVERMUMPS));
-  RBVI_CALL(KSPSetFromOptions(solver.get()));
-  return solver;
-}
-
 Matrix lower_cholesky(const Matrix &matrix, const char *what) {
   const Eigen::LLT<Matrix> cholesky(matrix);
   if (!matrix.allFinite() || cholesky.info() != Eigen::Success)
@@ -42,32 +23,30 @@ Matrix lower_cholesky(const Matrix &matrix, const char *what) {
 
 } // namespace
 
-RieszSpace make_riesz_space(Mat product, const Trace &trace) {
-  const Handle<KSP> solver = factorised(product);
-  const Handle<Mat> columns = extension(trace, Matrix::Identity(trace.size, trace.size), product);
+RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs) {
   RieszSpace space;
-  RBVI_CALL(MatDuplicate(columns.get(), MAT_DO_NOT_COPY_VALUES, space.lift.put()));
-  RBVI_CALL(KSPMatSolve(solver.get(), columns.get(), space.lift.get()));
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  RBVI_CALL(KSPGetConvergedReason(solver.get(), &reason));
-  if (reason < 0)
-    throw failure(std::string("the V product could not be factorised (") +
-                  KSPConvergedReasons[reason] +
-                  "): it must be symmetric positive definite; see -v_pc_type, -v_ksp_type");
-  const Matrix traces = restrict_to(trace, space.lift.get());
+  space.dofs = dofs;
+  space.trace = dofs.empty() ? trace : part_of(trace, dofs);
+  space.solver = std::make_shared<ReplicatedSolver>(product, space.trace, "v_");
+  const Matrix traces =
+      space.solver->responses(Matrix::Identity(space.trace.size, space.trace.size));
   space.factor = lower_cholesky((traces + traces.transpose()) / 2,
                                 "the inverse V product on the contact dofs");
   return space;
 }
 
-Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes, const Trace &trace) {
+Handle<Mat> representer_fields(const RieszSpace &space, const Matrix &representers) {
+  return space.solver->fields(representers);
+}
+
+Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   const PetscInt count = modes.size();
-  const Index contact = trace.size;
+  const Index contact = space.trace.size;
   Matrix coordinates = Matrix::Zero(contact + count, count);
   if (count == 0) return coordinates;
   Mat columns = nullptr;
   RBVI_CALL(BVGetMat(modes.columns.get(), &columns));
-  Matrix top = restrict_to(trace, columns);
+  Matrix top = restrict_to(space.trace, columns);
   RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
   space.factor.triangularView<Eigen::Lower>().solveInPlace(top);
   const Eigen::SelfAdjointEigenSolver<Matrix> rest(Matrix::Identity(count, count) -
@@ -128,7 +107,8 @@ Matrix orthonormal_range(const Matrix &vectors) {
 
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
                               const Matrix &x) {
-  const Matrix forces = b_contact.transpose() * x;
+  Matrix forces = b_contact.transpose() * x;
+  if (!space.dofs.empty()) forces = forces(space.dofs, Eigen::all).eval();
   return space.factor.transpose().triangularView<Eigen::Upper>() * forces;
 }
 
@@ -148,14 +128,6 @@ double smallest_stretch(const Matrix &supremizers) {
   return singular_values(supremizers)(supremizers.cols() - 1);
 }
 
-double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
-                              const SparseMatrix &w_product) {
-  Matrix x = lower_cholesky(Matrix(w_product), "the W product");
-  x = Matrix(
-      x.transpose().triangularView<Eigen::Upper>().solve(Matrix::Identity(x.rows(), x.cols())));
-  return smallest_stretch(supremizer_coordinates(space, b_contact, x));
-}
-
 /// The triangular factor of a matrix that gets more rows.
 void add_rows(Matrix &factor, const Matrix &rows) {
   Matrix stacked(factor.rows() + rows.rows(), rows.cols());
@@ -170,12 +142,18 @@ void add_rows(Matrix &factor, const Matrix &rows) {
 
 } // namespace
 
-InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact,
-                        const SparseMatrix &w_product, const Matrix &modes, const Matrix &enriched,
-                        const Matrix &x, bool with_hf) {
+double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const SparseMatrix &w_product) {
+  Matrix x = lower_cholesky(Matrix(w_product), "the W product");
+  x = Matrix(
+      x.transpose().triangularView<Eigen::Upper>().solve(Matrix::Identity(x.rows(), x.cols())));
+  return smallest_stretch(supremizer_coordinates(space, b_contact, x));
+}
+
+InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, const Matrix &modes,
+                        const Matrix &enriched, const Matrix &x) {
   const Matrix supremizers = supremizer_coordinates(space, b_contact, x);
-  return {.hf = with_hf ? high_fidelity_constant(space, b_contact, w_product)
-                        : std::numeric_limits<double>::quiet_NaN(),
+  return {.hf = std::numeric_limits<double>::quiet_NaN(),
           .dec = infsup_constant(modes, supremizers),
           .on = smallest_stretch(supremizers),
           .off = infsup_constant(enriched, supremizers)};

@@ -1,5 +1,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/replicated.hpp"
 #include "rbvi/tool/options.hpp"
 
 namespace rbvi {
@@ -24,7 +25,7 @@ std::string unused_options() {
 /// The solvers of a run as they are made, for their questions to the options alone.
 void make_solvers(MPI_Comm comm) {
   (void)make_direct_solver(comm, "hf_");
-  (void)make_direct_solver(comm, "v_");
+  (void)make_direct_solver(PETSC_COMM_SELF, "v_");
   Handle<SNES> snes;
   KSP ksp = nullptr;
   PC pc = nullptr;
@@ -44,9 +45,8 @@ void try_solvers(Problem &problem, const HfOptions &options) {
   for (int i = 0; i < space.size(); ++i)
     mu.push_back(space.at(i).value);
   (void)HighFidelity(problem, options).solve(mu);
-  const Handle<KSP> product = make_direct_solver(problem.comm(), "v_");
-  RBVI_CALL(KSPSetOperators(product.get(), problem.v_product(), problem.v_product()));
-  RBVI_CALL(KSPSetUp(product.get()));
+  (void)ReplicatedSolver(problem.v_product(), problem.trace(), "v_")
+      .responses(Matrix::Identity(problem.trace().size, 1));
 }
 
 } // namespace

@@ -21,6 +21,9 @@ struct Trace {
 /// `natural`: the natural number of each contact dof, each a free one. Not collective.
 Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural);
 
+/// Some of the contact dofs, numbered in the order of `dofs`. Not collective.
+Trace part_of(const Trace &trace, const std::vector<Index> &dofs);
+
 /// Collective. E^T u, on every rank.
 Vector restrict_to(const Trace &trace, Vec u);
 

@@ -13,27 +13,33 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/fem/trace.hpp"
 #include "rbvi/mor/pod.hpp"
+#include "rbvi/solve/replicated.hpp"
 
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace rbvi {
 
-/// The map between displacement fields and Euclidean coordinates above. Dense parts replicated.
+/// The map between displacement fields and Euclidean coordinates above, for all contact dofs or for
+/// those that b couples with the multipliers at hand. Dense parts replicated.
 struct RieszSpace {
-  Handle<Mat> lift; ///< V^-1 E: free dofs x n_c, dense, distributed like V
-  Matrix factor;    ///< L, lower triangular: n_c x n_c
+  Matrix factor;           ///< L, lower triangular: n_c x n_c
+  std::vector<Index> dofs; ///< the n_c contact dofs of the scene that it covers; empty: all
+  Trace trace;             ///< of these
+  std::shared_ptr<ReplicatedSolver> solver;
 };
 
-/// Collective. One factorisation of `product`, which is marked as symmetric positive definite (KSP
-/// prefix -v_; default: CHOLMOD on one rank, MUMPS on several), one block of n_c solves. Throws
-/// failure if the factorisation fails.
-RieszSpace make_riesz_space(Mat product, const Trace &trace);
+/// Collective. One factorisation of `product` (KSP prefix -v_), n_c solves shared among the ranks.
+/// `dofs`: contact dofs to cover, empty: all. Throws failure if the factorisation fails.
+RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs = {});
+
+/// V^-1 E representers as a dense distributed matrix: one solve per column. Collective.
+Handle<Mat> representer_fields(const RieszSpace &space, const Matrix &representers);
 
 /// Collective. Coordinates of the basis columns: (n_c + N) x N, orthonormal. Throws failure if the
 /// basis is not orthonormal in the product of `space`.
-Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes, const Trace &trace);
+Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes);
 
 /// Columns orthonormal in W that span the columns of `generators` (rank-revealing: the largest
 /// remainder first, relative to the norm of its generator, until none is above `tolerance`): dual
@@ -41,7 +47,8 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes, const
 Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
                               double tolerance = 1e-9);
 
-/// L^T B_c(mu)^T X: n_c x columns of X, the coordinates of T(mu) X.
+/// L^T B_c(mu)^T X: n_c x columns of X, the coordinates of T(mu) X. `b_contact`: dual x all contact
+/// dofs; X must not couple with those that `space` leaves out.
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
                               const Matrix &x);
 
@@ -51,7 +58,7 @@ Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_con
 double infsup_constant(const Matrix &primal, const Matrix &supremizers);
 
 struct InfSup {
-  double hf, dec, on, off;
+  double hf, dec, on, off; ///< hf: NaN where it was not asked for
 };
 
 /// What V_N + S guarantees at one mu.
@@ -82,12 +89,15 @@ std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes
 /// out): rows x rank.
 Matrix orthonormal_range(const Matrix &vectors);
 
-/// The four constants at one mu (2.3), (2.14), (2.18), (2.30). `modes`: coordinates of V_N;
-/// `enriched`: of V_N + S; `x`: orthonormal dual basis; `w_product`: for beta_HF.
-/// beta_HF is over the whole dual space and costs a dense SVD of its size: NaN unless `with_hf`.
-InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact,
-                        const SparseMatrix &w_product, const Matrix &modes, const Matrix &enriched,
-                        const Matrix &x, bool with_hf);
+/// The constants at one mu (2.14), (2.18), (2.30), beta_HF left out. `modes`: coordinates of V_N;
+/// `enriched`: of V_N + S; `x`: orthonormal dual basis.
+InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, const Matrix &modes,
+                        const Matrix &enriched, const Matrix &x);
+
+/// beta_HF (2.3), over all rows of b; `w_product`: of their multipliers. A dense SVD of their
+/// number.
+double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const SparseMatrix &w_product);
 
 struct PgaOptions {
   double tolerance = 0;   ///< on max sigma_S (2.27), below 1; 0: use `stability` instead

@@ -1,0 +1,116 @@
+"""What the studies of the cases share: runs of rbvi for every combination, their tables."""
+
+import csv
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+ENRICHMENTS = {
+    "decorrelated": ["-pga_enrichment", "decorrelated"],
+    "online": ["-pga_enrichment", "online"],
+    "offline": ["-pga_enrichment", "offline"],
+    "offline, energy": ["-pga_enrichment", "offline", "-pga_product", "energy"],
+}
+
+
+class Study:
+    """Runs of one case, in variants (options that change the high-fidelity answers)."""
+
+    def __init__(self, case, variants, binaries, out, *options):
+        self.case, self.variants = case, variants
+        self.rbvi, self.out, self.options = Path(binaries) / "rbvi", Path(out), options
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.environment = {
+            **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1",
+            "OMPI_MCA_hwloc_base_binding_policy": "none", "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1"}
+
+    def call(self, *arguments):
+        done = subprocess.run([self.rbvi, *arguments], env=self.environment, capture_output=True,
+                              text=True, check=False)
+        if done.returncode != 0:
+            sys.exit(f"study: rbvi {' '.join(map(str, arguments))}\n{done.stderr}")
+        return done.stdout
+
+    def run(self, variant, name, options, stability=False):
+        """A run directory, made and verified unless it is there; a variant shares its samples."""
+        run = self.out / variant / name.replace(", ", "_").replace(" ", "_")
+        if (run / "verify" / "summary.csv").is_file():
+            return run
+        run.mkdir(parents=True, exist_ok=True)
+        samples = self.out / variant / "samples"
+        samples.mkdir(exist_ok=True)
+        if not (run / "samples").is_symlink():
+            (run / "samples").symlink_to("../samples")
+        self.call("offline", "-case", self.case, *self.variants[variant], "-out", run, *options,
+                  *self.options)
+        self.call("verify", "-out", run, "-verify_stability", "yes" if stability else "no")
+        return run
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return [{key: value if key == "model" else float(value) for key, value in row.items()}
+                for row in csv.DictReader(file)]
+
+
+def summary(run):
+    """The row of the whole model in verify/summary.csv."""
+    return rows_of(run / "verify" / "summary.csv")[0]
+
+
+def table(run, name):
+    return np.atleast_1d(np.genfromtxt(run / "verify" / name, delimiter=",", names=True))
+
+
+def history(run, name):
+    with h5py.File(run / "model.h5", "r") as model:
+        return model["histories/values/" + name][()].ravel()
+
+
+def stage_seconds(run):
+    with h5py.File(run / "model.h5", "r") as model:
+        names = [name.decode() if isinstance(name, bytes) else name
+                 for name in model["stages/names"][()]]
+        return dict(zip(names, model["stages/seconds"][()].ravel()))
+
+
+def short(value):
+    if not np.isfinite(value):
+        return "no answer"
+    return f"{value:.1e}".replace("e-0", "e-").replace("e+0", "e+")
+
+
+def markdown(title, header, rows):
+    lines = [f"### {title}", "", "| " + " | ".join(header) + " |",
+             "|" + "|".join(["---"] * len(header)) + "|"]
+    lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+def enrichment_costs(title, names, runs, keys, queries):
+    """Seconds offline (snapshots by their own solve times), ms of all validation queries, and the
+    number of queries from which the dearer offline stage pays, one row per key."""
+    rows = []
+    for key in keys:
+        seconds, query = {}, {}
+        for enrichment in ("online", "offline"):
+            run = runs[(*key, enrichment)]
+            stages = stage_seconds(run)
+            stages.pop("snapshots", None)
+            solves = np.genfromtxt(run / "samples.csv", delimiter=",", names=True)["seconds"]
+            seconds[enrichment] = sum(stages.values()) + solves.sum()
+            query[enrichment] = summary(run)["seconds"]
+        more, less = (seconds["offline"] - seconds["online"], query["online"] - query["offline"])
+        threshold = "-" if less <= 0 else max(0, int(np.ceil(more / less)))
+        rows.append([*names(key)] +
+                    [f"{seconds[e]:.2f}" for e in ("online", "offline")] +
+                    [f"{1e3 * queries * query[e]:.1f}" for e in ("online", "offline")] +
+                    [threshold])
+    return markdown(title, ["variant", "(N, R)", "offline, on", "offline, off", f"{queries} queries, on",
+                            f"{queries} queries, off", "benefit threshold"], rows)

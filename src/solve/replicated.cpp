@@ -1,0 +1,119 @@
+#include "rbvi/solve/replicated.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/methods.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr Index block = 128; ///< right-hand sides at a time: bounds the memory
+
+struct Range {
+  Index first, count;
+};
+
+/// This rank's part of 0 .. size - 1.
+Range my_share(MPI_Comm comm, Index size) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+  const Index first = size * rank / ranks;
+  return {first, size * (rank + 1) / ranks - first};
+}
+
+Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  Handle<Mat> whole;
+  if (ranks == 1) {
+    RBVI_CALL(PetscObjectReference(reinterpret_cast<PetscObject>(a)));
+    return Handle<Mat>(a);
+  }
+  RBVI_CALL(MatCreateRedundantMatrix(a, ranks, MPI_COMM_NULL, MAT_INITIAL_MATRIX, whole.put()));
+  return whole;
+}
+
+} // namespace
+
+ReplicatedSolver::ReplicatedSolver(Mat a, const Trace &trace, const char *prefix)
+    : comm_(trace.comm), whole_(whole_matrix(a, trace.comm)),
+      rows_(static_cast<std::size_t>(trace.size), 0) {
+  RBVI_CALL(MatGetLocalSize(a, &local_rows_, nullptr));
+  RBVI_CALL(MatGetOwnershipRange(a, &first_row_, nullptr));
+  for (std::size_t k = 0; k < trace.index.size(); ++k)
+    rows_[static_cast<std::size_t>(trace.index[k])] = first_row_ + trace.local_row[k];
+  MPI_Allreduce(MPI_IN_PLACE, rows_.data(), static_cast<int>(rows_.size()), MPIU_INT, MPI_SUM,
+                comm_);
+  RBVI_CALL(MatSetOption(whole_.get(), MAT_SPD, PETSC_TRUE));
+  ksp_ = make_direct_solver(PetscObjectComm(reinterpret_cast<PetscObject>(whole_.get())), prefix);
+  RBVI_CALL(KSPSetOperators(ksp_.get(), whole_.get(), whole_.get()));
+}
+
+Matrix ReplicatedSolver::solve_columns(const Matrix &loads, Index first, Index count) {
+  PetscInt size = 0;
+  RBVI_CALL(MatGetSize(whole_.get(), &size, nullptr));
+  Matrix right = Matrix::Zero(size, count), solution(size, count);
+  for (Index k = 0; k < count; ++k)
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      right(rows_[i], k) = loads(static_cast<Index>(i), first + k);
+  Handle<Mat> rhs, x;
+  const MPI_Comm alone = PetscObjectComm(reinterpret_cast<PetscObject>(whole_.get()));
+  const auto columns = static_cast<PetscInt>(count);
+  RBVI_CALL(MatCreateDense(alone, size, columns, size, columns, right.data(), rhs.put()));
+  RBVI_CALL(MatCreateDense(alone, size, columns, size, columns, solution.data(), x.put()));
+  for (Mat dense : {rhs.get(), x.get()}) {
+    RBVI_CALL(MatAssemblyBegin(dense, MAT_FINAL_ASSEMBLY));
+    RBVI_CALL(MatAssemblyEnd(dense, MAT_FINAL_ASSEMBLY));
+  }
+  RBVI_CALL(KSPMatSolve(ksp_.get(), rhs.get(), x.get()));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  RBVI_CALL(KSPGetConvergedReason(ksp_.get(), &reason));
+  if (reason < 0)
+    throw failure(std::string("the matrix could not be factorised (") +
+                  KSPConvergedReasons[reason] + "): it must be symmetric positive definite");
+  return solution;
+}
+
+Matrix ReplicatedSolver::responses(const Matrix &loads) {
+  const Range mine = my_share(comm_, loads.cols());
+  Matrix result = Matrix::Zero(loads.rows(), loads.cols());
+  for (Index done = 0; done < mine.count; done += block) {
+    const Index count = std::min(block, mine.count - done);
+    result.middleCols(mine.first + done, count) =
+        solve_columns(loads, mine.first + done, count)(rows_, Eigen::all);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, result.data(), static_cast<int>(result.size()), MPI_DOUBLE, MPI_SUM,
+                comm_);
+  return result;
+}
+
+Handle<Mat> ReplicatedSolver::fields(const Matrix &loads) {
+  PetscInt size = 0, stride = 0;
+  RBVI_CALL(MatGetSize(whole_.get(), &size, nullptr));
+  Handle<Mat> result;
+  RBVI_CALL(MatCreateDense(comm_, local_rows_, PETSC_DECIDE, size,
+                           static_cast<PetscInt>(loads.cols()), nullptr, result.put()));
+  RBVI_CALL(MatDenseGetLDA(result.get(), &stride));
+  for (Index first = 0; first < loads.cols(); first += block) {
+    const Matrix part = loads.middleCols(first, std::min(block, loads.cols() - first));
+    const Range mine = my_share(comm_, part.cols());
+    Matrix all = Matrix::Zero(size, part.cols());
+    if (mine.count > 0)
+      all.middleCols(mine.first, mine.count) = solve_columns(part, mine.first, mine.count);
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
+                  comm_);
+    double *values = nullptr;
+    RBVI_CALL(MatDenseGetArray(result.get(), &values));
+    for (Index k = 0; k < part.cols(); ++k)
+      std::copy_n(all.col(k).data() + first_row_, local_rows_, values + (first + k) * stride);
+    RBVI_CALL(MatDenseRestoreArray(result.get(), &values));
+  }
+  RBVI_CALL(MatAssemblyBegin(result.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(result.get(), MAT_FINAL_ASSEMBLY));
+  return result;
+}
+
+} // namespace rbvi

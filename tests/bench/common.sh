@@ -1,0 +1,56 @@
+# Shared by the benchmarks of the scenes; to be sourced from bash with `bin`, the folder of the
+# programs, set. Logs and run directories live in $work.
+# shellcheck source=mpi-scripts/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../../mpi-scripts/common.sh"
+
+# shellcheck disable=SC2154
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+repeats=5
+commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+
+median() { sort -g | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
+best() { sort -g | head -n 1; }
+times() { # stage, logs
+  awk -v stage="  $1 " 'index($0, stage) == 1 { split(substr($0, length(stage)), word, " ")
+    if (word[1] ~ /^[0-9]+[.][0-9][0-9][0-9]$/) print word[1] }' "${@:2}"
+}
+stage() { times "$@" | median; }
+value() { sed -n "s/.*$1.*/\1/p" "$work/$2.log" | head -n 1; } # expression with one group, log
+column() { # file, row, column number
+  awk -v row="$2" -v column="$3" 'BEGIN { FS = "\",\"" }
+    index($1, row) { value = $column } END { print value }' "$1"
+}
+
+: >"$work/targets"
+target() { # what, target, measured, condition on x (empty: none)
+  local verdict=""
+  if [[ -z $3 ]]; then
+    verdict="NOT MEASURED"
+  elif [[ -n $4 ]]; then
+    verdict=$(awk -v x="$3" "BEGIN { print ($4) ? \"met\" : \"NOT MET\" }")
+  fi
+  printf '%s;%s;%s;%s\n' "$1" "$2" "$3" "$verdict" >>"$work/targets"
+}
+
+machine() { # command: one line for the head of a table of results
+  printf 'Command `%s`, commit %s, %s cores (%s), load %s at the end' "$1" "$commit" "$cores" \
+    "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)" "$(cut -d ' ' -f 1 /proc/loadavg)"
+}
+targets_table() {
+  printf '\n| what | target | measured | |\n|---|---|---|---|\n'
+  sed 's/;/ | /g; s/^/| /; s/$/ |/' "$work/targets"
+}
+targets_csv() {
+  echo "what,target,measured,verdict"
+  sed 's/;/","/g; s/^/"/; s/$/"/' "$work/targets"
+}
+report() { # title, run directory, log of verify
+  printf '\n## Run time against error, %s\n\n' "$1"
+  sed '/^Tables:/d; /^.*samples per group/d' "$2/bench/table.md"
+  printf '\n```\n%s\n```\n' "$(sed -n '/^Inf-sup/,/fewest\|all [0-9]* supremizers/p' "$work/$3.log")"
+}
+finish() { # results: path without its ending
+  say "written: $1.md, $1.csv"
+  grep -E 'NOT (MET|MEASURED)' "$work/targets" || say "all targets met"
+}
