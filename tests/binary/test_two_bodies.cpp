@@ -114,33 +114,44 @@ TEST_F(TwoBodies, WithoutContactEverywhereThereIsNoModel) {
   EXPECT_FALSE(fs::exists("run/model.h5"));
 }
 
-/// One line, status 2, and no run directory.
+/// One line and status 2, in turns on 1 and 2 ranks.
 TEST_F(TwoBodies, BadInputIsRefused) {
   const std::string disks = "offline -case disks.yaml -out run ";
   const std::pair<std::string, std::string> cases[] = {
       {disks + "-multiplier p2", "use one of p0, p1"},
       {disks + "-integration exact", "use one of intersection, direct"},
-      {disks + "-young -1", "Young"},
-      {disks + "-young 0", "Young"},
-      {disks + "-poisson_ratio 0.5", "Poisson"},
-      {disks + "-poisson_ratio -1", "Poisson"},
+      {disks + "-young -1", "Young's modulus must be positive, not -1"},
+      {disks + "-young 0", "Young's modulus must be positive, not 0"},
+      {disks + "-poisson_ratio 0.5", "Poisson's ratio must lie between -1 and 0.5, not 0.5"},
+      {disks + "-poisson_ratio -1", "Poisson's ratio"},
       {disks + "-indentation deep", "'deep': not a number"},
-      {disks + "-hf_method vi", "-hf_method active_set or uzawa"},
-      {disks + "-load -25", "-load"},
-      {"solve -case disks.yaml -mu 1.5", "outside [0.7, 1.3]"},
-      {"solve -case disks.yaml -mu 1 -hf_method vi", "-hf_method active_set or uzawa"},
-      {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical"}};
-  for (const auto &[arguments, part] : cases)
-    for (const int ranks : {1, 2}) {
-      const Finished run = shell(rbvi(ranks, arguments));
-      SCOPED_TRACE(arguments + ": status " + std::to_string(run.status) + "\n" + run.err);
-      EXPECT_EQ(run.status, 2);
-      EXPECT_EQ(lines_with(run.err, "rbvi: "), 1);
-      EXPECT_TRUE(contains(run.err, part)) << "expected: " << part;
-      EXPECT_FALSE(contains(run.err, "PETSC ERROR"));
-      EXPECT_TRUE(ranks > 1 || std::count(run.err.begin(), run.err.end(), '\n') == 1);
-      EXPECT_FALSE(fs::exists("run"));
-    }
+      {disks + "-load -25", "unknown option -load"},
+      {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
+      {"solve -case disks.yaml -mu 1 -hf_method vi", "use -hf_method active_set or uzawa"},
+      {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}};
+  int ranks = 1;
+  for (const auto &[arguments, part] : cases) {
+    ranks = 3 - ranks;
+    const Finished run = shell(rbvi(ranks, arguments));
+    SCOPED_TRACE(arguments + ": status " + std::to_string(run.status) + "\n" + run.err);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(lines_with(run.err, "rbvi: "), 1);
+    EXPECT_TRUE(contains(run.err, part)) << "expected: " << part;
+    EXPECT_FALSE(contains(run.err, "PETSC ERROR"));
+    EXPECT_TRUE(ranks > 1 || std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    EXPECT_FALSE(fs::exists("run"));
+  }
+}
+
+/// The box of the radius is the user's.
+TEST_F(TwoBodies, TheBoxCanBeWider) {
+  const Finished run =
+      shell(rbvi(1, "offline -case disks.yaml -radius 0.5,1.4 -train grid:3 -out run"));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(shell(rbvi_online("run/model.h5 --mu 0.55")).status, 0);
+  const Finished outside = shell(rbvi_online("run/model.h5 --mu 0.45"));
+  EXPECT_EQ(outside.status, 2);
+  EXPECT_TRUE(contains(outside.err, "outside [0.5, 1.4]")) << outside.err;
 }
 
 } // namespace
