@@ -120,6 +120,21 @@ TEST(ReducedDisks, AnswersDoNotDependOnTheNumberOfRanks) {
   }
 }
 
+TEST(ReducedDisks, OtherDiscretisationsReduceAsWell) {
+  for (const auto &[multiplier, integration] :
+       {std::pair{"p1", "intersection"}, std::pair{"p0", "direct"}, std::pair{"p1", "direct"}}) {
+    SCOPED_TRACE(std::string(multiplier) + " " + integration);
+    Reduced r(make_scene("two_disks", {{"multiplier", multiplier}, {"integration", integration}}),
+              "grid:3");
+    r.reduce(with(ConeType::hybrid));
+    EXPECT_EQ(r.model.dual_basis.rows(), std::string(multiplier) == "p1" ? 561 : 280);
+    const ModelErrors errors = r.errors_at(r.samples);
+    EXPECT_EQ(errors.failed, 0);
+    EXPECT_LE(errors.u.maxCoeff(), 1e-9);
+    EXPECT_LE(errors.lambda.maxCoeff(), 1e-6);
+  }
+}
+
 TEST(ReducedDisks, ASingleSampleReturnsItself) {
   Reduced r(make_scene("two_disks"), "grid:1");
   for (const ConeType type : {ConeType::cpg, ConeType::mcpg, ConeType::angle_greedy, ConeType::nmf,
