@@ -32,11 +32,11 @@ void print_errors(const char *name, const ModelErrors &e) {
                 e.kkt_residual);
 }
 
-/// Those of `wanted` below `last`, then `last`.
+/// The positive ones of `wanted` below `last`, then `last`.
 std::vector<int> sizes_up_to(int last, const std::vector<int> &wanted) {
   std::vector<int> sizes;
   for (const int size : wanted)
-    if (size < last) sizes.push_back(size);
+    if (size > 0 && size < last) sizes.push_back(size);
   sizes.push_back(last);
   return sizes;
 }

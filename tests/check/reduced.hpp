@@ -1,4 +1,4 @@
-// A reduced model of the membrane with all that it was made from.
+// A reduced model with all that it was made from; of the membrane where no scene is named.
 #pragma once
 
 #include "rbvi/check/errors.hpp"
@@ -28,8 +28,8 @@ struct Reduced {
     reduce(options);
   }
   /// The snapshots alone.
-  Reduced(const Scene &scene, const std::string &training)
-      : problem(PETSC_COMM_WORLD, scene, {}),
+  Reduced(const Scene &scene, const std::string &training, MPI_Comm comm = PETSC_COMM_WORLD)
+      : problem(comm, scene, {}),
         samples(solve_all(problem, parse_set(problem.scene().parameters, training))) {}
   void reduce(const ReduceOptions &options) {
     affine = separate(problem, mus(), options.eim);

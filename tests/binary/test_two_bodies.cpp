@@ -1,0 +1,158 @@
+// Two bodies with both tools from outside: a whole run on 2 ranks, what it skips, and bad input.
+#include "rbvi/core/parameters.hpp"
+#include "run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+struct TwoBodies : InDirectory {
+  void SetUp() override {
+    InDirectory::SetUp();
+    spill("disks.yaml", "scene: two_disks\n"
+                        "train: grid:7\n"
+                        "valid: random:3:1\n"
+                        "pod_tolerance: 1e-4\n");
+  }
+};
+
+/// "name value" among the lines of a report.
+double value_of(const std::string &text, const std::string &name) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(name + " "))
+      return parse_number(line.substr(line.find_last_of(' ') + 1), name);
+  ADD_FAILURE() << "no " << name << " in\n" << text;
+  return 0;
+}
+
+TEST_F(TwoBodies, AreReducedVerifiedAndAsked) {
+  const Finished offline = shell(rbvi(2, "offline -case disks.yaml -out run"));
+  ASSERT_EQ(offline.status, 0) << offline.err;
+  EXPECT_EQ(offline.err, "");
+  EXPECT_TRUE(contains(offline.out, "7 of 7 samples")) << offline.out;
+  EXPECT_TRUE(contains(offline.out, "7 solved by 2 groups of 1 rank")) << offline.out;
+
+  const Finished verify = shell(rbvi(2, "verify -out run"));
+  ASSERT_EQ(verify.status, 0) << verify.err;
+  EXPECT_EQ(verify.err, "");
+  for (const char *table : {"errors", "summary", "error_map", "worst_pressure", "samples"})
+    EXPECT_TRUE(fs::exists(std::string("run/verify/") + table + ".csv")) << table;
+  EXPECT_TRUE(contains(verify.out, "over 3 validation mu")) << verify.out;
+  EXPECT_TRUE(contains(verify.out, " 0 exceptions")) << verify.out;
+
+  const Finished online = shell(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu"));
+  ASSERT_EQ(online.status, 0) << online.err;
+  const Finished solve = shell(rbvi(2, "solve -case disks.yaml -mu 0.85 -vtu full.vtu"));
+  ASSERT_EQ(solve.status, 0) << solve.err;
+  for (const char *name : {"energy", "normal_force", "peak_pressure"}) {
+    const double truth = value_of(solve.out, name);
+    EXPECT_NEAR(value_of(online.out, name), truth, 0.02 * truth) << name;
+  }
+  EXPECT_LE(value_of(online.out, "expected_error_u"), 1e-2);
+  for (const char *file : {"u.vtu", "full.vtu"})
+    EXPECT_TRUE(contains(slurp(file), "NumberOfPoints=\"6130\" NumberOfCells=\"11014\"")) << file;
+  for (const char *file : {"u_contact.vtu", "full_contact.vtu"}) {
+    const std::string curve = slurp(file);
+    for (const char *field : {"pressure", "gap", "u"})
+      EXPECT_TRUE(contains(curve, "Name=\"" + std::string(field) + "\"")) << file << field;
+  }
+
+  const Finished model = shell(rbvi_online("run/model.h5"));
+  EXPECT_TRUE(contains(model.out, "two_disks")) << model.out;
+  EXPECT_TRUE(contains(model.out, "radius")) << model.out;
+  const Finished inspected = shell(rbvi(2, "inspect run/model.h5"));
+  EXPECT_EQ(inspected.status, 0) << inspected.err;
+}
+
+/// The line of a stage in the table of stages.
+std::string stage_line(const std::string &table, const std::string &stage) {
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("  " + stage + " ")) return line;
+  ADD_FAILURE() << "no stage " << stage << " in\n" << table;
+  return "";
+}
+
+TEST_F(TwoBodies, ThePlanSaysWhatIsSkipped) {
+  const Finished plan = shell(rbvi(2, "offline -case disks.yaml -plan"));
+  EXPECT_EQ(plan.status, 0) << plan.err;
+  EXPECT_FALSE(fs::exists("run"));
+  const auto expect_line = [&](const char *stage, const char *part) {
+    const std::string line = stage_line(plan.out, stage);
+    EXPECT_TRUE(contains(line, part)) << line;
+  };
+  expect_line("mesh", "two_quarter_discs");
+  expect_line("factorisations", "one for the sweep");
+  expect_line("interpolation", "skipped: A does not depend on mu");
+  expect_line("load vector", "skipped: the scene has no load");
+  expect_line("tangential multipliers", "skipped: the scene has no friction");
+  expect_line("supremizers at all mu", "B depends on mu: part of PGA");
+  EXPECT_FALSE(contains(plan.out, "total"));
+}
+
+TEST_F(TwoBodies, ThePatchTestIsReducedToOneModeAndOneGenerator) {
+  spill("patch.yaml", "scene: patch\ntrain: grid:5\nvalid: random:5:1\n");
+  const Finished offline = shell(rbvi(2, "offline -case patch.yaml -out run"));
+  ASSERT_EQ(offline.status, 0) << offline.err;
+  EXPECT_TRUE(contains(offline.out, "N = 1 mode,")) << offline.out;
+  const Finished verify = shell(rbvi(2, "verify -out run"));
+  EXPECT_EQ(verify.status, 0) << verify.err;
+  const Finished online = shell(rbvi_online("run/model.h5 --mu 0.04"));
+  ASSERT_EQ(online.status, 0) << online.err;
+  EXPECT_NEAR(value_of(online.out, "normal_force"), 15 * 0.65 / (1.35 * 0.3) * 0.04, 1e-9);
+}
+
+TEST_F(TwoBodies, WithoutContactEverywhereThereIsNoModel) {
+  const Finished run =
+      shell(rbvi(2, "offline -case disks.yaml -initial_gap 0.5 -train grid:2 -out run"));
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_EQ(lines_with(run.err, "rbvi: "), 1) << run.err;
+  EXPECT_TRUE(contains(run.err, "zero")) << run.err;
+  EXPECT_FALSE(fs::exists("run/model.h5"));
+}
+
+/// One line and status 2, in turns on 1 and 2 ranks.
+TEST_F(TwoBodies, BadInputIsRefused) {
+  const std::string disks = "offline -case disks.yaml -out run ";
+  const std::pair<std::string, std::string> cases[] = {
+      {disks + "-multiplier p2", "use one of p0, p1"},
+      {disks + "-integration exact", "use one of intersection, direct"},
+      {disks + "-young -1", "Young's modulus must be positive, not -1"},
+      {disks + "-young 0", "Young's modulus must be positive, not 0"},
+      {disks + "-poisson_ratio 0.5", "Poisson's ratio must lie between -1 and 0.5, not 0.5"},
+      {disks + "-poisson_ratio -1", "Poisson's ratio"},
+      {disks + "-indentation deep", "'deep': not a number"},
+      {disks + "-load -25", "unknown option -load"},
+      {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
+      {"solve -case disks.yaml -mu 1 -hf_method vi", "use -hf_method active_set or uzawa"},
+      {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}};
+  int ranks = 1;
+  for (const auto &[arguments, part] : cases) {
+    ranks = 3 - ranks;
+    const Finished run = shell(rbvi(ranks, arguments));
+    SCOPED_TRACE(arguments + ": status " + std::to_string(run.status) + "\n" + run.err);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(lines_with(run.err, "rbvi: "), 1);
+    EXPECT_TRUE(contains(run.err, part)) << "expected: " << part;
+    EXPECT_FALSE(contains(run.err, "PETSC ERROR"));
+    EXPECT_TRUE(ranks > 1 || std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    EXPECT_FALSE(fs::exists("run"));
+  }
+}
+
+/// The box of the radius is the user's.
+TEST_F(TwoBodies, TheBoxCanBeWider) {
+  const Finished run =
+      shell(rbvi(1, "offline -case disks.yaml -radius 0.5,1.4 -train grid:3 -out run"));
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(shell(rbvi_online("run/model.h5 --mu 0.55")).status, 0);
+  const Finished outside = shell(rbvi_online("run/model.h5 --mu 0.45"));
+  EXPECT_EQ(outside.status, 2);
+  EXPECT_TRUE(contains(outside.err, "outside [0.5, 1.4]")) << outside.err;
+}
+
+} // namespace
+} // namespace rbvi

@@ -1,0 +1,232 @@
+// Two bodies from snapshots to answers: reproduction, errors, stability, ranks, and training sets
+// with little or no contact.
+#include "reduced.hpp"
+
+#include "rbvi/check/stability_report.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+namespace rbvi {
+namespace {
+
+using namespace testing_reduced;
+
+/// Nine radii of two_disks and four others, solved once.
+struct NineDisks : testing::Test {
+  static inline std::unique_ptr<Reduced> r;
+  static inline std::vector<Sample> unseen;
+
+  static void SetUpTestSuite() {
+    r = std::make_unique<Reduced>(make_scene("two_disks"), "grid:9");
+    unseen = solve_all(r->problem, parse_set(r->problem.scene().parameters, "random:4:7"));
+  }
+  static void TearDownTestSuite() { r.reset(); }
+};
+
+ReduceOptions with(ConeType type, double pod = 1e-12, double cone = 0) {
+  ReduceOptions options;
+  options.pod.tolerance = pod;
+  options.cone.type = type;
+  options.cone.tolerance = cone;
+  return options;
+}
+
+TEST_F(NineDisks, ABasisOfAllSnapshotsReturnsThem) {
+  for (const ConeType type : {ConeType::nodal, ConeType::hybrid, ConeType::mcpg}) {
+    SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
+    r->reduce(with(type));
+    EXPECT_EQ(r->model.modes, 9);
+    EXPECT_EQ(r->model.slave_nodes, 561);
+    EXPECT_EQ(r->model.a.size(), 1);
+    EXPECT_EQ(r->model.b.size() + r->model.g.size() + r->model.f.size(), 0);
+    EXPECT_NO_THROW(check_model(r->model));
+    const ModelErrors errors = r->errors_at(r->samples);
+    EXPECT_EQ(errors.failed, 0);
+    EXPECT_LE(errors.u.maxCoeff(), 1e-9);
+    EXPECT_LE(errors.lambda.maxCoeff(), 1e-6);
+    EXPECT_LE(errors.kkt_residual, 1e-10);
+    OnlineSolver online(r->model);
+    for (const Sample &sample : r->samples) {
+      const ReducedSolution answer = online.solve(sample.mu);
+      const Outputs out = online.outputs(sample.mu, answer);
+      EXPECT_NEAR(*out.energy, *sample.outputs.energy, 1e-8);
+      EXPECT_NEAR(*out.normal_force, *sample.outputs.normal_force, 1e-7);
+      EXPECT_NEAR(*out.peak_pressure, *sample.outputs.peak_pressure, 1e-5);
+      EXPECT_NEAR(*out.max_penetration, *sample.outputs.max_penetration, 1e-7);
+      EXPECT_LE((online.field(answer) - sample.u).norm(), 1e-8 * sample.u.norm());
+    }
+  }
+}
+
+TEST_F(NineDisks, UnseenRadiiAreAnswered) {
+  struct Expected {
+    ConeType type;
+    double u, lambda;
+  };
+  for (const Expected &e :
+       {Expected{ConeType::mcpg, 2e-3, 0.02}, Expected{ConeType::hybrid, 2e-3, 0.012}}) {
+    SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(e.type)]);
+    r->reduce(with(e.type, 1e-4, 1e-4));
+    EXPECT_EQ(r->model.free_modes > 0, e.type == ConeType::hybrid);
+    const ModelErrors errors = r->errors_at(unseen);
+    EXPECT_EQ(errors.failed, 0);
+    EXPECT_LE(errors.u.maxCoeff(), e.u);
+    EXPECT_LE(errors.lambda.maxCoeff(), e.lambda);
+    EXPECT_LE(errors.kkt_residual, 1e-10);
+    EXPECT_TRUE((errors.u.array() * (1 + 1e-9) >= errors.u_floor.array()).all());
+    EXPECT_TRUE((errors.lambda.array() + 1e-9 >= errors.lambda_floor.array()).all());
+  }
+}
+
+/// B changes with mu by more than a factor; the sharp bound holds all the same.
+TEST_F(NineDisks, TheSharpBoundHoldsAtEveryRadius) {
+  for (const double fraction : {0.5, 0.9}) {
+    ReduceOptions options = with(ConeType::hybrid, 1e-4, 1e-4);
+    options.pga.stability = fraction;
+    r->reduce(options);
+    ASSERT_GT(r->model.supremizers, 0);
+    const StabilityCheck check = make_stability_check(r->problem, r->model);
+    for (const Mu &mu : r->mus()) {
+      const Matrix t = supremizers_at(r->problem, check.space, check.dual, {mu}).front();
+      const StabilityBound bound = stability_bound(check.coordinates, t);
+      EXPECT_GE(infsup_constant(check.coordinates, t), (1 - 1e-9) * bound.sharp);
+      EXPECT_GE(bound.sharp, (fraction - 1e-9) * bound.on);
+    }
+    const std::vector<Mu> others = parse_set(r->problem.scene().parameters, "random:6:2");
+    const BoundCheck bound = check_bound(PETSC_COMM_WORLD, r->problem, check, others);
+    EXPECT_EQ(bound.exceptions, 0);
+    EXPECT_GE(bound.smallest, 1 - 1e-9);
+  }
+}
+
+TEST(ReducedDisks, AnswersDoNotDependOnTheNumberOfRanks) {
+  const Scene scene = make_scene("two_disks");
+  Reduced alone(scene, "grid:4", PETSC_COMM_SELF), world(scene, "grid:4");
+  for (const ConeType type : {ConeType::mcpg, ConeType::hybrid}) {
+    alone.reduce(with(type, 1e-4, 1e-4));
+    world.reduce(with(type, 1e-4, 1e-4));
+    EXPECT_EQ(alone.model.primal_size(), world.model.primal_size());
+    EXPECT_EQ(alone.model.generators, world.model.generators);
+    OnlineSolver a(alone.model), w(world.model);
+    for (const Mu &mu : parse_set(scene.parameters, "random:5:9")) {
+      const ReducedSolution one = a.solve(mu), many = w.solve(mu);
+      EXPECT_LE((a.field(one) - w.field(many)).norm(), 1e-9 * a.field(one).norm());
+      EXPECT_LE((a.multiplier(one) - w.multiplier(many)).norm(), 1e-8 * a.multiplier(one).norm());
+    }
+  }
+}
+
+TEST(ReducedDisks, OtherDiscretisationsReduceAsWell) {
+  for (const auto &[multiplier, integration] :
+       {std::pair{"p1", "intersection"}, std::pair{"p0", "direct"}, std::pair{"p1", "direct"}}) {
+    SCOPED_TRACE(std::string(multiplier) + " " + integration);
+    Reduced r(make_scene("two_disks", {{"multiplier", multiplier}, {"integration", integration}}),
+              "grid:3");
+    r.reduce(with(ConeType::hybrid));
+    EXPECT_EQ(r.model.dual_basis.rows(), std::string(multiplier) == "p1" ? 561 : 280);
+    const ModelErrors errors = r.errors_at(r.samples);
+    EXPECT_EQ(errors.failed, 0);
+    EXPECT_LE(errors.u.maxCoeff(), 1e-9);
+    EXPECT_LE(errors.lambda.maxCoeff(), 1e-6);
+  }
+}
+
+TEST(ReducedDisks, ASingleSampleReturnsItself) {
+  Reduced r(make_scene("two_disks"), "grid:1");
+  for (const ConeType type : {ConeType::cpg, ConeType::mcpg, ConeType::angle_greedy, ConeType::nmf,
+                              ConeType::nodal, ConeType::hybrid}) {
+    SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
+    r.reduce(with(type));
+    EXPECT_EQ(r.model.modes, 1);
+    EXPECT_GE(r.model.generators, 1);
+    const ModelErrors errors = r.errors_at(r.samples);
+    EXPECT_EQ(errors.failed, 0);
+    EXPECT_LE(errors.u.maxCoeff(), 1e-9);
+    EXPECT_LE(errors.lambda.maxCoeff(), 1e-7);
+  }
+}
+
+/// Every snapshot twice: there are no more generators than different snapshots.
+TEST(ReducedDisks, AGreedyStopsAtTheRankOfItsSnapshots) {
+  Reduced r(make_scene("two_disks"), "grid:3");
+  const std::vector<Sample> once = r.samples;
+  r.samples.insert(r.samples.end(), once.begin(), once.end());
+  for (const ConeType type : {ConeType::cpg, ConeType::mcpg, ConeType::angle_greedy}) {
+    SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
+    r.reduce(with(type, 0, 0));
+    EXPECT_EQ(r.model.modes, 3);
+    EXPECT_EQ(r.model.generators, 3);
+    EXPECT_TRUE(r.bases.cone.history.reason == "round-off reached" ||
+                r.bases.cone.history.reason == "tolerance reached")
+        << r.bases.cone.history.reason;
+    EXPECT_LE(r.errors_at(r.samples).lambda.maxCoeff(), 1e-7);
+  }
+}
+
+/// The blocks of the patch test, drawn apart by 0.04: below that indentation nothing touches.
+Scene blocks_apart() {
+  Scene scene = make_scene("patch");
+  scene.map = [touching = scene.map](const Mu &mu, const Point &x) {
+    Point image = touching(mu, x);
+    if (x[1] > 0) image[1] += 0.04;
+    return image;
+  };
+  return scene;
+}
+
+TEST(ReducedBlocks, SamplesWithoutContactTakePart) {
+  Reduced r(blocks_apart(), "grid:7"); // indentation 0.01, 0.025, 0.04 (just touching), ..., 0.1
+  EXPECT_EQ(r.samples.front().lambda.norm(), 0);
+  EXPECT_GT(r.samples.back().lambda.minCoeff(), 0);
+  for (const ConeType type : {ConeType::mcpg, ConeType::nodal, ConeType::hybrid}) {
+    SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
+    r.reduce(with(type));
+    EXPECT_EQ(r.model.modes, 1) << "u is proportional to the approach that is left";
+    EXPECT_EQ(r.model.free_modes, 0) << "no node is always in contact";
+    OnlineSolver online(r.model, r.problem.scene());
+    for (const double indentation : {0.01, 0.03, 0.039, 0.041, 0.07, 0.1}) {
+      const ReducedSolution answer = online.solve({indentation});
+      const double pressure = 15 * 0.65 / (1.35 * 0.3) * std::max(0.0, indentation - 0.04);
+      const Vector lambda = online.multiplier(answer);
+      EXPECT_LE((lambda.array() - pressure).abs().maxCoeff(), 1e-8) << indentation;
+      const Outputs out = online.outputs({indentation}, answer);
+      EXPECT_NEAR(*out.normal_force, pressure, 1e-8);
+      EXPECT_LE(*out.max_penetration, 1e-9);
+    }
+  }
+}
+
+/// One direction of u and one of lambda: a model of one mode is exact. Every node is always in
+/// contact, so that a hybrid cone is modes alone.
+TEST(ReducedBlocks, OfThePatchTestAreExact) {
+  Reduced r(make_scene("patch"), "grid:3");
+  for (const ConeType type : {ConeType::mcpg, ConeType::hybrid}) {
+    r.reduce(with(type));
+    EXPECT_EQ(r.model.modes, 1);
+    EXPECT_EQ(r.model.generators, 1);
+    EXPECT_EQ(r.model.free_modes, type == ConeType::hybrid ? 1 : 0);
+    const std::vector<Sample> unseen = solve_all(r.problem, {{0.0123}, {0.077}});
+    const ModelErrors errors = r.errors_at(unseen);
+    EXPECT_LE(errors.u.maxCoeff(), 1e-10);
+    EXPECT_LE(errors.lambda.maxCoeff(), 1e-10);
+  }
+}
+
+TEST(ReducedDisks, WithoutAnyContactThereIsNoModel) {
+  Reduced r(make_scene("two_disks", {{"initial_gap", "0.5"}}), "grid:2");
+  try {
+    r.reduce({});
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    const std::string message = error.what();
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    EXPECT_NE(message.find("zero"), std::string::npos) << message;
+  }
+}
+
+} // namespace
+} // namespace rbvi

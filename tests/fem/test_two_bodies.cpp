@@ -1,0 +1,212 @@
+// Dirichlet conditions by component and the two contact curves: against the geometry of the quarter
+// discs, at any number of ranks.
+#include "rbvi/core/error.hpp"
+#include "rbvi/fem/contact_curves.hpp"
+#include "rbvi/par/gather.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <set>
+
+namespace rbvi {
+namespace {
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+struct Discs {
+  Scene scene = make_scene("two_disks");
+  Mesh mesh;
+  Dofs dofs;
+  explicit Discs(MPI_Comm comm = PETSC_COMM_WORLD, int refine = 0)
+      : mesh(make_mesh(comm, scene, {"", refine})), dofs(number_dofs(mesh, 2, scene.fixed)) {}
+};
+
+bool on_axis(const Point &x) {
+  return x[0] == 0;
+}
+
+bool on_flat_side(const Point &x) {
+  return std::abs(x[1]) == 1.5;
+}
+
+/// The message with which `work` is refused as bad input.
+std::string refusal(const std::function<void()> &work) {
+  try {
+    work();
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    return error.what();
+  }
+  ADD_FAILURE() << "accepted";
+  return "";
+}
+
+#define EXPECT_CONTAINS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST(FixedComponents, TheAxisHoldsXAndTheFlatSidesBoth) {
+  const Discs d;
+  for (std::size_t v = 0; v < d.mesh.points.size(); ++v) {
+    const Point &x = d.mesh.points[v];
+    EXPECT_EQ(d.dofs.free[2 * v] < 0, on_axis(x) || on_flat_side(x)) << x[0] << " " << x[1];
+    EXPECT_EQ(d.dofs.free[2 * v + 1] < 0, on_flat_side(x)) << x[0] << " " << x[1];
+  }
+}
+
+TEST(FixedComponents, AreCountedOnceWhereBoundariesMeet) {
+  const Discs d;
+  const SerialMesh serial = two_quarter_discs();
+  PetscInt axis = 0, flat = 0, both = 0;
+  for (const Point &x : serial.points) {
+    axis += on_axis(x);
+    flat += on_flat_side(x);
+    both += on_axis(x) && on_flat_side(x);
+  }
+  EXPECT_EQ(both, 2);
+  EXPECT_GT(axis, 20);
+  EXPECT_GT(flat, 20);
+  EXPECT_EQ(d.dofs.total, 2 * 6130);
+  EXPECT_EQ(d.dofs.total_free, d.dofs.total - axis - 2 * flat + both);
+  EXPECT_EQ(static_cast<PetscInt>(gather_all(d.mesh.comm, d.dofs.natural_owned, MPIU_INT).size()),
+            d.dofs.total_free);
+}
+
+/// Rank after rank, each owner numbers its free dofs without gaps, and every ghost knows the number
+/// that its owner gave, whichever of its components are fixed.
+TEST(FixedComponents, GhostsHaveTheRowsOfTheirOwners) {
+  const Discs d;
+  const std::vector<PetscInt> natural_of_row =
+      gather_all(d.mesh.comm, d.dofs.natural_owned, MPIU_INT);
+  EXPECT_EQ(std::set<PetscInt>(natural_of_row.begin(), natural_of_row.end()).size(),
+            natural_of_row.size());
+  int ghosts = 0, ranks = 1;
+  for (std::size_t v = 0; v < d.mesh.points.size(); ++v)
+    for (std::size_t c = 0; c < 2; ++c) {
+      const PetscInt row = d.dofs.free[2 * v + c];
+      if (row < 0) continue;
+      EXPECT_EQ(natural_of_row.at(at(row)),
+                2 * d.mesh.natural_vertex[v] + static_cast<PetscInt>(c));
+      const bool owned =
+          row >= d.dofs.first_free &&
+          row < d.dofs.first_free + static_cast<PetscInt>(d.dofs.natural_owned.size());
+      EXPECT_EQ(owned, d.mesh.owned_vertex[v]);
+      ghosts += owned ? 0 : 1;
+    }
+  MPI_Allreduce(MPI_IN_PLACE, &ghosts, 1, MPI_INT, MPI_SUM, d.mesh.comm);
+  MPI_Comm_size(d.mesh.comm, &ranks);
+  EXPECT_TRUE(ranks != 2 || ghosts == 0) << "each rank has one body";
+  EXPECT_TRUE(ranks < 3 || ghosts > 0);
+}
+
+TEST(FixedComponents, NoListMeansAllAndTheOrderDoesNotMatter) {
+  const Discs d;
+  const Dofs listed = number_dofs(d.mesh, 2, {{"bottom", {1, 0}}, {"axis", {0}}, {"top", {0, 1}}});
+  EXPECT_EQ(listed.free, d.dofs.free);
+  const Dofs none = number_dofs(d.mesh, 2, {});
+  EXPECT_EQ(none.total_free, none.total);
+}
+
+TEST(FixedComponents, OthersThanTheDisplacementHasAreRefused) {
+  const Discs d;
+  for (const int component : {-1, 2}) {
+    const std::string message = refusal([&] {
+      (void)number_dofs(d.mesh, 2, {{"top", {}}, {"axis", {component}}});
+    });
+    EXPECT_CONTAINS(message, "axis");
+    EXPECT_CONTAINS(message, std::to_string(component));
+  }
+}
+
+TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
+  for (const int refine : {0, 1}) {
+    const Discs d(PETSC_COMM_WORLD, refine);
+    const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, *d.scene.pair);
+    const Index nodes = (560 << refine) + 1;
+    ASSERT_EQ(curves.slave_nodes, nodes);
+    ASSERT_EQ(curves.points.size(), at(2 * nodes));
+    ASSERT_EQ(curves.natural_vertex.size(), at(2 * nodes));
+    for (Index i = 0; i < nodes; ++i) {
+      const double angle = std::numbers::pi / 4 * static_cast<double>(i) / (560 << refine);
+      const Point &slave = curves.points[at(i)], &master = curves.points[at(nodes + i)];
+      EXPECT_NEAR(slave[0], std::sin(angle), 1e-14);
+      EXPECT_NEAR(slave[1], 1.5 - std::cos(angle), 1e-14);
+      EXPECT_NEAR(master[0], slave[0], 1e-15);
+      EXPECT_NEAR(master[1], -slave[1], 1e-15);
+      if (i == 0) continue;
+      EXPECT_LT(curves.points[at(i) - 1][0], slave[0]);
+      EXPECT_LT(curves.points[at(nodes + i) - 1][0], master[0]);
+    }
+  }
+}
+
+/// The field with the value k at natural dof k shows which dofs the trace takes.
+TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
+  const Discs d;
+  const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, *d.scene.pair);
+  const Vector numbers = Vector::LinSpaced(d.dofs.total, 0, static_cast<double>(d.dofs.total - 1));
+  const Vector trace = restrict_to(curves.trace, from_natural(d.dofs, numbers).get());
+  ASSERT_EQ(trace.size(), 2 * 561);
+  for (Index i = 0; i < trace.size(); ++i)
+    EXPECT_EQ(trace[i], 2 * curves.natural_vertex[at(i)] + 1);
+}
+
+TEST(ContactCurves, AreTheSameOnAnyNumberOfRanks) {
+  const Discs world, alone(PETSC_COMM_SELF);
+  const ContactCurves many = make_contact_curves(world.mesh, world.dofs, *world.scene.pair);
+  const ContactCurves one = make_contact_curves(alone.mesh, alone.dofs, *alone.scene.pair);
+  EXPECT_EQ(many.slave_nodes, one.slave_nodes);
+  EXPECT_EQ(many.natural_vertex, one.natural_vertex);
+  EXPECT_EQ(many.points, one.points);
+  Vector field(alone.dofs.total);
+  for (Index i = 0; i < field.size(); ++i)
+    field[i] = std::sin(static_cast<double>(i));
+  EXPECT_EQ(restrict_to(many.trace, from_natural(world.dofs, field).get()),
+            restrict_to(one.trace, from_natural(alone.dofs, field).get()));
+  EXPECT_EQ(at(many.trace.size), many.points.size());
+}
+
+TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
+  const Discs d;
+  for (const std::string name : {"slave", "master"}) {
+    const auto curves_where = [&](int fixed) {
+      std::vector<FixedBoundary> conditions = d.scene.fixed;
+      conditions.push_back({name, {fixed}});
+      return make_contact_curves(d.mesh, number_dofs(d.mesh, 2, conditions), *d.scene.pair);
+    };
+    EXPECT_EQ(curves_where(0).points.size(), 2U * 561U);
+    const std::string message = refusal([&] { (void)curves_where(1); });
+    EXPECT_CONTAINS(message, "vertical displacement is fixed");
+    EXPECT_CONTAINS(message, "'" + name + "'");
+  }
+}
+
+TEST(ContactCurves, NeedAnEdge) {
+  Discs d;
+  d.mesh.boundary.at("master").assign(d.mesh.points.size(), false);
+  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, *d.scene.pair); }),
+                  "'master' has no edge");
+}
+
+TEST(ContactCurves, NeedToBeGraphsOverX) {
+  const Scene scene = make_scene("patch");
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+  const std::string message = refusal([&] {
+    (void)make_contact_curves(mesh, number_dofs(mesh, 2, {}), {"slave", "sides", {}});
+  });
+  EXPECT_CONTAINS(message, "'sides'");
+  EXPECT_CONTAINS(message, "same x");
+}
+
+TEST(ContactCurves, AreForTwoDimensions) {
+  Discs d;
+  d.mesh.dim = 3;
+  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, *d.scene.pair); }),
+                  "two dimensions");
+}
+
+} // namespace
+} // namespace rbvi

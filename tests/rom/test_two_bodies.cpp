@@ -1,0 +1,391 @@
+// Reduced models of two bodies: contact operators assembled online, outputs, files and VTU.
+#include "synthetic_pair.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/rom/online.hpp"
+#include "rbvi/rom/vtu.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <unistd.h>
+
+namespace rbvi {
+namespace {
+
+using synthetic::PairSizes;
+
+Scene scene_with(const std::string &multiplier, const std::string &integration = "intersection") {
+  return make_scene("two_disks", {{"multiplier", multiplier}, {"integration", integration}});
+}
+
+const Scene p0 = scene_with("p0"), p1 = scene_with("p1");
+
+const std::vector<Mu> radii{{0.7}, {0.83}, {1}, {1.3}};
+
+/// Returns at how many radii there is contact.
+int expect_agreement(const ReducedModel &model, const Scene &scene) {
+  int touching = 0;
+  OnlineSolver solver(model, scene);
+  for (const Mu &mu : radii) {
+    const ReducedSolution solution = solver.solve(mu);
+    const brute::Operators o = synthetic::pair_operators(model, scene, mu);
+    const brute::Answer exact = brute::brute_force_pair(o, model.free_modes);
+    touching += exact.x.norm() > 0;
+    EXPECT_LE((solution.u - exact.u).norm(), 1e-10 * exact.u.norm());
+    EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * exact.x.norm());
+    EXPECT_NEAR(solution.energy, 0.5 * exact.u.dot(o.a * exact.u), 1e-10 * solution.energy);
+    EXPECT_LE(solution.kkt_residual, 1e-11);
+  }
+  return touching;
+}
+
+TEST(OnlinePair, AgreesWithDenseOperatorsAndBruteForce) {
+  for (const std::string multiplier : {"p0", "p1"})
+    for (const std::string integration : {"intersection", "direct"}) {
+      const Scene scene = scene_with(multiplier, integration);
+      int touching = 0;
+      for (unsigned seed = 0; seed < 4; ++seed)
+        touching += expect_agreement(synthetic::random_pair_model({}, seed, scene), scene);
+      EXPECT_GE(touching, 12);
+    }
+}
+
+TEST(OnlinePair, WorksWithoutAMotion) {
+  Scene scene = make_scene("two_disks", {{"initial_gap", "-0.1"}});
+  scene.motion = nullptr;
+  EXPECT_GT(expect_agreement(synthetic::random_pair_model({}, 1, scene), scene), 0);
+}
+
+/// Rows that no generator touches are left out of the online products: an answer does not change.
+TEST(OnlinePair, RowsThatNoGeneratorTouchesDoNotMatter) {
+  ReducedModel model = synthetic::random_pair_model({4, 3, 2}, 3, p1);
+  model.dual_basis.topRows(2).setZero();
+  model.dual_basis.bottomRows(4).setZero();
+  EXPECT_EQ(expect_agreement(model, p1), 4);
+}
+
+/// Free modes close the gap whatever the sign; where they pull, the answer is refused.
+TEST(OnlinePair, FreeModesAreEquations) {
+  int answered = 0, refused = 0;
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    ReducedModel model = synthetic::random_pair_model({5, 3, 4}, seed, p0);
+    model.free_modes = 2;
+    OnlineSolver solver(model, p0);
+    for (const Mu &mu : radii) {
+      const brute::Operators o = synthetic::pair_operators(model, p0, mu);
+      const brute::Answer exact = brute::brute_force_pair(o, 2);
+      const Vector pressure = model.dual_basis * exact.x;
+      if (pressure.minCoeff() < -0.01 * pressure.maxCoeff()) {
+        EXPECT_THROW(solver.solve(mu), Error);
+        ++refused;
+        continue;
+      }
+      const ReducedSolution solution = solver.solve(mu);
+      EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * exact.x.norm());
+      EXPECT_LE((o.b * solution.u - o.g).tail(2).norm(), 1e-10 * o.g.norm());
+      ++answered;
+    }
+  }
+  EXPECT_GT(answered, 5);
+  EXPECT_GT(refused, 5);
+}
+
+/// The space of a query is V_N + S_R(mu), S_R(mu) spanned by the rows of B(mu) among the
+/// supremizers.
+TEST(OnlinePair, OnlineEnrichmentFollowsTheOperatorOfTheQuery) {
+  ReducedModel model = synthetic::random_pair_model({3, 6, 3}, 4, p0);
+  model.online_enriched = true;
+  OnlineSolver solver(model, p0);
+  for (const Mu &mu : radii) {
+    brute::Operators o = synthetic::pair_operators(model, p0, mu);
+    Matrix space = Matrix::Zero(9, 6);
+    space.topLeftCorner(3, 3).setIdentity();
+    space.bottomRightCorner(6, 3) = o.b.rightCols(6).transpose();
+    const brute::Operators small{space.transpose() * o.a * space, o.b * space, Vector::Zero(6),
+                                 o.g};
+    const brute::Answer exact = brute::brute_force_pair(small);
+    const ReducedSolution solution = solver.solve(mu);
+    EXPECT_LE((solution.u - space * exact.u).norm(), 1e-9 * solution.u.norm());
+    EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * exact.x.norm());
+  }
+}
+
+/// Height of a polygon at x.
+double height(const std::vector<Point> &curve, double x) {
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
+    if (curve[i][0] <= x && x <= curve[i + 1][0]) {
+      const double t = (x - curve[i][0]) / (curve[i + 1][0] - curve[i][0]);
+      return (1 - t) * curve[i][1] + t * curve[i + 1][1];
+    }
+  ADD_FAILURE() << x << " is beyond the curve";
+  return 0;
+}
+
+TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
+  const ReducedModel model = synthetic::random_pair_model({}, 5, p0);
+  OnlineSolver solver(model, p0);
+  for (const Mu &mu : radii) {
+    const ReducedSolution solution = solver.solve(mu);
+    const Vector w = solver.field(solution), gap = solver.contact_gap(mu, solution);
+    std::vector<Point> slave, master;
+    for (Index i = 0; i < model.contact_points.rows(); ++i) {
+      const Point x = point_of(model.contact_points, i);
+      Point moved = p0.map(mu, x);
+      moved[1] += p0.motion(mu, x)[1] + w[2 * model.contact_nodes[std::size_t(i)] + 1];
+      (i < model.slave_nodes ? slave : master).push_back(moved);
+    }
+    ASSERT_EQ(gap.size(), static_cast<Index>(solution.pair.paired.size()));
+    for (Index k = 0; k < gap.size(); ++k) {
+      const Point &x = slave[static_cast<std::size_t>(solution.pair.paired[std::size_t(k)])];
+      EXPECT_NEAR(gap[k], x[1] - height(master, x[0]), 1e-12);
+    }
+    const Outputs outputs = solver.outputs(mu, solution);
+    EXPECT_EQ(*outputs.max_penetration, std::max(0.0, -gap.minCoeff()));
+  }
+}
+
+/// A quarter is computed: force, energy and contact length are those of both images, the pressure
+/// is not doubled.
+TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
+  const ReducedModel model = synthetic::random_pair_model({}, 6, p0);
+  Scene quarter = p0;
+  quarter.mirror_images = 1;
+  OnlineSolver whole_solver(model, p0), quarter_solver(model, quarter);
+  const Mu mu{0.9};
+  const ReducedSolution solution = whole_solver.solve(mu);
+  const Outputs whole = whole_solver.outputs(mu, solution),
+                part = quarter_solver.outputs(mu, quarter_solver.solve(mu));
+  EXPECT_EQ(*whole.energy, 2 * *part.energy);
+  EXPECT_EQ(*whole.normal_force, 2 * *part.normal_force);
+  EXPECT_EQ(*whole.contact_measure, 2 * *part.contact_measure);
+  EXPECT_EQ(*whole.peak_pressure, *part.peak_pressure);
+  const Vector lambda = model.dual_basis * solution.x;
+  EXPECT_EQ(*part.energy, solution.energy);
+  EXPECT_NEAR(*part.normal_force, lambda.dot(solution.pair.weights), 1e-14 * *part.normal_force);
+  EXPECT_EQ(*part.peak_pressure, lambda.maxCoeff());
+  EXPECT_NEAR(*part.contact_measure, solution.pair.weights.sum(), 1e-14) << "lambda > 0 everywhere";
+  EXPECT_FALSE(whole.min_u);
+}
+
+TEST(OnlinePair, ACurveThatDoesNotFitTheMultipliersIsRefused) {
+  ReducedModel model = synthetic::random_pair_model({}, 7, p0);
+  EXPECT_THROW(OnlineSolver(model, p1), Error);
+  EXPECT_THROW(OnlineSolver(model, make_scene("membrane_obstacle")), Error);
+  const ReducedModel one_body = synthetic::random_model({}, 7);
+  EXPECT_THROW(OnlineSolver(one_body, p0), Error);
+  EXPECT_NO_THROW(OnlineSolver(model, p0));
+}
+
+TEST(CheckPairModel, NamesWhatDoesNotFit) {
+  const auto complaint = [](auto change) -> std::string {
+    ReducedModel model = synthetic::random_pair_model({}, 8, p0);
+    change(model);
+    try {
+      check_model(model);
+    } catch (const Error &error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto expect_complaint = [&](const std::string &part, auto change) {
+    const std::string message = complaint(change);
+    EXPECT_NE(message.find(part), std::string::npos) << part << ": " << message;
+  };
+  using M = ReducedModel;
+  EXPECT_EQ(complaint([](M &) {}), "");
+  expect_complaint("slave_nodes", [](M &m) { m.slave_nodes = -1; });
+  expect_complaint("slave_nodes", [](M &m) { m.slave_nodes = 22; });
+  expect_complaint("b has no terms", [](M &m) { m.slave_nodes = 0; });
+  expect_complaint("two bodies have some", [](M &m) { m.b = m.a; });
+  expect_complaint("two bodies have some", [](M &m) { m.g = m.a; });
+  expect_complaint("contact/trace", [](M &m) { m.contact_trace.conservativeResize(12, 7); });
+  expect_complaint("contact/nodes", [](M &m) { m.contact_nodes.pop_back(); });
+  expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis.conservativeResize(5, 3); });
+  expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis(0, 0) = std::nan(""); });
+  expect_complaint("contact/lumped_weights", [](M &m) { m.lumped_weights.resize(5, 1); });
+  expect_complaint("fields/primal_basis", [](M &m) { m.primal_basis.conservativeResize(46, 6); });
+}
+
+/// The leading pair has the leading columns of the trace and of the dual basis; there is nothing of
+/// b to cut.
+TEST(LeadingPair, AnswersLikeItsOwnDenseOperators) {
+  const ReducedModel model = synthetic::random_pair_model({4, 3, 4}, 9, p0);
+  for (const auto &[n, r] : {std::pair{7, 4}, std::pair{6, 3}, std::pair{4, 2}}) {
+    const ReducedModel part = leading(model, n, r);
+    check_model(part);
+    EXPECT_EQ(part.slave_nodes, model.slave_nodes);
+    EXPECT_EQ(part.modes, 4);
+    EXPECT_EQ(part.supremizers, n - 4);
+    EXPECT_EQ(part.contact_trace, model.contact_trace.leftCols(n));
+    EXPECT_EQ(part.dual_basis, model.dual_basis.leftCols(r));
+    EXPECT_EQ(expect_agreement(part, p0), 4);
+  }
+}
+
+struct PairFile : testing::Test {
+  std::filesystem::path directory =
+      std::filesystem::path(testing::TempDir()) / ("rbvi_pair_" + std::to_string(::getpid()));
+  void SetUp() override { std::filesystem::create_directories(directory); }
+  void TearDown() override { std::filesystem::remove_all(directory); }
+};
+
+TEST_F(PairFile, ReturnsTheModel) {
+  for (const Scene &scene : {p0, p1}) {
+    const ReducedModel model = synthetic::random_pair_model({}, 10, scene);
+    write_model(model, directory / "model.h5");
+    const ReducedModel copy = read_model(directory / "model.h5"),
+                       bare = read_model(directory / "model.h5", false);
+    EXPECT_EQ(copy.slave_nodes, 12);
+    EXPECT_TRUE(copy.two_bodies());
+    EXPECT_EQ(copy.scene_options, scene.options);
+    EXPECT_EQ(copy.dual_basis, model.dual_basis);
+    EXPECT_EQ(copy.contact_trace, model.contact_trace);
+    EXPECT_EQ(copy.contact_points, model.contact_points);
+    EXPECT_EQ(copy.contact_nodes, model.contact_nodes);
+    EXPECT_EQ(copy.b.size(), 0);
+    EXPECT_EQ(copy.g.size(), 0);
+    EXPECT_EQ(copy.lumped_weights.rows(), model.lumped_weights.rows());
+    OnlineSolver from_file(copy), without_fields(bare), original(model);
+    const ReducedSolution solution = from_file.solve({0.77});
+    EXPECT_EQ(solution.u, original.solve({0.77}).u);
+    EXPECT_EQ(solution.u, without_fields.solve({0.77}).u);
+    EXPECT_EQ(from_file.contact_gap({0.77}, solution),
+              without_fields.contact_gap({0.77}, solution));
+    EXPECT_THROW(without_fields.field(solution), Error);
+  }
+}
+
+std::string slurp(const std::filesystem::path &path) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(path, std::ios::binary).rdbuf();
+  return bytes.str();
+}
+
+std::vector<double> data_array(const std::string &vtu, const std::string &name) {
+  const std::size_t begin = vtu.find('>', vtu.find("Name=\"" + name + "\"")) + 1;
+  std::istringstream text(vtu.substr(begin, vtu.find('<', begin) - begin));
+  return {std::istream_iterator<double>(text), {}};
+}
+
+/// Text of an element: its fields.
+std::string section(const std::string &vtu, const std::string &name) {
+  const std::size_t begin = vtu.find("<" + name + ">"), end = vtu.find("</" + name + ">");
+  return vtu.substr(begin, end - begin);
+}
+
+struct Written {
+  std::string bodies, contact;
+  Vector w, lambda, gap;
+  std::vector<Index> paired;
+};
+
+struct PairVtu : PairFile {
+  Written write(const ReducedModel &model, const Scene &scene, const Mu &mu) const {
+    OnlineSolver solver(model, scene);
+    const ReducedSolution solution = solver.solve(mu);
+    Written result{"",
+                   "",
+                   solver.field(solution),
+                   solver.multiplier(solution),
+                   solver.contact_gap(mu, solution),
+                   solution.pair.paired};
+    write_vtu(directory / "u.vtu", scene, mu, model, result.w, result.lambda);
+    result.bodies = slurp(directory / "u.vtu");
+    result.contact = slurp(directory / "u_contact.vtu");
+    return result;
+  }
+};
+
+TEST_F(PairVtu, ShowsBothBodiesWithTheirMotion) {
+  const ReducedModel model = synthetic::random_pair_model({}, 11, p0);
+  const Mu mu{0.8};
+  const Written file = write(model, p0, mu);
+  const Index nodes = model.mesh_points.rows();
+  const std::vector<double> points = data_array(file.bodies, "points"),
+                            u = data_array(file.bodies, "u");
+  ASSERT_EQ(points.size(), static_cast<std::size_t>(3 * nodes));
+  ASSERT_EQ(u.size(), points.size());
+  for (Index i = 0; i < nodes; ++i) {
+    const Point x = point_of(model.mesh_points, i), image = p0.map(mu, x);
+    const auto k = static_cast<std::size_t>(3 * i);
+    EXPECT_EQ(points[k], image[0]);
+    EXPECT_EQ(points[k + 1], image[1]);
+    EXPECT_EQ(u[k], file.w[2 * i]);
+    EXPECT_EQ(u[k + 1], (x[1] > 0 ? -0.09 : 0.09) + file.w[2 * i + 1]);
+    EXPECT_EQ(u[k + 2], 0);
+  }
+  EXPECT_EQ(data_array(file.bodies, "connectivity").size(), model.mesh_cells.size());
+}
+
+/// What lies on the contact curve at mu = 0.8, where the slave arc reaches beyond the master arc.
+void expect_curve(const Written &file, const ReducedModel &model, const Scene &scene) {
+  const std::size_t count = file.paired.size();
+  ASSERT_GT(count, 4U);
+  ASSERT_LT(count, 12U) << "every node has a partner";
+  const std::vector<double> points = data_array(file.contact, "points"),
+                            u = data_array(file.contact, "u"),
+                            gap = data_array(file.contact, "gap");
+  ASSERT_EQ(points.size(), 3 * count);
+  ASSERT_EQ(u.size(), 3 * count);
+  EXPECT_EQ(data_array(file.contact, "connectivity").size(), 2 * (count - 1));
+  EXPECT_EQ(data_array(file.contact, "types"), std::vector<double>(count - 1, 3));
+  for (std::size_t k = 0; k < count; ++k) {
+    const Index node = file.paired[k];
+    const Point image = scene.map({0.8}, point_of(model.contact_points, node));
+    EXPECT_EQ(points[3 * k], image[0]);
+    EXPECT_EQ(points[3 * k + 1], image[1]);
+    const Index dof = 2 * model.contact_nodes[static_cast<std::size_t>(node)];
+    EXPECT_EQ(u[3 * k], file.w[dof]);
+    EXPECT_EQ(u[3 * k + 1], -0.09 + file.w[dof + 1]);
+    EXPECT_NEAR(gap[k], file.gap[static_cast<Index>(k)], 1e-14);
+  }
+}
+
+TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
+  const ReducedModel model = synthetic::random_pair_model({}, 12, p0);
+  const Written file = write(model, p0, {0.8});
+  expect_curve(file, model, p0);
+  const std::vector<double> pressure = data_array(section(file.contact, "CellData"), "pressure");
+  ASSERT_EQ(pressure.size(), file.paired.size() - 1);
+  for (std::size_t k = 0; k < pressure.size(); ++k)
+    EXPECT_EQ(pressure[k], file.lambda[std::min<Index>(file.paired[k] / 2, 4)]);
+  EXPECT_EQ(section(file.contact, "PointData").find("pressure"), std::string::npos);
+}
+
+TEST_F(PairVtu, LinearPressureIsDrawnPerNode) {
+  const ReducedModel model = synthetic::random_pair_model({}, 12, p1);
+  const Written file = write(model, p1, {0.8});
+  expect_curve(file, model, p1);
+  const std::vector<double> pressure = data_array(section(file.contact, "PointData"), "pressure");
+  ASSERT_EQ(pressure.size(), file.paired.size());
+  for (std::size_t k = 0; k < pressure.size(); ++k)
+    EXPECT_EQ(pressure[k], file.lambda[file.paired[k]]);
+  EXPECT_EQ(section(file.contact, "CellData").find("pressure"), std::string::npos);
+}
+
+/// Where the slave curve is covered to its end, the last macro-edge has three edges.
+TEST_F(PairVtu, TheLastMacroEdgeMayHaveThreeEdges) {
+  const ReducedModel model = synthetic::random_pair_model({}, 12, p0);
+  const Written file = write(model, p0, {1.3});
+  const std::vector<double> pressure = data_array(section(file.contact, "CellData"), "pressure");
+  ASSERT_EQ(pressure.size(), 11U);
+  for (std::size_t k = 8; k < 11; ++k)
+    EXPECT_EQ(pressure[k], file.lambda[4]);
+  EXPECT_EQ(pressure[7], file.lambda[3]);
+}
+
+TEST_F(PairVtu, WithoutFieldsNothingIsWritten) {
+  ReducedModel model = synthetic::random_pair_model({}, 13, p0);
+  OnlineSolver solver(model, p0);
+  const ReducedSolution solution = solver.solve({1});
+  const Vector w = solver.field(solution), lambda = solver.multiplier(solution);
+  model.mesh_points.resize(0, 0);
+  model.mesh_cells.clear();
+  EXPECT_THROW(write_vtu(directory / "u.vtu", p0, {1}, model, w, lambda), Error);
+  EXPECT_FALSE(std::filesystem::exists(directory / "u.vtu"));
+  EXPECT_FALSE(std::filesystem::exists(directory / "u_contact.vtu"));
+}
+
+} // namespace
+} // namespace rbvi
