@@ -249,6 +249,20 @@ def pressure(run):
     save(figure, run, "pressure.png")
 
 
+def draw_constants(axis, x, beta):
+    """The four constants against x; one that vanishes is named instead."""
+    curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
+              ("beta_off", r"$\beta_{off}$", BLUE, "--"), ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
+    order = np.argsort(x)
+    for column, label, colour, style in curves:
+        if beta[column].max() > 1e-9:
+            axis.plot(x[order], np.maximum(beta[column][order], 1e-9), style, color=colour,
+                      label=label)
+        else:
+            axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
+                      transform=axis.transAxes)
+
+
 def infsup(run):
     """Inf-sup constants over the validation set, and what each supremizer brings."""
     beta, steps = table(run, "infsup.csv"), table(run, "stability.csv")

@@ -4,6 +4,7 @@ import csv
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import h5py
@@ -51,6 +52,19 @@ class Study:
                   *self.options)
         self.call("verify", "-out", run, "-verify_stability", "yes" if stability else "no")
         return run
+
+    def run_all(self, jobs):
+        """Every run directory by its key (variant, ...), from the arguments of run behind the
+        variant: one run of each variant first, for the samples, then two at a time."""
+        first = {key[0]: key for key in reversed(jobs)}
+        runs = {key: self.run(key[0], *jobs[key]) for key in first.values()}
+        with ThreadPoolExecutor(2) as pool:
+            started = {key: pool.submit(self.run, key[0], *job) for key, job in jobs.items()}
+            for key, future in started.items():
+                runs[key] = future.result()
+                if len(runs) % 10 == 0:
+                    print(f"{len(runs)} of {len(jobs)} runs", flush=True)
+        return runs
 
 
 def rows_of(path):

@@ -9,7 +9,6 @@ and OUT/figures/*.png. What is there is kept.
 """
 
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -159,15 +158,7 @@ def all_runs(study):
                 jobs[disc_map, pair, tolerance] = (
                     f"{pair[0]}.{pair[1]}.{tolerance}",
                     pair_options(pair) + ["-pga_tolerance", value], True)
-    runs = {}
-    for disc_map in MAPS:  # the samples first, by one process
-        runs[disc_map, "mcpg", "offline"] = study.run(disc_map, *jobs[disc_map, "mcpg", "offline"])
-    with ThreadPoolExecutor(2) as pool:
-        started = {key: pool.submit(study.run, key[0], *job) for key, job in jobs.items()}
-        for key, future in started.items():
-            runs[key] = future.result()
-            if len(runs) % 10 == 0:
-                print(f"{len(runs)} of {len(jobs)} runs", flush=True)
+    runs = study.run_all(jobs)
     for disc_map in MAPS:  # timed: alone
         for pair in PAIRS:
             for enrichment in ("online", "offline"):

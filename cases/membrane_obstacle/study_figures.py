@@ -5,8 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, contact_cells, draw_contact_field, history,
-                     log_axis, plt, table, whole_decades)
+from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, contact_cells, draw_constants,
+                     draw_contact_field, history, log_axis, plt, table, whole_decades)
 
 import numpy as np
 
@@ -106,18 +106,11 @@ def greedy(runs, directory):
 
 def constants(runs, directory):
     figure, axes = plt.subplots(2, 3, figsize=(12, 6), constrained_layout=True)
-    curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
-              ("beta_off", r"$\beta_{off}$", BLUE, "--"), ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
     for row, disc_map in zip(axes, ("similarity", "graded")):
         for axis, pair in zip(row, PAIRS):
             beta = table(runs[disc_map, pair, "loose"], "infsup.csv")
-            order = np.argsort(beta["beta_on"])
-            for column, label, colour, style in curves:
-                if beta[column].max() > 1e-9:
-                    axis.plot(beta[column][order], style, color=colour, label=label)
-                else:
-                    axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
-                              transform=axis.transAxes)
+            rank = np.argsort(np.argsort(beta["beta_on"])).astype(float)
+            draw_constants(axis, rank, beta)
             log_axis(axis, "validation parameters, sorted", "inf-sup constant",
                      f"{disc_map}, (N, R) = {pair}")
     axes[0, 0].legend()

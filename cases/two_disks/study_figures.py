@@ -5,8 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, history, log_axis, plt,
-                     read_vtu, table, whole_decades)
+from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, draw_constants, history,
+                     log_axis, plt, read_vtu, table, whole_decades)
 
 import numpy as np
 
@@ -104,18 +104,9 @@ def greedy(runs, directory):
 
 def constants(runs, directory):
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.4), constrained_layout=True)
-    curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
-              ("beta_off", r"$\beta_{off}$", BLUE, "--"), ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
     for axis, pair in zip(axes, PAIRS):
         beta = table(runs["intersection", pair, "loose"], "infsup.csv")
-        order = np.argsort(beta["radius"])
-        for column, label, colour, style in curves:
-            if beta[column].max() > 1e-9:
-                axis.plot(beta["radius"][order], np.maximum(beta[column][order], 1e-6), style,
-                          color=colour, label=label)
-            else:
-                axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
-                          transform=axis.transAxes)
+        draw_constants(axis, beta["radius"], beta)
         log_axis(axis, "radius", "inf-sup constant", f"(N, R) = {pair}, loose tolerance")
     axes[2].legend(fontsize=8)
     save(figure, directory, "infsup.png")

@@ -248,8 +248,14 @@ PairOperators couple_at(const Scene &scene, const Mu &all_parameters,
   for (const Point &x : points)
     mapped.push_back(scene.map(all_parameters, x));
   const auto master = mapped.begin() + slave_nodes;
-  PairOperators pair =
-      couple({mapped.begin(), master}, {master, mapped.end()}, scene.pair.value().discretisation);
+  PairOperators pair;
+  try {
+    pair =
+        couple({mapped.begin(), master}, {master, mapped.end()}, scene.pair.value().discretisation);
+  } catch (const Error &error) { // of this mu, not of the input
+    throw failure(std::string(error.what()) + ", mapped at " +
+                  describe(all_free(scene.parameters.all), all_parameters));
+  }
   if (!scene.motion) return pair;
   Vector motion(static_cast<Index>(points.size()));
   for (Index i = 0; i < motion.size(); ++i)

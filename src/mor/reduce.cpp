@@ -3,6 +3,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -148,6 +150,11 @@ std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, co
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTimes &times) {
   if (samples.empty()) throw failure("there is no sample to build a basis from");
+  if (std::all_of(samples.begin(), samples.end(),
+                  [](const Sample &sample) { return (sample.lambda.array() == 0).all(); }))
+    throw failure(
+        "all multipliers are zero: there is no contact at any training mu, and nothing to "
+        "reduce; widen the parameter box or move the obstacle");
   const Mu reference =
       options.reference.empty() ? centre(problem.scene().parameters) : options.reference;
   ReducedBases bases;

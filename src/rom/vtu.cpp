@@ -110,7 +110,10 @@ void write_curve(const std::filesystem::path &path, const Scene &scene, const Mu
   }
   const PairOperators pair = couple_at(scene, all, curves, model.slave_nodes);
   const auto count = static_cast<Index>(pair.paired.size());
-  if (count < 2) return; // nothing of the slave curve faces the master curve
+  if (count < 2) { // nothing of the slave curve faces the master curve
+    std::filesystem::remove(path);
+    return;
+  }
   const Vector gap = pair.nodal_gap - pair.nodal_b * vertical;
   const bool constant = scene.pair->discretisation.multiplier == MultiplierSpace::macro_edges;
   Vector moved(3 * count), pressure(constant ? count - 1 : count);

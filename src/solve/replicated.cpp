@@ -50,6 +50,7 @@ ReplicatedSolver::ReplicatedSolver(Mat a, const Trace &trace, const char *prefix
   RBVI_CALL(MatSetOption(whole_.get(), MAT_SPD, PETSC_TRUE));
   ksp_ = make_direct_solver(PetscObjectComm(reinterpret_cast<PetscObject>(whole_.get())), prefix);
   RBVI_CALL(KSPSetOperators(ksp_.get(), whole_.get(), whole_.get()));
+  RBVI_CALL(KSPSetUp(ksp_.get())); // here a failure is that of every rank
 }
 
 Matrix ReplicatedSolver::solve_columns(const Matrix &loads, Index first, Index count) {

@@ -337,6 +337,12 @@ ToolOptions read_options(MPI_Comm comm) {
   options.train = text_of("train", options.scene.training);
   options.valid = text_of("valid", options.scene.validation);
   options.hf = hf_options();
+  if (options.hf.method == HfMethod::vi && !options.scene.lumped)
+    throw bad_input(options.scene.pair
+                        ? "-hf_method vi needs a bound at each node, and two bodies bound "
+                          "differences of both: use active_set or uzawa"
+                        : "-hf_method vi needs a bound at each node: set -lumped yes, or use "
+                          "active_set");
   options.reduce = reduce_options(options.scene.parameters);
   options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
   options.out = text_of("out");

@@ -110,7 +110,7 @@ TEST_F(TwoBodies, WithoutContactEverywhereThereIsNoModel) {
       shell(rbvi(2, "offline -case disks.yaml -initial_gap 0.5 -train grid:2 -out run"));
   EXPECT_EQ(run.status, 1) << run.err;
   EXPECT_EQ(lines_with(run.err, "rbvi: "), 1) << run.err;
-  EXPECT_TRUE(contains(run.err, "zero")) << run.err;
+  EXPECT_TRUE(contains(run.err, "there is no contact at any training mu")) << run.err;
   EXPECT_FALSE(fs::exists("run/model.h5"));
 }
 
@@ -127,7 +127,7 @@ TEST_F(TwoBodies, BadInputIsRefused) {
       {disks + "-indentation deep", "'deep': not a number"},
       {disks + "-load -25", "unknown option -load"},
       {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
-      {"solve -case disks.yaml -mu 1 -hf_method vi", "use -hf_method active_set or uzawa"},
+      {disks + "-hf_method vi", "two bodies bound differences of both: use active_set or uzawa"},
       {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}};
   int ranks = 1;
   for (const auto &[arguments, part] : cases) {
@@ -141,6 +141,15 @@ TEST_F(TwoBodies, BadInputIsRefused) {
     EXPECT_TRUE(ranks > 1 || std::count(run.err.begin(), run.err.end(), '\n') == 1);
     EXPECT_FALSE(fs::exists("run"));
   }
+}
+
+/// A radius for which the map leaves no curve is one failed sample, the others go on.
+TEST_F(TwoBodies, AFlatDiskIsOneFailedSample) {
+  const Finished run =
+      shell(rbvi(2, "offline -case disks.yaml -radius 0,1.4 -train grid:3 -out run"));
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.out, "failed at radius=0: ")) << run.out;
+  EXPECT_TRUE(fs::exists("run/model.h5"));
 }
 
 /// The box of the radius is the user's.

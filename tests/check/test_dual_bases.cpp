@@ -182,7 +182,7 @@ TEST_P(DualBases, HybridBeatsTheConeOfTheSameSnapshots) {
 /// has a quarter of the error.
 TEST(HybridCone, BeatsAsManyGeneratorsFromMoreSnapshots) {
   const Scene scene = make_scene("membrane_obstacle");
-  Reduced r(scene, "grid:3,3,3"), more(scene, "grid:6,6,6");
+  Reduced r(scene, "grid:3,3,3", PETSC_COMM_SELF), more(scene, "grid:6,6,6", PETSC_COMM_SELF);
   const std::vector<Sample> unseen =
       solve_all(r.problem, parse_set(scene.parameters, "random:8:4"));
   ReduceOptions options;

@@ -1,6 +1,6 @@
 // Many right-hand sides on the contact dofs: every rank holds the whole matrix, factorises it by
-// itself and solves for its share of the columns. At the sizes of a reduction on a few ranks that is
-// several times faster than one factorisation spread over the ranks; its memory is that of one
+// itself and solves for its share of the columns. At the sizes of a reduction on a few ranks that
+// is several times faster than one factorisation spread over the ranks; its memory is that of one
 // serial factorisation per rank.
 #pragma once
 
