@@ -231,6 +231,10 @@ Index multiplier_count(Index slave_nodes, MultiplierSpace space) {
   return space == MultiplierSpace::nodes ? slave_nodes : std::max<Index>(1, (slave_nodes - 1) / 2);
 }
 
+Index macro_edge_of(Index edge, Index slave_nodes) {
+  return std::min(edge / 2, multiplier_count(slave_nodes, MultiplierSpace::macro_edges) - 1);
+}
+
 PairOperators couple(const Curve &slave, const Curve &master,
                      const PairDiscretisation &discretisation) {
   check_curve(slave, "slave");

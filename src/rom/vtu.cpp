@@ -124,7 +124,7 @@ void write_curve(const std::filesystem::path &path, const Scene &scene, const Mu
         displacements.segment(3 * model.contact_nodes[static_cast<std::size_t>(node)], 3);
     if (k + 1 < count) edges.insert(edges.end(), {static_cast<int>(k), static_cast<int>(k) + 1});
     if (k < pressure.size())
-      pressure[k] = lambda[constant ? std::min(node / 2, lambda.size() - 1) : node];
+      pressure[k] = lambda[constant ? macro_edge_of(node, model.slave_nodes) : node];
   }
   const Matrix points = mapped(scene, all, model.contact_points(pair.paired, Eigen::all));
   std::vector<Field> nodal{{"u", moved}, {"gap", gap}}, per_edge;

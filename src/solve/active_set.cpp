@@ -37,20 +37,18 @@ void Compliance::require(KSP ksp, const Trace &trace, Mat a,
   slot_.resize(static_cast<std::size_t>(trace.size), -1);
   std::vector<Index> fresh;
   for (const Index dof : contact_dofs)
-    if (slot_[static_cast<std::size_t>(dof)] < 0) {
-      slot_[static_cast<std::size_t>(dof)] = count_ + static_cast<Index>(fresh.size());
-      fresh.push_back(dof);
-    }
-  if (count_ + static_cast<Index>(fresh.size()) > columns_.cols())
-    columns_.conservativeResize(
-        trace.size, std::min<Index>(trace.size, 2 * (count_ + static_cast<Index>(fresh.size()))));
+    if (slot_[static_cast<std::size_t>(dof)] < 0) fresh.push_back(dof);
+  const Index needed = count_ + static_cast<Index>(fresh.size());
+  if (needed > columns_.cols())
+    columns_.conservativeResize(trace.size, std::min<Index>(trace.size, 2 * needed));
   for (std::size_t first = 0; first < fresh.size(); first += block) {
     const auto count = static_cast<Index>(std::min(block, fresh.size() - first));
     Matrix loads = Matrix::Zero(trace.size, count);
     for (Index k = 0; k < count; ++k)
       loads(fresh[first + static_cast<std::size_t>(k)], k) = 1;
     columns_.middleCols(count_, count) = responses(ksp, trace, a, loads);
-    count_ += count;
+    for (Index k = 0; k < count; ++k)
+      slot_[static_cast<std::size_t>(fresh[first + static_cast<std::size_t>(k)])] = count_++;
   }
 }
 

@@ -383,5 +383,16 @@ TEST(Couple, RefusesCurvesThatAreNotGraphs) {
   EXPECT_THROW(multiplier_points(folded, lac), Error);
 }
 
+TEST(MacroEdges, HoldTwoEdgesEachAndTheLastAThirdIfTheirNumberIsOdd) {
+  for (const Index nodes : {2, 3, 4, 9, 10}) {
+    std::vector<Index> edges(
+        static_cast<std::size_t>(multiplier_count(nodes, MultiplierSpace::macro_edges)), 0);
+    for (Index edge = 0; edge + 1 < nodes; ++edge)
+      ++edges[static_cast<std::size_t>(macro_edge_of(edge, nodes))];
+    for (std::size_t i = 0; i < edges.size(); ++i)
+      EXPECT_EQ(edges[i], i + 1 < edges.size() ? 2 : nodes - 1 - 2 * Index(i)) << nodes;
+  }
+}
+
 } // namespace
 } // namespace rbvi

@@ -31,6 +31,9 @@ struct PairOperators {
 /// last takes a third if their number is odd.
 Index multiplier_count(Index slave_nodes, MultiplierSpace space);
 
+/// The macro-edge that holds a slave edge.
+Index macro_edge_of(Index edge, Index slave_nodes);
+
 /// Integrals are in arc length of the slave curve. O(slave + master nodes).
 PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &master,
                      const PairDiscretisation &discretisation);
