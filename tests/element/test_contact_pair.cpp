@@ -384,13 +384,13 @@ TEST(Couple, RefusesCurvesThatAreNotGraphs) {
 }
 
 TEST(MacroEdges, HoldTwoEdgesEachAndTheLastAThirdIfTheirNumberIsOdd) {
-  for (const Index nodes : {2, 3, 4, 9, 10}) {
+  for (const Index count : {2, 3, 4, 9, 10}) {
     std::vector<Index> edges(
-        static_cast<std::size_t>(multiplier_count(nodes, MultiplierSpace::macro_edges)), 0);
-    for (Index edge = 0; edge + 1 < nodes; ++edge)
-      ++edges[static_cast<std::size_t>(macro_edge_of(edge, nodes))];
+        static_cast<std::size_t>(multiplier_count(count, MultiplierSpace::macro_edges)), 0);
+    for (Index edge = 0; edge + 1 < count; ++edge)
+      ++edges[static_cast<std::size_t>(macro_edge_of(edge, count))];
     for (std::size_t i = 0; i < edges.size(); ++i)
-      EXPECT_EQ(edges[i], i + 1 < edges.size() ? 2 : nodes - 1 - 2 * Index(i)) << nodes;
+      EXPECT_EQ(edges[i], i + 1 < edges.size() ? 2 : count - 1 - 2 * Index(i)) << count;
   }
 }
 
