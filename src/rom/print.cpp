@@ -66,10 +66,15 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "cone generators") << model.generators - model.free_modes << '\n';
   if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
   print_terms(out, "a", model.a);
-  print_terms(out, "b", model.b);
   print_terms(out, "f", model.f);
-  print_terms(out, "g", model.g);
-  label(out, "contact dofs") << model.dual_basis.rows() << '\n';
+  if (model.two_bodies()) {
+    label(out, "b, g") << "assembled for each mu on " << model.slave_nodes << " + "
+                       << model.contact_points.rows() - model.slave_nodes << " contact nodes\n";
+  } else {
+    print_terms(out, "b", model.b);
+    print_terms(out, "g", model.g);
+  }
+  label(out, "multipliers") << model.dual_basis.rows() << '\n';
   label(out, "mesh") << model.mesh_fingerprint << '\n';
   for (const auto &[name, value] : model.settings)
     label(out, name) << value << '\n';

@@ -3,6 +3,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/online.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/rom/vtu.hpp"
 
 #include <fstream>
@@ -175,6 +176,17 @@ TEST(OnlinePair, ACurveThatDoesNotFitTheMultipliersIsRefused) {
   const ReducedModel one_body = synthetic::random_model({}, 7);
   EXPECT_THROW(OnlineSolver(one_body, p0), Error);
   EXPECT_NO_THROW(OnlineSolver(model, p0));
+}
+
+TEST(PrintPairModel, SaysThatTheContactOperatorsAreAssembledOnline) {
+  const ReducedModel model = synthetic::random_pair_model({}, 7, p0);
+  std::ostringstream out;
+  print_model(out, model);
+  const std::string nodes = std::to_string(model.slave_nodes) + " + " +
+                            std::to_string(model.contact_points.rows() - model.slave_nodes) +
+                            " contact nodes";
+  EXPECT_NE(out.str().find("assembled for each mu on " + nodes), std::string::npos) << out.str();
+  EXPECT_EQ(out.str().find("terms of b"), std::string::npos) << out.str();
 }
 
 TEST(CheckPairModel, NamesWhatDoesNotFit) {
