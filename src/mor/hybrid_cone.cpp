@@ -42,7 +42,9 @@ ContactZones zones_of(const Matrix &snapshots, const SparseMatrix &product, int 
 
 /// E: permanent x moving nodes.
 Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
-  if (zones.permanent.empty()) return Matrix(0, static_cast<Index>(zones.moving.size()));
+  if (zones.permanent.empty() || zones.moving.empty())
+    return Matrix(static_cast<Index>(zones.permanent.size()),
+                  static_cast<Index>(zones.moving.size()));
   if (!condensed) throw failure("a hybrid cone needs columns of the condensed operator");
   const Matrix columns = condensed(zones.permanent);
   const Matrix block = columns(zones.permanent, Eigen::all);
