@@ -83,8 +83,10 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
       history.reason = "round-off reached";
     else if (modes == bound)
       history.reason = "size reached";
-    if (!history.reason.empty() && !splits(modes))
-      return factor.triangularView<Eigen::Upper>().solve(svd.matrixU().leftCols(modes));
+    if (history.reason.empty() || splits(modes)) continue;
+    Matrix columns = svd.matrixU().leftCols(modes);
+    if (modes > 0) factor.triangularView<Eigen::Upper>().solveInPlace(columns);
+    return columns;
   }
 }
 
