@@ -252,7 +252,8 @@ def pressure(run):
 def draw_constants(axis, x, beta):
     """The four constants against x; one that vanishes is named instead."""
     curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
-              ("beta_off", r"$\beta_{off}$", BLUE, "--"), ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
+              ("beta_off", r"$\beta_{off}$", BLUE, "--"),
+              ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
     order = np.argsort(x)
     for column, label, colour, style in curves:
         if beta[column].max() > 1e-9:
@@ -261,6 +262,14 @@ def draw_constants(axis, x, beta):
         else:
             axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
                       transform=axis.transAxes)
+
+
+def draw_greedy(axes, tight, loose, colour, label, floor):
+    """Largest sigma and smallest beta_off along the supremizers; a dot where a looser run ends.
+    Values of beta below `floor` are drawn there."""
+    for axis, column, least in zip(axes, ("sigma_max", "beta_min"), (1e-8, floor)):
+        axis.plot(tight["S"], np.maximum(tight[column], least), color=colour, label=label)
+        axis.plot(loose["S"][-1], loose[column][-1], "o", color=colour)
 
 
 def infsup(run):

@@ -126,5 +126,21 @@ def enrichment_costs(title, names, runs, keys, queries):
                     [f"{seconds[e]:.2f}" for e in ("online", "offline")] +
                     [f"{1e3 * queries * query[e]:.1f}" for e in ("online", "offline")] +
                     [threshold])
-    return markdown(title, ["variant", "(N, R)", "offline, on", "offline, off", f"{queries} queries, on",
-                            f"{queries} queries, off", "benefit threshold"], rows)
+    return markdown(title, ["variant", "(N, R)", "offline, on", "offline, off",
+                            f"{queries} queries, on", f"{queries} queries, off",
+                            "benefit threshold"], rows)
+
+
+def study_main(documentation, case, variants, work):
+    """study.py BIN OUT [OPTION...]. `work` makes the tables of a study, and a function that draws
+    its figures into a folder. Returns the exit status."""
+    arguments = sys.argv[1:]
+    if len(arguments) < 2 or arguments[0].startswith("-"):
+        print(documentation, file=sys.stderr)
+        return 2
+    study = Study(case, variants, *arguments)
+    tables, draw = work(study)
+    (study.out / "tables.md").write_text("\n".join(tables))
+    print((study.out / "tables.md").read_text())
+    draw(study.out / "figures")
+    return 0

@@ -15,8 +15,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from study_tools import (ENRICHMENTS, Study, enrichment_costs, history, markdown, short, summary,
-                         table)
+from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, short, study_main,
+                         summary, table)
 
 CASE = Path(__file__).parent / "published.yaml"
 MAPS = ("similarity", "graded")
@@ -168,22 +168,15 @@ def all_runs(study):
     return runs
 
 
-def main(arguments):
-    if len(arguments) < 2 or arguments[0].startswith("-"):
-        print(__doc__, file=sys.stderr)
-        return 2
-    study = Study(CASE, {disc_map: ["-disc_map", disc_map] for disc_map in MAPS}, *arguments)
+def work(study):
     runs = all_runs(study)
-    parts = [dual_bases(runs), sizes(runs)]
-    parts += [enrichments(runs, disc_map) for disc_map in MAPS]
-    parts += [modes(runs, disc_map) for disc_map in MAPS]
-    parts += [constants(runs), costs(runs)]
-    (study.out / "tables.md").write_text("\n".join(parts))
-    print((study.out / "tables.md").read_text())
+    tables = [dual_bases(runs), sizes(runs)]
+    tables += [enrichments(runs, disc_map) for disc_map in MAPS]
+    tables += [modes(runs, disc_map) for disc_map in MAPS]
+    tables += [constants(runs), costs(runs)]
     from study_figures import draw_all
-    draw_all(runs, summary, study.out / "figures")
-    return 0
+    return tables, lambda directory: draw_all(runs, summary, directory)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(study_main(__doc__, CASE, {name: ["-disc_map", name] for name in MAPS}, work))

@@ -6,7 +6,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, contact_cells, draw_constants,
-                     draw_contact_field, history, log_axis, plt, table, whole_decades)
+                     draw_contact_field, draw_greedy, history, log_axis, plt, table,
+                     whole_decades)
 
 import numpy as np
 
@@ -86,11 +87,7 @@ def greedy(runs, directory):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[disc_map, pair, "tight"], "stability.csv")
             loose = table(runs[disc_map, pair, "loose"], "stability.csv")
-            label = f"({pair[0]}, {pair[1]})"
-            row[0].plot(steps["S"], np.maximum(steps["sigma_max"], 1e-8), color=colour, label=label)
-            row[1].plot(steps["S"], np.maximum(steps["beta_min"], 1e-16), color=colour, label=label)
-            row[0].plot(loose["S"][-1], loose["sigma_max"][-1], "o", color=colour)
-            row[1].plot(loose["S"][-1], loose["beta_min"][-1], "o", color=colour)
+            draw_greedy(row[:2], steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-16)
             row[2].plot(steps["S"], steps["ratio_min"], color=colour)
             row[2].plot(steps["S"], steps["bound_min"], "--", color=colour)
             holds = steps["classic_min"] > 0

@@ -11,8 +11,7 @@
 // plane stiffness as it is, so that a does not depend on mu.
 #include "scene.hpp"
 
-#include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/element/scalar_forms.hpp"
+#include "rbvi/element/elastic_pair.hpp"
 
 #include <cmath>
 
@@ -37,8 +36,7 @@ Point on_circle(const Point &x) {
 
 Scene make(const SceneOptions &options) {
   Scene scene;
-  scene.dim = 2;
-  scene.components = 2;
+  set_elastic_pair(options, scene);
   scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1}});
   scene.training = "grid:81";
   scene.validation = "random:30:1";
@@ -55,26 +53,17 @@ Scene make(const SceneOptions &options) {
     return {0, x[1] > 0 ? -indentation : indentation, 0};
   };
   scene.mirror_images = 2;
-  scene.pair = PairRecipe{"slave", "master", pair_discretisation(options)};
-  scene.a = elasticity("", number_in(options, "young"), number_in(options, "poisson_ratio"));
-  scene.a_parameters = std::vector<int>{};
-  scene.v_product = h1_product(1, 2);
   return scene;
 }
 
 } // namespace
 
 SceneEntry two_disks() {
-  SceneEntry entry{"two_disks",
-                   "Hertz contact of two elastic half-disks, the lower one of free radius",
-                   pair_options(), make};
-  entry.options.insert(
-      entry.options.end(),
-      {{"indentation", "0.09", "displacement of each flat side towards the other disk", {}},
-       {"initial_gap", "0.001", "between the undeformed disks", {}},
-       {"young", "15", "Young's modulus", {}},
-       {"poisson_ratio", "0.35", "Poisson's ratio", {}}});
-  return entry;
+  return {"two_disks", "Hertz contact of two elastic half-disks, the lower one of free radius",
+          elastic_pair_options(
+              {{"indentation", "0.09", "displacement of each flat side towards the other disk", {}},
+               {"initial_gap", "0.001", "between the undeformed disks", {}}}),
+          make};
 }
 
 } // namespace rbvi

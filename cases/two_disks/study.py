@@ -5,8 +5,8 @@ the published basis pairs, and every dual basis.
     study.py BIN OUT [OPTION...]     e.g. cases/two_disks/study.py build/bin run/two_disks_study
 
 Options go to every run (a smaller -train; refined meshes and most timed runs are then left out).
-Runs rbvi offline and rbvi verify for each combination (two at a time, one rank each), then the timed
-ones alone, and writes OUT/tables.md and OUT/figures/*.png. What is there is kept.
+Runs rbvi offline and rbvi verify for each combination (two at a time, one rank each), then the
+timed ones alone, and writes OUT/tables.md and OUT/figures/*.png. What is there is kept.
 """
 
 import sys
@@ -14,8 +14,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from study_tools import (ENRICHMENTS, Study, enrichment_costs, history, markdown, rows_of, short,
-                         summary, table)
+from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, rows_of, short,
+                         study_main, summary, table)
 
 CASE = Path(__file__).parent / "published.yaml"
 VARIANTS = {
@@ -174,24 +174,17 @@ def all_runs(study):
     return runs
 
 
-def main(arguments):
-    if len(arguments) < 2 or arguments[0].startswith("-"):
-        print(__doc__, file=sys.stderr)
-        return 2
-    study = Study(CASE, VARIANTS, *arguments)
+def work(study):
     runs = all_runs(study)
     costs = enrichment_costs("Table 2.2 with our times: seconds offline, ms for 30 queries",
                              lambda key: [key[0], f"({key[1][0]}, {key[1][1]})"], runs,
                              timed(study), 30)
-    parts = [sizes(runs), dual_bases(runs), constants(runs), costs]
+    tables = [sizes(runs), dual_bases(runs), constants(runs), costs]
     if not study.options:
-        parts.insert(0, meshes(study))
-    (study.out / "tables.md").write_text("\n".join(parts))
-    print((study.out / "tables.md").read_text())
+        tables.insert(0, meshes(study))
     from study_figures import draw_all
-    draw_all(study, runs, study.out / "figures")
-    return 0
+    return tables, lambda directory: draw_all(study, runs, directory)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(study_main(__doc__, CASE, VARIANTS, work))

@@ -5,8 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, draw_constants, history,
-                     log_axis, plt, read_vtu, table, whole_decades)
+from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, draw_constants, draw_greedy,
+                     history, log_axis, plt, read_vtu, table, whole_decades)
 
 import numpy as np
 
@@ -89,11 +89,7 @@ def greedy(runs, directory):
         for pair, colour in zip(PAIRS, (BLUE, ORANGE, GREEN)):
             steps = table(runs[variant, pair, "tight"], "stability.csv")
             loose = table(runs[variant, pair, "loose"], "stability.csv")
-            row[0].plot(steps["S"], steps["sigma_max"], color=colour,
-                        label=f"({pair[0]}, {pair[1]})")
-            row[0].plot(loose["S"][-1], loose["sigma_max"][-1], "o", color=colour)
-            row[1].plot(steps["S"], np.maximum(steps["beta_min"], 1e-6), color=colour)
-            row[1].plot(loose["S"][-1], loose["beta_min"][-1], "o", color=colour)
+            draw_greedy(row, steps, loose, colour, f"({pair[0]}, {pair[1]})", 1e-6)
         row[0].set_ylim(0, 1.05)
         row[0].set_xlabel("supremizers")
         row[0].set_title(rf"largest $\sigma$, {variant}; dots: loose tolerance", loc="left")

@@ -237,7 +237,8 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   Snapshots a(triangle.keys(), different_stiffness(problem, training));
   Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), pair ? none : all),
       g(g_keys, pair ? none : all);
-  for (std::size_t p = 0; p < training.size(); ++p) {
+  for (const int number : load || !pair ? all : a.numbers) {
+    const auto p = static_cast<std::size_t>(number);
     problem.assemble(training[p]);
     a.add(p, [&] { return triangle.values(op.a); });
     f.add(p, [&] { return local_values(op.f); });

@@ -92,9 +92,12 @@ const Operators &Problem::assemble(const Mu &mu) {
   const Mu values = stiffness_values(all);
   const bool new_a = a_made_at_ != values;
   if (new_a || scene_.f) map_cells(scene_, all, mesh_, cells_);
-  if (new_a) assemble_matrix(scene_.a, all, mesh_, dofs_, cells_, a_.get());
+  if (new_a) {
+    a_made_at_.reset();
+    assemble_matrix(scene_.a, all, mesh_, dofs_, cells_, a_.get());
+    a_made_at_ = values;
+  }
   if (scene_.f) assemble_vector(scene_.f, all, mesh_, dofs_, cells_, f_.get());
-  a_made_at_ = values;
   operators_.a = a_.get();
   operators_.f = f_.get();
   return operators_;

@@ -103,6 +103,13 @@ TEST_F(NineDisks, TheSharpBoundHoldsAtEveryRadius) {
   }
 }
 
+void expect_samples_returned(Reduced &r, double u, double lambda) {
+  const ModelErrors errors = r.errors_at(r.samples);
+  EXPECT_EQ(errors.failed, 0);
+  EXPECT_LE(errors.u.maxCoeff(), u);
+  EXPECT_LE(errors.lambda.maxCoeff(), lambda);
+}
+
 TEST(ReducedDisks, AnswersDoNotDependOnTheNumberOfRanks) {
   const Scene scene = make_scene("two_disks");
   Reduced alone(scene, "grid:4", PETSC_COMM_SELF), world(scene, "grid:4");
@@ -128,10 +135,7 @@ TEST(ReducedDisks, OtherDiscretisationsReduceAsWell) {
               "grid:3");
     r.reduce(with(ConeType::hybrid));
     EXPECT_EQ(r.model.dual_basis.rows(), std::string(multiplier) == "p1" ? 561 : 280);
-    const ModelErrors errors = r.errors_at(r.samples);
-    EXPECT_EQ(errors.failed, 0);
-    EXPECT_LE(errors.u.maxCoeff(), 1e-9);
-    EXPECT_LE(errors.lambda.maxCoeff(), 1e-6);
+    expect_samples_returned(r, 1e-9, 1e-6);
   }
 }
 
@@ -143,10 +147,7 @@ TEST(ReducedDisks, ASingleSampleReturnsItself) {
     r.reduce(with(type));
     EXPECT_EQ(r.model.modes, 1);
     EXPECT_GE(r.model.generators, 1);
-    const ModelErrors errors = r.errors_at(r.samples);
-    EXPECT_EQ(errors.failed, 0);
-    EXPECT_LE(errors.u.maxCoeff(), 1e-9);
-    EXPECT_LE(errors.lambda.maxCoeff(), 1e-7);
+    expect_samples_returned(r, 1e-9, 1e-7);
   }
 }
 

@@ -4,6 +4,8 @@
 #include "../core/random_matrix.hpp"
 #include "rbvi/core/scene.hpp"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -14,6 +16,17 @@ using Curve = std::vector<Point>;
 
 inline Index size(const Curve &curve) {
   return static_cast<Index>(curve.size());
+}
+
+/// Height of a polygon at x, by a search of all its edges.
+inline double height_at(const Curve &curve, double x) {
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
+    if (curve[i][0] <= x && x <= curve[i + 1][0]) {
+      const double t = (x - curve[i][0]) / (curve[i + 1][0] - curve[i][0]);
+      return (1 - t) * curve[i][1] + t * curve[i + 1][1];
+    }
+  ADD_FAILURE() << x << " is beyond the curve";
+  return 0;
 }
 
 /// Edges of random length, and random heights within 0.1 of `height`.

@@ -2,6 +2,7 @@
 // rigid motion stands for.
 #include "rbvi/problem/problem.hpp"
 
+#include "../element/curves.hpp"
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -209,17 +210,6 @@ TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
   }
 }
 
-/// Height of a polygon at x, by a search of all its edges.
-double height(const std::vector<Point> &curve, double x) {
-  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
-    if (curve[i][0] <= x && x <= curve[i + 1][0]) {
-      const double t = (x - curve[i][0]) / (curve[i + 1][0] - curve[i][0]);
-      return (1 - t) * curve[i][1] + t * curve[i + 1][1];
-    }
-  ADD_FAILURE() << x << " is beyond the curve";
-  return 0;
-}
-
 /// nodal_gap - nodal_b w is the vertical distance of the deformed slave node to the deformed master
 /// polygon below it, motion included; abscissae stay as they are.
 TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
@@ -240,7 +230,7 @@ TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
     ASSERT_GT(gap.size(), 300);
     for (Index i = 0; i < gap.size(); ++i) {
       const Point &slave = deformed[static_cast<std::size_t>(i)];
-      EXPECT_NEAR(gap[i], slave[1] - height(master, slave[0]), 1e-12);
+      EXPECT_NEAR(gap[i], slave[1] - height_at(master, slave[0]), 1e-12);
     }
   }
 }

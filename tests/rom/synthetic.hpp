@@ -91,11 +91,8 @@ inline void scale_terms(AffineTerms &terms, const Form &form, const Scene &scene
     terms.reduced.col(q) /= theta[q];
 }
 
-/// Strictly convex; in the middle of the box u = 0 is feasible (g >= 0), and g is a third of the
-/// violation of the unconstrained minimum, so that about a third of the constraints bite.
-inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene &scene,
-                                 bool one_cell = false) {
-  std::mt19937 random(seed);
+/// Scene and sizes alone.
+template <class Sizes> ReducedModel named_model(const Scene &scene, const Sizes &sizes) {
   ReducedModel model;
   model.scene_name = scene.name;
   model.scene_options = scene.options;
@@ -103,6 +100,15 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene 
   model.modes = sizes.modes;
   model.supremizers = sizes.supremizers;
   model.generators = sizes.generators;
+  return model;
+}
+
+/// Strictly convex; in the middle of the box u = 0 is feasible (g >= 0), and g is a third of the
+/// violation of the unconstrained minimum, so that about a third of the constraints bite.
+inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene &scene,
+                                 bool one_cell = false) {
+  std::mt19937 random(seed);
+  ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size(), r = sizes.generators;
   model.a = random_terms(random, n * (n + 1) / 2, sizes.a, 4);
   Matrix a = Matrix::Zero(n, n);

@@ -47,13 +47,7 @@ inline void add_fans(const PairSizes &sizes, ReducedModel &model) {
 /// On the forms of two_disks; A has one term. The trace is that of the basis.
 inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, const Scene &scene) {
   std::mt19937 random(seed);
-  ReducedModel model;
-  model.scene_name = scene.name;
-  model.scene_options = scene.options;
-  model.parameters = scene.parameters;
-  model.modes = sizes.modes;
-  model.supremizers = sizes.supremizers;
-  model.generators = sizes.generators;
+  ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size();
   model.a = random_terms(random, n * (n + 1) / 2, 1, 1);
   model.a.reduced.col(0) = packed_lower(random_spd(random, n));

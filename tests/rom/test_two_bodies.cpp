@@ -1,4 +1,5 @@
 // Reduced models of two bodies: contact operators assembled online, outputs, files and VTU.
+#include "../element/curves.hpp"
 #include "synthetic_pair.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -112,17 +113,6 @@ TEST(OnlinePair, OnlineEnrichmentFollowsTheOperatorOfTheQuery) {
   }
 }
 
-/// Height of a polygon at x.
-double height(const std::vector<Point> &curve, double x) {
-  for (std::size_t i = 0; i + 1 < curve.size(); ++i)
-    if (curve[i][0] <= x && x <= curve[i + 1][0]) {
-      const double t = (x - curve[i][0]) / (curve[i + 1][0] - curve[i][0]);
-      return (1 - t) * curve[i][1] + t * curve[i + 1][1];
-    }
-  ADD_FAILURE() << x << " is beyond the curve";
-  return 0;
-}
-
 TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
   const ReducedModel model = synthetic::random_pair_model({}, 5, p0);
   OnlineSolver solver(model, p0);
@@ -139,7 +129,7 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
     ASSERT_EQ(gap.size(), static_cast<Index>(solution.pair.paired.size()));
     for (Index k = 0; k < gap.size(); ++k) {
       const Point &x = slave[static_cast<std::size_t>(solution.pair.paired[std::size_t(k)])];
-      EXPECT_NEAR(gap[k], x[1] - height(master, x[0]), 1e-12);
+      EXPECT_NEAR(gap[k], x[1] - height_at(master, x[0]), 1e-12);
     }
     const Outputs outputs = solver.outputs(mu, solution);
     EXPECT_EQ(*outputs.max_penetration, std::max(0.0, -gap.minCoeff()));

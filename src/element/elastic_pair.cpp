@@ -1,0 +1,25 @@
+#include "rbvi/element/elastic_pair.hpp"
+
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+
+namespace rbvi {
+
+std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own) {
+  std::vector<SceneOption> options = pair_options();
+  options.push_back({"young", "15", "Young's modulus", {}});
+  options.push_back({"poisson_ratio", "0.35", "Poisson's ratio", {}});
+  options.insert(options.end(), own.begin(), own.end());
+  return options;
+}
+
+void set_elastic_pair(const SceneOptions &options, Scene &scene) {
+  scene.dim = 2;
+  scene.components = 2;
+  scene.pair = PairRecipe{"slave", "master", pair_discretisation(options)};
+  scene.a = elasticity("", number_in(options, "young"), number_in(options, "poisson_ratio"));
+  scene.a_parameters = std::vector<int>{};
+  scene.v_product = h1_product(1, 2);
+}
+
+} // namespace rbvi
