@@ -65,6 +65,8 @@ def read_vtu(path):
         raise Missing(f"{path} is not a VTU file in ASCII") from None
     numbers = {name: np.array(a.text.split(), float) for name, a in arrays.items()}
     cells = numbers.pop("connectivity").astype(int).reshape(-1, int(numbers.pop("offsets")[0]))
+    if cells.shape[1] == 6:  # a quadratic triangle, drawn as four linear ones
+        cells = cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
     numbers.pop("types")
     coordinates = np.array(points.text.split(), float).reshape(-1, 3)
     fields = {name: v.reshape(-1, 3) if v.size == 3 * len(coordinates) else v
@@ -149,7 +151,7 @@ def draw_bodies(axis, path):
 
 
 def draw_pressure_curve(axis, path):
-    """Pressure along the slave curve, where it faces the other body."""
+    """Pressure, and with friction the tangential stress, along the contact curve."""
     points, edges, fields = read_vtu(path)
     if len(fields["pressure"]) == len(edges):
         axis.stairs(fields["pressure"], points[:, 0], color=BLUE)
@@ -157,6 +159,9 @@ def draw_pressure_curve(axis, path):
         axis.plot(points[:, 0], fields["pressure"], color=BLUE)
     axis.set_xlabel("x")
     axis.set_ylabel("pressure")
+    if "tangential_stress" in fields:
+        axis.plot(points[:, 0], fields["tangential_stress"], color=GREEN)
+        axis.set_ylabel("pressure; green: tangential stress")
     gap = axis.twinx()
     gap.plot(points[:, 0], fields["gap"], color=ORANGE, linewidth=1)
     gap.set_ylabel("gap", color=ORANGE)
@@ -184,21 +189,58 @@ def solution(run):
     save(figure, run, "solution.png")
 
 
-def bases(run):
-    """How fast the two bases converge, and how well conditioned the dual one is."""
+def on_support(run):
+    """Whether the model is of contact with a rigid support."""
+    path = run / "model.h5"
+    if not path.is_file():
+        raise Missing(f"{path} is missing: run rbvi offline -out {run} first")
+    with h5py.File(path, "r") as model:
+        return int(np.ravel(model["support/vertices"][()])[0]) > 0
+
+
+def support_panels(run):
+    """What a model of contact with a rigid support was made from, beside its modes."""
+    with h5py.File(run / "model.h5", "r") as model:
+        collocated = "gcns" in model["histories/values"]
+    tangential = history(run, "tangential/error")
+    panels = []
+    for name, title in (("normal_cone", "cone of the pressure"),
+                        ("bound_cone", "cone of what is left to the bound")):
+        error = history(run, name + "/error")
+        if len(error) > 0:
+            panels.append((np.arange(len(error)), error, "generators", "largest relative error",
+                           title))
+    tangential = tangential[tangential > 1e-14]
+    if len(tangential) > 0:
+        panels.append((np.arange(len(tangential)), tangential, "modes", "relative error",
+                       "modes of the multipliers"))
+    if collocated:
+        panels.append((history(run, "gcns/nodes"), history(run, "gcns/error"), "collocation nodes", "relative error",
+                       "e_GCNS"))
+    return panels
+
+
+def pair_panels(run):
+    """The dual basis of a reduced pair."""
     size, error = history(run, "cone/size"), history(run, "cone/error")
     orthogonality, condition = history(run, "cone/e_orth"), history(run, "cone/gram_condition")
-    pod = history(run, "pod/error")
-    pod = pod[pod > 1e-14]
-    panels = [(np.arange(len(pod)), pod, "modes N", "relative error", "displacement, POD"),
-              (size, error, "dual functions R", "largest relative error", "multiplier")]
+    panels = [(size, error, "dual functions R", "largest relative error", "multiplier")]
     if len(orthogonality) > 0:
         panels.append((size[1:], orthogonality, "dual functions R", "distance to the cone before",
                        "new generator, e_orth"))
     panels.append((size[1:], condition, "dual functions R", "condition number", "Gram matrix"))
-    figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels), 3),
+    return panels
+
+
+def bases(run):
+    """How fast the two bases converge, and how well conditioned the dual one is."""
+    pod = history(run, "pod/error")
+    pod = pod[pod > 1e-14]
+    panels = [(np.arange(len(pod)), pod, "modes N", "relative error", "displacement, POD"),
+              *(support_panels(run) if on_support(run) else pair_panels(run))]
+    figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels), 3), squeeze=False,
                                 constrained_layout=True)
-    for axis, (x, y, xlabel, ylabel, title) in zip(axes, panels):
+    for axis, (x, y, xlabel, ylabel, title) in zip(axes[0], panels):
         axis.plot(x, y, "." if len(x) < 30 else "-", color=BLUE)
         log_axis(axis, xlabel, ylabel, title)
     save(figure, run, "bases.png")
@@ -227,6 +269,13 @@ def pressure_curve(run, data):
     axes[0].legend()
     axes[1].plot(data["x"], data["reduced"] - data["high_fidelity"], color=ORANGE)
     axes[1].set_title("its error", loc="left")
+    if "reduced_tangential" in data.dtype.names:
+        axes[0].plot(data["x"], data["high_fidelity_tangential"], color=GREY, linewidth=3)
+        axes[0].plot(data["x"], data["reduced_tangential"], color=GREEN,
+                     label="reduced, tangential")
+        axes[0].legend()
+        axes[1].plot(data["x"], data["reduced_tangential"] - data["high_fidelity_tangential"],
+                     color=GREEN)
     for axis in axes:
         axis.set_xlabel("x")
     save(figure, run, "pressure.png")
@@ -274,6 +323,8 @@ def draw_greedy(axes, tight, loose, colour, label, floor):
 
 def infsup(run):
     """Inf-sup constants over the validation set, and what each supremizer brings."""
+    if on_support(run):
+        return  # verify does not make them
     beta, steps = table(run, "infsup.csv"), table(run, "stability.csv")
     order = np.argsort(beta["beta_on"])
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
@@ -347,9 +398,12 @@ def errors(run):
     """Errors of the reduced answers over the validation set, each curve sorted."""
     data = table(run, "errors.csv")
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
-    curves = (("_decorrelated", "without supremizers", ORANGE, "--"),
-              ("_enriched", "with supremizers", BLUE, "-"),
-              ("_floor", "projection on the basis", "black", ":"))
+    curves = [("_enriched", "with supremizers", BLUE, "-"),
+              ("_floor", "projection on the basis", "black", ":")]
+    if on_support(run):
+        curves[0] = ("_enriched", "reduced answers", BLUE, "-")
+    else:
+        curves.insert(0, ("_decorrelated", "without supremizers", ORANGE, "--"))
     for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", "multiplier")):
         for suffix, label, colour, style in curves:
             values = np.sort(data[field + suffix])
@@ -357,6 +411,9 @@ def errors(run):
             label += f", {missing} without an answer" if missing else ""
             axis.plot(values[np.isfinite(values)], style, color=colour, label=label)
         log_axis(axis, "validation parameters, sorted", "relative error", title)
+    if "tangential" in data.dtype.names:
+        axes[1].plot(np.sort(data["tangential"]), color=GREEN, label="tangential multiplier")
+        axes[1].legend()
     axes[0].legend()
     save(figure, run, "errors.png")
 

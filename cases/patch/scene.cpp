@@ -1,22 +1,37 @@
-// Two elastic blocks, 1 wide and 0.5 high, on top of each other, their meshes not matching. The
-// sides do not move sideways, the foot is fixed, the top goes down by the parameter. Exactly:
+// Patch tests: the exact stress is constant, and every formulation must reproduce it.
+//
+// Two bodies: elastic blocks, 1 wide and 0.5 high, on top of each other, their meshes not matching.
+// The sides do not move sideways, the foot is fixed, the top goes down by the parameter. Exactly:
 // uniaxial strain -indentation, pressure E (1 - nu) / ((1 + nu) (1 - 2 nu)) indentation.
+//
+// One body: the upper block on a flat rigid support with Coulomb friction. The top moves by
+// (shear, -indentation), the sides carry the tractions of the exact stress: strain -2 indentation
+// downwards and, with G the shear modulus and p the pressure, a shear of 2 shear where G (2 shear)
+// <= nu_F p, so that the foot sticks; else nu_F p / G, and the foot slips as a whole.
 #include "scene.hpp"
 
+#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/elastic_pair.hpp"
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+
+#include <algorithm>
+#include <cmath>
 
 namespace rbvi {
 
 namespace {
 
 constexpr double apart = 0.25; ///< of each reference block from the contact line y = 0
+constexpr double height = 0.5;
 
-Scene make(const SceneOptions &options) {
+/// Of all parameters of one body.
+enum Of { indentation, shear, friction };
+
+Scene make_two(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05}});
-  scene.training = "grid:5";
-  scene.validation = "random:5:1";
   scene.mesh = {
       "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}, ""};
   scene.map = [](const Mu &, const Point &x) -> Point {
@@ -24,16 +39,87 @@ Scene make(const SceneOptions &options) {
   };
   scene.fixed = {{"sides", {0}}, {"top", {}}, {"bottom", {}}};
   scene.motion = [](const Mu &mu, const Point &x) -> Point {
-    return {0, x[1] > 0 ? -mu[0] : 0, 0};
+    return {0, x[1] > 0 ? -mu[indentation] : 0, 0};
   };
+  return scene;
+}
+
+/// The exact stress on the right side: (sigma_xx, sigma_xy); on the left one its opposite.
+Point side_traction(const Lame &material, bool frictionless, const Mu &mu) {
+  const double strain = mu[indentation] / height;
+  const double pressure = (material.lambda + 2 * material.shear) * strain;
+  const double most = frictionless ? 0 : mu[friction] * pressure;
+  return {-material.lambda * strain, std::clamp(material.shear * mu[shear] / height, -most, most),
+          0};
+}
+
+/// int t . v over the edges of the cells on the sides x = 0 and x = 1.
+Form side_load(const Lame &material, bool frictionless, int degree) {
+  return {"", [=](const Mu &mu, const Cell &cell, double *values) {
+            const Point t = side_traction(material, frictionless, mu);
+            std::fill_n(values, 2 * nodes_per_cell(2, degree), 0.0);
+            for (std::size_t e = 0; e < 3; ++e) {
+              const auto i = static_cast<std::size_t>(simplex_edges[e][0]);
+              const auto j = static_cast<std::size_t>(simplex_edges[e][1]);
+              const Point &a = cell.mapped[i], &b = cell.mapped[j];
+              if (a[0] != b[0] || (a[0] != 0 && a[0] != 1)) continue;
+              const double share =
+                  (a[0] == 0 ? -1 : 1) * std::abs(a[1] - b[1]) / (degree == 2 ? 6 : 2);
+              for (std::size_t c = 0; c < 2; ++c) {
+                values[2 * i + c] += share * t[c];
+                values[2 * j + c] += share * t[c];
+                if (degree == 2) values[2 * (3 + e) + c] += 4 * share * t[c];
+              }
+            }
+          }};
+}
+
+Scene make_one(const SceneOptions &options) {
+  Scene scene;
+  const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
+  const bool frictionless = options.at("friction") == "none";
+  scene.components = 2;
+  scene.degree = options.at("degree") == "2" ? 2 : 1;
+  scene.support = SupportRecipe{};
+  scene.support->boundary = "contact";
+  scene.support->normal = [](const Mu &, const Point &) -> Point { return {0, -1, 0}; };
+  scene.support->gap = [](const Mu &, const Point &) { return 0.0; };
+  scene.support->friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
+  scene.support->friction.value = [](const Mu &mu) { return mu[friction]; };
+  scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05},
+                               {"shear", "m", 0, 0.2, 0.02},
+                               {"friction_coefficient", "", 0, 1, 0.3}});
+  scene.parameters.free = {indentation};
+  scene.mesh = {"one_block", {}, {"sides", "top", "contact"}, ""};
+  scene.map = [](const Mu &, const Point &x) { return x; };
+  scene.fixed = {{"top", {}}};
+  scene.motion = [](const Mu &mu, const Point &) -> Point {
+    return {mu[shear], -mu[indentation], 0};
+  };
+  scene.a = elasticity("", material, scene.degree);
+  scene.a_parameters = std::vector<int>{};
+  scene.f = side_load(material, frictionless, scene.degree);
+  scene.v_product = h1_product(1, 2, scene.degree);
+  return scene;
+}
+
+Scene make(const SceneOptions &options) {
+  Scene scene = options.at("bodies") == "one" ? make_one(options) : make_two(options);
+  scene.training = "grid:5";
+  scene.validation = "random:5:1";
   return scene;
 }
 
 } // namespace
 
 SceneEntry patch() {
-  return {"patch", "patch test: two blocks on top of each other, their meshes not matching",
-          elastic_pair_options(), make};
+  return {"patch",
+          "patch test: blocks on top of each other, or one on a rigid support with friction",
+          elastic_pair_options(
+              {{"bodies", "two", "two blocks, or one on a rigid support", {"one", "two"}},
+               {"degree", "1", "of the displacement of one body", {"1", "2"}},
+               {"friction", "coulomb", "law of friction of one body", {"none", "coulomb"}}}),
+          make};
 }
 
 } // namespace rbvi

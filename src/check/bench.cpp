@@ -134,7 +134,7 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
   Compliance compliance;
   Compliance *kept = constant_stiffness(problem.scene()) ? &compliance : nullptr;
   for (const Sample &truth : truths) {
-    const std::vector<Index> active = support(truth.lambda);
+    const Start start{support(truth.lambda), truth.lambda};
     std::vector<double> at{MPI_Wtime()};
     const Operators &op = problem.assemble(truth.mu);
     at.push_back(MPI_Wtime());
@@ -146,7 +146,7 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
     solve_linear(ksp.get(), op.f, u.get());
     solve_linear(ksp.get(), op.f, u.get());
     at.push_back(MPI_Wtime());
-    solve_active_set(ksp.get(), problem.trace(), op, active, kept);
+    solve_active_set(ksp.get(), problem.trace(), op, start, kept);
     const double both = MPI_Wtime() - at.back();
     for (std::size_t k = 0; k < 3; ++k)
       seconds[k].push_back(at[k + 1] - at[k]);

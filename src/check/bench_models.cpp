@@ -45,12 +45,13 @@ void store(const ModelErrors &errors, BenchRow &row) {
   row.lambda_max = errors.lambda.maxCoeff();
 }
 
-/// The pairs of the published tables that the model contains, and two smaller ones; with free modes
-/// all of the dual basis each time.
+/// The pairs of the published tables that the model contains, and two smaller ones; all of the dual
+/// basis each time where it has free modes or is nodal.
 std::vector<std::pair<int, int>> pairs_of(const ReducedModel &model) {
   std::vector<std::pair<int, int>> pairs;
   for (const auto &[n, r] : {std::pair{5, 10}, {10, 20}, {19, 50}, {51, 70}}) {
-    const int generators = model.free_modes > 0 ? model.generators : std::min(r, model.generators);
+    const bool whole = model.free_modes > 0 || model.support;
+    const int generators = whole ? model.generators : std::min(r, model.generators);
     if (n < model.modes) pairs.emplace_back(n, generators);
   }
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -82,7 +83,7 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     }
     add(leading(model, n, r), {});
   }
-  add(leading(model, model.modes, model.generators), {});
+  if (model.supremizers > 0) add(leading(model, model.modes, model.generators), {});
   add(model, {});
   const BenchRow whole = rows.back();
   const auto with = [&](const std::string &includes, const auto &answer) {

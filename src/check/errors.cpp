@@ -52,6 +52,23 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   return result;
 }
 
+/// |values(first .. first + count - 1)|_W.
+double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index count) {
+  Vector part = Vector::Zero(values.size());
+  part.segment(first, count) = values.segment(first, count);
+  return std::sqrt(part.dot(w * part));
+}
+
+/// Relative distances of the true multipliers to what the dual basis spans.
+Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const SparseMatrix &w) {
+  if (model.support) return Vector::Zero(truths.lambda_norm.size());
+  const Index bounded = model.generators - model.free_modes;
+  const Vector distance = distances_to_cone(truths.lambda, {model.dual_basis.leftCols(bounded)}, w,
+                                            {model.dual_basis.rightCols(model.free_modes)}) *
+                          truths.lambda_norm.maxCoeff();
+  return distance.cwiseQuotient(truths.lambda_norm.cwiseMax(1e-300));
+}
+
 /// The answer at one validation mu, nothing if the model has none.
 std::optional<ReducedSolution> answer_at(OnlineSolver &solver, const Truths &truths, Index p) {
   try {
@@ -67,17 +84,18 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
   const Scene &scene = problem.scene();
   const Mesh &mesh = problem.mesh();
   const Mu all = expand(scene.parameters, mu);
-  const Index corners = mesh.dim + 1, count = corners * scene.components;
+  const Index nodes = nodes_per_cell(mesh.dim, mesh.degree), count = nodes * scene.components;
   Matrix product_of_cell(count, count);
   Vector local(count);
   double square = 0;
   const MappedCells cells = reference_cells(mesh);
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     const Cell &cell = cells.cells[k];
-    for (Index i = 0; i < corners; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      const Point motion = scene.motion ? scene.motion(all, cell.reference[at]) : Point{};
-      const PetscInt node = mesh.natural_vertex[static_cast<std::size_t>(mesh.cells[k][at])];
+    const auto node_of = nodes_of(mesh, k);
+    for (Index i = 0; i < nodes; ++i) {
+      const auto at = static_cast<std::size_t>(node_of[static_cast<std::size_t>(i)]);
+      const Point motion = scene.motion ? scene.motion(all, mesh.points[at]) : Point{};
+      const PetscInt node = mesh.natural_node[at];
       for (Index c = 0; c < scene.components; ++c)
         local[i * scene.components + c] =
             motion[static_cast<std::size_t>(c)] + u[node * scene.components + c];
@@ -105,7 +123,11 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
                 Vector(count),
                 Vector(count),
                 Matrix(model.dual_basis.rows(), count),
-                Vector(count)};
+                Vector(count),
+                {}};
+  const Index normal = model.support ? model.support->vertices : model.dual_basis.rows();
+  const Index rest = model.dual_basis.rows() - normal;
+  if (rest > 0) truths.tangential_norm.resize(count);
   for (Index p = 0; p < count; ++p) {
     const Sample &sample = samples[static_cast<std::size_t>(p)];
     const Handle<Vec> u = from_natural(problem.dofs(), sample.u);
@@ -118,7 +140,9 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
     truths.remainder[p] = std::sqrt(std::max(0.0, product(v, u.get(), u.get(), scratch.get())));
     truths.mu.push_back(sample.mu);
     truths.lambda.col(p) = sample.lambda;
-    truths.lambda_norm[p] = std::sqrt(sample.lambda.dot(problem.w_product() * sample.lambda));
+    truths.lambda_norm[p] = part_norm(problem.w_product(), sample.lambda, 0, normal);
+    if (rest > 0)
+      truths.tangential_norm[p] = part_norm(problem.w_product(), sample.lambda, normal, rest);
   }
   return truths;
 }
@@ -128,7 +152,13 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
   using Clock = std::chrono::steady_clock;
   const Index count = static_cast<Index>(truths.mu.size()), k = model.primal_size();
   OnlineSolver solver(model);
-  ModelErrors errors{Vector(count), Vector(count), Vector(count), Vector(count), 0, 0, 0};
+  const Index rest = truths.tangential_norm.size() > 0 ? truths.lambda.rows() / 2 : 0;
+  const Index normal = truths.lambda.rows() - rest;
+  ModelErrors errors;
+  errors.u.resize(count);
+  errors.lambda.resize(count);
+  errors.tangential.resize(rest > 0 ? count : 0);
+  errors.u_floor.resize(count);
   std::vector<double> seconds;
   for (Index p = 0; p < count; ++p) {
     const Vector coordinates = truths.coordinates.col(p);
@@ -138,6 +168,7 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
     const double remainder = truths.remainder[p] * truths.remainder[p];
     errors.u_floor[p] = std::sqrt(std::max(0.0, outside) + remainder) / truths.u_norm[p];
     errors.u[p] = errors.lambda[p] = std::numeric_limits<double>::infinity();
+    if (rest > 0) errors.tangential[p] = errors.u[p];
     const auto start = Clock::now();
     const std::optional<ReducedSolution> answer = answer_at(solver, truths, p);
     if (!answer) {
@@ -153,15 +184,13 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       c.head(k) = answer->u;
     errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
     const Vector difference = solver.multiplier(*answer) - truths.lambda.col(p);
-    const double scale = truths.lambda_norm[p] > 0 ? truths.lambda_norm[p] : 1;
-    errors.lambda[p] = std::sqrt(difference.dot(w_product * difference)) / scale;
+    const auto relative = [](double error, double size) { return size > 0 ? error / size : error; };
+    errors.lambda[p] = relative(part_norm(w_product, difference, 0, normal), truths.lambda_norm[p]);
+    if (rest > 0)
+      errors.tangential[p] =
+          relative(part_norm(w_product, difference, normal, rest), truths.tangential_norm[p]);
   }
-  const Index bounded = model.generators - model.free_modes;
-  const Vector distance =
-      distances_to_cone(truths.lambda, {model.dual_basis.leftCols(bounded)}, w_product,
-                        {model.dual_basis.rightCols(model.free_modes)}) *
-      truths.lambda_norm.maxCoeff();
-  errors.lambda_floor = distance.cwiseQuotient(truths.lambda_norm.cwiseMax(1e-300));
+  errors.lambda_floor = multiplier_floor(model, truths, w_product);
   std::sort(seconds.begin(), seconds.end());
   if (!seconds.empty()) errors.seconds = seconds[seconds.size() / 2];
   return errors;
@@ -187,8 +216,13 @@ SubModel enriched_pair(const ReducedModel &model, int n, int r) {
 }
 
 ValidationErrors summary(const ModelErrors &errors) {
-  return {static_cast<int>(errors.u.size()), errors.u.mean(), errors.u.maxCoeff(),
-          errors.lambda.mean(), errors.lambda.maxCoeff()};
+  ValidationErrors result{static_cast<int>(errors.u.size()), errors.u.mean(), errors.u.maxCoeff(),
+                          errors.lambda.mean(), errors.lambda.maxCoeff()};
+  if (errors.tangential.size() > 0) {
+    result.tangential_mean = errors.tangential.mean();
+    result.tangential_max = errors.tangential.maxCoeff();
+  }
+  return result;
 }
 
 } // namespace rbvi

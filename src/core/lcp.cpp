@@ -1,5 +1,6 @@
 #include "rbvi/core/lcp.hpp"
 
+#include "lazy_columns.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -9,53 +10,6 @@
 namespace rbvi {
 
 namespace {
-
-/// The columns of H received so far, in order of arrival.
-class LazyColumns {
-public:
-  LazyColumns(const ColumnSource &source, Index n)
-      : source_(source), h_(n, 0), slot_(static_cast<std::size_t>(n), -1) {}
-
-  void require(const std::vector<Index> &active) {
-    std::vector<Index> fresh;
-    for (const Index i : active)
-      if (slot(i) < 0) fresh.push_back(i);
-    if (fresh.empty()) return;
-    const Matrix received = source_(fresh);
-    const Index count = static_cast<Index>(fresh.size());
-    if (received.rows() != h_.rows() || received.cols() != count || !received.allFinite())
-      throw failure("LCP: the column source returned a matrix of the wrong size or not finite");
-    if (count_ + count > h_.cols())
-      h_.conservativeResize(Eigen::NoChange,
-                            std::min(h_.rows(), std::max(count_ + count, 2 * h_.cols())));
-    h_.middleCols(count_, count) = received;
-    for (const Index i : fresh)
-      slot_[static_cast<std::size_t>(i)] = count_++;
-  }
-  Matrix block(const std::vector<Index> &active) const {
-    const Index count = static_cast<Index>(active.size());
-    Matrix result(count, count);
-    for (Index k = 0; k < count; ++k)
-      result.col(k) = h_.col(slot(active[static_cast<std::size_t>(k)]))(active);
-    return result;
-  }
-  /// H(:, active) x and |H(:, active)| |x|.
-  std::pair<Vector, Vector> multiply(const std::vector<Index> &active, const Vector &x) const {
-    Vector spread = Vector::Zero(count_);
-    for (std::size_t k = 0; k < active.size(); ++k)
-      spread[slot(active[k])] = x[static_cast<Index>(k)];
-    const auto h = h_.leftCols(count_);
-    return {h * spread, h.cwiseAbs() * spread.cwiseAbs()};
-  }
-  int count() const { return static_cast<int>(count_); }
-
-private:
-  Index slot(Index i) const { return slot_[static_cast<std::size_t>(i)]; }
-  const ColumnSource &source_;
-  Matrix h_;
-  std::vector<Index> slot_;
-  Index count_ = 0;
-};
 
 /// Basic solution of one active set: x = 0 outside, w = 0 inside.
 struct Basic {

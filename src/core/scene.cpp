@@ -2,6 +2,7 @@
 
 #include "../../cases/membrane_obstacle/scene.hpp"
 #include "../../cases/patch/scene.hpp"
+#include "../../cases/rigid_disk/scene.hpp"
 #include "../../cases/two_disks/scene.hpp"
 #include "rbvi/core/error.hpp"
 
@@ -59,7 +60,8 @@ double number_in(const SceneOptions &options, const std::string &name) {
 }
 
 const std::vector<SceneEntry> &scene_catalogue() {
-  static const std::vector<SceneEntry> catalogue{membrane_obstacle(), two_disks(), patch()};
+  static const std::vector<SceneEntry> catalogue{membrane_obstacle(), two_disks(), rigid_disk(),
+                                                 patch()};
   return catalogue;
 }
 

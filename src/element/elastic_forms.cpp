@@ -2,29 +2,105 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/element/geometry.hpp"
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/quadrature.hpp"
 
 namespace rbvi {
 
-Form elasticity(const std::string &region, double young, double poisson) {
+namespace {
+
+using Rule = std::vector<QuadraturePoint>;
+
+void linear_stiffness(const Cell &cell, const Lame &material, double *values) {
+  const auto [lambda, shear] = material;
+  const int dim = cell.dim;
+  const Simplex s = simplex(dim, cell.mapped);
+  const auto &g = s.gradients;
+  for (int i = 0; i <= dim; ++i)
+    for (int c = 0; c < dim; ++c)
+      for (int j = 0; j <= dim; ++j) {
+        const double both = shear * g.row(i).dot(g.row(j));
+        for (int d = 0; d < dim; ++d)
+          *values++ = s.volume * (lambda * g(i, c) * g(j, d) + shear * g(i, d) * g(j, c) +
+                                  (c == d ? both : 0));
+      }
+}
+
+/// The gradients are linear: the dim + 1 points of equal weights, exact for their products.
+template <int dim>
+void quadratic_stiffness(const Cell &cell, const Lame &material, const Rule &rule, double *values) {
+  constexpr int nodes = (dim + 1) * (dim + 2) / 2, size = nodes * dim;
+  const Simplex s = simplex(dim, cell.mapped);
+  Eigen::Matrix<double, size, dim + 1> gradients; // node and direction x point
+  std::array<std::array<double, 3>, nodes> at_point;
+  for (int q = 0; q <= dim; ++q) {
+    lagrange_gradients(dim, 2, rule[static_cast<std::size_t>(q)].barycentric, s, at_point);
+    for (int i = 0; i < nodes; ++i)
+      for (int c = 0; c < dim; ++c)
+        gradients(i * dim + c, q) =
+            at_point[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+  }
+  const Eigen::Matrix<double, size, size> products = gradients.lazyProduct(gradients.transpose());
+  const double weight = s.volume / (dim + 1);
+  const double lambda = weight * material.lambda, shear = weight * material.shear;
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j) {
+      const Eigen::Matrix<double, dim, dim> p = products.template block<dim, dim>(i * dim, j * dim);
+      const double both = shear * p.trace();
+      for (int c = 0; c < dim; ++c)
+        for (int d = 0; d < dim; ++d)
+          values[(i * dim + c) * size + j * dim + d] =
+              lambda * p(c, d) + shear * p(d, c) + (c == d ? both : 0);
+    }
+}
+
+/// `material(mu, cell)`.
+template <class Material>
+Form elasticity_of(const std::string &region, const Material &material, int degree) {
+  check_degree(degree);
+  if (degree == 1)
+    return {region, [material](const Mu &mu, const Cell &cell, double *values) {
+              linear_stiffness(cell, material(mu, cell), values);
+            }};
+  return {region,
+          [material, triangle = positive_quadrature(2),
+           tetrahedron = positive_quadrature(3)](const Mu &mu, const Cell &cell, double *values) {
+            if (cell.dim == 2)
+              quadratic_stiffness<2>(cell, material(mu, cell), triangle, values);
+            else
+              quadratic_stiffness<3>(cell, material(mu, cell), tetrahedron, values);
+          }};
+}
+
+Point centre(const Cell &cell) {
+  Point sum{};
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] += cell.reference[i][c];
+  for (double &coordinate : sum)
+    coordinate /= cell.dim + 1;
+  return sum;
+}
+
+} // namespace
+
+Lame lame(double young, double poisson) {
   if (!(young > 0)) throw bad_input("Young's modulus must be positive, not " + short_number(young));
   if (!(poisson > -1 && poisson < 0.5))
     throw bad_input("Poisson's ratio must lie between -1 and 0.5, not " + short_number(poisson));
-  const double lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  const double shear = young / (2 * (1 + poisson));
-  return {region, [lambda, shear](const Mu &, const Cell &cell, double *values) {
-            const int dim = cell.dim;
-            const Simplex s = simplex(dim, cell.mapped);
-            const auto &g = s.gradients;
-            for (int i = 0; i <= dim; ++i)
-              for (int c = 0; c < dim; ++c)
-                for (int j = 0; j <= dim; ++j) {
-                  const double both = shear * g.row(i).dot(g.row(j));
-                  for (int d = 0; d < dim; ++d)
-                    *values++ = s.volume * (lambda * g(i, c) * g(j, d) + shear * g(i, d) * g(j, c) +
-                                            (c == d ? both : 0));
-                }
-          }};
+  return {young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))};
+}
+
+Form elasticity(const std::string &region, const Lame &material, int degree) {
+  return elasticity_of(
+      region, [material](const Mu &, const Cell &) { return material; }, degree);
+}
+
+Form elasticity(const std::string &region,
+                const std::function<Lame(const Mu &, const Point &)> &material, int degree) {
+  return elasticity_of(
+      region, [material](const Mu &mu, const Cell &cell) { return material(mu, centre(cell)); },
+      degree);
 }
 
 } // namespace rbvi

@@ -1,5 +1,7 @@
 #include "rbvi/element/quadrature.hpp"
 
+#include <cmath>
+
 namespace rbvi {
 
 namespace {
@@ -40,6 +42,18 @@ std::vector<QuadraturePoint> simplex_quadrature(int dim, int degree) {
         point.barycentric[j] = (2.0 * k[j] + 1) / denominator;
       points.push_back(point);
     }
+  }
+  return points;
+}
+
+std::vector<QuadraturePoint> positive_quadrature(int dim) {
+  const double far = (1 - 1 / std::sqrt(dim + 2.0)) / (dim + 1), near = 1 - dim * far;
+  std::vector<QuadraturePoint> points;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i) {
+    QuadraturePoint point{{0, 0, 0, 0}, 1.0 / (dim + 1)};
+    for (std::size_t j = 0; j <= static_cast<std::size_t>(dim); ++j)
+      point.barycentric[j] = i == j ? near : far;
+    points.push_back(point);
   }
   return points;
 }

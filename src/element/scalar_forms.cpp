@@ -1,6 +1,6 @@
 #include "rbvi/element/scalar_forms.hpp"
 
-#include "rbvi/element/geometry.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"
 
 #include <algorithm>
@@ -17,6 +17,47 @@ const std::array<Point, 4> &vertices(const Cell &cell, Domain domain) {
 /// int phi_i phi_j over a simplex, relative to its volume (P1).
 double mass_entry(int dim, int i, int j) {
   return (i == j ? 2.0 : 1.0) / ((dim + 1) * (dim + 2));
+}
+
+/// Of all nodes of a cell, without a heap.
+using CellMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_nodes, most_nodes>;
+
+/// What the H1 product needs of every simplex of one dimension.
+struct ScalarCell {
+  int dim, degree;
+  CellMatrix mass;                   ///< relative to the volume
+  std::vector<QuadraturePoint> rule; ///< for products of gradients
+};
+
+ScalarCell scalar_cell(int dim, int degree) {
+  const Index nodes = nodes_per_cell(dim, degree);
+  ScalarCell cell{dim, degree, CellMatrix::Zero(nodes, nodes),
+                  degree == 1 ? simplex_quadrature(dim, 1) : positive_quadrature(dim)};
+  if (degree == 1) {
+    for (int i = 0; i <= dim; ++i)
+      for (int j = 0; j <= dim; ++j)
+        cell.mass(i, j) = mass_entry(dim, i, j);
+    return cell;
+  }
+  Vector phi(nodes);
+  for (const QuadraturePoint &q : simplex_quadrature(dim, 5)) {
+    lagrange_values(dim, degree, q.barycentric, {phi.data(), phi.data() + nodes});
+    cell.mass += q.weight * phi * phi.transpose();
+  }
+  return cell;
+}
+
+/// int grad phi_i . grad phi_j over a simplex, relative to its volume.
+CellMatrix stiffness(const ScalarCell &cell, const Simplex &geometry) {
+  std::array<std::array<double, 3>, most_nodes> gradients;
+  const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> g(gradients[0].data(), 3,
+                                                                     cell.mass.rows());
+  CellMatrix sum = CellMatrix::Zero(g.cols(), g.cols());
+  for (const QuadraturePoint &q : cell.rule) {
+    lagrange_gradients(cell.dim, cell.degree, q.barycentric, geometry, gradients);
+    sum += q.weight * g.transpose().lazyProduct(g);
+  }
+  return sum;
 }
 
 } // namespace
@@ -41,20 +82,23 @@ Form mass(const std::string &region, Domain domain, double factor, bool lumped) 
           }};
 }
 
-Form h1_product(double length, int components) {
-  return {"", [length, components](const Mu &, const Cell &cell, double *values) {
-            const Simplex s = simplex(cell.dim, cell.reference);
-            const int stride = (cell.dim + 1) * components;
-            std::fill_n(values, stride * stride, 0.0);
-            for (int i = 0; i <= cell.dim; ++i)
-              for (int j = 0; j <= cell.dim; ++j) {
-                const double entry =
-                    s.volume * (mass_entry(cell.dim, i, j) +
-                                length * length * s.gradients.row(i).dot(s.gradients.row(j)));
-                for (int c = 0; c < components; ++c)
-                  values[(i * components + c) * stride + j * components + c] = entry;
-              }
-          }};
+Form h1_product(double length, int components, int degree) {
+  check_degree(degree);
+  return {
+      "", [length, components, cells = std::array{scalar_cell(2, degree), scalar_cell(3, degree)}](
+              const Mu &, const Cell &cell, double *values) {
+        const ScalarCell &scalar = cells[static_cast<std::size_t>(cell.dim) - 2];
+        const Simplex s = simplex(cell.dim, cell.reference);
+        const CellMatrix gradients = stiffness(scalar, s);
+        const Index nodes = gradients.rows(), stride = nodes * components;
+        std::fill_n(values, stride * stride, 0.0);
+        for (Index i = 0; i < nodes; ++i)
+          for (Index j = 0; j < nodes; ++j) {
+            const double entry = s.volume * (scalar.mass(i, j) + length * length * gradients(i, j));
+            for (int c = 0; c < components; ++c)
+              values[(i * components + c) * stride + j * components + c] = entry;
+          }
+      }};
 }
 
 Form constant_load(const std::string &region, double value) {

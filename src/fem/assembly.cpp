@@ -12,14 +12,16 @@ bool in_region(const Mesh &mesh, const std::string &region, std::size_t cell) {
   return region.empty() || mesh.region.at(region)[cell];
 }
 
+using CellRows = std::array<PetscInt, std::size_t{3} * most_nodes>;
+
 /// Rows of the free dofs of one cell, -1 where fixed; returns how many dofs the cell has.
-std::size_t cell_rows(const Mesh &mesh, const Dofs &dofs, std::size_t cell,
-                      std::array<PetscInt, 12> &rows) {
+std::size_t cell_rows(const Mesh &mesh, const Dofs &dofs, std::size_t cell, CellRows &rows) {
   std::size_t count = 0;
   const auto components = static_cast<std::size_t>(dofs.components);
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i)
+  const auto nodes = nodes_of(mesh, cell);
+  for (std::size_t i = 0; i < nodes.size() && nodes[i] >= 0; ++i)
     for (std::size_t c = 0; c < components; ++c)
-      rows[count++] = dofs.free[static_cast<std::size_t>(mesh.cells[cell][i]) * components + c];
+      rows[count++] = dofs.free[static_cast<std::size_t>(nodes[i]) * components + c];
   return count;
 }
 
@@ -41,8 +43,9 @@ void map_cells(const Scene &scene, const Mu &mu, const Mesh &mesh, MappedCells &
   collectively(mesh.comm, [&] {
     std::vector<Point> mapped;
     mapped.reserve(mesh.points.size());
-    for (const Point &x : mesh.points)
-      mapped.push_back(scene.map(mu, x));
+    for (std::size_t v = 0; v < mesh.points.size() && mesh.natural_node[v] < mesh.total_vertices;
+         ++v)
+      mapped.push_back(scene.map(mu, mesh.points[v]));
     for (std::size_t i = 0; i < cells.cells.size(); ++i) {
       Cell &cell = cells.cells[i];
       for (std::size_t j = 0; j <= static_cast<std::size_t>(mesh.dim); ++j)
@@ -59,7 +62,7 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &r
   RBVI_CALL(MatSetSizes(matrix.get(), owned, owned, dofs.total_free, dofs.total_free));
   RBVI_CALL(MatSetType(matrix.get(), MATAIJ));
   std::vector<PetscInt> rows, columns;
-  std::array<PetscInt, 12> cell{};
+  CellRows cell{};
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     if (!in_region(mesh, region, k)) continue;
     const std::size_t count = cell_rows(mesh, dofs, k, cell);
@@ -79,7 +82,8 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &r
 
 void assemble_matrix(const Form &form, const Mu &mu, const Mesh &mesh, const Dofs &dofs,
                      const MappedCells &cells, Mat matrix) {
-  const std::size_t count = static_cast<std::size_t>((mesh.dim + 1) * dofs.components);
+  const auto count =
+      static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
   std::vector<PetscScalar> values;
   values.reserve(mesh.cells.size() * count * count);
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
@@ -94,8 +98,8 @@ void assemble_vector(const Form &form, const Mu &mu, const Mesh &mesh, const Dof
                      const MappedCells &cells, Vec vector) {
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
-  std::array<PetscInt, 12> rows{};
-  std::array<double, 12> values{};
+  CellRows rows{};
+  std::array<double, std::size_t{3} * most_nodes> values{};
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     if (!in_region(mesh, form.region, k)) continue;
     const std::size_t count = cell_rows(mesh, dofs, k, rows);

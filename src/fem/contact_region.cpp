@@ -27,7 +27,7 @@ Gathered gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<bool
     mine.numbers.push_back(mesh.natural_cell[k]);
     for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i) {
       const auto v = static_cast<std::size_t>(mesh.cells[k][i]);
-      mine.numbers.push_back(mesh.natural_vertex[v]);
+      mine.numbers.push_back(mesh.natural_node[v]);
       mine.points.insert(mine.points.end(), mesh.points[v].begin(), mesh.points[v].end());
       mine.fixed.push_back(dofs.free[v * static_cast<std::size_t>(dofs.components)] < 0);
     }
@@ -59,7 +59,7 @@ ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std:
   std::vector<PetscInt> natural_dofs;
   for (const auto &[number, vertex] : vertices) {
     dual_of[number] = static_cast<int>(region.points.size());
-    region.natural_vertex.push_back(number);
+    region.natural_node.push_back(number);
     region.points.push_back(vertex.first);
     for (int c = 0; c < region.components; ++c) {
       region.contact_dof.push_back(vertex.second ? -1 : static_cast<int>(natural_dofs.size()));

@@ -8,7 +8,7 @@ namespace rbvi {
 
 namespace {
 
-/// Fills the entries of vertices owned by other ranks with their owners' values.
+/// Fills the entries of nodes owned by other ranks with their owners' values.
 void share_with_ghosts(const Mesh &mesh, std::vector<PetscInt> &first_row) {
   int ranks = 1;
   MPI_Comm_size(mesh.comm, &ranks);
@@ -17,17 +17,17 @@ void share_with_ghosts(const Mesh &mesh, std::vector<PetscInt> &first_row) {
   RBVI_CALL(DMPlexGetChart(mesh.dm.get(), &begin, &end));
   std::vector<PetscInt> by_point(static_cast<std::size_t>(end), -1);
   for (std::size_t v = 0; v < first_row.size(); ++v)
-    by_point[static_cast<std::size_t>(mesh.dm_vertex[v])] = first_row[v];
+    by_point[static_cast<std::size_t>(mesh.dm_point[v])] = first_row[v];
   PetscSF sf = nullptr;
   RBVI_CALL(DMGetPointSF(mesh.dm.get(), &sf));
   const std::vector<PetscInt> roots = by_point;
   RBVI_CALL(PetscSFBcastBegin(sf, MPIU_INT, roots.data(), by_point.data(), MPI_REPLACE));
   RBVI_CALL(PetscSFBcastEnd(sf, MPIU_INT, roots.data(), by_point.data(), MPI_REPLACE));
   for (std::size_t v = 0; v < first_row.size(); ++v)
-    first_row[v] = by_point[static_cast<std::size_t>(mesh.dm_vertex[v])];
+    first_row[v] = by_point[static_cast<std::size_t>(mesh.dm_point[v])];
 }
 
-/// Per local vertex * components + component.
+/// Per local node * components + component.
 std::vector<bool> fixed_components(const Mesh &mesh, int components,
                                    const std::vector<FixedBoundary> &fixed) {
   const auto count = static_cast<std::size_t>(components);
@@ -55,30 +55,30 @@ Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBounda
   Dofs dofs;
   dofs.comm = mesh.comm;
   dofs.components = components;
-  dofs.total = mesh.total_vertices * components;
+  dofs.total = mesh.total_nodes * components;
   const std::vector<bool> is_fixed = fixed_components(mesh, components, fixed);
-  const std::size_t vertices = mesh.points.size(), count = static_cast<std::size_t>(components);
+  const std::size_t nodes = mesh.points.size(), count = static_cast<std::size_t>(components);
 
   PetscInt owned = 0;
   for (std::size_t i = 0; i < is_fixed.size(); ++i)
-    if (mesh.owned_vertex[i / count] && !is_fixed[i]) ++owned;
+    if (mesh.owned_node[i / count] && !is_fixed[i]) ++owned;
   MPI_Exscan(&owned, &dofs.first_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
   MPI_Allreduce(&owned, &dofs.total_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
 
-  std::vector<PetscInt> first_row(vertices, -1);
+  std::vector<PetscInt> first_row(nodes, -1);
   PetscInt next = dofs.first_free;
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (!mesh.owned_vertex[v]) continue;
+  for (std::size_t v = 0; v < nodes; ++v) {
+    if (!mesh.owned_node[v]) continue;
     first_row[v] = next;
     for (std::size_t c = 0; c < count; ++c) {
       if (is_fixed[v * count + c]) continue;
-      dofs.natural_owned.push_back(mesh.natural_vertex[v] * components + static_cast<PetscInt>(c));
+      dofs.natural_owned.push_back(mesh.natural_node[v] * components + static_cast<PetscInt>(c));
       ++next;
     }
   }
   share_with_ghosts(mesh, first_row);
 
-  for (std::size_t v = 0; v < vertices; ++v) {
+  for (std::size_t v = 0; v < nodes; ++v) {
     PetscInt row = first_row[v];
     for (std::size_t c = 0; c < count; ++c)
       dofs.free.push_back(is_fixed[v * count + c] ? -1 : row++);

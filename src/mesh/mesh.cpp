@@ -7,6 +7,7 @@
 #include <petscdmplex.h>
 #include <petscsf.h>
 
+#include <algorithm>
 #include <numeric>
 #include <string_view>
 
@@ -34,19 +35,32 @@ struct StarForest {
 
 struct Generator {
   std::string_view name;
-  SerialMesh (*make)();
+  SerialMesh (*make)(const MeshRecipe &);
+  bool takes_edges = false;
 };
 
-constexpr std::array generators{Generator{"square_with_disc", square_with_disc},
-                                Generator{"two_quarter_discs", two_quarter_discs},
-                                Generator{"two_blocks", two_blocks}};
+constexpr std::array generators{
+    Generator{"square_with_disc", [](const MeshRecipe &) { return square_with_disc(); }},
+    Generator{"two_quarter_discs", [](const MeshRecipe &) { return two_quarter_discs(); }},
+    Generator{"two_blocks", [](const MeshRecipe &) { return two_blocks(); }},
+    Generator{"half_disc",
+              [](const MeshRecipe &recipe) {
+                return recipe.edges == 0 ? half_disc() : half_disc(recipe.edges);
+              },
+              true},
+    Generator{"one_block", [](const MeshRecipe &) { return one_block(); }}};
 
-/// Throws bad_input if this build does not have the scene's generator.
+/// Throws bad_input if this build does not have the scene's generator, or not with its edges.
 SerialMesh generated_mesh(const Scene &scene) {
   std::string names;
-  for (const auto &[name, make] : generators) {
-    if (name == scene.mesh.generator) return make();
-    names.append(names.empty() ? "" : ", ").append(name);
+  for (const Generator &generator : generators) {
+    names.append(names.empty() ? "" : ", ").append(generator.name);
+    if (generator.name != scene.mesh.generator) continue;
+    if (scene.mesh.edges != 0 && !generator.takes_edges)
+      throw bad_input("scene " + scene.name + " asks for " + std::to_string(scene.mesh.edges) +
+                      " contact edges: the number of the mesh generator '" + scene.mesh.generator +
+                      "' is fixed");
+    return generator.make(scene.mesh);
   }
   throw bad_input("scene " + scene.name + " asks for the mesh generator '" + scene.mesh.generator +
                   "': this build has " + names);
@@ -102,37 +116,63 @@ std::vector<PetscInt> distribute(Handle<DM> &dm, const std::vector<int> &part, i
   return arrived;
 }
 
-/// Points with the label among begin .. end-1.
-std::vector<bool> marks(DM dm, const std::string &name, PetscInt begin, PetscInt end) {
-  std::vector<bool> marked;
-  DMLabel label = nullptr;
-  RBVI_CALL(DMGetLabel(dm, name.c_str(), &label));
-  for (PetscInt point = begin; point < end; ++point) {
-    PetscInt value = -1;
-    RBVI_CALL(DMLabelGetValue(label, point, &value));
-    marked.push_back(value == 1);
-  }
-  return marked;
+/// Edges of the undistributed mesh: its points begin .. end - 1.
+struct EdgePoints {
+  PetscInt begin = 0, end = 0;
+};
+
+EdgePoints edges_of(DM dm, MPI_Comm comm) {
+  std::array<PetscInt, 2> range{};
+  RBVI_CALL(DMPlexGetDepthStratum(dm, 1, &range[0], &range[1]));
+  MPI_Bcast(range.data(), 2, MPIU_INT, 0, comm);
+  return {range[0], range[1]};
+}
+
+/// Both ends of a local edge, local vertices.
+std::array<PetscInt, 2> ends_of(DM dm, PetscInt edge, PetscInt first_vertex) {
+  const PetscInt *cone = nullptr;
+  RBVI_CALL(DMPlexGetCone(dm, edge, &cone));
+  return {cone[0] - first_vertex, cone[1] - first_vertex};
 }
 
 void fill_vertices(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt begin,
                    PetscInt end) {
   mesh.points = vertex_points(mesh.dm.get());
   for (PetscInt vertex = begin; vertex < end; ++vertex) {
-    mesh.dm_vertex.push_back(vertex);
-    mesh.natural_vertex.push_back(original[static_cast<std::size_t>(vertex)] - mesh.total_cells);
+    mesh.dm_point.push_back(vertex);
+    mesh.natural_node.push_back(original[static_cast<std::size_t>(vertex)] - mesh.total_cells);
   }
-  mesh.owned_vertex.assign(mesh.points.size(), true);
+}
+
+/// The middles of the local edges, behind the vertices.
+void fill_middles(Mesh &mesh, const std::vector<PetscInt> &original, const EdgePoints &edges,
+                  PetscInt first_vertex) {
+  PetscInt begin = 0, end = 0;
+  RBVI_CALL(DMPlexGetDepthStratum(mesh.dm.get(), 1, &begin, &end));
+  for (PetscInt edge = begin; edge < end; ++edge) {
+    const auto [i, j] = ends_of(mesh.dm.get(), edge, first_vertex);
+    const Point a = mesh.points[static_cast<std::size_t>(i)];
+    const Point b = mesh.points[static_cast<std::size_t>(j)];
+    mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+    mesh.dm_point.push_back(edge);
+    mesh.natural_node.push_back(mesh.total_vertices + original[static_cast<std::size_t>(edge)] -
+                                edges.begin);
+  }
+}
+
+void find_owned_nodes(Mesh &mesh) {
+  mesh.owned_node.assign(mesh.points.size(), true);
   PetscSF shared = nullptr;
-  PetscInt leaves = 0;
+  PetscInt leaves = 0, chart = 0;
   const PetscInt *leaf = nullptr;
   RBVI_CALL(DMGetPointSF(mesh.dm.get(), &shared));
   RBVI_CALL(PetscSFGetGraph(shared, nullptr, &leaves, &leaf, nullptr));
-  for (PetscInt i = 0; i < leaves; ++i) {
-    const PetscInt point = leaf != nullptr ? leaf[i] : i;
-    if (point >= begin && point < end)
-      mesh.owned_vertex[static_cast<std::size_t>(point - begin)] = false;
-  }
+  RBVI_CALL(DMPlexGetChart(mesh.dm.get(), nullptr, &chart));
+  std::vector<bool> elsewhere(static_cast<std::size_t>(chart), false);
+  for (PetscInt i = 0; i < leaves; ++i)
+    elsewhere[static_cast<std::size_t>(leaf != nullptr ? leaf[i] : i)] = true;
+  for (std::size_t node = 0; node < mesh.points.size(); ++node)
+    mesh.owned_node[node] = !elsewhere[static_cast<std::size_t>(mesh.dm_point[node])];
 }
 
 void fill_cells(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt first_vertex) {
@@ -147,6 +187,43 @@ void fill_cells(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt firs
     mesh.natural_cell.push_back(original[static_cast<std::size_t>(cell)]);
   }
   orient_cells(mesh.dim, mesh.points, mesh.cells);
+}
+
+/// Finds the edges of each cell by their two vertices.
+void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
+  const auto vertices = static_cast<std::size_t>(
+      std::count_if(mesh.natural_node.begin(), mesh.natural_node.end(),
+                    [&](PetscInt number) { return number < mesh.total_vertices; }));
+  std::map<std::array<PetscInt, 2>, int> middle;
+  for (std::size_t node = vertices; node < mesh.points.size(); ++node) {
+    auto ends = ends_of(mesh.dm.get(), mesh.dm_point[node], first_vertex);
+    std::sort(ends.begin(), ends.end());
+    middle[ends] = static_cast<int>(node);
+  }
+  const std::size_t edges = mesh.dim == 2 ? 3 : 6;
+  for (const auto &cell : mesh.cells) {
+    std::array<int, 6> middles{-1, -1, -1, -1, -1, -1};
+    for (std::size_t e = 0; e < edges; ++e) {
+      std::array<PetscInt, 2> ends{cell[static_cast<std::size_t>(simplex_edges[e][0])],
+                                   cell[static_cast<std::size_t>(simplex_edges[e][1])]};
+      std::sort(ends.begin(), ends.end());
+      middles[e] = middle.at(ends);
+    }
+    mesh.cell_middles.push_back(middles);
+  }
+}
+
+/// Which of these DMPlex points carry a label.
+std::vector<bool> marks(DM dm, const std::string &name, const std::vector<PetscInt> &points) {
+  std::vector<bool> marked;
+  DMLabel label = nullptr;
+  RBVI_CALL(DMGetLabel(dm, name.c_str(), &label));
+  for (const PetscInt point : points) {
+    PetscInt value = -1;
+    RBVI_CALL(DMLabelGetValue(label, point, &value));
+    marked.push_back(value == 1);
+  }
+  return marked;
 }
 
 } // namespace
@@ -167,6 +244,7 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   Mesh mesh;
   mesh.comm = comm;
   mesh.dim = scene.dim;
+  mesh.degree = scene.degree;
   std::array<PetscInt, 2> totals{static_cast<PetscInt>(serial.points.size()),
                                  static_cast<PetscInt>(serial.cells.size())};
   MPI_Bcast(totals.data(), 2, MPIU_INT, 0, comm);
@@ -176,17 +254,37 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   mesh.fingerprint = fingerprint;
 
   mesh.dm = make_plex(comm, serial, scene.mesh);
+  const EdgePoints edges = edges_of(mesh.dm.get(), comm);
   const std::vector<PetscInt> original = distribute(mesh.dm, part, world.size);
   PetscInt begin = 0, end = 0;
   RBVI_CALL(DMPlexGetDepthStratum(mesh.dm.get(), 0, &begin, &end));
   fill_vertices(mesh, original, begin, end);
   fill_cells(mesh, original, begin);
-  const auto cells = static_cast<PetscInt>(mesh.cells.size());
+  mesh.total_nodes = mesh.total_vertices;
+  if (mesh.degree == 2) {
+    fill_middles(mesh, original, edges, begin);
+    fill_cell_middles(mesh, begin);
+    mesh.total_nodes += edges.end - edges.begin;
+  }
+  find_owned_nodes(mesh);
+  std::vector<PetscInt> cells(mesh.cells.size());
+  std::iota(cells.begin(), cells.end(), 0);
   for (const std::string &name : scene.mesh.regions)
-    mesh.region[name] = marks(mesh.dm.get(), name, 0, cells);
+    mesh.region[name] = marks(mesh.dm.get(), name, cells);
   for (const std::string &name : scene.mesh.boundaries)
-    mesh.boundary[name] = marks(mesh.dm.get(), name, begin, end);
+    mesh.boundary[name] = marks(mesh.dm.get(), name, mesh.dm_point);
   return mesh;
+}
+
+std::array<int, most_nodes> nodes_of(const Mesh &mesh, std::size_t cell) {
+  std::array<int, most_nodes> nodes;
+  nodes.fill(-1);
+  const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
+  std::copy_n(mesh.cells[cell].begin(), corners, nodes.begin());
+  if (mesh.degree == 2)
+    std::copy_n(mesh.cell_middles[cell].begin(), corners * (corners - 1) / 2,
+                nodes.begin() + static_cast<std::ptrdiff_t>(corners));
+  return nodes;
 }
 
 } // namespace rbvi

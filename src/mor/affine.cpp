@@ -68,15 +68,16 @@ struct TouchedCell {
   std::vector<std::pair<int, int>> entries;
 };
 
-SampleMesh to_sample_mesh(int dim, std::vector<TouchedCell> cells) {
+/// `corners`: vertices of each cell, dim + 1 or (edges of a support) 2.
+SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) {
   std::sort(cells.begin(), cells.end(),
             [](const TouchedCell &x, const TouchedCell &y) { return x.number < y.number; });
   SampleMesh sample;
-  sample.vertices.resize(static_cast<Index>(cells.size()) * (dim + 1), dim);
+  sample.vertices.resize(static_cast<Index>(cells.size()) * corners, dim);
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    for (int i = 0; i <= dim; ++i)
+    for (int i = 0; i < corners; ++i)
       for (int c = 0; c < dim; ++c)
-        sample.vertices(static_cast<Index>(k) * (dim + 1) + i, c) =
+        sample.vertices(static_cast<Index>(k) * corners + i, c) =
             cells[k].vertices[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
     for (const auto &[entry, local] : cells[k].entries)
       sample.contributions.push_back({entry, static_cast<int>(k), local});
@@ -118,7 +119,30 @@ SampleMesh sample_contact(const ContactRegion &region, const std::vector<EntryKe
     cell.entries = touched(entries, rows, columns);
     if (!cell.entries.empty()) cells.push_back(std::move(cell));
   }
-  return to_sample_mesh(region.dim, std::move(cells));
+  return to_sample_mesh(region.dim, region.dim + 1, std::move(cells));
+}
+
+/// Edges of the curve of a support; columns are contact dofs for b, the single 0 for g. Local rows
+/// and columns are those of an edge as a curve of its own.
+SampleMesh sample_support(const SupportCurve &curve, Index multipliers,
+                          const std::vector<EntryKey> &entries, bool matrix) {
+  std::vector<TouchedCell> edges;
+  const auto vertices = static_cast<PetscInt>(curve.vertices);
+  for (PetscInt e = 0; e + 1 < vertices; ++e) {
+    const auto at = static_cast<std::size_t>(e);
+    TouchedCell edge{e, {curve.points[at], curve.points[at + 1], {}, {}}, {}};
+    std::vector<PetscInt> rows{e, e + 1}, nodes{e, e + 1}, columns{0};
+    if (multipliers > curve.vertices) rows.insert(rows.end(), {vertices + e, vertices + e + 1});
+    if (static_cast<PetscInt>(curve.points.size()) > vertices) nodes.push_back(vertices + e);
+    if (matrix) {
+      columns.clear();
+      for (const PetscInt node : nodes)
+        columns.insert(columns.end(), {2 * node, 2 * node + 1});
+    }
+    edge.entries = touched(entries, rows, columns);
+    if (!edge.entries.empty()) edges.push_back(std::move(edge));
+  }
+  return to_sample_mesh(2, 2, std::move(edges));
 }
 
 /// Flattens the cells of all ranks onto every rank.
@@ -159,16 +183,17 @@ SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &en
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     std::vector<PetscInt> rows;
     TouchedCell cell{mesh.natural_cell[k], {}, {}};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i) {
-      const auto vertex = static_cast<std::size_t>(mesh.cells[k][i]);
-      cell.vertices[i] = mesh.points[vertex];
+    const auto nodes = nodes_of(mesh, k);
+    for (std::size_t i = 0; i < nodes.size() && nodes[i] >= 0; ++i) {
+      const auto node = static_cast<std::size_t>(nodes[i]);
+      if (i <= static_cast<std::size_t>(mesh.dim)) cell.vertices[i] = mesh.points[node];
       for (int c = 0; c < components; ++c)
-        rows.push_back(mesh.natural_vertex[vertex] * components + c);
+        rows.push_back(mesh.natural_node[node] * components + c);
     }
     cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
     if (!cell.entries.empty()) mine.push_back(std::move(cell));
   }
-  return to_sample_mesh(mesh.dim, gather_cells(problem.comm(), mine));
+  return to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine));
 }
 
 std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix) {
@@ -254,6 +279,12 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   result.sample_a = sample_domain(problem, result.a.entries, true);
   result.sample_f = sample_domain(problem, result.f.entries, false);
   if (pair) return result;
+  if (problem.on_support()) {
+    const SupportCurve &curve = problem.support().curve;
+    result.sample_b = sample_support(curve, problem.dual_size(), result.b.entries, true);
+    result.sample_g = sample_support(curve, problem.dual_size(), result.g.entries, false);
+    return result;
+  }
   result.sample_b = sample_contact(problem.contact(), result.b.entries, true);
   result.sample_g = sample_contact(problem.contact(), result.g.entries, false);
   return result;

@@ -86,55 +86,91 @@ bool uses(const Eim &eim, int snapshot) {
 
 } // namespace
 
+namespace {
+
+/// The mesh nodes and the reference points of the contact nodes.
+void describe_contact(const Problem &problem, ReducedModel &model) {
+  const int dim = problem.mesh().dim;
+  const bool pair = problem.two_bodies(), support = problem.on_support();
+  const std::vector<Point> &points = support ? problem.support().curve.points
+                                     : pair  ? problem.curves().points
+                                             : problem.contact().points;
+  const std::vector<PetscInt> &nodes = support ? problem.support().natural_node
+                                       : pair  ? problem.curves().natural_node
+                                               : problem.contact().natural_node;
+  const auto count = support ? problem.support().curve.vertices : static_cast<Index>(points.size());
+  model.contact_nodes.assign(nodes.begin(), nodes.begin() + count);
+  model.contact_points.resize(count, dim);
+  for (Index r = 0; r < count; ++r)
+    for (int c = 0; c < dim; ++c)
+      model.contact_points(r, c) = points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+  if (pair) model.slave_nodes = static_cast<int>(problem.curves().slave_nodes);
+  if (pair || support) return;
+  for (const auto &cell : problem.contact().cells)
+    model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + dim + 1);
+}
+
+} // namespace
+
 void describe_mesh(const Problem &problem, ReducedModel &model) {
   const Mesh &mesh = problem.mesh();
   model.mesh_fingerprint = mesh.fingerprint;
-  model.mesh_points = Matrix::Zero(mesh.total_vertices, mesh.dim);
+  model.mesh_points = Matrix::Zero(mesh.total_nodes, mesh.dim);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    for (int c = 0; c < mesh.dim && mesh.owned_vertex[v]; ++c)
-      model.mesh_points(mesh.natural_vertex[v], c) = mesh.points[v][static_cast<std::size_t>(c)];
+    for (int c = 0; c < mesh.dim && mesh.owned_node[v]; ++c)
+      model.mesh_points(mesh.natural_node[v], c) = mesh.points[v][static_cast<std::size_t>(c)];
   sum_over_ranks(problem.comm(), model.mesh_points);
 
-  const int corners = mesh.dim + 1;
+  const int per_cell = nodes_per_cell(mesh.dim, mesh.degree);
   std::vector<int> mine;
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     mine.push_back(static_cast<int>(mesh.natural_cell[k]));
-    for (int i = 0; i < corners; ++i)
-      mine.push_back(static_cast<int>(mesh.natural_vertex[static_cast<std::size_t>(
-          mesh.cells[k][static_cast<std::size_t>(i)])]));
+    const auto nodes = nodes_of(mesh, k);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
+      mine.push_back(static_cast<int>(mesh.natural_node[static_cast<std::size_t>(nodes[i])]));
   }
   const std::vector<int> all = gather_all(problem.comm(), mine, MPI_INT);
-  model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * corners));
-  for (auto record = all.begin(); record != all.end(); record += corners + 1)
-    std::copy(record + 1, record + 1 + corners, model.mesh_cells.begin() + *record * corners);
-
-  const std::vector<Point> &points =
-      problem.two_bodies() ? problem.curves().points : problem.contact().points;
-  const std::vector<PetscInt> &vertices =
-      problem.two_bodies() ? problem.curves().natural_vertex : problem.contact().natural_vertex;
-  model.contact_nodes.assign(vertices.begin(), vertices.end());
-  model.contact_points.resize(static_cast<Index>(points.size()), mesh.dim);
-  for (Index r = 0; r < model.contact_points.rows(); ++r)
-    for (int c = 0; c < mesh.dim; ++c)
-      model.contact_points(r, c) = points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
-  if (problem.two_bodies())
-    model.slave_nodes = static_cast<int>(problem.curves().slave_nodes);
-  else
-    for (const auto &cell : problem.contact().cells)
-      model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + corners);
+  model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * per_cell));
+  for (auto record = all.begin(); record != all.end(); record += per_cell + 1)
+    std::copy(record + 1, record + 1 + per_cell, model.mesh_cells.begin() + *record * per_cell);
+  describe_contact(problem, model);
 }
 
 namespace {
 
-/// The primal basis at the contact nodes: of two bodies its vertical component.
+/// The primal basis at the contact nodes: of two bodies its vertical component, on a support all.
 Matrix contact_trace_of(const Problem &problem, const ReducedModel &model) {
   const int components = problem.scene().components;
-  const int component = problem.two_bodies() ? components - 1 : 0;
-  Matrix trace(static_cast<Index>(model.contact_nodes.size()), model.primal_size());
+  const int first = problem.two_bodies() ? components - 1 : 0;
+  const int count = problem.on_support() ? components : 1;
+  Matrix trace(static_cast<Index>(model.contact_nodes.size()) * count, model.primal_size());
   for (Index r = 0; r < trace.rows(); ++r)
     trace.row(r) = model.primal_basis.row(
-        model.contact_nodes[static_cast<std::size_t>(r)] * components + component);
+        model.contact_nodes[static_cast<std::size_t>(r / count)] * components + first + r % count);
   return trace;
+}
+
+/// A unit displacement along the last axis at the contact dofs of a support.
+Vector upwards(const Problem &problem) {
+  const Index components = problem.scene().components;
+  Vector result = Vector::Zero(problem.trace().size);
+  for (Index i = components - 1; i < result.size(); i += components)
+    result[i] = 1;
+  return result;
+}
+
+/// Multipliers in a basis of disjoint columns, and where they are.
+void add_starts(const std::vector<Sample> &samples, const Matrix &basis, SupportModel &support) {
+  const auto count = static_cast<Index>(samples.size());
+  const Vector squares = basis.colwise().squaredNorm();
+  support.starts.resize(basis.cols(), count);
+  support.starts_mu.resize(static_cast<Index>(samples.front().mu.size()), count);
+  for (Index p = 0; p < count; ++p) {
+    const Sample &sample = samples[static_cast<std::size_t>(p)];
+    support.starts.col(p) = (basis.transpose() * sample.lambda).cwiseQuotient(squares);
+    support.starts_mu.col(p) =
+        Eigen::Map<const Vector>(sample.mu.data(), static_cast<Index>(sample.mu.size()));
+  }
 }
 
 } // namespace
@@ -148,7 +184,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.modes = bases.modes;
   model.supremizers = bases.supremizers;
   model.online_enriched = bases.online_enriched;
-  model.dual_basis = bases.cone.all();
+  model.dual_basis = problem.on_support() ? bases.support_dual : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
   describe_mesh(problem, model);
@@ -161,7 +197,21 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.b = start_terms(affine.b, affine.sample_b, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
+  if (problem.on_support()) {
+    const int vertices = static_cast<int>(problem.support().curve.vertices);
+    const auto parts = static_cast<int>(problem.dual_size()) / vertices;
+    model.support = SupportModel{};
+    model.support->vertices = vertices;
+    model.support->normal = model.generators / parts;
+    model.support->reduction = bases.reduction;
+    model.support->mended = bases.mended;
+    model.support->basis = bases.multipliers.basis;
+    model.support->condensed = bases.condensed;
+    model.support->lift = Matrix::Zero(problem.dual_size(), affine.b.size());
+    add_starts(samples, model.dual_basis, *model.support);
+  } else {
+    model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
+  }
 
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
@@ -170,7 +220,10 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     if (uses(affine.b, p)) {
       const Matrix b = model.dual_basis.transpose() * (op.b * trace);
       accumulate(affine.b, p, b.reshaped(), model.b.reduced);
-      accumulate(affine.b, p, op.weights, model.lumped_weights);
+      if (model.support)
+        accumulate(affine.b, p, op.b * upwards(problem), model.support->lift);
+      else
+        accumulate(affine.b, p, op.weights, model.lumped_weights);
     }
     if (uses(affine.g, p))
       accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
@@ -201,6 +254,9 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.histories["cone/error"] = bases.cone.history.error;
   model.histories["cone/e_orth"] = bases.cone.history.e_orth;
   model.histories["cone/gram_condition"] = bases.cone.history.gram_condition;
+  model.histories["normal_cone/error"] = bases.multipliers.normal.error;
+  model.histories["bound_cone/error"] = bases.multipliers.left_to_bound.error;
+  model.histories["tangential/error"] = bases.multipliers.tangential;
   model.histories["pga/sigma"] = bases.pga.sigma;
   model.histories["eim/a"] = affine.a.error;
   model.histories["eim/b"] = affine.b.error;

@@ -20,20 +20,6 @@ Pod compress_displacements(Problem &problem, const std::vector<Sample> &samples,
   return pod(snapshots, problem.v_product(), options);
 }
 
-Matrix multipliers(const std::vector<Sample> &samples) {
-  Matrix lambda(samples.front().lambda.size(), static_cast<Index>(samples.size()));
-  for (std::size_t p = 0; p < samples.size(); ++p)
-    lambda.col(static_cast<Index>(p)) = samples[p].lambda;
-  return lambda;
-}
-
-Mu centre(const ParameterSpace &space) {
-  Mu mu;
-  for (int i = 0; i < space.size(); ++i)
-    mu.push_back((space.at(i).lower + space.at(i).upper) / 2);
-  return mu;
-}
-
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
                       const ConeOptions &options) {
   if (options.type != ConeType::hybrid) return build_cone(snapshots, problem.w_product(), options);
@@ -91,14 +77,37 @@ std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
   return dofs;
 }
 
-/// Supremizers of the greedy, or the span of all of them, after the modes.
+} // namespace
+
+const std::vector<std::string> &enrichment_names() {
+  static const std::vector<std::string> names{"decorrelated", "online", "offline"};
+  return names;
+}
+
+const std::vector<std::string> &product_names() {
+  static const std::vector<std::string> names{"v", "energy"};
+  return names;
+}
+
+std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
+                                   const std::vector<Mu> &set) {
+  std::vector<Matrix> result;
+  Operators op;
+  for (const Mu &mu : set) {
+    problem.assemble_contact(mu, op);
+    result.push_back(supremizer_coordinates(riesz, op.b, x));
+  }
+  return result;
+}
+
 void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
-                     const ReduceOptions &options, ReducedBases &bases, StageTimes &times) {
+                     const ReduceOptions &options, const Matrix &dual_functions,
+                     ReducedBases &bases, StageTimes &times) {
   const bool energy = options.product == SupremizerProduct::energy;
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
   RieszSpace riesz;
-  const Matrix dual = orthonormal_dual_basis(bases.cone.all(), problem.w_product());
+  const Matrix dual = orthonormal_dual_basis(dual_functions, problem.w_product());
   {
     const Stage stage("Riesz representers", times);
     if (energy)
@@ -124,56 +133,78 @@ void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu
           .size());
 }
 
-} // namespace
-
-const std::vector<std::string> &enrichment_names() {
-  static const std::vector<std::string> names{"decorrelated", "online", "offline"};
-  return names;
+Mu box_centre(const ParameterSpace &space) {
+  Mu mu;
+  for (int i = 0; i < space.size(); ++i)
+    mu.push_back((space.at(i).lower + space.at(i).upper) / 2);
+  return mu;
 }
 
-const std::vector<std::string> &product_names() {
-  static const std::vector<std::string> names{"v", "energy"};
-  return names;
+Matrix multipliers_of(const std::vector<Sample> &samples) {
+  if (samples.empty()) throw failure("there is no sample to build a basis from");
+  Matrix lambda(samples.front().lambda.size(), static_cast<Index>(samples.size()));
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    lambda.col(static_cast<Index>(p)) = samples[p].lambda;
+  if ((lambda.array() == 0).all())
+    throw failure(
+        "all multipliers are zero: there is no contact at any training mu, and nothing to "
+        "reduce; widen the parameter box or move the obstacle");
+  return lambda;
 }
 
-std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
-                                   const std::vector<Mu> &set) {
-  std::vector<Matrix> result;
-  Operators op;
-  for (const Mu &mu : set) {
-    problem.assemble_contact(mu, op);
-    result.push_back(supremizer_coordinates(riesz, op.b, x));
-  }
-  return result;
+void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
+               ReducedBases &bases, StageTimes &times) {
+  const Stage stage("POD", times);
+  bases.pod = compress_displacements(problem, samples, options);
+  bases.modes = static_cast<int>(bases.pod.basis.size());
 }
 
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTimes &times) {
-  if (samples.empty()) throw failure("there is no sample to build a basis from");
-  if (std::all_of(samples.begin(), samples.end(),
-                  [](const Sample &sample) { return (sample.lambda.array() == 0).all(); }))
-    throw failure(
-        "all multipliers are zero: there is no contact at any training mu, and nothing to "
-        "reduce; widen the parameter box or move the obstacle");
+  const Matrix multipliers = multipliers_of(samples);
   const Mu reference =
-      options.reference.empty() ? centre(problem.scene().parameters) : options.reference;
+      options.reference.empty() ? box_centre(problem.scene().parameters) : options.reference;
   ReducedBases bases;
-  {
-    const Stage stage("POD", times);
-    bases.pod = compress_displacements(problem, samples, options.pod);
-    bases.modes = static_cast<int>(bases.pod.basis.size());
-  }
+  add_modes(problem, samples, options.pod, bases, times);
   {
     const Stage stage("cone", times);
-    bases.cone = build_dual_basis(problem, reference, multipliers(samples), options.cone);
+    bases.cone = build_dual_basis(problem, reference, multipliers, options.cone);
   }
   if (options.enrichment == Enrichment::decorrelated) return bases;
   std::vector<Mu> training;
   for (const Sample &sample : samples)
     training.push_back(sample.mu);
   if (b_is_scaled) training.resize(1);
-  add_supremizers(problem, training, reference, options, bases, times);
+  add_supremizers(problem, training, reference, options, bases.cone.all(), bases, times);
   return bases;
+}
+
+Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
+                 StageTimes &times) {
+  std::vector<Mu> training;
+  for (const Sample &sample : samples)
+    training.push_back(sample.mu);
+  Reduction result;
+  {
+    const Stage stage("interpolation", times);
+    if (training.empty()) throw failure("there is no sample to build a basis from");
+    result.affine = separate(problem, training, options.eim);
+  }
+  result.bases = problem.on_support()
+                     ? build_support_bases(problem, samples, options, result.affine, times)
+                     : build_bases(problem, samples, options, result.affine.b.size() == 1, times);
+  {
+    const Stage stage("projection", times);
+    result.model = project(problem, samples, result.affine, result.bases);
+  }
+  if (result.bases.reduction != MultiplierReduction::collocated) return result;
+  const Stage stage("collocation nodes", times);
+  const Gcns nodes =
+      collocate(result.model, problem.scene(), samples, problem.w_product(), options.gcns);
+  result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
+  result.model.histories["gcns/error"] = nodes.error;
+  result.model.histories["gcns/violation"] = nodes.violation;
+  return result;
 }
 
 } // namespace rbvi

@@ -1,7 +1,9 @@
 #include "rbvi/problem/problem.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/element/contact_pair.hpp"
 #include "rbvi/element/scalar_forms.hpp"
+#include "rbvi/element/support_outputs.hpp"
 
 namespace rbvi {
 
@@ -35,7 +37,12 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
     : scene_(std::move(scene)), mesh_(make_mesh(comm, scene_, options)),
       dofs_(number_dofs(mesh_, scene_.components, scene_.fixed)), cells_(reference_cells(mesh_)),
       a_(make_matrix(mesh_, dofs_, scene_.a.region)), f_(make_vector(dofs_)) {
-  if (scene_.pair) {
+  if (scene_.degree != 1 && !scene_.support)
+    throw bad_input("scene " + scene_.name + ": degree 2 is for contact with a rigid support");
+  if (scene_.support) {
+    support_ = make_contact_support(mesh_, dofs_, *scene_.support);
+    w_product_ = multiplier_product(support_->curve, *scene_.support);
+  } else if (scene_.pair) {
     curves_ = make_contact_curves(mesh_, dofs_, *scene_.pair);
     const auto slave = curves_->points.begin();
     w_product_ = multiplier_product({slave, slave + curves_->slave_nodes},
@@ -70,12 +77,29 @@ void Problem::assemble_pair(Operators &operators) {
   operators.nodal_gap = std::move(pair.nodal_gap);
 }
 
+void Problem::assemble_support(Operators &operators) {
+  SupportOperators support = couple_with_support(scene_, operators.mu, support_->curve);
+  operators.b = std::move(support.b);
+  operators.g = std::move(support.g);
+  operators.weights = std::move(support.weights);
+  operators.nodal_b = std::move(support.nodal_b);
+  operators.nodal_gap = std::move(support.nodal_gap);
+  operators.bound = friction_bound(scene_.support->friction, operators.mu);
+}
+
 void Problem::assemble_contact(const Mu &mu, Operators &operators) {
   operators.mu = expand(scene_.parameters, mu);
-  if (scene_.pair)
+  if (scene_.support)
+    assemble_support(operators);
+  else if (scene_.pair)
     assemble_pair(operators);
   else
     assemble_obstacle(operators);
+  operators.normal = operators.weights.size();
+}
+
+const Trace &Problem::trace() const {
+  return support_ ? support_->trace : curves_ ? curves_->trace : contact_->trace;
 }
 
 Mu Problem::stiffness_values(const Mu &all_parameters) const {

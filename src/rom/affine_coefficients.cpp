@@ -1,4 +1,5 @@
 #include "rbvi/element/geometry.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/rom/online.hpp"
 
 namespace rbvi {
@@ -22,8 +23,8 @@ Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Sce
   if (terms.size() == 0) return theta;
   const int dim = static_cast<int>(terms.sample.vertices.cols());
   const Index cells = terms.sample.vertices.rows() / (dim + 1);
-  const Index per_cell = Index{dim + 1} * (dim + 1) * scene.components * scene.components;
-  Matrix values(per_cell, cells); // a linear form fills the first rows only
+  const Index dofs = Index{nodes_per_cell(dim, scene.degree)} * scene.components;
+  Matrix values(dofs * dofs, cells); // a linear form fills the first rows only
   for (int number = 0; number < cells; ++number) {
     Cell cell = sample_cell(terms.sample, dim, number);
     map_cell(scene, all_parameters, cell);

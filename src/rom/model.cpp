@@ -1,6 +1,7 @@
 #include "rbvi/rom/model.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
 
@@ -44,17 +45,19 @@ void require_indices(const std::vector<int> &indices, Index bound, const std::st
           name + " points outside 0.." + std::to_string(bound - 1));
 }
 
-void check_terms(const AffineTerms &terms, Index rows, int dim, const std::string &name) {
+/// `corners`: vertices of a sampled cell, 2 of an edge of a support.
+void check_terms(const AffineTerms &terms, Index rows, int dim, int corners,
+                 const std::string &name) {
   const Index size = terms.interpolation.rows();
   require_shape(terms.interpolation, size, size, name + "/interpolation");
   require_shape(terms.reduced, size == 0 ? terms.reduced.rows() : rows, size, name + "/reduced");
   const Matrix &vertices = terms.sample.vertices;
-  require(vertices.rows() % (dim + 1) == 0, name + "/vertices is not a list of cells");
+  require(vertices.rows() % corners == 0, name + "/vertices is not a list of cells");
   require_shape(vertices, vertices.rows(), size == 0 ? vertices.cols() : dim, name + "/vertices");
   int previous = 0;
   for (const SampleMesh::Contribution &c : terms.sample.contributions) {
     require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
-                c.cell < vertices.rows() / (dim + 1),
+                c.cell < vertices.rows() / corners,
             name + "/contributions point nowhere or are not ordered by entry");
     previous = c.entry;
   }
@@ -71,8 +74,44 @@ void check_fields(const ReducedModel &model, int dim) {
   require_indices(model.contact_nodes, nodes, "contact/nodes");
   require_indices(model.mesh_cells, nodes, "fields/cells");
   require_indices(model.contact_cells, contact, "fields/contact_cells");
-  require(model.mesh_cells.size() % static_cast<std::size_t>(dim + 1) == 0,
+  const int degree = model.support ? make_scene(model.scene_name, model.scene_options).degree : 1;
+  require(model.mesh_cells.size() % static_cast<std::size_t>(nodes_per_cell(dim, degree)) == 0,
           "fields/cells is not a list of cells");
+}
+
+void check_support(const ReducedModel &model, const SupportModel &support) {
+  const CondensedOperator &condensed = support.condensed;
+  const Index m = model.generators, blocks = Index{model.b.size()} * (model.b.size() + 1) / 2;
+  require(support.vertices == model.contact_points.rows(), "support/vertices does not fit");
+  require(support.normal > 0 && m % support.normal == 0, "support/normal does not fit");
+  require(support.reduction >= MultiplierReduction::condensed &&
+              support.reduction <= MultiplierReduction::joint,
+          "support/reduction is none that this build has");
+  for (const ChebyshevAxis &axis : condensed.axes)
+    require(axis.points > 0 && axis.lower < axis.upper && axis.parameter >= 0 &&
+                axis.parameter < static_cast<int>(model.parameters.all.size()),
+            "support/axes do not fit");
+  if (condensed.terms.size() > 0) {
+    require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes),
+                  "support/shape");
+    require_shape(condensed.terms, m * m, blocks * condensed.shape.rows(), "support/terms");
+  } else {
+    require(support.reduction == MultiplierReduction::collocated, "it has no condensed operator");
+  }
+  if (support.reduction != MultiplierReduction::condensed) {
+    const MultiplierBasis &basis = support.basis;
+    require(m == 2 * support.normal, "support/basis is for contact with friction");
+    require_shape(basis.normal, support.normal, basis.normal.cols(), "support/basis/normal");
+    require_shape(basis.tangential, support.normal, basis.tangential.cols(),
+                  "support/basis/tangential");
+    if (support.reduction == MultiplierReduction::cones)
+      require_shape(basis.slip, support.normal, 1, "support/basis/slip");
+    require_indices(basis.nodes, support.normal, "support/basis/nodes");
+  }
+  require_shape(support.lift, model.dual_basis.rows(), model.b.size(), "support/lift");
+  require_shape(support.starts, m, support.starts.cols(), "support/starts");
+  require_shape(support.starts_mu, model.parameters.size(), support.starts.cols(),
+                "support/starts_mu");
 }
 
 } // namespace
@@ -88,19 +127,29 @@ void check_model(const ReducedModel &model) {
           "contact/slave_nodes does not fit");
   require(model.two_bodies() ? model.b.size() + model.g.size() == 0 : model.b.size() > 0,
           "b has no terms, or two bodies have some");
-  require(model.two_bodies() || contact == dual, "contact/points does not fit contact/dual_basis");
-  check_terms(model.a, n * (n + 1) / 2, dim, "a");
-  check_terms(model.b, r * n, dim, "b");
-  check_terms(model.f, n, dim, "f");
-  check_terms(model.g, r, dim, "g");
+  require(model.two_bodies() || contact == dual ||
+              (model.support && dual % contact == 0 && dual / contact <= dim),
+          "contact/points does not fit contact/dual_basis");
+  const int corners = model.support ? dim : dim + 1;
+  check_terms(model.a, n * (n + 1) / 2, dim, dim + 1, "a");
+  check_terms(model.b, r * n, dim, corners, "b");
+  check_terms(model.f, n, dim, dim + 1, "f");
+  check_terms(model.g, r, dim, corners, "g");
+  if (model.support) check_support(model, *model.support);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
-  require_shape(model.contact_trace, contact, n, "contact/trace");
+  require_shape(model.contact_trace, model.support ? contact * dim : contact, n, "contact/trace");
   require(static_cast<Index>(model.contact_nodes.size()) == contact,
           "contact/nodes does not fit contact/points");
   require_shape(model.contact_points, contact, dim, "contact/points");
-  require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
+  if (!model.support)
+    require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
   check_fields(model, dim);
+}
+
+const std::vector<std::string> &multiplier_reduction_names() {
+  static const std::vector<std::string> names{"condensed", "collocated", "cones", "joint"};
+  return names;
 }
 
 ReducedModel leading(const ReducedModel &model, int n, int r) {
@@ -108,6 +157,8 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
     throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
                     " dual functions in a model of " + std::to_string(model.primal_size()) +
                     " and " + std::to_string(model.generators));
+  if (model.support && r != model.generators)
+    throw bad_input("a model of contact with a support has no part with fewer multipliers");
   ReducedModel result = model;
   result.modes = std::min(n, model.modes);
   result.supremizers = n - result.modes;

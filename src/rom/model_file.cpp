@@ -1,4 +1,4 @@
-// Layout of model.h5 (schema 3). n = modes + supremizers, R generators, c = dual dofs of the
+// Layout of model.h5 (schema 4). n = modes + supremizers, R generators, c = dual dofs of the
 // contact region, d = dimension; every term set T = a, b, f, g has its own J.
 //
 //   scene/name, scene/options/{names,values}          text
@@ -11,15 +11,24 @@
 //   T/reduced                                         entries x J: a packed lower triangle by
 //                                                     columns, b R x n by columns, f n, g R
 //   T/interpolation                                   J x J unit lower triangular (B.34)
-//   T/vertices                                        (sample cells (d + 1)) x d
+//   T/vertices                                        (sample cells (d + 1)) x d; b, g of a
+//   support:
+//                                                     sampled edges, (edges * 2) x d
 //   T/contributions                                   triples entry, cell, local
 //   T/error                                           e_EIM reached (B.32)
 //   contact/{dual_basis,lumped_weights}               c x R, c x J of b
 //   contact/{trace,points,nodes}                      k x n, k x d, k: at the k contact nodes
 //   contact/slave_nodes                               of two bodies; 0: one body, k = c
+//   support/vertices                                  of the contact curve; 0: no rigid support
+//   support/{normal,axes,error}                       columns for lambda_n; parameter, lower,
+//   upper, support/{shape,terms,lift}                        points of each axis; see SupportModel
+//   support/{reduction,mended}                        0 condensed, 1 collocated, 2 cones, 3 joint
+//   support/basis/{normal,tangential,slip,nodes}      see MultiplierBasis
+//   support/{starts,starts_mu}                        m x P, free parameters x P
 //   fields/primal_basis                               dofs x n
-//   fields/{points,cells,contact_cells}               nodes x d; lists of d + 1 numbers per cell
-//   validation/{enriched,decorrelated}                count, then mean and max error of u, lambda
+//   fields/{points,cells,contact_cells}               nodes x d; lists of numbers per cell
+//   validation/{enriched,decorrelated}                count, then mean and max error of u, lambda,
+//                                                     lambda_tau
 //   histories/names, histories/values/<name>          convergence histories
 //   stages/{names,seconds}                            wall time of each offline stage
 #include "rbvi/core/error.hpp"
@@ -125,13 +134,20 @@ AffineTerms read_terms(const H5Reader &file, const std::string &group) {
 
 void write_validation(H5Writer &file, const std::string &name, const ValidationErrors &errors) {
   file.write(name, std::vector<double>{static_cast<double>(errors.count), errors.u_mean,
-                                       errors.u_max, errors.lambda_mean, errors.lambda_max});
+                                       errors.u_max, errors.lambda_mean, errors.lambda_max,
+                                       errors.tangential_mean, errors.tangential_max});
 }
 
 ValidationErrors read_validation(const H5Reader &file, const std::string &name) {
   const std::vector<double> values = file.doubles(name);
-  if (values.size() != 5) throw bad_input(name + " has not 5 entries");
-  return {static_cast<int>(values[0]), values[1], values[2], values[3], values[4]};
+  if (values.size() != 7) throw bad_input(name + " has not 7 entries");
+  return {static_cast<int>(values[0]),
+          values[1],
+          values[2],
+          values[3],
+          values[4],
+          values[5],
+          values[6]};
 }
 
 void write_history(H5Writer &file, const ReducedModel &model) {
@@ -155,6 +171,54 @@ void read_history(const H5Reader &file, ReducedModel &model) {
   model.stage_seconds = zip("stages", file.strings("stages/names"), file.doubles("stages/seconds"));
   model.validation_enriched = read_validation(file, "validation/enriched");
   model.validation_decorrelated = read_validation(file, "validation/decorrelated");
+}
+
+void write_support(H5Writer &file, const std::optional<SupportModel> &support) {
+  file.write("support/vertices", support ? support->vertices : 0);
+  if (!support) return;
+  std::vector<double> axes;
+  for (const ChebyshevAxis &axis : support->condensed.axes)
+    axes.insert(axes.end(), {static_cast<double>(axis.parameter), axis.lower, axis.upper,
+                             static_cast<double>(axis.points)});
+  file.write("support/normal", support->normal);
+  file.write("support/axes", axes);
+  file.write("support/error", support->condensed.error);
+  file.write("support/shape", support->condensed.shape);
+  file.write("support/terms", support->condensed.terms);
+  file.write("support/lift", support->lift);
+  file.write("support/reduction", static_cast<int>(support->reduction));
+  file.write("support/mended", support->mended ? 1 : 0);
+  file.write("support/basis/normal", support->basis.normal);
+  file.write("support/basis/tangential", support->basis.tangential);
+  file.write("support/basis/slip", support->basis.slip);
+  file.write("support/basis/nodes", support->basis.nodes);
+  file.write("support/starts", support->starts);
+  file.write("support/starts_mu", support->starts_mu);
+}
+
+std::optional<SupportModel> read_support(const H5Reader &file) {
+  SupportModel support;
+  support.vertices = file.integer("support/vertices");
+  if (support.vertices == 0) return std::nullopt;
+  support.normal = file.integer("support/normal");
+  const std::vector<double> axes = file.doubles("support/axes");
+  if (axes.size() % 4 != 0) throw bad_input("support/axes are not groups of four");
+  for (std::size_t i = 0; i < axes.size(); i += 4)
+    support.condensed.axes.push_back(
+        {static_cast<int>(axes[i]), axes[i + 1], axes[i + 2], static_cast<int>(axes[i + 3])});
+  support.condensed.error = file.number("support/error");
+  support.condensed.shape = file.matrix("support/shape");
+  support.condensed.terms = file.matrix("support/terms");
+  support.lift = file.matrix("support/lift");
+  support.reduction = static_cast<MultiplierReduction>(file.integer("support/reduction"));
+  support.mended = file.integer("support/mended") != 0;
+  support.basis.normal = file.matrix("support/basis/normal");
+  support.basis.tangential = file.matrix("support/basis/tangential");
+  support.basis.slip = file.vector("support/basis/slip");
+  support.basis.nodes = file.ints("support/basis/nodes");
+  support.starts = file.matrix("support/starts");
+  support.starts_mu = file.matrix("support/starts_mu");
+  return support;
 }
 
 void write_fields(H5Writer &file, const ReducedModel &model) {
@@ -200,6 +264,7 @@ ReducedModel read_members(const H5Reader &file, bool with_fields) {
   model.b = read_terms(file, "b");
   model.f = read_terms(file, "f");
   model.g = read_terms(file, "g");
+  model.support = read_support(file);
   read_fields(file, with_fields, model);
   read_history(file, model);
   return model;
@@ -224,6 +289,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "b", model.b);
   write_terms(file, "f", model.f);
   write_terms(file, "g", model.g);
+  write_support(file, model.support);
   write_fields(file, model);
   write_history(file, model);
   file.commit(path, "model", model_schema);

@@ -1,6 +1,7 @@
 #include "rbvi/rom/online.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/support_outputs.hpp"
 
 #include <Eigen/QR>
 
@@ -42,6 +43,21 @@ void check_kernel(const AffineTerms &terms, const Form &form, const std::string 
 
 } // namespace
 
+Vector normal_gap(const Scene &scene, const Mu &all_parameters, const Matrix &contact_points,
+                  const Vector &displacement) {
+  Vector gap(contact_points.rows());
+  for (Index i = 0; i < gap.size(); ++i) {
+    const Point x = point_of(contact_points, i), n = scene.support->normal(all_parameters, x);
+    const Point motion = scene.motion ? scene.motion(all_parameters, x) : Point{};
+    gap[i] = scene.support->gap(all_parameters, x);
+    for (int c = 0; c < scene.components; ++c) {
+      const auto k = static_cast<std::size_t>(c);
+      gap[i] -= n[k] * (motion[k] + displacement[i * scene.components + c]);
+    }
+  }
+  return gap;
+}
+
 std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene) {
   std::vector<Point> points;
   const Index count = model.two_bodies() ? model.slave_nodes : model.contact_points.rows();
@@ -56,6 +72,10 @@ OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scen
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     : model_(model), scene_(std::move(scene)), qp_(solved_size(model), model.free_modes) {
   check_kernel(model.a, scene_.a, "a");
+  if (scene_.support || model.support) {
+    support_ = std::make_unique<SupportSolver>(model, scene_);
+    return;
+  }
   check_kernel(model.b, scene_.b, "b");
   check_kernel(model.f, scene_.f, "f");
   check_kernel(model.g, scene_.g, "g");
@@ -190,6 +210,16 @@ ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
     return affine_coefficients(terms, form, scene_, all_parameters);
   };
   ReducedSolution solution;
+  if (support_) {
+    SupportAnswer answer = support_->solve(all_parameters);
+    solution.u = std::move(answer.u);
+    solution.x = std::move(answer.x);
+    solution.theta_b = std::move(answer.theta_b);
+    solution.energy = answer.energy;
+    solution.kkt_residual = answer.residual;
+    solution.iterations = answer.iterations;
+    return solution;
+  }
   if (model_.two_bodies())
     assemble_pair(all_parameters, solution);
   else
@@ -219,6 +249,7 @@ Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) 
   const Vector trace = model_.contact_trace * solution.u;
   if (model_.two_bodies()) return solution.pair.nodal_gap - solution.pair.nodal_b * trace;
   const Mu all = expand(scene_.parameters, mu);
+  if (support_) return normal_gap(scene_, all, model_.contact_points, trace);
   Vector gap = trace;
   for (Index i = 0; i < gap.size(); ++i)
     gap[i] -= scene_.obstacle(all, scene_.map(all, point_of(model_.contact_points, i)));
@@ -231,10 +262,31 @@ Vector OnlineSolver::field(const ReducedSolution &solution) const {
   return model_.primal_basis * solution.u;
 }
 
+void OnlineSolver::support_outputs_of(const Mu &all_parameters, const ReducedSolution &solution,
+                                      Outputs &outputs) const {
+  const Vector lambda = multiplier(solution), lift = model_.support->lift * solution.theta_b;
+  const FrictionBound bound = friction_bound(scene_.support->friction, all_parameters);
+  const MappedCurve curve = mapped_curve(model_, scene_, all_parameters);
+  support_outputs({lambda, curve.weights, lift, bound, curve.points}, outputs);
+}
+
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) const {
   Outputs result;
   const double images = scene_.mirror_images;
   result.energy = images * solution.energy;
+  const Vector gap = contact_gap(mu, solution);
+  result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
+  result.kkt_residual = solution.kkt_residual;
+  result.iterations = solution.iterations;
+  const ValidationErrors &expected = expected_errors(model_);
+  if (expected.count > 0 && in_box(scene_.parameters, mu)) {
+    result.expected_error_u = expected.u_max;
+    result.expected_error_lambda = std::max(expected.lambda_max, expected.tangential_max);
+  }
+  if (support_) {
+    support_outputs_of(expand(scene_.parameters, mu), solution, result);
+    return result;
+  }
   const Vector lambda = multiplier(solution);
   const Vector weights = model_.two_bodies() ? solution.pair.weights
                                              : Vector(model_.lumped_weights * solution.theta_b);
@@ -243,15 +295,6 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   result.peak_pressure = peak;
   result.contact_measure =
       peak > 0 ? images * (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
-  const Vector gap = contact_gap(mu, solution);
-  result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
-  result.kkt_residual = solution.kkt_residual;
-  result.iterations = solution.iterations;
-  const ValidationErrors &expected = expected_errors(model_);
-  if (expected.count > 0 && in_box(scene_.parameters, mu)) {
-    result.expected_error_u = expected.u_max;
-    result.expected_error_lambda = expected.lambda_max;
-  }
   return result;
 }
 

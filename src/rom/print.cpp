@@ -25,8 +25,11 @@ std::string validation(const ValidationErrors &errors) {
   if (errors.count <= 0) return "not measured (run rbvi verify)";
   std::ostringstream text;
   text << std::setprecision(2) << "u " << errors.u_mean << " mean, " << errors.u_max
-       << " max; lambda " << errors.lambda_mean << " mean, " << errors.lambda_max << " max; over "
-       << errors.count << " parameters, relative";
+       << " max; lambda " << errors.lambda_mean << " mean, " << errors.lambda_max << " max; ";
+  if (errors.tangential_mean >= 0)
+    text << "lambda_tau " << errors.tangential_mean << " mean, " << errors.tangential_max
+         << " max; ";
+  text << "over " << errors.count << " parameters, relative";
   return text.str();
 }
 
@@ -50,6 +53,14 @@ void print_terms(std::ostream &out, const std::string &name, const AffineTerms &
   out << '\n';
 }
 
+void print_support(std::ostream &out, const SupportModel &support, int multipliers) {
+  label(out, "condensed operator")
+      << multipliers << " x " << multipliers << ", " << support.condensed.terms.cols() << " terms";
+  if (!support.condensed.axes.empty())
+    out << " (interpolation error " << support.condensed.error << ')';
+  out << '\n';
+}
+
 } // namespace
 
 void print_expected_errors(std::ostream &out, const ReducedModel &model) {
@@ -63,7 +74,10 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "modes") << model.modes << '\n';
   label(out, "supremizers") << model.supremizers
                             << (model.online_enriched ? " (the space is made online)" : "") << '\n';
-  label(out, "cone generators") << model.generators - model.free_modes << '\n';
+  if (model.support)
+    print_support(out, *model.support, model.generators);
+  else
+    label(out, "cone generators") << model.generators - model.free_modes << '\n';
   if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
   print_terms(out, "a", model.a);
   print_terms(out, "f", model.f);

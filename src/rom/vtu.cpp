@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/element/lagrange.hpp"
 
 #include <charconv>
 
@@ -25,6 +26,8 @@ int vtk_cell_type(int per_cell) {
   if (per_cell == 2) return 3;
   if (per_cell == 3) return 5;
   if (per_cell == 4) return 10;
+  if (per_cell == 6) return 22;
+  if (per_cell == 10) return 24;
   throw failure("no VTU cell type has " + std::to_string(per_cell) + " nodes");
 }
 
@@ -132,6 +135,26 @@ void write_curve(const std::filesystem::path &path, const Scene &scene, const Mu
   write_vtu(path, points, edges, 2, nodal, per_edge);
 }
 
+void write_support(const std::filesystem::path &path, const Scene &scene, const Mu &all,
+                   const ReducedModel &model, const Vector &displacements, const Vector &u,
+                   const Vector &lambda) {
+  const Index count = model.contact_points.rows();
+  Vector local(count * scene.components), moved(3 * count);
+  std::vector<int> edges;
+  for (Index k = 0; k < count; ++k) {
+    const Index node = model.contact_nodes[static_cast<std::size_t>(k)];
+    local.segment(k * scene.components, scene.components) =
+        u.segment(node * scene.components, scene.components);
+    moved.segment(3 * k, 3) = displacements.segment(3 * node, 3);
+    if (k + 1 < count) edges.insert(edges.end(), {static_cast<int>(k), static_cast<int>(k) + 1});
+  }
+  std::vector<Field> nodal{{"u", moved},
+                           {"gap", normal_gap(scene, all, model.contact_points, local)},
+                           {"pressure", lambda.head(count)}};
+  if (lambda.size() > count) nodal.push_back({"tangential_stress", lambda.tail(count)});
+  write_vtu(path, mapped(scene, all, model.contact_points), edges, 2, nodal);
+}
+
 } // namespace
 
 void write_vtu(const std::filesystem::path &path, const Matrix &points,
@@ -166,9 +189,11 @@ std::filesystem::path contact_file(const std::filesystem::path &path) {
 void write_vtu(const std::filesystem::path &path, const Scene &scene, const Mu &all,
                const ReducedModel &model, const Vector &u, const Vector &lambda) {
   const Vector moved = displacement(scene, all, model.mesh_points, u);
-  write_vtu(path, mapped(scene, all, model.mesh_points), model.mesh_cells, scene.dim + 1,
-            {{"u", moved}});
-  if (model.two_bodies())
+  write_vtu(path, mapped(scene, all, model.mesh_points), model.mesh_cells,
+            nodes_per_cell(scene.dim, scene.degree), {{"u", moved}});
+  if (scene.support)
+    write_support(contact_file(path), scene, all, model, moved, u, lambda);
+  else if (model.two_bodies())
     write_curve(contact_file(path), scene, all, model, moved, u, lambda);
   else
     write_region(contact_file(path), scene, all, model, u, lambda);

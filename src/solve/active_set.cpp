@@ -75,8 +75,21 @@ Matrix Compliance::condensed_columns(KSP ksp, const Trace &trace, const Operator
   return result;
 }
 
-MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
-                              const std::vector<Index> &start, Compliance *kept) {
+namespace {
+
+template <class Found> void take(Found &&found, MethodResult &result) {
+  result.lambda = std::move(found.x);
+  result.active = std::move(found.active);
+  result.iterations = found.iterations;
+  result.columns = found.columns;
+  result.converged = found.converged;
+  result.reason = std::move(found.reason);
+}
+
+} // namespace
+
+MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
+                              Compliance *kept) {
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));
   RBVI_CALL(VecZeroEntries(result.u.get()));
@@ -88,14 +101,13 @@ MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
     return kept != nullptr ? kept->condensed_columns(ksp, trace, op, which)
                            : condensed_columns(ksp, trace, op, which);
   };
-  LcpResult lcp = solve_lcp(columns, q, start);
-  solve_linear(ksp, reaction_rhs(trace, op, lcp.x).get(), result.u.get());
-  result.lambda = std::move(lcp.x);
-  result.active = std::move(lcp.active);
-  result.iterations = lcp.iterations;
-  result.columns = lcp.columns;
-  result.converged = lcp.converged;
-  result.reason = lcp.reason;
+  if (op.normal < q.size())
+    take(solve_friction(columns, q, static_cast<int>(q.size() / op.normal), op.bound, start.lambda),
+         result);
+  else
+    take(solve_lcp(columns, q, start.active), result);
+  if (result.lambda.size() == 0) return result; // not converged: there is no displacement either
+  solve_linear(ksp, reaction_rhs(trace, op, result.lambda).get(), result.u.get());
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
@@ -21,6 +22,20 @@ double ratio(double value, double scale) {
   return scale > 0 ? value / scale : value;
 }
 
+/// Forces, half-widths and pressures of contact with a rigid support.
+void measure_support(const Problem &problem, const Operators &op, const Vector &lambda,
+                     Outputs &outputs) {
+  const SupportCurve &curve = problem.support().curve;
+  const int components = problem.scene().components;
+  Vector upwards = Vector::Zero(op.b.cols());
+  for (Index i = components - 1; i < upwards.size(); i += components)
+    upwards[i] = 1;
+  std::vector<Point> points;
+  for (Index i = 0; i < curve.vertices; ++i)
+    points.push_back(problem.scene().map(op.mu, curve.points[static_cast<std::size_t>(i)]));
+  support_outputs({lambda, op.weights, op.b * upwards, op.bound, points}, outputs);
+}
+
 Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
                 const HfSolution &solution) {
   Handle<Vec> au;
@@ -33,6 +48,14 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   const double images = problem.scene().mirror_images;
   Outputs outputs;
   outputs.energy = images * (quadratic / 2 - linear);
+  outputs.kkt_residual = solution.kkt.largest();
+  const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
+  outputs.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
+  outputs.iterations = result.iterations;
+  if (problem.on_support()) {
+    measure_support(problem, op, result.lambda, outputs);
+    return outputs;
+  }
   outputs.normal_force = images * op.weights.dot(result.lambda);
   double measure = 0;
   for (const Index i : result.active)
@@ -40,27 +63,39 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   outputs.contact_measure = images * measure;
   outputs.peak_pressure = result.lambda.maxCoeff();
   if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
-  outputs.kkt_residual = solution.kkt.largest();
-  const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
-  outputs.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
-  outputs.iterations = result.iterations;
   return outputs;
 }
 
 /// Where a few dozen accelerated Uzawa steps see contact: far cheaper than the columns of all
 /// nodes.
-std::vector<Index> rough_active_set(KSP ksp, const Problem &problem, const Operators &op) {
+Start rough_start(KSP ksp, const Problem &problem, const Operators &op) {
   HfOptions rough;
   rough.uzawa_accelerated = true;
   rough.uzawa_tolerance = 1e-3;
   rough.uzawa_max_iterations = 100;
-  return solve_uzawa(ksp, problem.trace(), op, problem.w_product(), rough).active;
+  MethodResult found = solve_uzawa(ksp, problem.trace(), op, problem.w_product(), rough);
+  return {std::move(found.active), std::move(found.lambda)};
+}
+
+/// KktResidual::friction. `excess`: B u - G, in its tangential rows the slip; `scale`: |l| |G|.
+double friction_residual(const Operators &op, const Vector &lambda, const Vector &excess,
+                         double scale) {
+  const Index components = lambda.size() / op.normal - 1;
+  const Vector bounds = friction_bounds(op.bound, lambda.head(op.normal));
+  double above = 0, idle = 0;
+  for (Index i = 0; i < op.normal; ++i) {
+    const auto stress = lambda.segment(op.normal + i * components, components);
+    const auto slip = excess.segment(op.normal + i * components, components);
+    above = std::max(above, stress.norm() - bounds[i]);
+    idle += std::abs(bounds[i] * slip.norm() - stress.dot(slip));
+  }
+  return std::max(ratio(above, lambda.cwiseAbs().maxCoeff()), ratio(idle, scale));
 }
 
 } // namespace
 
 double KktResidual::largest() const {
-  return std::max({stationarity, feasibility, complementarity, sign});
+  return std::max({stationarity, feasibility, complementarity, sign, friction});
 }
 
 KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {
@@ -76,7 +111,7 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
 
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
   double penetration = 0, gap = 0; // a multiplier without weight has no constraint
-  for (Index i = 0; i < excess.size(); ++i) {
+  for (Index i = 0; i < op.normal; ++i) {
     if (!(op.weights[i] > 0)) continue;
     penetration = std::max(penetration, excess[i] / op.weights[i]);
     gap = std::max(gap, std::abs(op.g[i]) / op.weights[i]);
@@ -84,24 +119,27 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
   KktResidual kkt;
   kkt.stationarity = ratio(norm(r.get()), norm(op.f) + norm(reaction.get()));
   kkt.feasibility = ratio(penetration, gap);
-  kkt.complementarity =
-      ratio(lambda.cwiseProduct(excess).cwiseAbs().sum(), lambda.norm() * op.g.norm());
-  kkt.sign = std::max(0.0, ratio(-lambda.minCoeff(), lambda.cwiseAbs().maxCoeff()));
+  const auto normal = lambda.head(op.normal);
+  const double scale = lambda.norm() * op.g.norm();
+  kkt.complementarity = ratio(normal.cwiseProduct(excess.head(op.normal)).cwiseAbs().sum(), scale);
+  kkt.sign = std::max(0.0, ratio(-normal.minCoeff(), normal.cwiseAbs().maxCoeff()));
+  if (op.normal < lambda.size()) kkt.friction = friction_residual(op, lambda, excess, scale);
   return kkt;
 }
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
-  if (options.method == HfMethod::vi && problem.two_bodies())
-    throw bad_input("vi needs a bound at each node, and two bodies bound differences of both: use "
-                    "-hf_method active_set or uzawa");
+  if (options.method == HfMethod::vi && (problem.two_bodies() || problem.on_support()))
+    throw bad_input(
+        "vi needs a bound at each node, and contact of two bodies or with a rigid support bounds "
+        "integrals over several: use -hf_method active_set or uzawa");
   if (constant_stiffness(problem.scene())) compliance_ = std::make_unique<Compliance>();
 }
 
 HighFidelity::~HighFidelity() = default;
 
-std::vector<Index> HighFidelity::nearest_active_set(const Mu &mu, const Operators &op) const {
-  if (solved_.empty()) return rough_active_set(ksp_.get(), problem_, op);
+Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
+  if (solved_.empty()) return rough_start(ksp_.get(), problem_, op);
   const ParameterSpace &space = problem_.scene().parameters;
   const Solved *nearest = nullptr;
   double best = 0;
@@ -116,7 +154,7 @@ std::vector<Index> HighFidelity::nearest_active_set(const Mu &mu, const Operator
       best = distance;
     }
   }
-  return nearest->active;
+  return nearest->start;
 }
 
 MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
@@ -124,7 +162,7 @@ MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
   if (options_.method == HfMethod::uzawa)
     return solve_uzawa(ksp_.get(), trace, op, problem_.w_product(), options_);
   if (options_.method == HfMethod::vi) return solve_vi(problem_, op);
-  return solve_active_set(ksp_.get(), trace, op, nearest_active_set(mu, op), compliance_.get());
+  return solve_active_set(ksp_.get(), trace, op, nearest_start(mu, op), compliance_.get());
 }
 
 HfSolution HighFidelity::solve(const Mu &mu) {
@@ -149,7 +187,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) +
                   ", above 1e-10: is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");
-  solved_.push_back({mu, solution.active});
+  solved_.push_back({mu, {solution.active, solution.lambda}});
   return solution;
 }
 

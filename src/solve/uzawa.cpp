@@ -1,4 +1,5 @@
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <cmath>
@@ -11,7 +12,10 @@ namespace {
 double largest_eigenvalue(KSP ksp, const Trace &trace, const Operators &op, Vec scratch) {
   Handle<Vec> load;
   RBVI_CALL(VecDuplicate(scratch, load.put()));
-  Vector x = op.weights.normalized();
+  Vector x = Vector::Ones(op.g.size());
+  for (Index i = 0; i < x.size(); ++i)
+    x[i] = op.weights[i % op.weights.size()];
+  x.normalize();
   double estimate = 0;
   for (int k = 0; k < 100; ++k) {
     RBVI_CALL(VecZeroEntries(load.get()));
@@ -27,8 +31,29 @@ double largest_eigenvalue(KSP ksp, const Trace &trace, const Operators &op, Vec 
   return 1.01 * estimate;
 }
 
-double w_norm(const SparseMatrix &w, const Vector &x) {
-  return std::sqrt(x.dot(w * x));
+/// Onto lambda_n >= 0 and then |lambda_tau| <= its bound, node by node (corrected (3.32)).
+Vector admissible(const Operators &op, Vector lambda) {
+  lambda.head(op.normal) = lambda.head(op.normal).cwiseMax(0);
+  const Index components = lambda.size() / op.normal - 1;
+  if (components == 0) return lambda;
+  const Vector bounds = friction_bounds(op.bound, lambda.head(op.normal));
+  for (Index i = 0; i < op.normal; ++i) {
+    auto tangential = lambda.segment(op.normal + i * components, components);
+    if (const double size = tangential.norm(); size > bounds[i]) tangential *= bounds[i] / size;
+  }
+  return lambda;
+}
+
+/// (3.19): the changes of the normal and of the tangential part, each against its own size.
+bool small_change(const SparseMatrix &w, Index normal, const Vector &change, const Vector &lambda,
+                  double tolerance) {
+  const Vector wc = w * change, wl = w * lambda;
+  const auto small = [&](Index first, Index count) {
+    const double square = change.segment(first, count).dot(wc.segment(first, count));
+    const double size = lambda.segment(first, count).dot(wl.segment(first, count));
+    return std::sqrt(square) <= tolerance * std::sqrt(size);
+  };
+  return small(0, normal) && small(normal, lambda.size() - normal);
 }
 
 } // namespace
@@ -46,11 +71,10 @@ MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
        ++result.iterations) {
     solve_linear(ksp, reaction_rhs(trace, op, extrapolated).get(), u);
     const Vector violation = op.b * restrict_to(trace, u) - op.g;
-    const Vector next = (extrapolated + step * violation).cwiseMax(0);
+    const Vector next = admissible(op, extrapolated + step * violation);
     const Vector change = next - lambda;
-    const double size = w_norm(w_product, next);
-    const bool small = w_norm(w_product, change) <= options.uzawa_tolerance * size;
-    if (small && (result.iterations > 1 || size == 0)) result.converged = true;
+    const bool small = small_change(w_product, op.normal, change, next, options.uzawa_tolerance);
+    if (small && (result.iterations > 1 || (next.array() == 0).all())) result.converged = true;
     if (options.uzawa_accelerated) {
       const bool overshot = (extrapolated - next).dot(change) > 0;
       const double grown = overshot ? 1 : (1 + std::sqrt(1 + 4 * momentum * momentum)) / 2;
@@ -63,7 +87,7 @@ MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
     if (result.converged) break;
   }
   solve_linear(ksp, reaction_rhs(trace, op, lambda).get(), u);
-  for (Index i = 0; i < lambda.size(); ++i)
+  for (Index i = 0; i < op.normal; ++i)
     if (lambda[i] > 0) result.active.push_back(i);
   result.lambda = std::move(lambda);
   result.reason = result.converged

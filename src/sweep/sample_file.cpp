@@ -9,13 +9,24 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 1;
+constexpr int sample_schema = 2;
 
 /// The outputs that a sample stores, in the order of their file record.
-constexpr std::array stored_outputs{
-    &Outputs::energy,          &Outputs::normal_force, &Outputs::contact_measure,
-    &Outputs::peak_pressure,   &Outputs::min_u,        &Outputs::kkt_residual,
-    &Outputs::max_penetration, &Outputs::iterations,   &Outputs::seconds};
+constexpr std::array stored_outputs{&Outputs::energy,
+                                    &Outputs::normal_force,
+                                    &Outputs::tangential_force,
+                                    &Outputs::reaction,
+                                    &Outputs::contact_measure,
+                                    &Outputs::contact_half_width,
+                                    &Outputs::stick_half_width,
+                                    &Outputs::peak_pressure,
+                                    &Outputs::centre_pressure,
+                                    &Outputs::min_u,
+                                    &Outputs::kkt_residual,
+                                    &Outputs::max_penetration,
+                                    &Outputs::friction_violation,
+                                    &Outputs::iterations,
+                                    &Outputs::seconds};
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
                     const std::vector<std::string> &names, const std::vector<std::string> &values) {

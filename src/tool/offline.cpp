@@ -15,11 +15,21 @@ namespace rbvi {
 namespace {
 
 std::map<std::string, std::string> model_settings(const ToolOptions &options, std::size_t samples) {
-  return {
+  std::map<std::string, std::string> settings{
       {"training", options.train},
       {"samples", std::to_string(samples)},
       {"mesh_refine", std::to_string(options.mesh.refine)},
       {"pod_tolerance", short_number(options.reduce.pod.tolerance)},
+      {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
+  if (options.scene.support) {
+    const MultiplierOptions &choice = options.reduce.multipliers;
+    settings["condensed_tolerance"] = short_number(options.reduce.condensed.tolerance);
+    settings["multiplier_reduction"] =
+        multiplier_reduction_names()[static_cast<std::size_t>(choice.reduction)];
+    if (choice.reduction == MultiplierReduction::condensed) return settings;
+    settings["tangential_tolerance"] = short_number(choice.tangential);
+  }
+  settings.merge(std::map<std::string, std::string>{
       {"cone_type", cone_type_names()[static_cast<std::size_t>(options.reduce.cone.type)]},
       {"cone_tolerance", short_number(options.reduce.cone.tolerance)},
       {"cone_feasibility", short_number(options.reduce.cone.feasibility)},
@@ -27,8 +37,8 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
       {"pga_enrichment", enrichment_names()[static_cast<std::size_t>(options.reduce.enrichment)]},
       {"pga_product", product_names()[static_cast<std::size_t>(options.reduce.product)]},
       {"pga_tolerance", short_number(options.reduce.pga.tolerance)},
-      {"pga_beta_fraction", short_number(options.reduce.pga.stability)},
-      {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
+      {"pga_beta_fraction", short_number(options.reduce.pga.stability)}});
+  return settings;
 }
 
 void print_failures(const SweepReport &report, const ParameterSpace &space) {
@@ -70,21 +80,8 @@ void command_offline(const ToolOptions &options) {
   write_case_file(world, options);
 
   Problem &problem = work.world_problem(times);
-  std::vector<Mu> solved;
-  for (const Sample &sample : sweep.samples)
-    solved.push_back(sample.mu);
-  AffineOperators affine;
-  {
-    const Stage stage("interpolation", times);
-    affine = separate(problem, solved, options.reduce.eim);
-  }
-  const ReducedBases bases =
-      build_bases(problem, sweep.samples, options.reduce, affine.b.size() == 1, times);
-  ReducedModel model;
-  {
-    const Stage stage("projection", times);
-    model = project(problem, sweep.samples, affine, bases);
-  }
+  Reduction made = reduce(problem, sweep.samples, options.reduce, times);
+  ReducedModel &model = made.model;
   model.settings = model_settings(options, sweep.samples.size());
   for (const auto &[stage, seconds] : times)
     model.stage_seconds[stage] = seconds;
@@ -97,7 +94,7 @@ void command_offline(const ToolOptions &options) {
     });
   }
   if (rank != 0) return;
-  const OfflineResult result{sweep.report, affine, bases};
+  const OfflineResult result{sweep.report, made.affine, made.bases};
   print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
   std::printf("Model: %s\n", (options.out / "model.h5").c_str());
 }

@@ -141,16 +141,17 @@ SceneOptions scene_options_of(const std::string &scene) {
   return options;
 }
 
-/// "-radius 0.2" fixes a parameter, "-radius 0.18,0.22" gives its bounds. Returns whether it is
-/// fixed.
-bool adapt_parameter(Parameter &parameter) {
+enum class Given { nothing, value, bounds };
+
+/// "-radius 0.2" fixes a parameter, "-radius 0.18,0.22" frees it between bounds.
+Given adapt_parameter(Parameter &parameter) {
   const std::string text = text_of(parameter.name);
   const std::vector<std::string> parts = split(text, ',');
   const std::string what = "option -" + parameter.name;
-  if (text.empty()) return false;
+  if (text.empty()) return Given::nothing;
   if (parts.size() == 1) {
     parameter.value = parse_number(parts[0], what);
-    return true;
+    return Given::value;
   }
   if (parts.size() != 2)
     throw bad_input(what + " is '" + text + "': give one value, or two bounds");
@@ -159,21 +160,25 @@ bool adapt_parameter(Parameter &parameter) {
   if (!(parameter.lower < parameter.upper))
     throw bad_input(what + " is '" + text + "': the lower bound comes first");
   parameter.value = std::clamp(parameter.value, parameter.lower, parameter.upper);
-  return false;
+  return Given::bounds;
 }
 
-/// "-parameters" says which are free; without it, all that are not fixed.
+/// "-parameters" says which are free; without it those with two bounds and those that the scene
+/// frees, less those with one value.
 void adapt_parameters(ParameterSpace &space) {
   std::string unfixed;
   std::vector<std::string> fixed;
-  for (Parameter &parameter : space.all) {
-    if (adapt_parameter(parameter))
+  for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
+    Parameter &parameter = space.all[static_cast<std::size_t>(i)];
+    const Given given = adapt_parameter(parameter);
+    const bool free = std::find(space.free.begin(), space.free.end(), i) != space.free.end();
+    if (given == Given::value)
       fixed.push_back(parameter.name);
-    else
+    else if (free || given == Given::bounds)
       unfixed += (unfixed.empty() ? "" : ",") + parameter.name;
   }
-  const std::string free = text_of("parameters");
-  space = free_only(space, free.empty() ? unfixed : free);
+  const std::string named = text_of("parameters");
+  space = free_only(space, named.empty() ? unfixed : named);
   for (int i = 0; i < space.size(); ++i)
     if (contains(fixed, space.at(i).name))
       throw bad_input("parameter " + space.at(i).name + " is freed by -parameters and fixed by -" +
@@ -247,7 +252,34 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
   options.pga.max_size = integer_of("pga_max_size", 0, 100000);
   options.eim.tolerance = number_of("eim_tolerance", 0, 1);
   options.eim.max_size = integer_of("eim_max_size", 0, 100000);
+  options.condensed.tolerance = number_of("condensed_tolerance", 0, 1);
+  options.condensed.responses = number_of("response_tolerance", 0, 1);
+  options.multipliers.reduction = static_cast<MultiplierReduction>(
+      choice_of("multiplier_reduction", multiplier_reduction_names()));
+  options.multipliers.tangential = number_of("tangential_tolerance", 0, 1);
+  options.multipliers.extra_nodes = integer_of("joint_extra_nodes", 0, 100000);
+  options.multipliers.exact = flag_of("multiplier_exact");
+  options.gcns.tolerance = number_of("gcns_tolerance", 0, 1e300);
+  options.gcns.max_nodes = integer_of("gcns_max_nodes", 0, 100000);
   return options;
+}
+
+/// Reductions of multipliers are for a rigid support with friction; their cones are of snapshots
+/// unless something else is asked for.
+void check_multipliers(const std::vector<std::string> &names, const Scene &scene,
+                       ReduceOptions &options) {
+  const MultiplierReduction reduction = options.multipliers.reduction;
+  if (!scene.support && contains(names, "multiplier_reduction"))
+    throw bad_input("-multiplier_reduction is for contact with a rigid support, which scene " +
+                    scene.name + " has not");
+  if (!scene.support || reduction == MultiplierReduction::condensed) return;
+  if (scene.support->friction.law == FrictionLaw::none)
+    throw bad_input("the scene has no friction: use -multiplier_reduction condensed");
+  if (!contains(names, "cone_type")) options.cone.type = ConeType::mcpg;
+  if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
+    throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
+                    "-multiplier_reduction " +
+                    multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
 }
 
 HfOptions hf_options() {
@@ -261,49 +293,6 @@ HfOptions hf_options() {
 }
 
 } // namespace
-
-const std::vector<OptionHelp> &tool_options() {
-  static const std::vector<OptionHelp> options{
-      {"case", "",
-       "case file (YAML, one 'option: value' per line); the command line beats it. Without it: "
-       "that of -out"},
-      {"scene", "", "name of the scene (rbvi list)"},
-      {"out", "", "run directory"},
-      {"parameters", "", "names of the free parameters; the others keep their value"},
-      {"train", "", "training set: grid:5,5,5 | random:COUNT:SEED | file.csv"},
-      {"valid", "", "validation set, as -train"},
-      {"mu", "", "parameter of one solve: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02"},
-      {"vtu", "", "file for the field of one solve"},
-      {"csv", "", "file for the table of outputs"},
-      {"plan", "no", "print which stages will run, and stop"},
-      {"verify_stability", "yes", "verify inf-sup constants and bounds too, not errors alone"},
-      {"mesh", "", "Gmsh file instead of the built-in mesh"},
-      {"mesh_refine", "0", "uniform refinements"},
-      {"hf_method", "active_set", "high-fidelity solver: active_set | uzawa | vi"},
-      {"uzawa_tolerance", "1e-6", "relative change of the multiplier"},
-      {"uzawa_max_iterations", "20000", "limit of iterations"},
-      {"uzawa_accelerated", "no", "Nesterov's extrapolation with restart"},
-      {"uzawa_step", "0", "step rho; 0 is 1 / largest eigenvalue of B A^-1 B^T"},
-      {"sweep_ranks_per_solve", "1", "ranks that share one solve; divides the ranks"},
-      {"pod_tolerance", "1e-6", "relative error of the displacement modes (2.11)"},
-      {"pod_max_size", "0", "most modes; 0 is no bound"},
-      {"cone_type", "hybrid",
-       "dual basis: cpg | mcpg | angle_greedy | nmf | nodal | hybrid (README)"},
-      {"cone_tolerance", "1e-4", "relative error of the cone (2.34); not used by nodal"},
-      {"cone_max_size", "0", "most generators; 0 is no bound"},
-      {"cone_feasibility", "0", "mcpg: tolerated negative part, as a fraction of the maximum"},
-      {"cone_ring", "1", "nodal, hybrid: layers of nodes around moving contact"},
-      {"pga_enrichment", "offline", "supremizers: decorrelated (none) | online | offline"},
-      {"pga_product", "v", "they are taken in the V product or in energy: v | energy"},
-      {"reference_mu", "",
-       "mu of that energy, and of the hybrid cone's; default: centre of the box"},
-      {"pga_tolerance", "0", "on max sigma (2.27); 0 uses -pga_beta_fraction"},
-      {"pga_beta_fraction", "0.9", "stop when beta_off >= this fraction of beta_on is sure"},
-      {"pga_max_size", "0", "most supremizers; 0 is no bound"},
-      {"eim_tolerance", "1e-4", "relative error of the separated operators (B.32)"},
-      {"eim_max_size", "0", "most terms; 0 is no bound"}};
-  return options;
-}
 
 bool is_option(const std::string &word) {
   return word.size() > 1 && word[0] == '-' &&
@@ -338,12 +327,14 @@ ToolOptions read_options(MPI_Comm comm) {
   options.valid = text_of("valid", options.scene.validation);
   options.hf = hf_options();
   if (options.hf.method == HfMethod::vi && !options.scene.lumped)
-    throw bad_input(options.scene.pair
-                        ? "-hf_method vi needs a bound at each node, and two bodies bound "
-                          "differences of both: use active_set or uzawa"
+    throw bad_input(options.scene.pair || options.scene.support
+                        ? "-hf_method vi needs a bound at each node, and contact of two bodies or "
+                          "with a rigid support bounds integrals over several: use active_set or "
+                          "uzawa"
                         : "-hf_method vi needs a bound at each node: set -lumped yes, or use "
                           "active_set");
   options.reduce = reduce_options(options.scene.parameters);
+  check_multipliers(names, options.scene, options.reduce);
   options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
   options.out = text_of("out");
   options.mu = text_of("mu");
@@ -352,32 +343,6 @@ ToolOptions read_options(MPI_Comm comm) {
   options.plan = flag_of("plan");
   options.stability = flag_of("verify_stability");
   return options;
-}
-
-void print_help() {
-  std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n"
-              "  offline   snapshots, bases, interpolation, reduced model into -out\n"
-              "  verify    reduced against high-fidelity over the validation set\n"
-              "  solve     one high-fidelity solve at -mu\n"
-              "  bench     run time against error\n"
-              "  list      the scenes of this build\n"
-              "  inspect FILE   what a model file holds\n\nOptions [default]:\n");
-  for (const OptionHelp &option : tool_options())
-    std::printf("  -%-24s %s%s\n", option.name.c_str(), option.help.c_str(),
-                option.default_value.empty() ? "" : (" [" + option.default_value + "]").c_str());
-  for (const SceneEntry &scene : scene_catalogue()) {
-    std::printf("\nScene %s: %s\n", scene.name.c_str(), scene.summary.c_str());
-    for (const SceneOption &option : scene.options)
-      std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
-                  option.default_value.c_str());
-    for (const Parameter &p : make_scene(scene.name).parameters.all)
-      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
-                  p.lower, p.upper, p.unit.c_str());
-  }
-  std::printf(
-      "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
-      "(Riesz representers), -log_view, ...\n"
-      "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
 }
 
 } // namespace rbvi

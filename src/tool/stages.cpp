@@ -118,6 +118,66 @@ StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResul
   return {stage, "B depends on mu: part of PGA"};
 }
 
+/// Functions of the multipliers of a further reduction.
+std::string multiplier_row(const ToolOptions &options, const OfflineResult *result) {
+  const auto kind = static_cast<std::size_t>(options.reduce.multipliers.reduction);
+  const std::string name = multiplier_reduction_names()[kind];
+  if (result == nullptr) return name;
+  const MultiplierBasis &basis = result->bases.multipliers.basis;
+  if (options.reduce.multipliers.reduction == MultiplierReduction::joint)
+    return name + ": " + count(static_cast<int>(basis.normal.cols()), "mode") + ", " +
+           count(static_cast<int>(basis.nodes.size()), "node");
+  const bool cones = options.reduce.multipliers.reduction == MultiplierReduction::cones;
+  return name + ": R = " + count(static_cast<int>(basis.normal.cols()), "generator") + ", " +
+         (cones ? "M = " : "S = ") +
+         count(static_cast<int>(basis.tangential.cols()), cones ? "generator" : "mode");
+}
+
+/// Contact with a rigid support: the condensed operator in place of a reduced pair.
+void add_support_rows(const ToolOptions &options, const OfflineResult *result,
+                      std::vector<StageRow> &rows) {
+  const std::string tolerance = short_number(options.reduce.condensed.tolerance);
+  std::string what =
+      "the condensed operator, at the Chebyshev points of the parameters of A to " + tolerance;
+  if (result != nullptr) {
+    const CondensedOperator &condensed = result->bases.condensed;
+    what = count(static_cast<int>(result->bases.support_dual.cols()), "multiplier") + ", " +
+           count(static_cast<int>(grid_size(condensed.axes)), "factorisation") + ", " +
+           count(static_cast<int>(condensed.terms.cols()), "term");
+    if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);
+  }
+  const MultiplierReduction reduction = options.reduce.multipliers.reduction;
+  const bool none =
+      reduction == MultiplierReduction::collocated && !options.reduce.multipliers.exact;
+  rows.push_back({"condensation", none ? "not wanted (-multiplier_exact no)" : what, none});
+  if (reduction == MultiplierReduction::condensed)
+    rows.push_back({"cone, PGA",
+                    "the multipliers keep a coefficient at every node: nothing to "
+                    "stabilise",
+                    true});
+  else
+    rows.push_back({"multipliers", multiplier_row(options, result)});
+  if (reduction == MultiplierReduction::collocated) {
+    rows.push_back(pga_row(options, result));
+    rows.push_back({"collocation nodes", "greedy (Algorithm 3), reduced problems solved exactly"});
+  }
+  if (options.scene.support->friction.law == FrictionLaw::none)
+    rows.push_back({"tangential multipliers", "the scene has no friction", true});
+}
+
+/// Dual basis and supremizers of a reduced pair.
+void add_pair_rows(const ToolOptions &options, const OfflineResult *result,
+                   std::vector<StageRow> &rows) {
+  rows.push_back(cone_row(options, result));
+  if (options.reduce.enrichment != Enrichment::decorrelated)
+    rows.push_back({"Riesz representers", options.reduce.product == SupremizerProduct::energy
+                                              ? "one factorisation of A at the reference mu"
+                                              : "one factorisation of V for all mu"});
+  rows.push_back(pga_row(options, result));
+  rows.push_back(sweep_of_supremizers_row(options, result));
+  rows.push_back({"tangential multipliers", "the scene has no friction", true});
+}
+
 } // namespace
 
 std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t training, int groups,
@@ -131,14 +191,10 @@ std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t tra
   rows.push_back(interpolation_row(options, result));
   if (!options.scene.f) rows.push_back({"load vector", "the scene has no load", true});
   rows.push_back(pod_row(options, result));
-  rows.push_back(cone_row(options, result));
-  if (options.reduce.enrichment != Enrichment::decorrelated)
-    rows.push_back({"Riesz representers", options.reduce.product == SupremizerProduct::energy
-                                              ? "one factorisation of A at the reference mu"
-                                              : "one factorisation of V for all mu"});
-  rows.push_back(pga_row(options, result));
-  rows.push_back(sweep_of_supremizers_row(options, result));
-  rows.push_back({"tangential multipliers", "the scene has no friction", true});
+  if (options.scene.support)
+    add_support_rows(options, result, rows);
+  else
+    add_pair_rows(options, result, rows);
   rows.push_back({"projection", "the separated operators onto the bases"});
   rows.push_back({"writing", "model.h5, samples.csv"});
   rows.push_back({"reconstruction", "online, only when asked", true});

@@ -30,6 +30,9 @@ void print_errors(const char *name, const ModelErrors &e) {
     std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(),
                 e.u.maxCoeff(), e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds,
                 e.kkt_residual);
+  if (e.failed == 0 && e.tangential.size() > 0)
+    std::printf("  %-18s %9s %9s   %9.2e %9.2e\n", "  lambda_tau", "", "", e.tangential.mean(),
+                e.tangential.maxCoeff());
 }
 
 /// The positive ones of `wanted` below `last`, then `last`.
@@ -47,6 +50,7 @@ std::vector<int> generator_counts(const ReducedModel &model) {
   if (type != model.settings.end() && (type->second == "nodal" || type->second == "nmf"))
     return {model.generators};
   const int cone = model.generators - model.free_modes;
+  if (model.support) return {model.generators};
   if (model.free_modes > 0) return sizes_up_to(model.generators, {cone, cone + 4, cone + 8});
   return sizes_up_to(model.generators, {20, 50, 70, 100});
 }
@@ -93,26 +97,32 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   });
 }
 
-/// The pressure where the multiplier is worst, and what it should be.
+/// The multiplier where it is worst (with friction its tangential part), and what it should be.
 void write_worst_pressure(const fs::path &path, const ReducedModel &model, const Truths &truths,
                           const ModelErrors &errors) {
+  const bool friction = errors.tangential.size() > 0;
   Index worst = 0;
-  errors.lambda.maxCoeff(&worst);
+  (friction ? errors.tangential : errors.lambda).maxCoeff(&worst);
   const Mu &mu = truths.mu[static_cast<std::size_t>(worst)];
   OnlineSolver solver(model);
-  const Vector pressure = solver.multiplier(solver.solve(mu, true)),
+  const std::vector<Point> points = dual_points(model, solver.scene());
+  const auto count = static_cast<Index>(points.size());
+  const Vector reduced = solver.multiplier(solver.solve(mu, true)),
                truth = truths.lambda.col(worst);
   Table table;
-  table.add(model.parameters, std::vector<Mu>(static_cast<std::size_t>(truth.size()), mu));
-  const std::vector<Point> points = dual_points(model, solver.scene());
+  table.add(model.parameters, std::vector<Mu>(points.size(), mu));
   for (std::size_t k = 0; k < static_cast<std::size_t>(solver.scene().dim); ++k) {
     std::vector<double> coordinates;
     for (const Point &x : points)
       coordinates.push_back(x[k]);
     table.add(std::string(1, static_cast<char>('x' + k)), coordinates);
   }
-  table.add("high_fidelity", truth);
-  table.add("reduced", pressure);
+  table.add("high_fidelity", truth.head(count));
+  table.add("reduced", reduced.head(count));
+  if (friction) {
+    table.add("high_fidelity_tangential", truth.tail(count));
+    table.add("reduced_tangential", reduced.tail(count));
+  }
   table.write(path);
 }
 
@@ -142,6 +152,7 @@ void write_errors(const fs::path &path, const ParameterSpace &space, const Truth
   table.add("lambda_enriched", enriched.lambda);
   table.add("u_decorrelated", plain.u);
   table.add("lambda_decorrelated", plain.lambda);
+  if (plain.tangential.size() > 0) table.add("tangential", plain.tangential);
   table.add("u_floor", enriched.u_floor);
   table.add("lambda_floor", enriched.lambda_floor);
   table.write(path);
@@ -177,6 +188,10 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
   });
 }
 
+std::string reduction_name(const SupportModel &support) {
+  return multiplier_reduction_names()[static_cast<std::size_t>(support.reduction)];
+}
+
 /// Errors of the model with and without supremizers and of its leading parts, into tables, and the
 /// summaries into the model file.
 void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
@@ -187,9 +202,10 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
       model.supremizers == 0
           ? whole
           : model_errors(leading(model, model.modes, model.generators), {}, truths, w);
-  const std::string name = model.supremizers == 0  ? "decorrelated"
-                           : model.online_enriched ? "online-enriched"
-                                                   : "offline-enriched";
+  const std::string name = model.support            ? reduction_name(*model.support)
+                           : model.supremizers == 0 ? "decorrelated"
+                           : model.online_enriched  ? "online-enriched"
+                                                    : "offline-enriched";
   std::vector<std::pair<std::string, const ModelErrors *>> rows{{name, &whole}};
   if (model.supremizers > 0) rows.emplace_back("decorrelated", &plain);
   std::printf("Relative errors over %zu validation mu\n"
@@ -250,7 +266,8 @@ void command_verify(const ToolOptions &options) {
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
-  if (options.stability) check_stability(world, problem, model, training, validation, out);
+  if (options.stability && !model.support)
+    check_stability(world, problem, model, training, validation, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
   if (rank == 0) std::printf("Tables: %s\n", out.c_str());

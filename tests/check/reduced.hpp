@@ -32,10 +32,11 @@ struct Reduced {
       : problem(comm, scene, {}),
         samples(solve_all(problem, parse_set(problem.scene().parameters, training))) {}
   void reduce(const ReduceOptions &options) {
-    affine = separate(problem, mus(), options.eim);
     StageTimes times;
-    bases = build_bases(problem, samples, options, affine.b.size() == 1, times);
-    model = project(problem, samples, affine, bases);
+    Reduction made = rbvi::reduce(problem, samples, options, times);
+    affine = std::move(made.affine);
+    bases = std::move(made.bases);
+    model = std::move(made.model);
   }
   std::vector<Mu> mus() const {
     std::vector<Mu> set;

@@ -87,4 +87,16 @@ inline Vector heights(const Curve &curve) {
   return y;
 }
 
+/// Compressed, with increasing columns in each row.
+inline void expect_sorted(const SparseMatrix &m) {
+  EXPECT_TRUE(m.isCompressed());
+  EXPECT_EQ(m.outerIndexPtr()[0], 0);
+  for (Index row = 0; row < m.rows(); ++row)
+    for (Index k = m.outerIndexPtr()[row]; k < m.outerIndexPtr()[row + 1]; ++k) {
+      EXPECT_GE(m.innerIndexPtr()[k], 0);
+      EXPECT_LT(m.innerIndexPtr()[k], m.cols());
+      EXPECT_TRUE(k == m.outerIndexPtr()[row] || m.innerIndexPtr()[k - 1] < m.innerIndexPtr()[k]);
+    }
+}
+
 } // namespace rbvi

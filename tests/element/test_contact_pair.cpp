@@ -88,17 +88,6 @@ void expect_equal(const PairOperators &got, const Dense &expected, double tolera
   EXPECT_LT((got.weights - expected.weights).cwiseAbs().maxCoeff(), tolerance);
 }
 
-void expect_sorted(const SparseMatrix &m) {
-  EXPECT_TRUE(m.isCompressed());
-  EXPECT_EQ(m.outerIndexPtr()[0], 0);
-  for (Index row = 0; row < m.rows(); ++row)
-    for (Index k = m.outerIndexPtr()[row]; k < m.outerIndexPtr()[row + 1]; ++k) {
-      EXPECT_GE(m.innerIndexPtr()[k], 0);
-      EXPECT_LT(m.innerIndexPtr()[k], m.cols());
-      EXPECT_TRUE(k == m.outerIndexPtr()[row] || m.innerIndexPtr()[k - 1] < m.innerIndexPtr()[k]);
-    }
-}
-
 TEST(Couple, AgreesWithBruteForceOnRandomCurves) {
   Random random(1);
   for (const Index slave_edges : {1, 2, 3, 8, 13})

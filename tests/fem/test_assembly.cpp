@@ -23,7 +23,7 @@ template <class Fx, class Fy> double quadratic(const Membrane &m, Mat matrix, Fx
   const auto field = [&](auto function) {
     Vector natural = Vector::Zero(m.dofs.total);
     for (std::size_t v = 0; v < m.mesh.points.size(); ++v)
-      if (m.mesh.owned_vertex[v]) natural[m.mesh.natural_vertex[v]] = function(m.mesh.points[v]);
+      if (m.mesh.owned_node[v]) natural[m.mesh.natural_node[v]] = function(m.mesh.points[v]);
     MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPI_DOUBLE,
                   MPI_SUM, m.mesh.comm);
     return from_natural(m.dofs, natural);
@@ -138,7 +138,7 @@ TEST(ContactRegion, TraceFollowsTheNodes) {
   const Vector trace = restrict_to(region.trace, from_natural(m.dofs, natural).get());
   for (Index r = 0; r < region.dual_size(); ++r)
     EXPECT_EQ(trace[region.contact_dof[static_cast<std::size_t>(r)]],
-              natural[region.natural_vertex[static_cast<std::size_t>(r)]]);
+              natural[region.natural_node[static_cast<std::size_t>(r)]]);
 }
 
 } // namespace

@@ -88,12 +88,11 @@ TEST(FixedComponents, GhostsHaveTheRowsOfTheirOwners) {
     for (std::size_t c = 0; c < 2; ++c) {
       const PetscInt row = d.dofs.free[2 * v + c];
       if (row < 0) continue;
-      EXPECT_EQ(natural_of_row.at(at(row)),
-                2 * d.mesh.natural_vertex[v] + static_cast<PetscInt>(c));
+      EXPECT_EQ(natural_of_row.at(at(row)), 2 * d.mesh.natural_node[v] + static_cast<PetscInt>(c));
       const bool owned =
           row >= d.dofs.first_free &&
           row < d.dofs.first_free + static_cast<PetscInt>(d.dofs.natural_owned.size());
-      EXPECT_EQ(owned, d.mesh.owned_vertex[v]);
+      EXPECT_EQ(owned, d.mesh.owned_node[v]);
       ghosts += owned ? 0 : 1;
     }
   MPI_Allreduce(MPI_IN_PLACE, &ghosts, 1, MPI_INT, MPI_SUM, d.mesh.comm);
@@ -128,7 +127,7 @@ TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
     const Index nodes = (560 << refine) + 1;
     ASSERT_EQ(curves.slave_nodes, nodes);
     ASSERT_EQ(curves.points.size(), at(2 * nodes));
-    ASSERT_EQ(curves.natural_vertex.size(), at(2 * nodes));
+    ASSERT_EQ(curves.natural_node.size(), at(2 * nodes));
     for (Index i = 0; i < nodes; ++i) {
       const double angle = std::numbers::pi / 4 * static_cast<double>(i) / (560 << refine);
       const Point &slave = curves.points[at(i)], &master = curves.points[at(nodes + i)];
@@ -151,7 +150,7 @@ TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
   const Vector trace = restrict_to(curves.trace, from_natural(d.dofs, numbers).get());
   ASSERT_EQ(trace.size(), 2 * 561);
   for (Index i = 0; i < trace.size(); ++i)
-    EXPECT_EQ(trace[i], 2 * curves.natural_vertex[at(i)] + 1);
+    EXPECT_EQ(trace[i], 2 * curves.natural_node[at(i)] + 1);
 }
 
 TEST(ContactCurves, AreTheSameOnAnyNumberOfRanks) {
@@ -159,7 +158,7 @@ TEST(ContactCurves, AreTheSameOnAnyNumberOfRanks) {
   const ContactCurves many = make_contact_curves(world.mesh, world.dofs, *world.scene.pair);
   const ContactCurves one = make_contact_curves(alone.mesh, alone.dofs, *alone.scene.pair);
   EXPECT_EQ(many.slave_nodes, one.slave_nodes);
-  EXPECT_EQ(many.natural_vertex, one.natural_vertex);
+  EXPECT_EQ(many.natural_node, one.natural_node);
   EXPECT_EQ(many.points, one.points);
   Vector field(alone.dofs.total);
   for (Index i = 0; i < field.size(); ++i)
@@ -179,7 +178,7 @@ TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
     };
     EXPECT_EQ(curves_where(0).points.size(), 2U * 561U);
     const std::string message = refusal([&] { (void)curves_where(1); });
-    EXPECT_CONTAINS(message, "vertical displacement is fixed");
+    EXPECT_CONTAINS(message, "displacement is fixed on the contact curve");
     EXPECT_CONTAINS(message, "'" + name + "'");
   }
 }

@@ -194,7 +194,7 @@ TEST(Gmsh, TetrahedraAreReadRefinedAndDistributed) {
     int bottom = 0;
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
       EXPECT_EQ(mesh.boundary.at("bottom")[v], mesh.points[v][2] == 0);
-      if (mesh.owned_vertex[v] && mesh.boundary.at("bottom")[v]) ++bottom;
+      if (mesh.owned_node[v] && mesh.boundary.at("bottom")[v]) ++bottom;
     }
     MPI_Allreduce(MPI_IN_PLACE, &volume, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
     MPI_Allreduce(MPI_IN_PLACE, &bottom, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);

@@ -55,21 +55,21 @@ TEST_P(MakeMesh, TotalsAndFingerprintDoNotDependOnRanks) {
 
 TEST_P(MakeMesh, NaturalNumbersAreTheOrderOfOneProcess) {
   for (std::size_t v = 0; v < alone.points.size(); ++v)
-    EXPECT_EQ(alone.natural_vertex[v], static_cast<PetscInt>(v));
+    EXPECT_EQ(alone.natural_node[v], static_cast<PetscInt>(v));
   for (std::size_t c = 0; c < alone.cells.size(); ++c)
     EXPECT_EQ(alone.natural_cell[c], static_cast<PetscInt>(c));
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    EXPECT_EQ(mesh.points[v], alone.points.at(at(mesh.natural_vertex[v])));
+    EXPECT_EQ(mesh.points[v], alone.points.at(at(mesh.natural_node[v])));
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(mesh.natural_vertex.at(at(mesh.cells[c][i])),
+      EXPECT_EQ(mesh.natural_node.at(at(mesh.cells[c][i])),
                 alone.cells.at(at(mesh.natural_cell[c]))[i]);
 }
 
 TEST_P(MakeMesh, EveryCellAndEveryVertexHasOneOwner) {
   std::vector<int> vertex(at(mesh.total_vertices), 0), cell(at(mesh.total_cells), 0);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (mesh.owned_vertex[v]) ++vertex[at(mesh.natural_vertex[v])];
+    if (mesh.owned_node[v]) ++vertex[at(mesh.natural_node[v])];
   for (const PetscInt natural : mesh.natural_cell)
     ++cell[at(natural)];
   EXPECT_EQ(summed(vertex, MPI_INT), std::vector<int>(vertex.size(), 1));
@@ -84,7 +84,7 @@ TEST_P(MakeMesh, LabelsTravelWithTheMesh) {
   const auto &rim = mesh.boundary.at("boundary"), &whole_rim = alone.boundary.at("boundary");
   ASSERT_EQ(rim.size(), mesh.points.size());
   for (std::size_t v = 0; v < rim.size(); ++v) {
-    EXPECT_EQ(rim[v], whole_rim[at(mesh.natural_vertex[v])]);
+    EXPECT_EQ(rim[v], whole_rim[at(mesh.natural_node[v])]);
     const Point &x = mesh.points[v];
     EXPECT_EQ(rim[v], std::max(std::abs(x[0]), std::abs(x[1])) > 0.5 - 1e-12);
   }
@@ -115,9 +115,9 @@ TEST_P(MakeMesh, InterfaceVerticesAreOnTheCircle) {
 TEST_P(MakeMesh, DmPointsAreTheVerticesOfTheDm) {
   PetscInt begin = 0, end = 0;
   ASSERT_EQ(DMPlexGetDepthStratum(mesh.dm.get(), 0, &begin, &end), 0);
-  ASSERT_EQ(mesh.dm_vertex.size(), at(end - begin));
-  for (std::size_t v = 0; v < mesh.dm_vertex.size(); ++v)
-    EXPECT_EQ(mesh.dm_vertex[v], begin + static_cast<PetscInt>(v));
+  ASSERT_EQ(mesh.dm_point.size(), at(end - begin));
+  for (std::size_t v = 0; v < mesh.dm_point.size(); ++v)
+    EXPECT_EQ(mesh.dm_point[v], begin + static_cast<PetscInt>(v));
 }
 
 TEST(MakeMeshCounts, ARefinementAddsOneVertexPerEdge) {

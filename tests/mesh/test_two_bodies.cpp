@@ -282,9 +282,9 @@ void expect_same_on_all_ranks(const Scene &scene, int refine) {
   EXPECT_EQ(mesh.fingerprint, alone.fingerprint);
   std::vector<int> owners(at(alone.total_vertices + alone.total_cells), 0);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const PetscInt natural = mesh.natural_vertex[v];
+    const PetscInt natural = mesh.natural_node[v];
     EXPECT_EQ(mesh.points[v], alone.points.at(at(natural)));
-    owners[at(natural)] += mesh.owned_vertex[v] ? 1 : 0;
+    owners[at(natural)] += mesh.owned_node[v] ? 1 : 0;
     for (const auto &[name, marked] : alone.boundary)
       EXPECT_EQ(mesh.boundary.at(name).at(v), marked[at(natural)]) << name;
   }
@@ -292,7 +292,7 @@ void expect_same_on_all_ranks(const Scene &scene, int refine) {
     const PetscInt natural = mesh.natural_cell[c];
     ++owners[at(alone.total_vertices + natural)];
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(mesh.natural_vertex.at(at(mesh.cells[c][i])), alone.cells.at(at(natural))[i]);
+      EXPECT_EQ(mesh.natural_node.at(at(mesh.cells[c][i])), alone.cells.at(at(natural))[i]);
     for (const auto &[name, marked] : alone.region)
       EXPECT_EQ(mesh.region.at(name).at(c), marked[at(natural)]) << name;
   }
@@ -322,7 +322,7 @@ TEST(TwoBodiesCounts, MakeMeshRefinesAndSnaps) {
   EXPECT_EQ(mesh.total_vertices, 2 * nodes + 2 * (nodes + cells - 1)); // one more per edge
   int slave = 0;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    if (mesh.boundary.at("slave")[v] && mesh.owned_vertex[v]) ++slave;
+    if (mesh.boundary.at("slave")[v] && mesh.owned_node[v]) ++slave;
     EXPECT_TRUE(!mesh.boundary.at("arc")[v] || distance_to_circle(mesh.points[v]) <= 1e-14);
   }
   MPI_Allreduce(MPI_IN_PLACE, &slave, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
@@ -348,8 +348,8 @@ TEST(TwoBodiesErrors, AnUnknownGeneratorIsAnsweredByThoseThatExist) {
   } catch (const Error &error) {
     EXPECT_EQ(error.status(), Status::bad_input);
     const std::string message = error.what();
-    for (const std::string name :
-         {"three_quarter_discs", "square_with_disc", "two_quarter_discs", "two_blocks"})
+    for (const std::string name : {"three_quarter_discs", "square_with_disc", "two_quarter_discs",
+                                   "two_blocks", "half_disc", "one_block"})
       EXPECT_NE(message.find(name), std::string::npos) << message;
   }
 }

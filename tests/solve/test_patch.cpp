@@ -30,7 +30,7 @@ double displacement_error(const Problem &problem, double indentation, const HfSo
     const Point &reference = mesh.points[v];
     const Point x = problem.scene().map({indentation}, reference);
     const Point motion = problem.scene().motion({indentation}, reference);
-    const Index dof = 2 * mesh.natural_vertex[v];
+    const Index dof = 2 * mesh.natural_node[v];
     const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
     worst = std::max({worst, std::abs(across), std::abs(down + indentation * (x[1] + 0.5))});
   }

@@ -114,7 +114,7 @@ double reaction(const Problem &problem, const Mu &mu, const HfSolution &s, doubl
       const Point motion = problem.scene().motion(mu, mesh.points[v]);
       for (std::size_t c = 0; c < 2; ++c)
         u[static_cast<Index>(2 * i + c)] =
-            motion[c] + s.u[2 * mesh.natural_vertex[v] + static_cast<Index>(c)];
+            motion[c] + s.u[2 * mesh.natural_node[v] + static_cast<Index>(c)];
     }
     const Eigen::Vector<double, 6> forces = stiffness * u;
     for (std::size_t i = 0; i < 3; ++i)

@@ -62,7 +62,7 @@ TEST_P(HighFidelityStress, EveryRandomStartEndsAtAnExactAnswer) {
     SCOPED_TRACE(describe(space, mu) + ", " + std::to_string(start.size()) + " nodes at the start");
     const Operators &op = problem.assemble(mu);
     RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
-    const MethodResult result = solve_active_set(ksp.get(), problem.trace(), op, start);
+    const MethodResult result = solve_active_set(ksp.get(), problem.trace(), op, {start, {}});
     ASSERT_TRUE(result.converged) << result.reason;
     const double kkt = kkt_residual(problem.trace(), op, result.u.get(), result.lambda).largest();
     EXPECT_LE(kkt, 1e-12);

@@ -15,11 +15,12 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u);
 /// |coordinates - c|^2 + remainder^2, so that one projection serves every sub-model.
 struct Truths {
   std::vector<Mu> mu;
-  Matrix coordinates; ///< n x P
-  Vector remainder;   ///< P: distance of u to the basis, in V
-  Vector u_norm;      ///< P, in V, of the whole displacement
-  Matrix lambda;      ///< dual dofs x P
-  Vector lambda_norm; ///< P, in W
+  Matrix coordinates;     ///< n x P
+  Vector remainder;       ///< P: distance of u to the basis, in V
+  Vector u_norm;          ///< P, in V, of the whole displacement
+  Matrix lambda;          ///< dual dofs x P
+  Vector lambda_norm;     ///< P, in W; with friction of the normal part
+  Vector tangential_norm; ///< P, of the tangential part; empty without friction
 };
 
 /// Collective. `problem`: on the communicator of all ranks.
@@ -27,7 +28,8 @@ Truths make_truths(Problem &problem, const ReducedModel &model, const std::vecto
 
 /// Errors at each mu, and what the bases alone could reach.
 struct ModelErrors {
-  Vector u, lambda;             ///< of the reduced answers
+  Vector u, lambda;             ///< of the reduced answers; with friction lambda_n
+  Vector tangential;            ///< lambda_tau; empty without friction
   Vector u_floor, lambda_floor; ///< of the projections on the space and on the cone
   double seconds = 0;           ///< median per query, outputs and reconstruction left out
   double kkt_residual = 0;      ///< largest

@@ -29,8 +29,9 @@ struct Cell {
 };
 
 /// An integral over the cells of a region, evaluated cell by cell.
-/// A bilinear form fills k*k values (row-major, test function first), a linear form k values,
-/// with k = (dim + 1) * components of the spaces it couples.
+/// A bilinear form fills k*k values (row-major, test function first), a linear form k values, with
+/// k = nodes * components of the spaces it couples. Nodes of a cell: its vertices and, of degree 2,
+/// the middles of its edges (0,1), (1,2), (2,0) and, of a tetrahedron, (0,3), (1,3), (2,3).
 struct Form {
   std::string region; ///< "" for the whole domain
   std::function<void(const Mu &mu, const Cell &cell, double *values)> kernel;
@@ -47,11 +48,13 @@ struct SceneOption {
 
 /// Names the built-in mesh generator; `region` and `boundary` are the labels it sets.
 struct MeshRecipe {
-  std::string generator; ///< "square_with_disc", "two_quarter_discs" or "two_blocks"
+  std::string generator; ///< "square_with_disc", "two_quarter_discs", "two_blocks", "half_disc"...
   std::vector<std::string> regions;
   std::vector<std::string> boundaries;
-  std::string curved =
-      ""; ///< boundary whose refined vertices Scene::snap brings back onto its curve
+  /// Boundary whose refined vertices Scene::snap brings back onto its curve.
+  std::string curved = "";
+  int edges =
+      0; ///< of the contact boundary where the generator lets them be chosen; 0: its default
 };
 
 /// A boundary on which some components of the displacement are imposed.
@@ -84,11 +87,39 @@ struct PairRecipe {
   PairDiscretisation discretisation;
 };
 
+enum class FrictionLaw { none, tresca, coulomb };
+
+/// |sigma_tau| <= bound: Tresca's threshold (a pressure), or Coulomb's coefficient times the normal
+/// pressure.
+struct Friction {
+  FrictionLaw law = FrictionLaw::none;
+  std::function<double(const Mu &)> value; ///< threshold or coefficient, >= 0
+  bool only_in_contact = false;            ///< Tresca: zero where a node carries no pressure
+};
+
+/// Contact with a rigid support along a boundary. Multipliers are continuous and linear on its
+/// edges, normal and, with friction, tangential; tau = (-n_y, n_x) in 2D.
+struct SupportRecipe {
+  std::string boundary;
+  /// Unit normal at a point of the reference boundary, out of the mapped body.
+  std::function<Point(const Mu &, const Point &)> normal;
+  /// Gap along it: u . n <= gap.
+  std::function<double(const Mu &, const Point &)> gap;
+  Friction friction;
+};
+
+/// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
+/// decreasing, value = back(x).
+struct Coordinate {
+  std::function<double(double)> of, back;
+};
+
 struct Scene {
   std::string name;
   std::string summary; ///< one line
   int dim = 2;
   int components = 1; ///< of the displacement
+  int degree = 1;     ///< of the displacement on each cell: 1 or 2
   SceneOptions options;
   ParameterSpace parameters;
   std::string training = "", validation = ""; ///< default sets, as parse_set reads them
@@ -105,20 +136,24 @@ struct Scene {
   /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
   /// empty: zero.
   std::function<Point(const Mu &, const Point &)> motion;
+  /// Mesh and data are symmetric about x = 0, and so are the solutions.
+  bool symmetric = false;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
   double mirror_images = 1;
 
-  // Contact with an obstacle in a region, or of two bodies.
+  // Contact with an obstacle in a region, of two bodies, or with a rigid support.
   std::string contact_region; ///< multipliers live on the vertices of this closed region
   std::optional<PairRecipe> pair;
+  std::optional<SupportRecipe> support;
 
   Form a;
   /// Parameters (indices into parameters.all) that a depends on; unset: all.
   std::optional<std::vector<int>> a_parameters;
-  Form b, g;           ///< empty where there is a pair
-  Form f;              ///< empty: no load
-  Form v_product;      ///< inner product of V on the reference domain
-  Form w_product;      ///< inner product of W on the reference domain; a pair has its own
+  std::map<int, Coordinate> a_coordinates; ///< of some of these parameters; the others: themselves
+  Form b, g;                               ///< empty where there is a pair or a support
+  Form f;                                  ///< empty: no load
+  Form v_product;                          ///< inner product of V on the reference domain
+  Form w_product;      ///< inner product of W on the reference domain; pair, support have theirs
   bool lumped = false; ///< b, g by vertex quadrature: the constraint is a bound at each node
 
   /// psi(mu) at a point of the mapped domain: u >= psi in the contact region.

@@ -1,15 +1,28 @@
-// Cell kernels of linear elasticity with P1 displacements, as Forms: local dof = vertex * dim +
-// component. One kernel serves 2D (plane strain) and 3D.
+// Cell kernels of linear elasticity, as Forms: local dof = node * dim + component, degree 1 or 2.
+// One kernel serves 2D (plane strain) and 3D.
 #pragma once
 
 #include "rbvi/core/scene.hpp"
 
 namespace rbvi {
 
-/// int sigma(u) : eps(v) over the mapped cells, dim components (2.45)-(2.47):
-/// sigma = lambda tr(eps) I + 2 mu eps, lambda = E nu / ((1 + nu) (1 - 2 nu)), mu = E / (2 (1 +
-/// nu)). `young` is E (a pressure), `poisson` is nu. Throws bad_input unless E > 0 and -1 < nu <
-/// 1/2.
-Form elasticity(const std::string &region, double young, double poisson);
+/// The two constants of an isotropic material, pressures:
+/// sigma = lambda tr(eps) I + 2 shear eps.
+struct Lame {
+  double lambda, shear;
+};
+
+/// lambda = E nu / ((1 + nu) (1 - 2 nu)), shear = E / (2 (1 + nu)). `young` is E (a pressure),
+/// `poisson` is nu. Throws bad_input unless E > 0 and -1 < nu < 1/2.
+Lame lame(double young, double poisson);
+
+/// int sigma(u) : eps(v) over the mapped cells, dim components (2.45)-(2.47), exact. Throws
+/// bad_input for a degree other than 1 and 2.
+Form elasticity(const std::string &region, const Lame &material, int degree = 1);
+
+/// The same with a material that is constant on each cell: `material(mu, centre)`, the centre that
+/// of the reference cell.
+Form elasticity(const std::string &region,
+                const std::function<Lame(const Mu &mu, const Point &centre)> &material, int degree);
 
 } // namespace rbvi

@@ -1,6 +1,6 @@
 // Cell kernels of scalar P1 problems, as Forms: Laplace, mass, loads, and the H1 product of any
-// number of components. They serve the distributed assembly and the online evaluation of sampled
-// entries alike, in 2D and 3D.
+// number of components and of degree 1 or 2. They serve the distributed assembly and the online
+// evaluation of sampled entries alike, in 2D and 3D.
 #pragma once
 
 #include "rbvi/core/scene.hpp"
@@ -16,9 +16,9 @@ Form laplace(const std::string &region);
 /// factor * int u v; lumped: vertex quadrature, a diagonal (2.40a).
 Form mass(const std::string &region, Domain domain, double factor, bool lumped = false);
 
-/// int u . v + length^2 grad u : grad v over the reference cells (2.44); local dof = vertex *
-/// components + component.
-Form h1_product(double length, int components = 1);
+/// int u . v + length^2 grad u : grad v over the reference cells (2.44); local dof = node *
+/// components + component, exact. Throws bad_input for a degree other than 1 and 2.
+Form h1_product(double length, int components = 1, int degree = 1);
 
 /// value * int v over the mapped cells (2.38).
 Form constant_load(const std::string &region, double value);

@@ -12,7 +12,7 @@ namespace rbvi {
 /// vertical displacement of node i.
 struct ContactCurves {
   Index slave_nodes = 0;
-  std::vector<PetscInt> natural_vertex;
+  std::vector<PetscInt> natural_node;
   std::vector<Point> points; ///< reference coordinates
   Trace trace;
 };

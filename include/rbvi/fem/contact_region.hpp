@@ -10,7 +10,7 @@ namespace rbvi {
 
 struct ContactRegion {
   int dim = 2, components = 1;
-  std::vector<PetscInt> natural_vertex;  ///< per dual dof, increasing
+  std::vector<PetscInt> natural_node;    ///< per dual dof, increasing
   std::vector<Point> points;             ///< per dual dof, reference coordinates
   std::vector<std::array<int, 4>> cells; ///< dual dofs of each cell, in natural order of cells
   std::vector<int> contact_dof;          ///< per dual dof * components + c: 0 .. n_c - 1, or -1

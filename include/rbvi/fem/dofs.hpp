@@ -1,4 +1,4 @@
-// Numbering of the displacement dofs (P1: one per component and vertex).
+// Numbering of the displacement dofs: one per component and node.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -9,7 +9,7 @@
 
 namespace rbvi {
 
-/// A dof's natural number is natural_vertex * components + component. Matrices and vectors hold the
+/// A dof's natural number is natural_node * components + component. Matrices and vectors hold the
 /// free dofs alone; the fixed ones are zero.
 struct Dofs {
   MPI_Comm comm = MPI_COMM_NULL;
@@ -17,7 +17,7 @@ struct Dofs {
   PetscInt total = 0;                  ///< all dofs, fixed ones included
   PetscInt total_free = 0;             ///< rows of the system
   PetscInt first_free = 0;             ///< first row owned by this rank
-  std::vector<PetscInt> free;          ///< per local vertex * components + component: row or -1
+  std::vector<PetscInt> free;          ///< per local node * components + component: row or -1
   std::vector<PetscInt> natural_owned; ///< per owned row: its natural number
 };
 

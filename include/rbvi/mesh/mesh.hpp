@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rbvi/core/scene.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/par/petsc.hpp"
 
 #include <map>
@@ -16,26 +17,33 @@ struct MeshOptions {
   int refine = 0;   ///< uniform refinements; vertices of curves are brought back by Scene::snap
 };
 
-/// This rank's part of the mesh: its own cells and their vertices. Numbers called `natural` are
-/// those of the undistributed mesh, the same for any number of ranks.
+/// This rank's part of the mesh: its own cells and their nodes. Nodes are the vertices and, where
+/// the displacement of the scene has degree 2, the middles of the edges behind them. Numbers called
+/// `natural` are those of the undistributed mesh, the same for any number of ranks.
 struct Mesh {
   MPI_Comm comm = MPI_COMM_NULL;
   Handle<DM> dm;
-  int dim = 2;
+  int dim = 2, degree = 1;
   PetscInt total_vertices = 0, total_cells = 0; ///< of the undistributed mesh
-  std::string fingerprint;                      ///< hash of the undistributed mesh, 16 hex digits
+  PetscInt total_nodes = 0;
+  std::string fingerprint; ///< hash of the undistributed mesh, 16 hex digits
 
-  std::vector<Point> points;            ///< local vertices, reference coordinates
-  std::vector<PetscInt> natural_vertex; ///< per local vertex
-  std::vector<PetscInt> dm_vertex;      ///< DMPlex point per local vertex
-  std::vector<bool> owned_vertex;       ///< per local vertex: each has one owner
+  std::vector<Point> points;          ///< local nodes, reference coordinates; vertices first
+  std::vector<PetscInt> natural_node; ///< per local node; vertices have the lowest numbers
+  std::vector<PetscInt> dm_point;     ///< DMPlex point per local node
+  std::vector<bool> owned_node;       ///< per local node: each has one owner
 
-  std::vector<std::array<int, 4>> cells; ///< owned cells: dim + 1 local vertices, rest -1
-  std::vector<PetscInt> natural_cell;    ///< per owned cell
+  std::vector<std::array<int, 4>> cells;        ///< owned cells: dim + 1 local vertices, rest -1
+  std::vector<std::array<int, 6>> cell_middles; ///< degree 2: local nodes of their edges, rest -1
+  std::vector<PetscInt> natural_cell;           ///< per owned cell
 
   std::map<std::string, std::vector<bool>> region;   ///< per name: owned cells in it
-  std::map<std::string, std::vector<bool>> boundary; ///< per name: local vertices on it
+  std::map<std::string, std::vector<bool>> boundary; ///< per name: local nodes on it
 };
+
+/// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,
+/// degree) numbers, the rest -1.
+std::array<int, most_nodes> nodes_of(const Mesh &mesh, std::size_t cell);
 
 /// The undistributed mesh on one process, vertices and cells in natural order.
 struct SerialMesh {
@@ -67,6 +75,20 @@ SerialMesh two_quarter_discs();
 /// "top", "bottom", "slave" (y = 0.25, 10 edges), "master" (y = -0.25, 7 edges). 106 nodes,
 /// irregular spacing, aspect ratios <= 1.9.
 SerialMesh two_blocks();
+
+/// Lower half of the disc of radius 1 about the origin, mirrored exactly about x = 0 (coordinates,
+/// cells and edges). Region "core": |x| <= 0.6, which the mesh fits. Boundaries: "top" (the flat
+/// side y = 0), "contact" (the arc of polar angle -5 pi / 8 to -3 pi / 8, `edges` equal edges),
+/// "arc" (the whole half-circle). With the default of 100 edges 708 nodes; edges from
+/// pi / (4 `edges`) at the contact arc to about 0.2, aspect ratios <= 1.65. Deterministic: rings at
+/// growing distances from the contact arc, which turn into the core's arc, then rows along the rest
+/// of that arc and rings in the core. Throws bad_input unless `edges` is even and >= 8.
+SerialMesh half_disc(int edges = 100);
+
+/// One block for patch tests, [0, 1] x [0, 0.5]. Boundaries: "sides" (x = 0 and x = 1), "top",
+/// "contact" (y = 0, 8 edges of four different lengths). 54 nodes, irregular spacing mirrored about
+/// x = 1/2, aspect ratios <= 1.9.
+SerialMesh one_block();
 
 /// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the
 /// cell graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws

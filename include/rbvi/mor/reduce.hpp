@@ -2,7 +2,10 @@
 #pragma once
 
 #include "rbvi/mor/affine.hpp"
+#include "rbvi/mor/condensed.hpp"
 #include "rbvi/mor/cones.hpp"
+#include "rbvi/mor/gcns.hpp"
+#include "rbvi/mor/multiplier_basis.hpp"
 #include "rbvi/mor/pod.hpp"
 #include "rbvi/mor/stability.hpp"
 #include "rbvi/par/stage.hpp"
@@ -32,6 +35,9 @@ struct ReduceOptions {
   ConeOptions cone;
   PgaOptions pga;
   EimOptions eim;
+  CondensedOptions condensed;    ///< contact with a rigid support
+  MultiplierOptions multipliers; ///< of it; its cone is not used, `cone` is
+  GcnsOptions gcns;
   Enrichment enrichment = Enrichment::offline;
   SupremizerProduct product = SupremizerProduct::v;
   Mu reference; ///< free parameters of that a, and of the hybrid cone's; empty: centre of the box
@@ -42,15 +48,59 @@ struct ReducedBases {
   Pod pod; ///< basis: N modes, then the S supremizers, V-orthonormal
   Cone cone;
   Pga pga;
+  Matrix support_dual; ///< contact with a rigid support: the nodal dual basis; cone is empty
+  CondensedOperator condensed;
+  MultiplierReduction reduction = MultiplierReduction::condensed;
+  bool mended = true; ///< SupportModel::mended
+  MultiplierBases multipliers;
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
   bool online_enriched = false;
 };
 
-/// Collective. `world_problem`: on all ranks. `b_is_scaled`: b depends on mu by a factor only, so
-/// one training mu serves the supremizers.
+/// All of the offline stage behind the snapshots. The model is complete on every rank, but for its
+/// settings, validation errors and stage times.
+struct Reduction {
+  AffineOperators affine;
+  ReducedBases bases;
+  ReducedModel model;
+};
+
+/// Collective. `problem`: on all ranks. Throws failure where there is no sample, or no contact in
+/// any; bad_input for options that do not fit the scene.
+Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
+                 StageTimes &times);
+
+/// Contact with a rigid support: POD, the condensed operator, and, where the multipliers are
+/// reduced further, their functions and (collocated) the supremizers of the pair. Collective.
+ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
+                                 const ReduceOptions &options, const AffineOperators &affine,
+                                 StageTimes &times);
+
+/// Every other scene: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a factor
+/// only, so one training mu serves the supremizers. Collective.
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTimes &times);
+
+/// `collocated` alone: the collocation nodes of a model that has none yet, into it. Serial.
+Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
+               const SparseMatrix &w_product, const GcnsOptions &options);
+
+/// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
+/// functions that span the dual space, dual dofs x any number. Collective.
+void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
+                     const ReduceOptions &options, const Matrix &dual, ReducedBases &bases,
+                     StageTimes &times);
+
+/// The middle of the box. Free parameters.
+Mu box_centre(const ParameterSpace &space);
+
+/// POD of the displacements, as the stage "POD". Collective.
+void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
+               ReducedBases &bases, StageTimes &times);
+
+/// Multipliers as columns. Throws failure where there is no sample, or no contact in any.
+Matrix multipliers_of(const std::vector<Sample> &samples);
 
 /// Collective. Projects the separated operators onto the bases. The model is complete on every
 /// rank, but for its settings, validation errors and stage times.

@@ -5,11 +5,17 @@
 // A and F are distributed over the free dofs; B acts on the contact dofs alone (B u = B_c E^T u)
 // and is replicated, as are G and lambda. Where the scene has a motion, u is what is left beside it
 // (w of Scene::motion) and G takes the motion in: it is rigid, so that it does no work in A.
+//
+// With friction lambda has a tangential part behind the normal one; there B u - G is the slip, and
+// |lambda_tau| <= bound, lambda_tau = bound slip / |slip| where it slips (corrected (3.32)).
 #pragma once
+
+#include "rbvi/core/friction.hpp"
 
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/contact_curves.hpp"
 #include "rbvi/fem/contact_region.hpp"
+#include "rbvi/fem/contact_support.hpp"
 
 #include <optional>
 
@@ -19,10 +25,12 @@ namespace rbvi {
 struct Operators {
   Mu mu; ///< all parameters
   Mat a = nullptr;
-  Vec f = nullptr;      ///< zero where the scene has no load
-  SparseMatrix b;       ///< dual x contact dofs
-  Vector g;             ///< dual
-  Vector weights;       ///< integral of each dual basis function over the mapped surface in contact
+  Vec f = nullptr;  ///< zero where the scene has no load
+  SparseMatrix b;   ///< dual x contact dofs
+  Vector g;         ///< dual
+  Vector weights;   ///< integral of each normal multiplier's basis function over the mapped surface
+  Index normal = 0; ///< normal multipliers: the first of the dual dofs
+  FrictionBound bound;  ///< of the others
   SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
   Vector nodal_gap;
 };
@@ -37,9 +45,11 @@ public:
   const Mesh &mesh() const { return mesh_; }
   const Dofs &dofs() const { return dofs_; }
   bool two_bodies() const { return curves_.has_value(); }
-  const ContactRegion &contact() const { return contact_.value(); } ///< one body
-  const ContactCurves &curves() const { return curves_.value(); }   ///< two bodies
-  const Trace &trace() const { return curves_ ? curves_->trace : contact_->trace; }
+  bool on_support() const { return support_.has_value(); }
+  const ContactRegion &contact() const { return contact_.value(); }  ///< an obstacle
+  const ContactCurves &curves() const { return curves_.value(); }    ///< two bodies
+  const ContactSupport &support() const { return support_.value(); } ///< a rigid support
+  const Trace &trace() const;
   Index dual_size() const { return w_product_.rows(); }
 
   /// Collective. `mu`: the free parameters, inside or outside the box. A is assembled again only
@@ -57,17 +67,19 @@ public:
 private:
   void assemble_obstacle(Operators &operators);
   void assemble_pair(Operators &operators);
+  void assemble_support(Operators &operators);
 
   Scene scene_;
   Mesh mesh_;
   Dofs dofs_;
   std::optional<ContactRegion> contact_;
   std::optional<ContactCurves> curves_;
+  std::optional<ContactSupport> support_;
   MappedCells cells_;
   Handle<Mat> a_, v_product_;
   std::optional<Mu> a_made_at_; ///< stiffness_values
   Handle<Vec> f_;
-  std::optional<ContactMatrix> b_; ///< one body
+  std::optional<ContactMatrix> b_; ///< an obstacle
   SparseMatrix w_product_;
   Operators operators_;
 };

@@ -13,6 +13,7 @@
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/scene.hpp"
+#include "rbvi/rom/chebyshev.hpp"
 
 #include <filesystem>
 #include <map>
@@ -44,6 +45,51 @@ struct AffineTerms {
 struct ValidationErrors {
   int count = 0;
   double u_mean = -1, u_max = -1, lambda_mean = -1, lambda_max = -1;
+  double tangential_mean = -1, tangential_max = -1; ///< with friction; lambda is the normal part
+};
+
+/// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
+/// H(mu) = sum over t of coefficient_t(mu) terms_t. The terms come in blocks, one for each pair of
+/// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
+/// the grid at mu.
+struct CondensedOperator {
+  std::vector<ChebyshevAxis> axes; ///< of the free parameters that a depends on
+  Matrix shape;                    ///< J x grid points
+  Matrix terms;                    ///< m^2 x (blocks * J): symmetric matrices, column by column
+  double error = 0;                ///< of the interpolation over the grid, relative, estimated
+};
+
+/// What the multipliers of contact with a rigid support are combined from.
+enum class MultiplierReduction {
+  condensed,  ///< every node: the law of contact and friction is exact, the body is reduced
+  collocated, ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
+  cones,      ///< cones for lambda_n and for what is left to the bound of friction
+  joint       ///< modes of both together, by least squares on the law at collocation nodes
+};
+
+/// "condensed", "collocated", "cones", "joint".
+const std::vector<std::string> &multiplier_reduction_names();
+
+/// The functions of these reductions by their coefficients in the nodal dual basis, k nodes.
+struct MultiplierBasis {
+  Matrix normal;          ///< k x R: a cone; joint: k x modes
+  Matrix tangential;      ///< collocated: k x S modes; cones: k x M, a cone; joint: k x modes
+  Vector slip;            ///< cones: k, the direction of the slip at each node, -1 or 1
+  std::vector<int> nodes; ///< collocated, joint: the collocation nodes
+};
+
+/// Contact with a rigid support. The dual basis of the model is nodal: a column for every node of
+/// the curve, or pair of mirror images.
+struct SupportModel {
+  int vertices = 0; ///< of the contact curve
+  int normal = 0;   ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
+  MultiplierReduction reduction = MultiplierReduction::condensed;
+  MultiplierBasis basis;       ///< empty where reduction is condensed
+  CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
+  bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
+  Matrix lift;        ///< dual dofs x b.size(): B e_y, term by term
+  Matrix starts;    ///< m x P: coefficients of the training multipliers, where a query starts from
+  Matrix starts_mu; ///< free parameters x P: where they are
 };
 
 struct ReducedModel {
@@ -66,19 +112,22 @@ struct ReducedModel {
   AffineTerms f; ///< n x J; J = 0: no load
   AffineTerms g; ///< R x J
 
-  // The contact nodes: the dual dofs of one body; of two bodies those of the slave curve, then
-  // those of the master curve, each by increasing x.
+  // The contact nodes: the dual dofs of an obstacle's region; of two bodies those of the slave
+  // curve, then those of the master curve, each by increasing x; on a support the vertices of its
+  // curve by increasing x, and there the dual dofs are those of lambda_n, then of lambda_tau.
   int slave_nodes = 0;   ///< two bodies: number of nodes of the slave curve; 0: one body
   Matrix dual_basis;     ///< dual dofs x R; entries >= 0 but for hybrid cones
-  Matrix contact_trace;  ///< contact nodes x n: primal basis there, of two bodies its vertical part
+  Matrix contact_trace;  ///< contact nodes x n: primal basis there, of two bodies its vertical
+                         ///< part; on a support (contact nodes * components) x n
   Matrix contact_points; ///< contact nodes x dim, reference coordinates
   Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
   bool two_bodies() const { return slave_nodes > 0; }
+  std::optional<SupportModel> support;
 
   // Full order, for reconstruction.
   Matrix primal_basis;            ///< dofs x n, fixed dofs included
   Matrix mesh_points;             ///< nodes x dim, reference coordinates
-  std::vector<int> mesh_cells;    ///< (dim + 1) node numbers per cell
+  std::vector<int> mesh_cells;    ///< node numbers of each cell, nodes_per_cell of them
   std::vector<int> contact_nodes; ///< mesh node of each contact node
   std::vector<int> contact_cells; ///< one body: (dim + 1) contact nodes per cell of the region
 
@@ -87,7 +136,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 3;
+inline constexpr int model_schema = 4;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

@@ -6,30 +6,35 @@
 // What does not depend on mu is done once: the factor L where A has one term, Y where B has one
 // term too. Of two bodies B and G are assembled anew, on the contact curves alone. Free modes have
 // equations in place of inequalities. An online-enriched model is first reduced to V_N + S_R(mu)
-// (2.17): the rows of B are the coordinates of T(mu) chi_r.
+// (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
+// rom/support_solver.hpp.
 #pragma once
 
 #include "rbvi/core/mixed_qp.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/element/contact_pair.hpp"
 #include "rbvi/rom/model.hpp"
+#include "rbvi/rom/support_solver.hpp"
+
+#include <memory>
 
 namespace rbvi {
 
 struct ReducedSolution {
   Vector u;                ///< n coefficients
   Vector x;                ///< R coefficients, >= 0 but for those of the free modes
-  Vector theta_b;          ///< one body: coefficients of b at this mu
+  Vector theta_b;          ///< coefficients of b at this mu; two bodies: none
   PairOperators pair;      ///< two bodies: the contact operators at this mu
   double energy = 0;       ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
-  double kkt_residual = 0; ///< see kkt_residual()
-  int iterations = 0;      ///< active-set updates
+  double kkt_residual = 0; ///< see kkt_residual(); on a support that of the laws at all nodes
+  int iterations = 0;      ///< active-set updates, or Newton steps
 };
 
 /// Answers queries on a model that it does not own; keeps the last active set as the next start.
 class OnlineSolver {
 public:
   explicit OnlineSolver(const ReducedModel &model);
+  OnlineSolver(const OnlineSolver &) = delete;
   /// With the forms, map and obstacle of `scene` instead of those of the catalogue.
   OnlineSolver(const ReducedModel &model, Scene scene);
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`. Throws
@@ -41,8 +46,8 @@ public:
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   Vector multiplier(const ReducedSolution &solution) const; ///< at the dual dofs
-  /// Gap that is left: u - psi at the contact nodes of one body; of two at the slave nodes that
-  /// have a partner (solution.pair.paired), measured vertically.
+  /// Gap that is left at the contact nodes: u - psi of one body; of two at the slave nodes that
+  /// have a partner (solution.pair.paired), measured vertically; on a support along the normal.
   Vector contact_gap(const Mu &mu, const ReducedSolution &solution) const;
   /// At all dofs, without the motion of the scene. Throws failure if the model was read without its
   /// fields.
@@ -57,9 +62,12 @@ private:
   void enrich();
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
+  void support_outputs_of(const Mu &all_parameters, const ReducedSolution &solution,
+                          Outputs &outputs) const;
 
   const ReducedModel &model_;
   Scene scene_;
+  std::unique_ptr<SupportSolver> support_; ///< contact with a rigid support: the rest is not used
   MixedQp qp_;
   bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
   std::vector<Point> curves_;    ///< two bodies: the contact points
@@ -75,6 +83,11 @@ private:
 
 /// Where each multiplier is, reference coordinates.
 std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene);
+
+/// Gap that is left to a rigid support along its normal, at points of the reference boundary;
+/// `displacement`: components at each, without the motion.
+Vector normal_gap(const Scene &scene, const Mu &all_parameters, const Matrix &contact_points,
+                  const Vector &displacement);
 
 /// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
 Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,

@@ -16,8 +16,8 @@ struct Field {
 };
 
 /// `points`: nodes x dim (2 or 3); `cells`: `per_cell` node numbers each (2 lines, 3 triangles,
-/// 4 tetrahedra). Written atomically. Throws failure: sizes that do not fit, directory not
-/// writable.
+/// 4 tetrahedra, 6 and 10 quadratic ones). Written atomically. Throws failure: sizes that do not
+/// fit, directory not writable.
 void write_vtu(const std::filesystem::path &path, const Matrix &points,
                const std::vector<int> &cells, int per_cell, const std::vector<Field> &nodal,
                const std::vector<Field> &per_cell_fields = {});

@@ -30,16 +30,18 @@ struct HfOptions {
 /// Relative residuals of the optimality system.
 struct KktResidual {
   double stationarity = 0;    ///< |A u + B^T l - F| / (|F| + |B^T l|)
-  double feasibility = 0;     ///< max (B u - G)_+ / weight, over max |G| / weight
+  double feasibility = 0;     ///< max (B u - G)_+ / weight, over max |G| / weight; normal rows
   double complementarity = 0; ///< sum |l (B u - G)| / (|l| |G|)
-  double sign = 0;            ///< -min l / max |l|
+  double sign = 0;            ///< -min l / max |l|, l the normal multipliers
+  double friction = 0; ///< max (|l_tau| - bound)_+ / max |l|, sum (bound |slip| - l_tau . slip)
+                       ///< over |l| |G|: the larger
   double largest() const;
 };
 
 struct HfSolution {
   Vector u;                  ///< all dofs in natural order, on every rank; without the motion
   Vector lambda;             ///< dual dofs
-  std::vector<Index> active; ///< dual dofs in contact
+  std::vector<Index> active; ///< normal multipliers in contact
   KktResidual kkt;
   Outputs outputs;
   int iterations = 0;
@@ -50,12 +52,19 @@ struct HfSolution {
 struct MethodResult;
 class Compliance;
 
-/// Solves at many mu; remembers the active sets it has met and starts from that of the nearest mu,
-/// the first time from where a few accelerated Uzawa steps see contact.
+/// Where an active-set method starts.
+struct Start {
+  std::vector<Index> active; ///< without friction
+  Vector lambda;             ///< with friction; empty: cold
+};
+
+/// Solves at many mu; remembers the active sets it has met (with friction the multipliers) and
+/// starts from those of the nearest mu, the first time from where a few accelerated Uzawa steps see
+/// contact.
 class HighFidelity {
 public:
   /// Collective. KSP options under -hf_, SNES options under -vi_. Throws bad_input for `vi` with
-  /// two bodies.
+  /// two bodies or a rigid support.
   HighFidelity(Problem &problem, const HfOptions &options);
   ~HighFidelity();
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
@@ -67,9 +76,9 @@ public:
 private:
   struct Solved {
     Mu mu;
-    std::vector<Index> active;
+    Start start;
   };
-  std::vector<Index> nearest_active_set(const Mu &mu, const Operators &op) const;
+  Start nearest_start(const Mu &mu, const Operators &op) const;
   MethodResult run(const Mu &mu, const Operators &op);
 
   Problem &problem_;

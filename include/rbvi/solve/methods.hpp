@@ -48,8 +48,8 @@ private:
 };
 
 /// `kept`: for a sweep in which A stays the same.
-MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op,
-                              const std::vector<Index> &start, Compliance *kept = nullptr);
+MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
+                              Compliance *kept = nullptr);
 
 MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
                          const SparseMatrix &w_product, const HfOptions &options);
@@ -57,6 +57,7 @@ MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
 /// Needs a `b` with one entry per row (vertex quadrature).
 MethodResult solve_vi(const Problem &problem, const Operators &op);
 
+/// Collective.
 KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda);
 
 } // namespace rbvi

@@ -8,16 +8,24 @@ namespace {
 
 /// [0, 1] x [low, low + 1/2] in `across` times `up` quadrilaterals of two triangles each.
 struct Block {
-  std::string region, low_side, high_side;
+  std::string region; ///< "" for none
+  std::string low_side, high_side;
   double low;
   int across, up;
+  bool mirrored = false; ///< about x = 1/2; `across` is even
 };
 
 /// Node (i, j) of the grid, moved by at most a fifth of the spacing so that the mesh has no
-/// symmetry; nodes of a side stay on it.
+/// symmetry but the one that is asked for; nodes of a side, and of the mirror, stay on it.
 Point node(const Block &block, int i, int j) {
   constexpr double amplitude = 0.2;
-  const bool on_side = i == 0 || i == block.across, on_end = j == 0 || j == block.up;
+  if (block.mirrored && 2 * i > block.across) {
+    const Point image = node(block, block.across - i, j);
+    return {1 - image[0], image[1], 0};
+  }
+  const bool on_mirror = block.mirrored && 2 * i == block.across;
+  const bool on_side = i == 0 || i == block.across || on_mirror;
+  const bool on_end = j == 0 || j == block.up;
   const double x = on_side ? i : i + amplitude * std::sin(5.0 * i + 3.0 * j + block.low);
   const double y = on_end ? j : j + amplitude * std::sin(2.0 * i + 7.0 * j - block.low);
   return {x / block.across, block.low + 0.5 * y / block.up, 0};
@@ -60,6 +68,7 @@ void add_block(SerialMesh &mesh, const Block &block) {
     row = next;
   }
   add_facets(mesh, block.high_side, row);
+  if (block.region.empty()) return;
   for (std::size_t cell = first; cell < mesh.cells.size(); ++cell)
     mesh.region[block.region].push_back(static_cast<int>(cell));
 }
@@ -70,6 +79,12 @@ SerialMesh two_blocks() {
   SerialMesh mesh;
   add_block(mesh, {"upper", "slave", "top", 0.25, 10, 5});
   add_block(mesh, {"lower", "bottom", "master", -0.75, 7, 4});
+  return mesh;
+}
+
+SerialMesh one_block() {
+  SerialMesh mesh;
+  add_block(mesh, {"", "contact", "top", 0, 8, 5, true});
   return mesh;
 }
 

@@ -1,0 +1,160 @@
+// An elastic half-disk of radius R, its flat side on top and pushed down, on a rigid disk of radius
+// 1. Plane strain; u = (0, -indentation) on the whole flat side. On the arc within 22.5 degrees of
+// the lowest point, with n the normal and d the gap along it,
+//
+//   u . n <= d,   held by a pressure lambda_n >= 0,
+//
+// and friction: |lambda_tau| <= s (Tresca), nu_F lambda_n (Coulomb), against the total tangential
+// displacement u . tau (3.16), (3.34). The reference domain has the radius 1 and h(x) = R x: a
+// similarity, which leaves a plane stiffness as it is and multiplies b by R. What does depend on R
+// is the gap.
+#include "scene.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double initial_gap = 0.001, core_radius = 0.6;
+
+/// Of all parameters.
+enum Of { radius, indentation, friction, core_stiffness, poisson_ratio };
+
+double norm(const Point &x) {
+  return std::hypot(x[0], x[1]);
+}
+
+/// Point of the exact arc.
+Point on_arc(const Mu &mu, const Point &x) {
+  const double scale = mu[radius] / norm(x);
+  return {scale * x[0], scale * x[1], 0};
+}
+
+/// From the centre of the rigid disk, (0, -R - initial_gap - 1), to a point.
+Point from_support(const Mu &mu, const Point &x) {
+  return {x[0], x[1] + mu[radius] + initial_gap + 1, 0};
+}
+
+Point radial_normal(const Mu &, const Point &x) {
+  return {x[0] / norm(x), x[1] / norm(x), 0};
+}
+
+/// Normal of the rigid disk at the point next to x, towards it.
+Point rigid_normal(const Mu &mu, const Point &x) {
+  const Point p = from_support(mu, on_arc(mu, x));
+  return {-p[0] / norm(p), -p[1] / norm(p), 0};
+}
+
+/// Along the normal n from p to the disk |p| = 1 (p being from its centre).
+double gap_along(const Point &p, const Point &n) {
+  const double half = p[0] * n[0] + p[1] * n[1];
+  const double root = half * half - (p[0] * p[0] + p[1] * p[1] - 1);
+  if (!(root > 0)) throw failure("a ray along the normal misses the rigid disk: use -gap closest");
+  return -half - std::sqrt(root);
+}
+
+using Normal = Point (*)(const Mu &, const Point &);
+
+/// (phi(x) - x) . n, phi(x) the partner of x on the rigid disk (3.4).
+std::function<double(const Mu &, const Point &)> gap_function(const std::string &kind,
+                                                              Normal normal) {
+  return [kind, normal](const Mu &mu, const Point &x) {
+    const Point p = from_support(mu, on_arc(mu, x)), n = normal(mu, x);
+    if (kind == "ray") return gap_along(p, n);
+    if (kind == "vertical") {
+      if (!(std::abs(p[0]) < 1)) throw failure("no point of the rigid disk is below the arc");
+      return (std::sqrt(1 - p[0] * p[0]) - p[1]) * n[1];
+    }
+    return (1 / norm(p) - 1) * (p[0] * n[0] + p[1] * n[1]);
+  };
+}
+
+Friction friction_of(const SceneOptions &options) {
+  const std::string &law = options.at("friction");
+  Friction result;
+  result.value = [](const Mu &mu) { return mu[friction]; };
+  result.only_in_contact = options.at("friction_bound") == "contact";
+  result.law = law == "coulomb"  ? FrictionLaw::coulomb
+               : law == "tresca" ? FrictionLaw::tresca
+                                 : FrictionLaw::none;
+  return result;
+}
+
+ParameterSpace parameters(FrictionLaw law) {
+  ParameterSpace space = all_free({{"radius", "m", 0.7, 1.3, 1},
+                                   {"indentation", "m", 0.01, 0.09, 0.09},
+                                   {"friction_coefficient", "", 0, 0.5, 0.2},
+                                   {"core_stiffness", "", 0.2, 5, 1},
+                                   {"poisson_ratio", "", 0.2, 0.45, 0.35}});
+  if (law == FrictionLaw::tresca) space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1};
+  space.free = {radius};
+  return space;
+}
+
+Scene make(const SceneOptions &options) {
+  Scene scene;
+  const auto edges = static_cast<int>(number_in(options, "arc_edges"));
+  const double young = number_in(options, "young");
+  (void)lame(young, 0.35); // refuses a modulus that is not positive
+  scene.components = 2;
+  scene.degree = 2;
+  scene.support = SupportRecipe{"contact", {}, {}, friction_of(options)};
+  const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
+  scene.support->normal = normal;
+  scene.support->gap = gap_function(options.at("gap"), normal);
+  scene.parameters = parameters(scene.support->friction.law);
+  scene.training = "grid:61";
+  scene.validation = "random:30:1";
+  scene.mesh = {"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+  scene.map = [](const Mu &mu, const Point &x) -> Point {
+    return {mu[radius] * x[0], mu[radius] * x[1], 0};
+  };
+  scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
+  scene.fixed = {{"top", {}}};
+  scene.motion = [](const Mu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
+  scene.a = elasticity(
+      "",
+      [young](const Mu &mu, const Point &centre) {
+        const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
+        return lame(stiffness * young, mu[poisson_ratio]);
+      },
+      2);
+  scene.a_parameters = {core_stiffness, poisson_ratio};
+  scene.a_coordinates[core_stiffness] = {[](double x) { return std::log(x); },
+                                         [](double y) { return std::exp(y); }};
+  scene.a_coordinates[poisson_ratio] = {[](double x) { return std::log(1 - 2 * x); },
+                                        [](double y) { return (1 - std::exp(y)) / 2; }};
+  scene.symmetric = true;
+  scene.v_product = h1_product(1, 2, 2);
+  return scene;
+}
+
+} // namespace
+
+SceneEntry rigid_disk() {
+  return {"rigid_disk",
+          "Hertz contact of an elastic half-disk with a rigid disk, with friction",
+          {{"friction", "coulomb", "law of friction", {"none", "tresca", "coulomb"}},
+           {"friction_bound",
+            "arc",
+            "Tresca's bound holds on the whole arc, or where there is contact",
+            {"arc", "contact"}},
+           {"normal",
+            "radial",
+            "of the half-disk (radial), or of the rigid disk at the next point",
+            {"radial", "rigid"}},
+           {"gap",
+            "closest",
+            "along the normal to the next point, along a ray, or to the point below",
+            {"closest", "ray", "vertical"}},
+           {"arc_edges", "100", "edges of the contact arc, an even number", {}},
+           {"young", "15", "Young's modulus in Pa", {}}},
+          make};
+}
+
+} // namespace rbvi

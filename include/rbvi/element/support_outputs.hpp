@@ -1,0 +1,32 @@
+// What people ask of contact with a rigid support: forces, half-widths, pressures.
+#pragma once
+
+#include "rbvi/core/friction.hpp"
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/scene.hpp"
+
+namespace rbvi {
+
+/// The bound at one mu. Throws failure, naming the value, for a negative one.
+FrictionBound friction_bound(const Friction &friction, const Mu &all_parameters);
+
+/// Bound of the tangential multipliers at each node: c lambda_n + t.
+Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n);
+
+/// One state of contact on a curve.
+struct SupportState {
+  const Vector &lambda;  ///< normal multipliers, then tangential ones if there are any
+  const Vector &weights; ///< vertices: integral of the hat function
+  const Vector &lift;    ///< multipliers: their work on a unit vertical displacement, B e_y
+  const FrictionBound &bound;
+  const std::vector<Point> &points; ///< mapped vertices, in the order of the curve
+};
+
+/// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
+/// peak_pressure, centre_pressure and, with friction, tangential_force, stick_half_width,
+/// friction_violation (a pressure). centre_pressure: at the middle of the curve, by a fit of p
+/// against s^2 over arc lengths |s| < 0.12 contact_half_width, or at the next node where that holds
+/// fewer than three nodes.
+void support_outputs(const SupportState &state, Outputs &outputs);
+
+} // namespace rbvi

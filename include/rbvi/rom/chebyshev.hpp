@@ -1,0 +1,35 @@
+// Interpolation at Chebyshev points on a box: exponential convergence for what is smooth there.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/core/scene.hpp"
+
+#include <vector>
+
+namespace rbvi {
+
+/// One direction of the grid: `points` extremal Chebyshev points, from `upper` down to `lower`, in
+/// the coordinate that the scene gives the parameter (Scene::a_coordinates). One point: the middle.
+struct ChebyshevAxis {
+  int parameter = 0;           ///< index into all parameters
+  double lower = 0, upper = 0; ///< of the coordinate
+  int points = 1;
+};
+
+/// Number of points of the product grid; 1 without an axis.
+Index grid_size(const std::vector<ChebyshevAxis> &axes);
+
+/// All parameters at each point of the grid, the last axis fastest; those without an axis as in
+/// `all_parameters`.
+std::vector<Mu> grid_points(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                            const Mu &all_parameters);
+
+/// Weights of the values at the grid points, by the barycentric formula; they sum to 1.
+Vector grid_weights(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                    const Mu &all_parameters);
+
+/// Size of the last two Chebyshev coefficients along the axes relative to the largest: what the
+/// interpolant still misses. `values`: entries x grid points.
+double chebyshev_tail(const std::vector<ChebyshevAxis> &axes, const Matrix &values);
+
+} // namespace rbvi

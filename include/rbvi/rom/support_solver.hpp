@@ -1,0 +1,64 @@
+// The online stage of contact with a rigid support: the condensed operator and the gap at mu, the
+// law of contact and friction at every node by solve_friction, then the displacement in V_N by
+// A_N u = -B_N^T x. Where the multipliers are reduced further, the law is that of
+// rom/reduced_law.hpp; with the condensed operator its answer is checked at all nodes, and mended
+// by solve_friction, which starts from it, where it fails.
+#pragma once
+
+#include "rbvi/element/support.hpp"
+#include "rbvi/rom/reduced_law.hpp"
+
+namespace rbvi {
+
+/// What a query gives.
+struct SupportAnswer {
+  Vector u, x; ///< coefficients of the primal and of the dual basis
+  Vector theta_b;
+  double energy = 0; ///< a(u,u)/2
+  double residual =
+      0; ///< largest relative violation of the laws, at all nodes where they are known
+  int iterations = 0;
+  bool mended = false; ///< by exact steps
+};
+
+/// Starts from the multipliers of the training sample next to mu, or of the last query if that is
+/// nearer.
+class SupportSolver {
+public:
+  /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
+  SupportSolver(const ReducedModel &model, const Scene &scene);
+  /// Throws failure, saying what to try, if the law is not met to 1e-8.
+  SupportAnswer solve(const Mu &all_parameters);
+  /// What the elastic body says at mu; valid until the next call of either.
+  BodyAtMu body_at(const Mu &all_parameters, const Vector &theta_b);
+
+private:
+  /// Whether its answer stands; if not, exact steps follow, from it if there is one.
+  bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
+  void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);
+  void update_stiffness(const Mu &all_parameters);
+  Vector nearest_start(const Mu &all_parameters) const;
+  Vector term_coefficients(const Mu &all_parameters, const Vector &theta_b) const;
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  std::optional<ReducedLaw> law_;
+  Vector last_x_;
+  Mu last_mu_;                   ///< all parameters
+  Mu stiffness_at_;              ///< all parameters that factor_ was made for
+  Eigen::LLT<Matrix> stiffness_; ///< of A_N
+};
+
+/// theta_q(mu) of b (`matrix`) or g: the sampled entries integrated again on their one or two
+/// edges, then the triangular solve (B.36).
+Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
+                            const Mu &all_parameters);
+
+/// Vertices and weights (integrals of the hat functions) of the mapped curve of a support.
+struct MappedCurve {
+  std::vector<Point> points;
+  Vector weights;
+};
+MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene, const Mu &all_parameters);
+
+} // namespace rbvi

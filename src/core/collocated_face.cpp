@@ -1,0 +1,213 @@
+#include "collocated_face.hpp"
+
+namespace rbvi::collocated {
+
+namespace {
+
+std::vector<Index> rows_above(const Vector &norms, double least) {
+  std::vector<Index> result;
+  for (Index j = 0; j < norms.size(); ++j)
+    if (norms[j] > least) result.push_back(j);
+  return result;
+}
+
+/// Newton's step on given sets: the bounds follow the pressure,
+///
+///   w_free = 0,   w_tau + T^T delta = 0,   side_j (T b)_j - c (N a)_j = t at the nodes at a bound.
+Point newton_step(const Scaled &p, const Sets &sets) {
+  std::vector<Index> unknowns, held;
+  for (Index i = 0; i < p.generators(); ++i)
+    if (sets.free[at(i)] != 0) unknowns.push_back(i);
+  const Index pressures = static_cast<Index>(unknowns.size());
+  for (Index k = 0; k < p.modes(); ++k)
+    unknowns.push_back(p.generators() + k);
+  for (Index j = 0; j < p.nodes(); ++j)
+    if (sets.side[at(j)] != 0) held.push_back(j);
+
+  const Index n = static_cast<Index>(unknowns.size()), m = static_cast<Index>(held.size());
+  Matrix system = Matrix::Zero(n + m, n + m);
+  Vector right(n + m);
+  system.topLeftCorner(n, n) = p.h(unknowns, unknowns);
+  right.head(n) = -p.q(unknowns);
+  for (Index k = 0; k < m; ++k) {
+    const Index j = held[at(k)];
+    const double side = sets.side[at(j)], size = p.size[j];
+    double reach = 0; // of the free generators: in contact by these sets
+    for (Index i = 0; i < pressures; ++i) {
+      const double value = p.normal(j, unknowns[at(i)]);
+      system(n + k, i) = -p.bound.coefficient * value / size;
+      reach = std::max(reach, value);
+    }
+    system.row(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j);
+    system.col(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j).transpose();
+    right[n + k] = p.threshold(reach) / size;
+  }
+  Vector solution(n + m);
+  if (n + m > 0) {
+    const Eigen::PartialPivLU<Matrix> lu(system);
+    solution = lu.solve(right);
+    solution += lu.solve(right - system * solution);
+  }
+  Point point;
+  point.x = Vector::Zero(p.q.size());
+  point.delta = Vector::Zero(p.nodes());
+  point.x(unknowns) = solution.head(n);
+  for (Index k = 0; k < m; ++k)
+    point.delta[held[at(k)]] = sets.side[at(held[at(k)])] * solution[n + k] / p.size[held[at(k)]];
+  return point;
+}
+
+} // namespace
+
+/// With the bounds s frozen the problem is convex; its dual is non-negative in the multipliers w_n
+/// and delta of both signs: with H = L L^T, Y = L^-1 [-E_n, T^T, -T^T], c = -L^-1 q, g = (0, s, s).
+class FrozenBounds {
+public:
+  explicit FrozenBounds(const Scaled &p) : p_(p), qp_(p.q.size()), cholesky_(p.h) {
+    if (cholesky_.info() != Eigen::Success) throw dependent();
+    const Index r = p.generators(), s = p.modes(), m = p.nodes();
+    y_.setZero(r + s, r + 2 * m);
+    y_.topLeftCorner(r, r) = -Matrix::Identity(r, r);
+    y_.block(r, r, s, m) = p.tangential.transpose() * p.size.cwiseInverse().asDiagonal();
+    y_.block(r, r + m, s, m) = -y_.block(r, r, s, m);
+    if (y_.cols() > 0) cholesky_.matrixL().solveInPlace(y_);
+    c_ = cholesky_.matrixL().solve(-p.q);
+  }
+  void start_from(const Sets &sets) {
+    std::vector<Index> active;
+    for (Index i = 0; i < p_.generators(); ++i)
+      if (sets.free[at(i)] == 0) active.push_back(i);
+    for (Index j = 0; j < p_.nodes(); ++j)
+      if (const int side = sets.side[at(j)]; side != 0)
+        active.push_back(p_.generators() + j + (side > 0 ? 0 : p_.nodes()));
+    qp_.start_from(std::move(active));
+  }
+  Point solve(const Vector &s) {
+    const Index r = p_.generators(), m = p_.nodes();
+    const Vector g = s.cwiseQuotient(p_.size);
+    Vector linear(r + 2 * m);
+    linear << Vector::Zero(r), g, g;
+    qp_.solve(y_, c_, linear);
+    Point point;
+    point.x = cholesky_.matrixU().solve(qp_.residual());
+    point.x.head(r) = point.x.head(r).cwiseMax(0);
+    for (const Index column : qp_.active())
+      if (column < r) point.x[column] = 0;
+    point.delta = (qp_.x().segment(r, m) - qp_.x().tail(m)).cwiseQuotient(p_.size);
+    return point;
+  }
+  Sets sets() const {
+    Sets result(p_);
+    for (const Index column : qp_.active()) {
+      const Index j = column - p_.generators();
+      if (j < 0) result.free[at(column)] = 0;
+      if (j >= 0) result.side[at(j % p_.nodes())] = j < p_.nodes() ? 1 : -1;
+    }
+    return result;
+  }
+
+private:
+  const Scaled &p_;
+  NonnegativeQp qp_;
+  Eigen::LLT<Matrix> cholesky_;
+  Matrix y_;
+  Vector c_;
+};
+
+Error dependent() {
+  return failure("collocated friction: H is not positive definite: leave out what depends on the "
+                 "other generators and modes");
+}
+
+Scaled scaled(const CollocatedProblem &p) {
+  const Index r = p.normal_rows.cols();
+  const Vector unit = p.h.diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix rows = p.tangential_rows * unit.tail(unit.size() - r).asDiagonal();
+  const Vector norms = rows.rowwise().norm();
+  const auto kept = rows_above(norms, norms.size() > 0 ? round_off * norms.maxCoeff() : 0);
+  return {.unit = unit,
+          .q = unit.cwiseProduct(p.q),
+          .size = norms(kept),
+          .h = unit.asDiagonal() * p.h * unit.asDiagonal(),
+          .normal = p.normal_rows(kept, Eigen::all) * unit.head(r).asDiagonal(),
+          .tangential = rows(kept, Eigen::all),
+          .bound = p.bound};
+}
+
+Face::Face(const Scaled &p, const std::vector<char> &closed) : closed_(closed), p_(p), reduced_(p) {
+  for (Index j = 0; j < p.nodes(); ++j)
+    (closed[at(j)] != 0 ? zero_ : nodes_).push_back(j);
+  if (!zero_.empty()) eliminate();
+}
+
+Face::~Face() = default;
+
+void Face::eliminate() {
+  const Index r = p_.generators(), s = p_.modes();
+  const double least = round_off * p_.size.maxCoeff();
+  qr_.compute(p_.tangential(zero_, Eigen::all).transpose());
+  qr_.setThreshold(least / qr_.maxPivot());
+  z_ = Matrix(qr_.householderQ()).rightCols(s - qr_.rank());
+  reduced_.h.resize(r + z_.cols(), r + z_.cols());
+  reduced_.h << p_.h.topLeftCorner(r, r), p_.h.topRightCorner(r, s) * z_,
+      z_.transpose() * p_.h.bottomLeftCorner(s, r),
+      z_.transpose() * p_.h.bottomRightCorner(s, s) * z_;
+  reduced_.q.resize(r + z_.cols());
+  reduced_.q << p_.q.head(r), z_.transpose() * p_.q.tail(s);
+
+  const Matrix rows = p_.tangential(nodes_, Eigen::all) * z_;
+  const Vector norms = rows.rowwise().norm();
+  const std::vector<Index> kept = rows_above(norms, least);
+  reduced_.tangential = rows(kept, Eigen::all);
+  reduced_.size = norms(kept);
+  std::vector<Index> nodes;
+  for (const Index j : kept)
+    nodes.push_back(nodes_[at(j)]);
+  nodes_ = std::move(nodes);
+  reduced_.normal = p_.normal(nodes_, Eigen::all);
+}
+
+Point Face::newton(const Sets &sets) const {
+  return lifted(newton_step(reduced_, restricted(sets)));
+}
+
+Point Face::frozen(const Vector &s, Sets &sets) {
+  if (!qp_) {
+    qp_ = std::make_unique<FrozenBounds>(reduced_);
+    qp_->start_from(restricted(sets));
+  }
+  Point point = lifted(qp_->solve(s(nodes_)));
+  const Sets found = qp_->sets();
+  sets = Sets(p_);
+  sets.free = found.free;
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    sets.side[at(nodes_[k])] = found.side[k];
+  for (const Index j : zero_)
+    sets.side[at(j)] = sign(point.delta[j]);
+  return point;
+}
+
+Sets Face::restricted(const Sets &sets) const {
+  Sets result(reduced_);
+  result.free = sets.free;
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    result.side[k] = sets.side[at(nodes_[k])];
+  return result;
+}
+
+/// The multipliers of T_E b = 0 are those of what the others leave.
+Point Face::lifted(const Point &point) const {
+  if (zero_.empty()) return point;
+  Point full;
+  const Index r = p_.generators(), s = p_.modes();
+  full.x.resize(r + s);
+  full.x << point.x.head(r), z_ * point.x.tail(z_.cols());
+  full.delta = Vector::Zero(p_.nodes());
+  full.delta(nodes_) = point.delta;
+  const Vector left =
+      p_.h.bottomRows(s) * full.x + p_.q.tail(s) + p_.tangential.transpose() * full.delta;
+  if (left.allFinite()) full.delta(zero_) = -qr_.solve(left);
+  return full;
+}
+
+} // namespace rbvi::collocated

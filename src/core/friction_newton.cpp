@@ -1,0 +1,311 @@
+#include "friction_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rbvi::friction {
+
+namespace {
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// An unknown of the linear system, and its row: a combination of at most two entries.
+struct Unknown {
+  Index node;
+  Index first, second;  ///< entries of x
+  double a = 1, b = 0;  ///< their factors
+  double slope = 0;     ///< x_tau grows by this times e with the normal unknown
+  double curvature = 0; ///< on the diagonal
+  double unit = 1;      ///< scales the diagonal of H to one
+};
+
+double tangential_diagonal(const LazyColumns &h, const Laws &laws, Index i) {
+  double sum = 0;
+  for (int k = 0; k < laws.dim - 1; ++k)
+    sum += h.diagonal(laws.tangent(i) + k);
+  return sum / (laws.dim - 1);
+}
+
+std::vector<Unknown> unknowns(const LazyColumns &h, const Laws &laws, const Sets &sets) {
+  std::vector<Unknown> result;
+  for (Index i = 0; i < laws.nodes; ++i) {
+    const Index t = laws.tangent(i);
+    const bool slips = sets.of(i) == Tangent::slip;
+    if (sets.is_active(i)) {
+      result.push_back({.node = i, .first = i, .second = i, .unit = 1 / std::sqrt(h.diagonal(i))});
+      if (slips) result.back().slope = laws.coefficient;
+    }
+    if (sets.of(i) == Tangent::none) continue;
+    const double unit = 1 / std::sqrt(tangential_diagonal(h, laws, i));
+    for (Index k = 0; k < laws.dim - 1 && !slips; ++k)
+      result.push_back({.node = i, .first = t + k, .second = t + k, .unit = unit});
+    if (slips && laws.dim == 3 && sets.curvature[i] >= 0)
+      result.push_back({.node = i,
+                        .first = t,
+                        .second = t + 1,
+                        .a = -sets.direction(1, i),
+                        .b = sets.direction(0, i),
+                        .curvature = sets.curvature[i],
+                        .unit = unit});
+  }
+  return result;
+}
+
+/// The scaled matrix of the linear system, in the order of the unknowns.
+Matrix assemble(const LazyColumns &h, const Laws &laws, const Sets &sets,
+                const std::vector<Unknown> &list) {
+  const Index count = static_cast<Index>(list.size());
+  Matrix matrix(count, count);
+  Vector column;
+  for (Index k = 0; k < count; ++k) {
+    const Unknown &u = list[at(k)];
+    column = u.a * h.column(u.first);
+    if (u.b != 0) column += u.b * h.column(u.second);
+    if (u.slope > 0)
+      for (int j = 0; j < laws.dim - 1; ++j)
+        column += u.slope * sets.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
+    for (Index r = 0; r < count; ++r) {
+      const Unknown &row = list[at(r)];
+      matrix(r, k) = u.unit * row.unit * (row.a * column[row.first] + row.b * column[row.second]);
+    }
+    matrix(k, k) += u.curvature * u.unit * u.unit;
+  }
+  return matrix;
+}
+
+/// The part of x that no unknown changes: the thresholds of the nodes that slip.
+Vector fixed_part(const Laws &laws, const Sets &sets) {
+  Vector x = Vector::Zero(laws.nodes * laws.dim);
+  for (Index i = 0; i < laws.nodes; ++i)
+    if (sets.of(i) == Tangent::slip)
+      x.segment(laws.tangent(i), laws.dim - 1) = laws.threshold[i] * sets.direction.col(i);
+  return x;
+}
+
+/// With one step of refinement. Empty if the matrix is singular or, where it is symmetric, not
+/// positive definite.
+Vector solve(const Matrix &matrix, const Vector &right, bool symmetric) {
+  const auto refined = [&](const auto &factors) {
+    Vector u = factors.solve(right);
+    u -= factors.solve(Vector(matrix * u - right));
+    return u.allFinite() ? u : Vector();
+  };
+  if (!symmetric) return refined(Eigen::PartialPivLU<Matrix>(matrix));
+  const Eigen::LLT<Matrix> cholesky(matrix);
+  return cholesky.info() == Eigen::Success ? refined(cholesky) : Vector();
+}
+
+/// x of the unknowns, slipping nodes on their circle.
+Vector expand(const Laws &laws, const Sets &sets, const std::vector<Unknown> &list, const Vector &u,
+              Vector x) {
+  for (Index k = 0; k < u.size(); ++k) {
+    const Unknown &unknown = list[at(k)];
+    const double value = unknown.unit * u[k];
+    x[unknown.first] += unknown.a * value;
+    if (unknown.b != 0) x[unknown.second] += unknown.b * value;
+    if (unknown.slope > 0)
+      x.segment(laws.tangent(unknown.node), laws.dim - 1) +=
+          unknown.slope * value * sets.direction.col(unknown.node);
+  }
+  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i) {
+    auto tangential = x.segment(laws.tangent(i), 2);
+    const double bound = laws.bound(i, x[i]);
+    if (sets.of(i) == Tangent::slip && bound > 0 && tangential.norm() > 0)
+      tangential *= bound / tangential.norm();
+  }
+  return x;
+}
+
+/// What judges one node.
+class Judge {
+public:
+  Judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
+        double tolerance)
+      : h_(h), laws_(laws), point_(point), sets_(sets),
+        tolerance_(tolerance), verdict_{.next = Sets(laws.nodes, laws.dim)} {
+    for (Index j = 0; j < point.x.size(); ++j)
+      if (point.x[j] != 0) largest_ = std::max(largest_, std::abs(point.x[j]) * root(j));
+  }
+  Verdict all() {
+    for (Index i = 0; i < laws_.nodes; ++i) {
+      normal(i);
+      tangential(i);
+      verdict_.changed = verdict_.changed || verdict_.next.is_active(i) != sets_.is_active(i) ||
+                         verdict_.next.of(i) != sets_.of(i) || turned(i);
+    }
+    return std::move(verdict_);
+  }
+
+private:
+  double root(Index j) const { return std::sqrt(h_.diagonal(j)); }
+  void violated(double size, double scale) {
+    if (size > 0) verdict_.residual = std::max(verdict_.residual, size / scale);
+  }
+  bool turned(Index i) const {
+    return laws_.dim == 2 && sets_.of(i) == Tangent::slip &&
+           verdict_.next.direction(0, i) != sets_.direction(0, i);
+  }
+  void normal(Index i) {
+    const double x = point_.x[i], w = point_.w[i], terms = point_.terms[i];
+    violated(x > 0 ? std::abs(w) : -w, terms);
+    char &next = verdict_.next.active[at(i)];
+    const double counted = std::abs(w) <= tolerance_ * terms ? 0 : w;
+    if (!h_.has(i)) {
+      next = counted < 0;
+      return;
+    }
+    if (x < 0) violated(-x * root(i), largest_);
+    const double y = x * root(i) - counted / root(i);
+    const bool jumps = laws_.only_in_contact && laws_.threshold[i] > 0;
+    next = sets_.is_active(i) && !jumps ? y >= -tolerance_ * largest_ : y > 0;
+  }
+  void tangential(Index i) {
+    Tangent &next = verdict_.next.tangent[at(i)];
+    const double bound = laws_.bound(i, point_.x[i]);
+    const bool known = h_.has(laws_.tangent(i));
+    if (known) measure(i, bound);
+    if (!laws_.carries(i, verdict_.next.is_active(i))) return;
+    verdict_.next.direction.col(i) = sets_.direction.col(i);
+    if (bound > 0 && known)
+      predict(i, bound);
+    else if (sets_.of(i) == Tangent::none)
+      begin(i);
+    else
+      next = sets_.of(i);
+  }
+  /// The bound of a node that just came into contact was zero: it slips against its w_tau.
+  void begin(Index i) {
+    const auto w = point_.w.segment(laws_.tangent(i), laws_.dim - 1);
+    const double size = w.norm();
+    verdict_.next.tangent[at(i)] = size > 0 ? Tangent::slip : Tangent::stick;
+    if (size > 0) verdict_.next.direction.col(i) = -w / size;
+  }
+  void measure(Index i, double bound) {
+    const Index t = laws_.tangent(i), count = laws_.dim - 1;
+    const auto x = point_.x.segment(t, count), w = point_.w.segment(t, count);
+    const double size = x.norm(), terms = point_.terms.segment(t, count).norm();
+    if (size == 0 && bound == 0) return;
+    violated((size - bound) * std::sqrt(tangential_diagonal(h_, laws_, i)), largest_);
+    if (size < bound * (1 - 1e-14)) {
+      violated(w.norm(), terms);
+      return;
+    }
+    const double along = x.dot(w) / size;
+    violated(along, terms);
+    if (count > 1) violated((w - along / size * x).norm(), terms);
+  }
+  void predict(Index i, double bound) {
+    const Index t = laws_.tangent(i), count = laws_.dim - 1;
+    const double diagonal = tangential_diagonal(h_, laws_, i);
+    const auto w = point_.w.segment(t, count);
+    Vector y = point_.x.segment(t, count);
+    if (w.norm() > tolerance_ * point_.terms.segment(t, count).norm()) y -= w / diagonal;
+    const double size = y.norm();
+    // A node that slips does not turn back before it has been stuck: otherwise it may do so
+    // forever.
+    const bool slips = sets_.of(i) == Tangent::slip
+                           ? size >= bound * (1 - 1e-15) && y.dot(sets_.direction.col(i)) > 0
+                           : size > bound + tolerance_ * largest_ / std::sqrt(diagonal);
+    verdict_.next.tangent[at(i)] = slips ? Tangent::slip : Tangent::stick;
+    if (!slips) return;
+    verdict_.next.direction.col(i) = y / size;
+    verdict_.next.curvature[i] = std::max(0.0, size - bound) * diagonal / bound;
+  }
+
+  const LazyColumns &h_;
+  const Laws &laws_;
+  const Point &point_;
+  const Sets &sets_;
+  double tolerance_;
+  double largest_ = 0; ///< of x in the scaling in which H has a unit diagonal
+  Verdict verdict_;
+};
+
+} // namespace
+
+Vector Laws::bounds(const Vector &x) const {
+  return Vector::NullaryExpr(nodes, [&](Index i) { return bound(i, x[i]); });
+}
+
+Vector Laws::feasible(Vector x) const {
+  for (Index i = 0; i < nodes; ++i) {
+    x[i] = std::max(x[i], 0.0);
+    auto tangential = x.segment(tangent(i), dim - 1);
+    const double size = tangential.norm(), limit = bound(i, x[i]);
+    if (size > limit) tangential *= limit / size;
+  }
+  return x;
+}
+
+Sets::Sets(Index nodes, int dim)
+    : active(at(nodes), 0), tangent(at(nodes), Tangent::none),
+      direction(Matrix::Zero(dim - 1, nodes)), curvature(Vector::Constant(nodes, -1)) {}
+
+std::vector<Index> Sets::support(const Laws &laws) const {
+  std::vector<Index> result;
+  for (Index i = 0; i < laws.nodes; ++i)
+    if (is_active(i)) result.push_back(i);
+  for (Index i = 0; i < laws.nodes; ++i)
+    for (Index k = 0; k < laws.dim - 1 && of(i) != Tangent::none; ++k)
+      result.push_back(laws.tangent(i) + k);
+  return result;
+}
+
+std::string Sets::key() const {
+  std::string result;
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    const bool slips = tangent[i] == Tangent::slip;
+    const int direction_of = slips && direction(0, static_cast<Index>(i)) < 0 ? 8 : 0;
+    result.push_back(
+        static_cast<char>(active[i] + 2 * static_cast<int>(tangent[i]) + direction_of));
+  }
+  return result;
+}
+
+Point evaluate(const LazyColumns &h, const Vector &q, Vector x) {
+  std::vector<Index> support;
+  for (Index j = 0; j < x.size(); ++j)
+    if (x[j] != 0) support.push_back(j);
+  auto [product, terms] = h.multiply(support, x(support));
+  return {std::move(x), product + q, terms + q.cwiseAbs()};
+}
+
+Sets sets_of(const Laws &laws, const Vector &x) {
+  Sets result(laws.nodes, laws.dim);
+  for (Index i = 0; i < laws.nodes; ++i)
+    result.active[at(i)] = x[i] > 0;
+  return result;
+}
+
+Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
+              double tolerance) {
+  return Judge(h, laws, point, sets, tolerance).all();
+}
+
+Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, const Sets &sets,
+            Point &point) {
+  for (const Index j : sets.support(laws))
+    if (!(h.diagonal(j) > 0)) return Solved::indefinite;
+  const std::vector<Unknown> list = unknowns(h, laws, sets);
+  Vector x = fixed_part(laws, sets);
+  Vector start = q;
+  for (Index j = laws.nodes; j < x.size(); ++j)
+    if (x[j] != 0) start += x[j] * h.column(j);
+  Vector right(static_cast<Index>(list.size()));
+  bool symmetric = true;
+  for (Index k = 0; k < right.size(); ++k) {
+    const Unknown &u = list[at(k)];
+    right[k] = -u.unit * (u.a * start[u.first] + u.b * start[u.second]);
+    symmetric = symmetric && u.slope == 0;
+  }
+  Vector u;
+  if (right.size() > 0) u = solve(assemble(h, laws, sets, list), right, symmetric);
+  if (u.size() != right.size()) return symmetric ? Solved::indefinite : Solved::singular;
+  point = evaluate(h, q, expand(laws, sets, list, u, std::move(x)));
+  return Solved::yes;
+}
+
+} // namespace rbvi::friction

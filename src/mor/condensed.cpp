@@ -1,0 +1,181 @@
+#include "rbvi/mor/condensed.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/mor/small_svd.hpp"
+#include "rbvi/solve/replicated.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+bool mirrored(const SupportCurve &curve) {
+  const auto count = static_cast<std::size_t>(curve.vertices);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point &x = curve.points[i], &y = curve.points[count - 1 - i];
+    if (std::hypot(x[0] + y[0], x[1] - y[1]) > 1e-12) return false;
+  }
+  return true;
+}
+
+/// lambda_n even, lambda_tau odd about the middle, to 1e-8 of the largest.
+bool symmetric(const Matrix &snapshots, Index vertices) {
+  for (Index first = 0; first < snapshots.rows(); first += vertices) {
+    const Matrix part = snapshots.middleRows(first, vertices);
+    const double sign = first == 0 ? 1 : -1;
+    const double defect = (part - sign * part.colwise().reverse()).cwiseAbs().maxCoeff();
+    if (defect > 1e-8 * snapshots.cwiseAbs().maxCoeff()) return false;
+  }
+  return true;
+}
+
+/// The parameters of a that are free, each with so many points.
+std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
+  std::vector<ChebyshevAxis> axes;
+  for (const int i : scene.parameters.free) {
+    const auto &of_a = *scene.a_parameters;
+    if (std::find(of_a.begin(), of_a.end(), i) == of_a.end()) continue;
+    const Parameter &p = scene.parameters.all[static_cast<std::size_t>(i)];
+    const auto found = scene.a_coordinates.find(i);
+    const bool own = found != scene.a_coordinates.end();
+    const double lower = own ? found->second.of(p.lower) : p.lower;
+    const double upper = own ? found->second.of(p.upper) : p.upper;
+    axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});
+  }
+  return axes;
+}
+
+/// Term p of b on the basis: contact dofs x multipliers.
+std::vector<Matrix> loads_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+                             const Matrix &basis) {
+  std::vector<Matrix> loads(static_cast<std::size_t>(b.size()),
+                            Matrix::Zero(problem.trace().size, basis.cols()));
+  Operators op;
+  for (int i = 0; i < b.size(); ++i) {
+    const int snapshot = b.snapshots[static_cast<std::size_t>(i)];
+    problem.assemble_contact(training[static_cast<std::size_t>(snapshot)], op);
+    const Matrix at_snapshot = op.b.transpose() * basis;
+    for (int p = i; p < b.size(); ++p)
+      loads[static_cast<std::size_t>(p)] += b.combination(i, p) * at_snapshot;
+  }
+  return loads;
+}
+
+/// The blocks of H for one A, below each other: column by column, m^2 entries each.
+Vector condensed_blocks(Mat a, const Trace &trace, const std::vector<Matrix> &loads) {
+  ReplicatedSolver solver(a, trace, "hf_");
+  const Index m = loads.front().cols(), terms = static_cast<Index>(loads.size());
+  Matrix all(loads.front().rows(), m * terms);
+  for (Index p = 0; p < terms; ++p)
+    all.middleCols(p * m, m) = loads[static_cast<std::size_t>(p)];
+  const Matrix h = all.transpose() * solver.responses(all);
+  Vector blocks(terms * (terms + 1) / 2 * m * m);
+  Index at = 0;
+  for (Index p = 0; p < terms; ++p)
+    for (Index q = p; q < terms; ++q, at += m * m) {
+      const Matrix block = h.block(p * m, q * m, m, m);
+      const double share = p == q ? 0.5 : 1;
+      blocks.segment(at, m * m) = (share * (block + block.transpose())).reshaped();
+    }
+  return blocks;
+}
+
+/// As few terms as hold the values at all grid points to the tolerance. `values`: (blocks *
+/// `square`) x grid points.
+void compress(const Matrix &values, Index square, double tolerance, CondensedOperator &condensed) {
+  const Index points = values.cols(), blocks = values.rows() / square;
+  const Eigen::HouseholderQR<Matrix> qr(values);
+  const SmallSvd svd = small_svd(qr.matrixQR().topRows(points).triangularView<Eigen::Upper>());
+  Index count = 1;
+  while (count < points && svd.values[count] > 0.1 * tolerance * svd.values[0])
+    ++count;
+  condensed.shape = svd.values.head(count).asDiagonal() * svd.right.leftCols(count).transpose();
+  Matrix left = Matrix::Zero(values.rows(), count);
+  left.topRows(points) = svd.left.leftCols(count);
+  left.applyOnTheLeft(qr.householderQ());
+  condensed.terms.resize(square, blocks * count);
+  for (Index block = 0; block < blocks; ++block)
+    condensed.terms.middleCols(block * count, count) = left.middleRows(block * square, square);
+}
+
+/// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
+std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                          const Mu &all_parameters) {
+  std::vector<Mu> result;
+  for (const Mu &point : grid_points(scene, axes, all_parameters)) {
+    Mu mu;
+    for (const int i : scene.parameters.free)
+      mu.push_back(point[static_cast<std::size_t>(i)]);
+    result.push_back(std::move(mu));
+  }
+  return result;
+}
+
+} // namespace
+
+Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots) {
+  const SupportCurve &curve = problem.support().curve;
+  const Index vertices = curve.vertices, parts = problem.dual_size() / vertices;
+  if (!problem.scene().symmetric || !mirrored(curve) || !symmetric(snapshots, vertices))
+    return Matrix::Identity(problem.dual_size(), problem.dual_size());
+  const Index half = (vertices + 1) / 2;
+  Matrix basis = Matrix::Zero(parts * vertices, parts * half);
+  for (Index part = 0; part < parts; ++part)
+    for (Index i = 0; i < half; ++i) {
+      basis(part * vertices + vertices - 1 - i, part * half + i) = part == 0 ? 1 : -1;
+      basis(part * vertices + i, part * half + i) = 1;
+    }
+  return basis;
+}
+
+CondensedOperator condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+                           const Matrix &basis, const CondensedOptions &options) {
+  const Scene &scene = problem.scene();
+  const std::vector<Matrix> loads = loads_of(problem, b, training, basis);
+  CondensedOperator condensed;
+  Matrix values;
+  for (int points = 5;; points = 2 * points - 1) {
+    condensed.axes = axes_of(scene, points);
+    const std::vector<Mu> grid =
+        free_grid(scene, condensed.axes, expand(scene.parameters, training.front()));
+    for (std::size_t k = 0; k < grid.size(); ++k) {
+      const Operators &op = problem.assemble(grid[k]);
+      const Vector blocks = condensed_blocks(op.a, problem.trace(), loads);
+      if (k == 0) values.resize(blocks.size(), static_cast<Index>(grid.size()));
+      values.col(static_cast<Index>(k)) = blocks;
+    }
+    condensed.error = chebyshev_tail(condensed.axes, values);
+    if (condensed.error <= options.tolerance) break;
+    if (2 * points - 1 > options.max_points)
+      throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
+                    " only by " + std::to_string(points) +
+                    " points along each parameter of the stiffness: narrow their bounds, or raise "
+                    "-condensed_tolerance");
+  }
+  compress(values, basis.cols() * basis.cols(), options.tolerance, condensed);
+  return condensed;
+}
+
+int append_responses(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+                     const Matrix &basis, double tolerance, LinearBasis &modes) {
+  if (b.size() != 1) return 0;
+  const Scene &scene = problem.scene();
+  const Matrix loads = loads_of(problem, b, training, basis).front();
+  int added = 0;
+  double left_out = 1e-8;
+  for (const Mu &mu :
+       free_grid(scene, axes_of(scene, 3), expand(scene.parameters, training.front()))) {
+    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
+    added += static_cast<int>(
+        append_orthonormalised(modes, solver.fields(loads).get(), left_out).size());
+    left_out = tolerance;
+  }
+  return added;
+}
+
+} // namespace rbvi

@@ -1,0 +1,102 @@
+#include "rbvi/mor/reduce.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/support_outputs.hpp"
+#include "rbvi/rom/support_solver.hpp"
+
+namespace rbvi {
+
+namespace {
+
+std::vector<FrictionBound> bounds_at(const Scene &scene, const std::vector<Mu> &set) {
+  std::vector<FrictionBound> bounds;
+  for (const Mu &mu : set)
+    bounds.push_back(friction_bound(scene.support->friction, expand(scene.parameters, mu)));
+  return bounds;
+}
+
+/// Coefficients in a basis of disjoint columns.
+Matrix coefficients_in(const Matrix &basis, const Matrix &values) {
+  return basis.colwise().squaredNorm().cwiseInverse().asDiagonal() * (basis.transpose() * values);
+}
+
+/// The functions of the multipliers at all dual dofs.
+Matrix dual_functions(const Matrix &nodal, const MultiplierBasis &basis) {
+  const Index nodes = nodal.cols() / 2;
+  Matrix functions(nodal.rows(), basis.normal.cols() + basis.tangential.cols());
+  functions << nodal.leftCols(nodes) * basis.normal, nodal.rightCols(nodes) * basis.tangential;
+  return functions;
+}
+
+} // namespace
+
+ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
+                                 const ReduceOptions &options, const AffineOperators &affine,
+                                 StageTimes &times) {
+  const Matrix multipliers = multipliers_of(samples);
+  const Scene &scene = problem.scene();
+  if (scene.f) throw failure("contact with a rigid support is reduced without a load only");
+  MultiplierOptions choice = options.multipliers;
+  choice.cone = options.cone;
+  const bool condensed = choice.reduction == MultiplierReduction::condensed;
+  if (!condensed && scene.support->friction.law == FrictionLaw::none)
+    throw bad_input("the scene has no friction: use -multiplier_reduction condensed");
+  std::vector<Mu> training;
+  for (const Sample &sample : samples)
+    training.push_back(sample.mu);
+  ReducedBases bases;
+  bases.reduction = choice.reduction;
+  bases.mended = choice.exact;
+  add_modes(problem, samples, options.pod, bases, times);
+  bases.support_dual = support_dual_basis(problem, multipliers);
+  const Matrix &nodal = bases.support_dual;
+  if (choice.reduction != MultiplierReduction::collocated || choice.exact) {
+    const Stage stage("condensation", times);
+    bases.condensed = condense(problem, affine.b, training, nodal, options.condensed);
+    if (choice.exact && choice.reduction != MultiplierReduction::collocated &&
+        options.condensed.responses > 0)
+      bases.supremizers = append_responses(problem, affine.b, training, nodal,
+                                           options.condensed.responses, bases.pod.basis);
+  }
+  if (condensed) return bases;
+  {
+    const Stage stage("multipliers", times);
+    const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
+    bases.multipliers = make_multiplier_basis(coefficients_in(nodal, multipliers), w,
+                                              bounds_at(scene, training), choice);
+  }
+  if (choice.reduction != MultiplierReduction::collocated ||
+      options.enrichment == Enrichment::decorrelated)
+    return bases;
+  if (options.enrichment == Enrichment::online)
+    throw bad_input("-pga_enrichment online is not for contact with a rigid support: use offline");
+  if (affine.b.size() == 1) training.resize(1);
+  const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
+  add_supremizers(problem, training, reference, options,
+                  dual_functions(nodal, bases.multipliers.basis), bases, times);
+  return bases;
+}
+
+Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
+               const SparseMatrix &w_product, const GcnsOptions &options) {
+  SupportModel &support = *model.support;
+  SupportSolver solver(model, scene);
+  const Index nodes = support.normal;
+  const Matrix &nodal = model.dual_basis;
+  const Matrix coefficients = coefficients_in(nodal, multipliers_of(samples));
+  std::vector<GcnsSample> problems;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    const Mu all = expand(scene.parameters, samples[p].mu);
+    const BodyAtMu body = solver.body_at(all, support_coefficients(model.b, true, scene, all));
+    CollocatedProblem reduced = collocated_problem(support.basis, body);
+    problems.push_back({std::move(reduced.h), std::move(reduced.q), body.bound,
+                        coefficients.col(static_cast<Index>(p)).tail(nodes)});
+  }
+  const SparseMatrix w = (nodal.transpose() * w_product * nodal).sparseView();
+  Gcns selected = select_collocation_nodes(problems, support.basis.normal, support.basis.tangential,
+                                           w.block(nodes, nodes, nodes, nodes), options);
+  support.basis.nodes = selected.nodes;
+  return selected;
+}
+
+} // namespace rbvi

@@ -1,0 +1,201 @@
+#include "rbvi/rom/support_solver.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/element/support_outputs.hpp"
+#include "rbvi/rom/online.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double largest_residual = 1e-8;
+constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at all nodes
+
+/// The sampled edge as a curve of its own.
+SupportCurve sample_edge(const SampleMesh &sample, Index number, int degree) {
+  const Point a = point_of(sample.vertices, 2 * number);
+  const Point b = point_of(sample.vertices, 2 * number + 1);
+  SupportCurve curve{{a, b}, 2};
+  if (degree == 2) curve.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0});
+  return curve;
+}
+
+bool depends_on(const std::vector<int> &parameters, const Mu &a, const Mu &b) {
+  for (const int i : parameters)
+    if (a[static_cast<std::size_t>(i)] != b[static_cast<std::size_t>(i)]) return true;
+  return false;
+}
+
+} // namespace
+
+Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
+                            const Mu &all_parameters) {
+  Vector theta = Vector::Zero(terms.size());
+  const Index edges = terms.sample.vertices.rows() / 2;
+  std::vector<Vector> values;
+  for (Index e = 0; e < edges; ++e) {
+    const SupportOperators edge =
+        couple_with_support(scene, all_parameters, sample_edge(terms.sample, e, scene.degree));
+    values.push_back(matrix ? Vector(Matrix(edge.b).transpose().reshaped()) : edge.g);
+  }
+  for (const SampleMesh::Contribution &c : terms.sample.contributions)
+    theta[c.entry] += values[static_cast<std::size_t>(c.cell)][c.local];
+  terms.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
+  return theta;
+}
+
+MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene, const Mu &all_parameters) {
+  MappedCurve curve;
+  const Index count = model.contact_points.rows();
+  for (Index i = 0; i < count; ++i)
+    curve.points.push_back(scene.map(all_parameters, point_of(model.contact_points, i)));
+  curve.weights = Vector::Zero(count);
+  for (Index i = 0; i + 1 < count; ++i) {
+    const Point &a = curve.points[static_cast<std::size_t>(i)];
+    const Point &b = curve.points[static_cast<std::size_t>(i) + 1];
+    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    curve.weights[i] += length / 2;
+    curve.weights[i + 1] += length / 2;
+  }
+  return curve;
+}
+
+SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene)
+    : model_(model), scene_(scene) {
+  if (!scene.support || !model.support)
+    throw bad_input("the model has contact with a support, its scene in this build has not, or the "
+                    "other way round");
+  const SupportCurve curve{{}, model.support->vertices};
+  if (multiplier_count(curve, *scene.support) != model.dual_basis.rows())
+    throw bad_input("the multipliers of the model do not fit its scene in this build");
+  if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
+}
+
+void SupportSolver::update_stiffness(const Mu &all_parameters) {
+  if (!stiffness_at_.empty() &&
+      (!scene_.a_parameters ? stiffness_at_ == all_parameters
+                            : !depends_on(*scene_.a_parameters, stiffness_at_, all_parameters)))
+    return;
+  const Vector packed =
+      model_.a.reduced * affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
+  const Index n = model_.primal_size();
+  Matrix a(n, n);
+  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
+    a.col(j).tail(n - j) = packed.segment(at, n - j);
+  stiffness_.compute(a);
+  if (stiffness_.info() != Eigen::Success)
+    throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
+                  "-eim_tolerance, or stay closer to the training set");
+  stiffness_at_ = all_parameters;
+}
+
+Vector SupportSolver::nearest_start(const Mu &all_parameters) const {
+  const SupportModel &support = *model_.support;
+  const ParameterSpace &space = scene_.parameters;
+  Vector here(space.size()), width(space.size()), last(space.size());
+  for (int i = 0; i < space.size(); ++i) {
+    const auto at = static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)]);
+    here[i] = all_parameters[at];
+    width[i] = space.at(i).upper - space.at(i).lower;
+    last[i] = last_mu_.empty() ? 0 : last_mu_[at];
+  }
+  Index nearest = 0;
+  const auto distance = [&](const auto &mu) {
+    return (mu - here).cwiseQuotient(width).squaredNorm();
+  };
+  double best = std::numeric_limits<double>::infinity();
+  for (Index p = 0; p < support.starts.cols(); ++p)
+    if (const double d = distance(support.starts_mu.col(p)); d < best) {
+      best = d;
+      nearest = p;
+    }
+  if (!last_mu_.empty() && distance(last) < best) return last_x_;
+  return support.starts.cols() > 0 ? Vector(support.starts.col(nearest)) : Vector();
+}
+
+Vector SupportSolver::term_coefficients(const Mu &all_parameters, const Vector &theta_b) const {
+  const CondensedOperator &condensed = model_.support->condensed;
+  const Vector shape = condensed.shape * grid_weights(scene_, condensed.axes, all_parameters);
+  Vector result(condensed.terms.cols());
+  Index at = 0;
+  for (Index p = 0; p < theta_b.size(); ++p)
+    for (Index q = p; q < theta_b.size(); ++q, at += shape.size())
+      result.segment(at, shape.size()) = theta_b[p] * theta_b[q] * shape;
+  return result;
+}
+
+BodyAtMu SupportSolver::body_at(const Mu &all_parameters, const Vector &theta_b) {
+  const SupportModel &support = *model_.support;
+  BodyAtMu body;
+  if (support.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
+  body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
+  update_stiffness(all_parameters);
+  body.stiffness = &stiffness_;
+  body.q = model_.g.reduced * support_coefficients(model_.g, false, scene_, all_parameters);
+  body.bound = friction_bound(scene_.support->friction, all_parameters);
+  return body;
+}
+
+bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer) {
+  const Matrix &terms = model_.support->condensed.terms;
+  const bool mends = model_.support->mended && terms.size() > 0;
+  try {
+    ReducedLawAnswer reduced = law_->solve(body);
+    answer.x = std::move(reduced.x);
+    answer.residual = reduced.residual;
+    answer.iterations = reduced.iterations;
+  } catch (const Error &) {
+    if (!mends) throw;
+    answer.mended = true;
+    return false;
+  }
+  if (terms.size() == 0) return true;
+  const Index m = model_.generators;
+  const Matrix h = (terms * body.terms).reshaped(m, m);
+  answer.energy = 0.5 * answer.x.dot(h * answer.x);
+  answer.residual = natural_residual(answer.x, h * answer.x + body.q, h.diagonal(), body.bound);
+  answer.mended = mends && !(answer.residual <= mended_above);
+  return !answer.mended;
+}
+
+void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,
+                              SupportAnswer &answer) {
+  if (law_ && solve_reduced_law(body, answer)) return;
+  const Index m = model_.generators;
+  const Matrix &terms = model_.support->condensed.terms;
+  const auto columns = [&](const std::vector<Index> &which) {
+    Matrix result(m, static_cast<Index>(which.size()));
+    for (std::size_t k = 0; k < which.size(); ++k)
+      result.col(static_cast<Index>(k)).noalias() = terms.middleRows(which[k] * m, m) * body.terms;
+    return result;
+  };
+  const Vector start = answer.x.size() > 0 ? answer.x : nearest_start(all_parameters);
+  FrictionResult found = solve_friction(
+      columns, body.q, static_cast<int>(m) / model_.support->normal, body.bound, start);
+  if (!found.converged || !(found.residual <= largest_residual))
+    throw failure("the law of contact and friction is met to " + short_number(found.residual) +
+                  " only: " + found.reason);
+  answer.energy = 0.5 * found.x.dot(found.w - body.q);
+  answer.residual = found.residual;
+  answer.iterations += found.iterations;
+  answer.x = std::move(found.x);
+}
+
+SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
+  SupportAnswer answer;
+  answer.theta_b = support_coefficients(model_.b, true, scene_, all_parameters);
+  const BodyAtMu body = body_at(all_parameters, answer.theta_b);
+  solve_law(body, all_parameters, answer);
+  const Vector load = body.b.transpose() * answer.x;
+  answer.u = -stiffness_.solve(load);
+  if (model_.support->condensed.terms.size() == 0) answer.energy = -0.5 * load.dot(answer.u);
+  last_x_ = answer.x;
+  last_mu_ = all_parameters;
+  return answer;
+}
+
+} // namespace rbvi

@@ -1,0 +1,90 @@
+// The options of rbvi, for -help.
+#include "rbvi/tool/options.hpp"
+
+#include <cstdio>
+
+namespace rbvi {
+
+const std::vector<OptionHelp> &tool_options() {
+  static const std::vector<OptionHelp> options{
+      {"case", "",
+       "case file (YAML, one 'option: value' per line); the command line beats it. Without it: "
+       "that of -out"},
+      {"scene", "", "name of the scene (rbvi list)"},
+      {"out", "", "run directory"},
+      {"parameters", "", "names of the free parameters; the others keep their value"},
+      {"train", "", "training set: grid:5,5,5 | random:COUNT:SEED | file.csv"},
+      {"valid", "", "validation set, as -train"},
+      {"mu", "", "parameter of one solve: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02"},
+      {"vtu", "", "file for the field of one solve"},
+      {"csv", "", "file for the table of outputs"},
+      {"plan", "no", "print which stages will run, and stop"},
+      {"verify_stability", "yes", "verify inf-sup constants and bounds too, not errors alone"},
+      {"mesh", "", "Gmsh file instead of the built-in mesh"},
+      {"mesh_refine", "0", "uniform refinements"},
+      {"hf_method", "active_set", "high-fidelity solver: active_set | uzawa | vi"},
+      {"uzawa_tolerance", "1e-6", "relative change of the multiplier"},
+      {"uzawa_max_iterations", "20000", "limit of iterations"},
+      {"uzawa_accelerated", "no", "Nesterov's extrapolation with restart"},
+      {"uzawa_step", "0", "step rho; 0 is 1 / largest eigenvalue of B A^-1 B^T"},
+      {"sweep_ranks_per_solve", "1", "ranks that share one solve; divides the ranks"},
+      {"pod_tolerance", "1e-6", "relative error of the displacement modes (2.11)"},
+      {"pod_max_size", "0", "most modes; 0 is no bound"},
+      {"cone_type", "hybrid",
+       "dual basis: cpg | mcpg | angle_greedy | nmf | nodal | hybrid (README)"},
+      {"cone_tolerance", "1e-4", "relative error of the cone (2.34); not used by nodal"},
+      {"cone_max_size", "0", "most generators; 0 is no bound"},
+      {"cone_feasibility", "0", "mcpg: tolerated negative part, as a fraction of the maximum"},
+      {"cone_ring", "1", "nodal, hybrid: layers of nodes around moving contact"},
+      {"pga_enrichment", "offline", "supremizers: decorrelated (none) | online | offline"},
+      {"pga_product", "v", "they are taken in the V product or in energy: v | energy"},
+      {"reference_mu", "",
+       "mu of that energy, and of the hybrid cone's; default: centre of the box"},
+      {"pga_tolerance", "0", "on max sigma (2.27); 0 uses -pga_beta_fraction"},
+      {"pga_beta_fraction", "0.9", "stop when beta_off >= this fraction of beta_on is sure"},
+      {"pga_max_size", "0", "most supremizers; 0 is no bound"},
+      {"eim_tolerance", "1e-4", "relative error of the separated operators (B.32)"},
+      {"eim_max_size", "0", "most terms; 0 is no bound"},
+      {"condensed_tolerance", "1e-9",
+       "rigid support: relative error of the condensed operator as a function of mu"},
+      {"response_tolerance", "3e-3",
+       "rigid support: responses A^-1 B^T join the modes, of further A down to this; 0: none"},
+      {"multiplier_reduction", "condensed",
+       "rigid support: condensed (every node) | collocated | cones | joint (README)"},
+      {"multiplier_exact", "yes",
+       "answers of a further reduction that break the law at some node are mended by exact steps"},
+      {"tangential_tolerance", "1e-4",
+       "relative error of the modes of lambda_tau (collocated), of both multipliers (joint)"},
+      {"joint_extra_nodes", "4", "joint: collocation nodes beyond the number of modes"},
+      {"gcns_tolerance", "0", "collocated: e_GCNS at which the selection of nodes stops"},
+      {"gcns_max_nodes", "0", "collocated: most collocation nodes; 0 is no bound"}};
+  return options;
+}
+
+void print_help() {
+  std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n"
+              "  offline   snapshots, bases, interpolation, reduced model into -out\n"
+              "  verify    reduced against high-fidelity over the validation set\n"
+              "  solve     one high-fidelity solve at -mu\n"
+              "  bench     run time against error\n"
+              "  list      the scenes of this build\n"
+              "  inspect FILE   what a model file holds\n\nOptions [default]:\n");
+  for (const OptionHelp &option : tool_options())
+    std::printf("  -%-24s %s%s\n", option.name.c_str(), option.help.c_str(),
+                option.default_value.empty() ? "" : (" [" + option.default_value + "]").c_str());
+  for (const SceneEntry &scene : scene_catalogue()) {
+    std::printf("\nScene %s: %s\n", scene.name.c_str(), scene.summary.c_str());
+    for (const SceneOption &option : scene.options)
+      std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
+                  option.default_value.c_str());
+    for (const Parameter &p : make_scene(scene.name).parameters.all)
+      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
+                  p.lower, p.upper, p.unit.c_str());
+  }
+  std::printf(
+      "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
+      "(Riesz representers), -log_view, ...\n"
+      "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
+}
+
+} // namespace rbvi

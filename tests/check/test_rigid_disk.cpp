@@ -1,0 +1,193 @@
+// Contact with friction on a rigid disk from snapshots to answers: every reduction, every
+// parameter.
+#include "reduced.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/h5.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace rbvi {
+namespace {
+
+using namespace testing_reduced;
+
+Scene disk(const std::string &free, const SceneOptions &options = {}) {
+  SceneOptions all{{"arc_edges", "40"}};
+  for (const auto &[name, value] : options)
+    all[name] = value;
+  Scene scene = make_scene("rigid_disk", all);
+  scene.parameters = free_only(scene.parameters, free);
+  return scene;
+}
+
+ReduceOptions with(MultiplierReduction reduction) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-7;
+  options.eim.tolerance = 1e-10;
+  options.multipliers.reduction = reduction;
+  options.cone.type = ConeType::mcpg;
+  return options;
+}
+
+struct Worst {
+  double u, lambda, tangential;
+};
+
+/// Largest errors at unseen parameters.
+Worst errors_of(Reduced &r, const ReduceOptions &options, const std::vector<Sample> &unseen) {
+  r.reduce(options);
+  check_model(r.model);
+  const ModelErrors e = r.errors_at(unseen);
+  EXPECT_EQ(e.failed, 0);
+  return {e.u.maxCoeff(), e.lambda.maxCoeff(),
+          e.tangential.size() > 0 ? e.tangential.maxCoeff() : 0};
+}
+
+void expect_condensed(const Scene &scene, const std::string &training, double u = 1e-8) {
+  Reduced r(scene, training);
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:6:3"));
+  const Worst e = errors_of(r, with(MultiplierReduction::condensed), unseen);
+  EXPECT_LE(e.u, u);
+  EXPECT_LE(e.lambda, 1e-8);
+  EXPECT_LE(e.tangential, 1e-8);
+  OnlineSolver online(r.model);
+  for (const Sample &truth : unseen) {
+    const Outputs found = online.outputs(truth.mu, online.solve(truth.mu));
+    for (const auto quantity :
+         {&Outputs::energy, &Outputs::normal_force, &Outputs::reaction, &Outputs::peak_pressure,
+          &Outputs::centre_pressure, &Outputs::contact_half_width, &Outputs::tangential_force,
+          &Outputs::stick_half_width}) {
+      ASSERT_EQ((found.*quantity).has_value(), (truth.outputs.*quantity).has_value());
+      if (truth.outputs.*quantity) {
+        EXPECT_NEAR(*(found.*quantity), *(truth.outputs.*quantity),
+                    1e-7 * std::abs(*(truth.outputs.*quantity)) + 1e-12);
+      }
+    }
+    EXPECT_NEAR(*found.max_penetration, *truth.outputs.max_penetration, 1e-7 + 0.1 * e.u);
+    EXPECT_LE(found.friction_violation.value_or(0), 1e-12 * *found.peak_pressure);
+  }
+}
+
+TEST(CondensedModel, AnswersUnseenRadiiToRoundOff) {
+  expect_condensed(disk("radius"), "grid:13");
+}
+
+TEST(CondensedModel, AnswersEveryLawOfFriction) {
+  expect_condensed(disk("radius", {{"friction", "none"}}), "grid:13");
+  expect_condensed(disk("radius,friction_threshold", {{"friction", "tresca"}}), "random:30:1");
+}
+
+TEST(CondensedModel, AnswersFreeIndentationAndFriction) {
+  expect_condensed(disk("radius,indentation,friction_coefficient"), "random:40:1");
+}
+
+TEST(CondensedModel, AnswersFreeStiffness) {
+  expect_condensed(disk("radius,core_stiffness"), "random:24:1", 1e-5);
+  expect_condensed(disk("poisson_ratio"), "grid:9", 1e-5);
+}
+
+TEST(CondensedModel, AnswersNormalsOfTheRigidDisk) {
+  expect_condensed(disk("radius", {{"normal", "rigid"}}), "grid:21", 1e-4);
+}
+
+/// With few samples the multipliers are as good as with many: nothing of them is learnt.
+TEST(CondensedModel, NeedsNoSnapshotOfTheMultipliers) {
+  Reduced r(disk("radius"), "grid:3");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:4:5"));
+  ReduceOptions options = with(MultiplierReduction::condensed);
+  options.eim.tolerance = 0;
+  const Worst few = errors_of(r, options, unseen);
+  EXPECT_LE(few.lambda, 1e-2) << "what three radii miss is the gap, not the law";
+  EXPECT_LE(few.tangential, 1e-2);
+}
+
+TEST(CondensedModel, DuplicatedSamplesChangeNothing) {
+  const Scene scene = disk("radius");
+  Reduced once(scene, "grid:7"), twice(scene, "grid:7");
+  twice.samples.insert(twice.samples.end(), once.samples.begin(), once.samples.end());
+  const auto unseen = solve_all(once.problem, {{0.83}});
+  const Worst a = errors_of(once, with(MultiplierReduction::condensed), unseen);
+  const Worst b = errors_of(twice, with(MultiplierReduction::condensed), unseen);
+  EXPECT_EQ(once.model.modes, twice.model.modes);
+  EXPECT_NEAR(a.u, b.u, 1e-8);
+}
+
+TEST(CondensedModel, SurvivesItsFile) {
+  Reduced r(disk("radius,core_stiffness"), "random:8:1", PETSC_COMM_SELF);
+  r.reduce(with(MultiplierReduction::condensed));
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("rigid_disk." + std::to_string(rank) + ".h5");
+  write_model(r.model, path);
+  const ReducedModel again = read_model(path);
+  std::filesystem::remove(path);
+  OnlineSolver a(r.model), b(again);
+  for (const Mu &mu : {Mu{0.8, 0.7}, Mu{1.2, 3}}) {
+    const ReducedSolution x = a.solve(mu), y = b.solve(mu);
+    EXPECT_EQ(x.x, y.x);
+    EXPECT_EQ(x.u, y.u);
+    EXPECT_EQ(b.field(y), a.field(x));
+  }
+}
+
+/// The published reduction, and two better ones, in this order of accuracy; all of them are mended
+/// where the law is violated at some node.
+TEST(MultiplierReductions, AreMendedToTheExactAnswer) {
+  Reduced r(disk("radius"), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  for (const auto reduction :
+       {MultiplierReduction::collocated, MultiplierReduction::cones, MultiplierReduction::joint}) {
+    SCOPED_TRACE(multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
+    ReduceOptions options = with(reduction);
+    options.multipliers.tangential = 1e-8;
+    options.cone.tolerance = 1e-6;
+    const Worst e = errors_of(r, options, unseen);
+    EXPECT_LE(e.lambda, 1e-5);
+    EXPECT_LE(e.tangential, 1e-5);
+  }
+}
+
+TEST(MultiplierReductions, CollocatedWithoutTheCondensedOperatorIsAsAccurateAsPublishedOrBetter) {
+  Reduced r(disk("radius"), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = with(MultiplierReduction::collocated);
+  options.multipliers.exact = false;
+  options.multipliers.tangential = 1e-4;
+  options.cone.tolerance = 1e-3;
+  const Worst e = errors_of(r, options, unseen);
+  EXPECT_EQ(r.model.support->condensed.terms.size(), 0);
+  EXPECT_LE(e.u, 1e-2);
+  EXPECT_LE(e.lambda, 5e-2);
+  EXPECT_LE(e.tangential, 0.39) << "the error published";
+  EXPECT_FALSE(r.model.support->basis.nodes.empty());
+}
+
+TEST(MultiplierReductions, RefuseWhatTheyCannotDo) {
+  Reduced r(disk("radius", {{"friction", "none"}}), "grid:3");
+  EXPECT_THROW(r.reduce(with(MultiplierReduction::joint)), Error);
+  Reduced s(disk("radius"), "grid:3");
+  ReduceOptions hybrid = with(MultiplierReduction::cones);
+  hybrid.cone.type = ConeType::hybrid;
+  EXPECT_THROW(s.reduce(hybrid), Error);
+}
+
+TEST(CondensedModel, NoContactAnywhereIsSaid) {
+  Scene scene = disk("indentation");
+  scene.parameters.all[1].lower = 1e-4;
+  scene.parameters.all[1].upper = 9e-4;
+  Reduced r(scene, "grid:3");
+  try {
+    r.reduce(with(MultiplierReduction::condensed));
+    FAIL() << "there is nothing to reduce";
+  } catch (const Error &error) {
+    EXPECT_NE(std::string(error.what()).find("no contact"), std::string::npos);
+  }
+}
+
+} // namespace
+} // namespace rbvi

@@ -1,0 +1,101 @@
+// Boundaries on a rigid support and scenes for tests of its operators.
+#pragma once
+
+#include "curves.hpp"
+#include "rbvi/element/support.hpp"
+
+#include <functional>
+
+namespace rbvi {
+
+using Field = std::function<Point(const Point &)>;
+
+inline double dot(const Point &a, const Point &b) {
+  return a[0] * b[0] + a[1] * b[1];
+}
+
+inline Point turned(const Point &n) { // tau of n
+  return {-n[1], n[0], 0};
+}
+
+inline Point between(const Point &a, const Point &b, double s) {
+  return {(1 - s) * a[0] + s * b[0], (1 - s) * a[1] + s * b[1], 0};
+}
+
+inline SupportCurve support_curve(const Curve &vertices, int degree) {
+  SupportCurve curve{vertices, size(vertices)};
+  for (std::size_t e = 0; degree == 2 && e + 1 < vertices.size(); ++e)
+    curve.points.push_back(between(vertices[e], vertices[e + 1], 0.5));
+  return curve;
+}
+
+/// Displacements of the nodes of a field.
+inline Vector nodal(const SupportCurve &curve, const Field &field) {
+  Vector v(2 * size(curve.points));
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const Point value = field(curve.points[i]);
+    v.segment<2>(2 * static_cast<Index>(i)) << value[0], value[1];
+  }
+  return v;
+}
+
+/// Identical map, with friction, constant normal and no gap.
+inline Scene support_scene(int degree, const Point &normal = {0, -1, 0}) {
+  Scene scene;
+  scene.components = 2;
+  scene.degree = degree;
+  scene.parameters.all = {{"size", "", 0, 2, 1}};
+  scene.map = [](const Mu &, const Point &x) { return x; };
+  scene.support = SupportRecipe{"support",
+                                [normal](const Mu &, const Point &) { return normal; },
+                                [](const Mu &, const Point &) { return 0.0; },
+                                {FrictionLaw::coulomb, [](const Mu &) { return 0.3; }}};
+  return scene;
+}
+
+/// Vertices of an arc about the origin, below it; symmetric spacing about x = 0.
+inline Curve arc(Index edges, double half_angle) {
+  Curve curve;
+  for (Index i = 0; i <= edges; ++i) {
+    const double angle =
+        half_angle * static_cast<double>(2 * i - edges) / static_cast<double>(edges);
+    curve.push_back({std::sin(angle), -std::cos(angle), 0});
+  }
+  return curve;
+}
+
+inline Point radial(const Mu &, const Point &x) {
+  const double r = std::hypot(x[0], x[1]);
+  return {x[0] / r, x[1] / r, 0};
+}
+
+/// A half disk of radius mu[0] above the line y = -mu[0].
+inline Scene hertz(int degree) {
+  Scene scene = support_scene(degree);
+  scene.map = [](const Mu &mu, const Point &x) { return Point{mu[0] * x[0], mu[0] * x[1], 0}; };
+  scene.support->normal = radial;
+  scene.support->gap = [](const Mu &mu, const Point &x) {
+    const double r = std::hypot(x[0], x[1]);
+    return mu[0] * (r / -x[1] - 1);
+  };
+  return scene;
+}
+
+/// Nothing is constant.
+inline Scene crooked(int degree) {
+  Scene scene = support_scene(degree);
+  scene.map = [](const Mu &mu, const Point &x) {
+    return Point{mu[0] * x[0] + 0.2 * x[1], x[1] + 0.3 * std::sin(2 * x[0]), 0};
+  };
+  scene.support->normal = [](const Mu &mu, const Point &x) {
+    const double angle = mu[0] + x[0] * x[1];
+    return Point{std::cos(angle), std::sin(angle), 0};
+  };
+  scene.support->gap = [](const Mu &, const Point &x) { return 0.1 + std::cos(x[0]); };
+  scene.motion = [](const Mu &mu, const Point &x) {
+    return Point{std::sin(x[0]), mu[0] * std::exp(x[1]), 0};
+  };
+  return scene;
+}
+
+} // namespace rbvi

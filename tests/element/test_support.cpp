@@ -1,0 +1,320 @@
+// Contact operators of a rigid support: exact on straight edges, against fine sums on curved ones,
+// and by their symmetries.
+#include "rbvi/core/error.hpp"
+#include "support_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+// Along a straight edge, by Simpson's rule: exact for cubic integrands.
+TEST(Support, IntegratesPolynomialsExactlyOnAStraightBoundary) {
+  Random random(1);
+  Curve vertices = random_curve(random, 7, -0.4, 1.1, 0);
+  for (Point &p : vertices)
+    p[1] = 1 + 0.75 * p[0];
+  const Point normal{0.6, -0.8, 0}, tangent{0.8, 0.6, 0};
+  ASSERT_EQ(turned(normal), tangent);
+  for (int degree : {1, 2})
+    for (int power = 0; power <= degree; ++power) {
+      const auto p = [power](const Point &x) { return std::pow(x[0] - 0.3, power); };
+      Vector exact = Vector::Zero(size(vertices));
+      for (std::size_t e = 0; e + 1 < vertices.size(); ++e) {
+        const Point &a = vertices[e], &b = vertices[e + 1];
+        const double h = length(vertices, static_cast<Index>(e)), m = 2 * p(between(a, b, 0.5));
+        exact.segment<2>(static_cast<Index>(e)) += h / 6 * Vector{{p(a) + m, m + p(b)}};
+      }
+      const SupportCurve curve = support_curve(vertices, degree);
+      const SupportOperators of = couple_with_support(support_scene(degree, normal), {1}, curve);
+      const Vector push = of.b * nodal(curve, [&](const Point &x) {
+                            return Point{p(x) * normal[0], p(x) * normal[1], 0};
+                          });
+      const Vector slide = of.b * nodal(curve, [&](const Point &x) {
+                             return Point{p(x) * tangent[0], p(x) * tangent[1], 0};
+                           });
+      EXPECT_LT((push - (Vector(16) << exact, Vector::Zero(8)).finished()).norm(), 1e-15);
+      EXPECT_LT((slide - (Vector(16) << Vector::Zero(8), exact).finished()).norm(), 1e-15);
+      EXPECT_TRUE(power > 0 || (of.weights - exact).norm() < 1e-15);
+    }
+}
+
+struct Dense {
+  Matrix b;
+  Vector g, weights;
+};
+
+/// By the middles of equal parts of each edge: the error is a multiple of 1 / parts^2.
+Dense midpoint_sum(const Scene &scene, const Mu &mu, const SupportCurve &curve, int parts) {
+  const Index count = curve.vertices;
+  Dense sum{Matrix::Zero(2 * count, 2 * size(curve.points)), Vector::Zero(2 * count),
+            Vector::Zero(count)};
+  for (Index e = 0; e + 1 < count; ++e) {
+    const Point &a = curve.points[static_cast<std::size_t>(e)],
+                &b = curve.points[static_cast<std::size_t>(e) + 1];
+    const double h = length({scene.map(mu, a), scene.map(mu, b)}) / parts;
+    for (int k = 0; k < parts; ++k) {
+      const double s = (k + 0.5) / parts;
+      const Point x = between(a, b, s), n = scene.support->normal(mu, x), tau = turned(n);
+      const Point motion = scene.motion(mu, x);
+      Vector eta = Vector::Zero(count), phi = Vector::Zero(size(curve.points));
+      eta.segment<2>(e) << 1 - s, s;
+      phi.head(count) = eta;
+      if (scene.degree == 2) {
+        phi.segment<2>(e) << (1 - s) * (1 - 2 * s), s * (2 * s - 1);
+        phi[count + e] = 4 * s * (1 - s);
+      }
+      for (Index node : {e, e + 1, count + e})
+        if (node < phi.size())
+          for (Index c = 0; c < 2; ++c) {
+            const auto d = static_cast<std::size_t>(c);
+            sum.b.col(2 * node + c).segment<2>(e) += h * phi[node] * n[d] * eta.segment<2>(e);
+            sum.b.col(2 * node + c).segment<2>(count + e) +=
+                h * phi[node] * tau[d] * eta.segment<2>(e);
+          }
+      sum.g.head(count) += h * (scene.support->gap(mu, x) - dot(motion, n)) * eta;
+      sum.g.tail(count) -= h * dot(motion, tau) * eta;
+      sum.weights += h * eta;
+    }
+  }
+  return sum;
+}
+
+// The four Gauss points leave errors of order h^6 to h^7.
+TEST(Support, AgreesWithAFineSumOnACurvedBoundary) {
+  Random random(2);
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(random_curve(random, 20, -0.5, 0.8, -0.3), degree);
+    const Scene scene = crooked(degree);
+    const Mu mu{0.8};
+    const SupportOperators got = couple_with_support(scene, mu, curve);
+    const Dense coarse = midpoint_sum(scene, mu, curve, 100),
+                fine = midpoint_sum(scene, mu, curve, 200);
+    EXPECT_LT((Matrix(got.b) - (4 * fine.b - coarse.b) / 3).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((got.g - (4 * fine.g - coarse.g) / 3).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((got.weights - (4 * fine.weights - coarse.weights) / 3).cwiseAbs().maxCoeff(), 1e-14);
+    expect_sorted(got.b);
+    expect_sorted(got.nodal_b);
+  }
+}
+
+TEST(Support, WeightsSumToTheMappedLengthAndRowsToTheForce) {
+  const Mu mu{1.7};
+  for (int degree : {1, 2}) {
+    const Curve vertices = arc(9, 0.6);
+    const SupportCurve curve = support_curve(vertices, degree);
+    const SupportOperators of = couple_with_support(hertz(degree), mu, curve);
+    EXPECT_NEAR(of.weights.sum(), mu[0] * length(vertices), 1e-14);
+    // int n . e_y over the polygon: at most O(h^2) from the arc's, - 2 R sin(angle)
+    const Vector lift = nodal(curve, [](const Point &) { return Point{0, 1, 0}; });
+    EXPECT_NEAR((of.b * lift).head(10).sum(), -2 * mu[0] * std::sin(0.6), 3e-3);
+    EXPECT_NEAR((of.b * lift).tail(10).sum(), 0, 1e-14) << "tau_y is odd";
+  }
+}
+
+TEST(Support, GrowsWithTheRadiusOfTheArc) {
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(arc(12, 0.5), degree);
+    const SupportOperators one = couple_with_support(hertz(degree), {1}, curve);
+    for (double radius : {0.3, 1.1, 2.0}) {
+      const SupportOperators of = couple_with_support(hertz(degree), {radius}, curve);
+      EXPECT_LT((of.b - radius * one.b).norm(), 1e-15 * radius * one.b.norm());
+      EXPECT_LT((of.g - radius * radius * one.g).norm(), 1e-14 * of.g.norm());
+      EXPECT_LT((of.weights - radius * one.weights).norm(), 1e-15 * of.weights.norm());
+      EXPECT_EQ(Matrix(of.nodal_b), Matrix(one.nodal_b));
+    }
+  }
+}
+
+TEST(Support, TangentialRowsAreNormalRowsOfTheTurnedField) {
+  Random random(3);
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(random_curve(random, 6, -0.5, 0.8, -0.3), degree);
+    const SupportOperators of = couple_with_support(crooked(degree), {0.8}, curve);
+    const Vector v = random.vector(of.b.cols());
+    Vector back(v.size()); // v . tau = back . n
+    for (Index i = 0; i < v.size(); i += 2)
+      back.segment<2>(i) << v[i + 1], -v[i];
+    EXPECT_LT(((of.b * v).tail(7) - (of.b * back).head(7)).norm(), 1e-15);
+  }
+}
+
+TEST(Support, ATranslationIsSplitIntoItsNormalAndItsTangentialPart) {
+  Random random(4);
+  const Point normal{std::sin(0.3), -std::cos(0.3), 0}, shift{0.7, -1.9, 0};
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(random_curve(random, 5, 0, 1, 0), degree);
+    const SupportOperators of = couple_with_support(support_scene(degree, normal), {1}, curve);
+    const Vector moved = of.b * nodal(curve, [&](const Point &) { return shift; });
+    EXPECT_LT((moved.head(6) - dot(shift, normal) * of.weights).norm(), 1e-15);
+    EXPECT_LT((moved.tail(6) - dot(shift, turned(normal)) * of.weights).norm(), 1e-15);
+  }
+}
+
+TEST(Support, MotionIsADisplacementOnTheOtherSide) {
+  Random random(5);
+  const Mu mu{0.8};
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(random_curve(random, 6, -0.5, 0.8, -0.3), degree);
+    Scene scene = crooked(degree);
+    scene.motion = nullptr;
+    const SupportOperators still = couple_with_support(scene, mu, curve);
+    EXPECT_EQ(still.g.tail(7).norm(), 0) << "no slip";
+    for (const Field &motion : {Field([](const Point &) {
+                                  return Point{0.3, -0.2, 0};
+                                }),
+                                Field([](const Point &x) {
+                                  return Point{x[1], 1 - x[0], 0};
+                                })}) {
+      scene.motion = [&motion](const Mu &, const Point &x) { return motion(x); };
+      const SupportOperators of = couple_with_support(scene, mu, curve);
+      const Vector at_nodes = nodal(curve, motion);
+      EXPECT_LT((of.g - (still.g - still.b * at_nodes)).norm(), 1e-14);
+      EXPECT_LT((of.nodal_gap - (still.nodal_gap - still.nodal_b * at_nodes)).norm(), 1e-15);
+      EXPECT_EQ(Matrix(of.b), Matrix(still.b));
+    }
+  }
+}
+
+// The mirror image of node i is node mirror(i); fields that are their own image are
+// (-x component, y component) there.
+TEST(Support, MirrorImagesHaveEqualNormalAndOppositeTangentialRows) {
+  for (int degree : {1, 2})
+    for (Index edges : {1, 6, 7}) {
+      const SupportCurve curve = support_curve(arc(edges, 0.7), degree);
+      Scene scene = hertz(degree);
+      scene.motion = [](const Mu &, const Point &x) {
+        return Point{0.2 * x[0], -0.1 - x[0] * x[0], 0};
+      };
+      const SupportOperators of = couple_with_support(scene, {1.3}, curve);
+      const Vector v = of.b * nodal(curve, [](const Point &x) {
+                         return Point{std::sin(x[0]), x[1] + std::cos(x[0]), 0};
+                       });
+      const Index count = edges + 1;
+      for (const Vector &rows : {v, of.g}) {
+        const Vector pressure = rows.head(count), slip = rows.tail(count);
+        EXPECT_LT((pressure - pressure.reverse()).cwiseAbs().maxCoeff(), 1e-14);
+        EXPECT_LT((slip + slip.reverse()).cwiseAbs().maxCoeff(), 1e-14);
+      }
+      EXPECT_LT((of.weights - of.weights.reverse()).cwiseAbs().maxCoeff(), 1e-14);
+      EXPECT_LT((of.nodal_gap - of.nodal_gap.reverse()).cwiseAbs().maxCoeff(), 1e-14);
+    }
+}
+
+TEST(Support, NodalOperatorsAreThoseOfTheVertices) {
+  Random random(6);
+  const Mu mu{0.8};
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(random_curve(random, 6, -0.5, 0.8, -0.3), degree);
+    const Scene scene = crooked(degree);
+    const SupportOperators of = couple_with_support(scene, mu, curve);
+    ASSERT_EQ(of.nodal_b.rows(), 7);
+    ASSERT_EQ(of.nodal_b.cols(), 2 * size(curve.points));
+    const Vector v = random.vector(of.nodal_b.cols()), pushed = of.nodal_b * v;
+    for (Index i = 0; i < 7; ++i) {
+      const Point &x = curve.points[static_cast<std::size_t>(i)];
+      const Point n = scene.support->normal(mu, x);
+      EXPECT_NEAR(pushed[i], dot(n, {v[2 * i], v[2 * i + 1], 0}), 1e-15);
+      EXPECT_NEAR(of.nodal_gap[i], scene.support->gap(mu, x) - dot(n, scene.motion(mu, x)), 1e-15);
+    }
+  }
+}
+
+TEST(Support, WithoutFrictionThereAreOnlyNormalRows) {
+  Random random(7);
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(random_curve(random, 6, -0.5, 0.8, -0.3), degree);
+    Scene scene = crooked(degree);
+    EXPECT_EQ(multiplier_count(curve, *scene.support), 14);
+    const SupportOperators with = couple_with_support(scene, {0.8}, curve);
+    const Matrix product = multiplier_product(curve, *scene.support);
+    scene.support->friction.law = FrictionLaw::tresca;
+    EXPECT_EQ(multiplier_count(curve, *scene.support), 14);
+    scene.support->friction = {};
+    EXPECT_EQ(multiplier_count(curve, *scene.support), 7);
+    const SupportOperators without = couple_with_support(scene, {0.8}, curve);
+    EXPECT_EQ(Matrix(without.b), Matrix(with.b).topRows(7));
+    EXPECT_EQ(without.g, with.g.head(7));
+    EXPECT_EQ(without.weights, with.weights);
+    EXPECT_EQ(Matrix(multiplier_product(curve, *scene.support)), product.topLeftCorner(7, 7));
+    expect_sorted(without.b);
+  }
+}
+
+TEST(SupportMultipliers, ProductIsTheMassMatrixOfEachBlock) {
+  Random random(8);
+  for (Index edges : {1, 2, 5}) {
+    const Curve vertices = random_curve(random, edges, -0.5, 0.8, -0.3);
+    const SupportCurve curve = support_curve(vertices, 2);
+    const SparseMatrix product = multiplier_product(curve, *support_scene(2).support);
+    const Index count = edges + 1;
+    Matrix mass = Matrix::Zero(count, count);
+    for (Index e = 0; e < edges; ++e)
+      mass.block<2, 2>(e, e) += length(vertices, e) / 6 * Matrix{{2, 1}, {1, 2}};
+    const Matrix dense = product;
+    EXPECT_LT((dense.topLeftCorner(count, count) - mass).norm(), 1e-15);
+    EXPECT_LT((dense.bottomRightCorner(count, count) - mass).norm(), 1e-15);
+    EXPECT_EQ(dense.topRightCorner(count, count).norm(), 0);
+    EXPECT_EQ(dense.bottomLeftCorner(count, count).norm(), 0);
+    EXPECT_EQ(product.nonZeros(), 2 * (3 * count - 2)) << "neighbours";
+    expect_sorted(product);
+  }
+}
+
+std::string message(Status status, const Scene &scene, const SupportCurve &curve) {
+  try {
+    couple_with_support(scene, {0.8}, curve);
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), status) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Support, RefusesWhatIsNoCurveOrNotOfItsDegree) {
+  const Scene linear = support_scene(1), quadratic = support_scene(2);
+  const Curve good = line(4, 0, 1, 0);
+  const auto refusal = [](const Scene &scene, const SupportCurve &curve) {
+    return message(Status::bad_input, scene, curve);
+  };
+  const auto contains = [](const std::string &text, const std::string &part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_EQ(refusal(quadratic, support_curve(good, 2)), "");
+  EXPECT_TRUE(contains(refusal(linear, {}), "at least one edge"));
+  EXPECT_TRUE(contains(refusal(linear, {{good[0]}, 1}), "at least one edge"));
+  EXPECT_TRUE(contains(refusal(linear, {good, 9}), "only 5 points"));
+  EXPECT_TRUE(contains(refusal(linear, support_curve(good, 2)), "5 nodes of degree 1, not 9"));
+  EXPECT_TRUE(contains(refusal(quadratic, support_curve(good, 1)), "9 nodes of degree 2, not 5"));
+  Curve folded = good, vertical = good, undefined = good;
+  std::swap(folded[2], folded[3]);
+  vertical[2][0] = vertical[1][0];
+  undefined[4][0] = std::nan("");
+  EXPECT_TRUE(contains(refusal(linear, support_curve(folded, 1)), "vertex 3"));
+  EXPECT_TRUE(contains(refusal(quadratic, support_curve(vertical, 2)), "vertex 2"));
+  EXPECT_TRUE(contains(refusal(linear, support_curve(undefined, 1)), "vertex 4"));
+  EXPECT_THROW(multiplier_product(support_curve(folded, 1), *linear.support), Error);
+  EXPECT_THROW(multiplier_product({}, *linear.support), Error);
+}
+
+TEST(Support, NamesTheParameterWhoseMapLeavesNoEdge) {
+  Scene scene = support_scene(2);
+  const SupportCurve curve = support_curve(line(4, 0, 1, 0), 2);
+  for (const Field &map : {Field([](const Point &) {
+                             return Point{0.5, 0.5, 0};
+                           }),
+                           Field([](const Point &x) {
+                             return Point{std::max(x[0], 0.5), 0, 0};
+                           }),
+                           Field([](const Point &) {
+                             return Point{std::nan(""), 0, 0};
+                           })}) {
+    scene.map = [&map](const Mu &, const Point &x) { return map(x); };
+    const std::string text = message(Status::failed, scene, curve);
+    EXPECT_NE(text.find("edge 0"), std::string::npos) << text;
+    EXPECT_NE(text.find("size=0.8"), std::string::npos) << text;
+  }
+}
+
+} // namespace
+} // namespace rbvi

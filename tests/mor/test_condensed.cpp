@@ -1,0 +1,126 @@
+// The condensed operator of contact with a rigid support, against B A^-1 B^T at single mu.
+#include "rbvi/core/error.hpp"
+#include "rbvi/mor/condensed.hpp"
+#include "rbvi/solve/methods.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+Scene disk(const std::string &free, const SceneOptions &options = {}) {
+  SceneOptions all{{"arc_edges", "20"}};
+  all.insert(options.begin(), options.end());
+  Scene scene = make_scene("rigid_disk", all);
+  scene.parameters = free_only(scene.parameters, free);
+  return scene;
+}
+
+/// B A^-1 B^T on the basis, from its definition.
+Matrix truth(Problem &problem, const Matrix &basis, const Mu &mu) {
+  const Operators &op = problem.assemble(mu);
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+  std::vector<Index> all(static_cast<std::size_t>(problem.dual_size()));
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = static_cast<Index>(i);
+  return basis.transpose() * condensed_columns(ksp.get(), problem.trace(), op, all) * basis;
+}
+
+/// The sum of the terms at mu, theta of b from its separation.
+Matrix interpolated(const Scene &scene, const CondensedOperator &condensed, const Vector &theta,
+                    Index m, const Mu &mu) {
+  const Vector shape =
+      condensed.shape * grid_weights(scene, condensed.axes, expand(scene.parameters, mu));
+  Vector sum = Vector::Zero(m * m);
+  Index at = 0;
+  for (Index p = 0; p < theta.size(); ++p)
+    for (Index q = p; q < theta.size(); ++q, at += shape.size())
+      sum += theta[p] * theta[q] * condensed.terms.middleCols(at, shape.size()) * shape;
+  return sum.reshaped(m, m);
+}
+
+/// theta of b by least squares on its snapshots: b = sum_p theta_p sum_i b(mu_i) combination(i, p).
+Vector theta_of(Problem &problem, const Eim &b, const std::vector<Mu> &training, const Mu &mu) {
+  Operators op;
+  problem.assemble_contact(mu, op);
+  const Vector wanted = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
+  Matrix terms(wanted.size(), b.size());
+  for (int i = 0; i < b.size(); ++i) {
+    problem.assemble_contact(training[static_cast<std::size_t>(b.snapshots[std::size_t(i)])], op);
+    terms.col(i) = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
+  }
+  return (terms * b.combination).colPivHouseholderQr().solve(wanted);
+}
+
+void expect_agreement(const Scene &scene, const std::vector<Mu> &training,
+                      const std::vector<Mu> &others, const CondensedOptions &options,
+                      double tolerance) {
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  const AffineOperators affine = separate(problem, training, {1e-12, 0});
+  const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
+  const CondensedOperator condensed = condense(problem, affine.b, training, basis, options);
+  for (const Mu &mu : others) {
+    const Matrix expected = truth(problem, basis, mu);
+    const Vector theta = theta_of(problem, affine.b, training, mu);
+    const Matrix found = interpolated(scene, condensed, theta, basis.cols(), mu);
+    EXPECT_LE((found - expected).norm(), tolerance * expected.norm())
+        << describe(scene.parameters, mu);
+  }
+}
+
+TEST(Condensed, OneTermServesAllRadii) {
+  expect_agreement(disk("radius"), {{0.7}, {1}, {1.3}}, {{0.85}, {1.21}}, {}, 1e-12);
+}
+
+TEST(Condensed, CoreStiffnessIsInterpolatedToTheTolerance) {
+  expect_agreement(disk("radius,core_stiffness"), {{0.7, 1}, {1.3, 2}},
+                   {{0.85, 0.2}, {1.2, 0.55}, {1, 3.3}, {1, 5}}, {1e-8, 33}, 1e-7);
+}
+
+TEST(Condensed, PoissonsRatioIsInterpolatedToTheTolerance) {
+  expect_agreement(disk("poisson_ratio"), {{0.2}, {0.4}}, {{0.25}, {0.33}, {0.449}}, {1e-8, 33},
+                   1e-7);
+}
+
+TEST(Condensed, SeveralTermsOfBMakeAllTheirProducts) {
+  std::vector<Mu> training;
+  for (int i = 0; i <= 12; ++i)
+    training.push_back({0.7 + 0.05 * i});
+  expect_agreement(disk("radius", {{"normal", "rigid"}}), training, {{0.83}, {1.17}}, {}, 1e-7);
+}
+
+TEST(Condensed, TooFewPointsAreAnErrorThatSaysSo) {
+  Problem problem(PETSC_COMM_WORLD, disk("core_stiffness"), {});
+  const AffineOperators affine = separate(problem, {{1.0}}, {});
+  const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
+  try {
+    (void)condense(problem, affine.b, {{1.0}}, basis, {1e-9, 5});
+    FAIL() << "5 points do not reach 1e-9";
+  } catch (const Error &error) {
+    EXPECT_NE(std::string(error.what()).find("-condensed_tolerance"), std::string::npos);
+  }
+}
+
+TEST(SupportDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
+  Problem problem(PETSC_COMM_WORLD, disk("radius"), {});
+  const Index vertices = problem.support().curve.vertices, half = (vertices + 1) / 2;
+  Matrix lambda = Matrix::Zero(2 * vertices, 1);
+  for (Index i = 0; i < vertices; ++i) {
+    const double s = static_cast<double>(i) - static_cast<double>(vertices - 1) / 2;
+    lambda(i, 0) = 30 - s * s / 4;
+    lambda(vertices + i, 0) = s;
+  }
+  const Matrix folded = support_dual_basis(problem, lambda);
+  ASSERT_EQ(folded.cols(), 2 * half);
+  const Vector coefficients = folded.colPivHouseholderQr().solve(lambda.col(0));
+  EXPECT_LE((folded * coefficients - lambda).norm(), 1e-13 * lambda.norm());
+  for (Index i = 0; i < half; ++i)
+    EXPECT_NEAR(coefficients[i], lambda(i, 0), 1e-12) << "a coefficient is the value at its node";
+
+  lambda(3, 0) += 1;
+  EXPECT_EQ(support_dual_basis(problem, lambda).cols(), 2 * vertices);
+}
+
+} // namespace
+} // namespace rbvi

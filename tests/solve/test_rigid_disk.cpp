@@ -1,0 +1,208 @@
+// Hertz contact with friction on a rigid disk: against values found by another code, by symmetry,
+// by the balance of forces and work, and where the parameters go to their ends.
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/high_fidelity.hpp"
+#include "rbvi/solve/methods.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+/// All parameters free: radius, indentation, friction, core_stiffness, poisson_ratio.
+Scene disk(SceneOptions options = {}) {
+  Scene scene = make_scene("rigid_disk", options);
+  scene.parameters = all_free(scene.parameters.all);
+  return scene;
+}
+
+Mu with_radius(double radius, double friction = 0.2, double indentation = 0.09) {
+  return {radius, indentation, friction, 1, 0.35};
+}
+
+HfSolution solve(const Scene &scene, const Mu &mu, const HfOptions &options = {}) {
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  return HighFidelity(problem, options).solve(mu);
+}
+
+const SceneOptions small{{"arc_edges", "40"}};
+
+SceneOptions small_with(const std::string &name, const std::string &value) {
+  SceneOptions options = small;
+  options[name] = value;
+  return options;
+}
+
+/// The parts of lambda.
+struct Parts {
+  Vector normal, tangential;
+  explicit Parts(const HfSolution &s)
+      : normal(s.lambda.head(s.lambda.size() / 2)), tangential(s.lambda.tail(normal.size())) {}
+};
+
+// Computed independently on meshes graded towards the clamped corners.
+struct Known {
+  double radius, energy, force, tangential, peak, half_width, stick;
+};
+const Known known[] = {{0.7, 0.047121, 1.19502, 0.1920, 4.120, 0.2038, 0.0436},
+                       {1.0, 0.041290, 1.02905, 0.1657, 3.469, 0.2047, 0.0437},
+                       {1.3, 0.037741, 0.93164, 0.1502, 3.106, 0.2048, 0.0440}};
+
+TEST(RigidDisk, AgreesWithTheKnownValues) {
+  Problem problem(PETSC_COMM_WORLD, disk(), {});
+  HighFidelity solver(problem, {});
+  for (const Known &k : known) {
+    SCOPED_TRACE(k.radius);
+    const HfSolution s = solver.solve(with_radius(k.radius));
+    const double edge = k.radius * M_PI / 400;
+    EXPECT_NEAR(*s.outputs.energy, k.energy, 3e-4 * k.energy);
+    EXPECT_NEAR(*s.outputs.normal_force, k.force, 3e-4 * k.force);
+    EXPECT_NEAR(*s.outputs.tangential_force, k.tangential, 1.5e-3 * k.tangential);
+    EXPECT_NEAR(*s.outputs.peak_pressure, k.peak, 1.5e-3 * k.peak);
+    EXPECT_NEAR(*s.outputs.contact_half_width, k.half_width, edge);
+    EXPECT_NEAR(*s.outputs.stick_half_width, k.stick, edge);
+    EXPECT_LE(s.kkt.largest(), 1e-12);
+    EXPECT_LE(*s.outputs.friction_violation, 1e-13 * k.peak);
+  }
+}
+
+/// The mesh is, so that the solutions are.
+TEST(RigidDisk, SolutionsAreSymmetric) {
+  for (const double radius : {0.7, 1.0, 1.3}) {
+    const Parts lambda(solve(disk(), with_radius(radius)));
+    const double peak = lambda.normal.maxCoeff();
+    EXPECT_LE((lambda.normal - lambda.normal.reverse()).cwiseAbs().maxCoeff(), 1e-12 * peak);
+    EXPECT_LE((lambda.tangential + lambda.tangential.reverse()).cwiseAbs().maxCoeff(),
+              1e-12 * peak);
+  }
+}
+
+/// dJ/dd = Fy holds without friction, for the discrete problem too.
+TEST(RigidDisk, TheReactionIsTheDerivativeOfTheEnergyWithoutFriction) {
+  Problem problem(PETSC_COMM_WORLD, disk(small_with("friction", "none")), {});
+  HighFidelity solver(problem, {});
+  const double d = 0.07, step = 1e-5;
+  const auto energy = [&](double indentation) {
+    return *solver.solve(with_radius(0.8, 0, indentation)).outputs.energy;
+  };
+  const HfSolution s = solver.solve(with_radius(0.8, 0, d));
+  const double derivative = (energy(d + step) - energy(d - step)) / (2 * step);
+  EXPECT_NEAR(*s.outputs.reaction, derivative, 1e-5 * derivative);
+  EXPECT_GT(*s.outputs.reaction, *s.outputs.normal_force * 0.98);
+  EXPECT_LT(*s.outputs.reaction, *s.outputs.normal_force * 1.02);
+}
+
+/// On each rank by itself: thousands of solves with a factorisation that is spread over ranks take
+/// long.
+TEST(RigidDisk, UzawaAndActiveSetAgree) {
+  for (const std::string law : {"none", "tresca", "coulomb"}) {
+    SceneOptions options{{"arc_edges", "20"}, {"friction", law}};
+    Problem problem(PETSC_COMM_SELF, disk(options), {});
+    const Mu mu = with_radius(0.9, 0.1);
+    const HfSolution truth = HighFidelity(problem, {}).solve(mu);
+    HfOptions uzawa;
+    uzawa.method = HfMethod::uzawa;
+    uzawa.uzawa_tolerance = 1e-8;
+    const HfSolution other = HighFidelity(problem, uzawa).solve(mu);
+    // The criterion bounds the last step, not the error, which is larger by the condition.
+    EXPECT_LE((other.lambda - truth.lambda).norm(), 1e-4 * truth.lambda.norm()) << law;
+    EXPECT_NEAR(*other.outputs.energy, *truth.outputs.energy, 1e-6) << law;
+  }
+}
+
+TEST(RigidDisk, NoFrictionIsWhatAllLawsEndIn) {
+  const HfSolution none = solve(disk(small_with("friction", "none")), with_radius(1));
+  for (const std::string law : {"tresca", "coulomb"}) {
+    const Parts s(solve(disk(small_with("friction", law)), with_radius(1, 0)));
+    EXPECT_LE((s.normal - none.lambda).norm(), 1e-12 * none.lambda.norm()) << law;
+    EXPECT_EQ(s.tangential.norm(), 0) << law;
+  }
+}
+
+TEST(RigidDisk, HighFrictionAndThresholdSticksEverywhere) {
+  Scene coulomb = disk(small);
+  Scene tresca = disk(small_with("friction", "tresca"));
+  Scene contact = disk(small_with("friction", "tresca"));
+  contact.support->friction.only_in_contact = true;
+  const HfSolution c = solve(coulomb, with_radius(1, 100)), t = solve(contact, with_radius(1, 1e3));
+  EXPECT_LE((c.lambda - t.lambda).norm(), 1e-10 * c.lambda.norm())
+      << "both stick wherever there is contact";
+  EXPECT_NEAR(*c.outputs.stick_half_width, *c.outputs.contact_half_width, 1e-14);
+  const Parts everywhere(solve(tresca, with_radius(1, 1e3)));
+  EXPECT_GT((everywhere.tangential.array() != 0).count(), (c.lambda.array() > 0).count())
+      << "on the arc Tresca's bound holds beside the contact too";
+}
+
+TEST(RigidDisk, TrescasBoundIsReachedWhereItSlips) {
+  const Parts s(solve(disk(small_with("friction", "tresca")), with_radius(1, 0.1)));
+  EXPECT_LE(s.tangential.cwiseAbs().maxCoeff(), 0.1 * (1 + 1e-12));
+  EXPECT_NEAR(s.tangential[0], -s.tangential[s.tangential.size() - 1], 1e-12);
+  EXPECT_NEAR(std::abs(s.tangential[0]), 0.1, 1e-12) << "beside the contact the bound acts too";
+}
+
+TEST(RigidDisk, TouchesAtOneNodeAtFirst) {
+  const HfSolution s = solve(disk(), with_radius(1, 0.2, 0.00105));
+  EXPECT_EQ(s.active.size(), 1u);
+  EXPECT_EQ(s.active.front(), 50);
+  const HfSolution apart = solve(disk(), with_radius(1, 0.2, 0.0009));
+  EXPECT_TRUE(apart.active.empty());
+  EXPECT_EQ(apart.u.norm(), 0);
+}
+
+TEST(RigidDisk, EveryGapAndNormalHasItsForce) {
+  std::map<std::string, double> force;
+  for (const std::string gap : {"closest", "ray", "vertical"})
+    force[gap] = *solve(disk(small_with("gap", gap)), with_radius(1)).outputs.normal_force;
+  EXPECT_GT(std::abs(force["ray"] / force["closest"] - 1), 1e-3);
+  EXPECT_GT(std::abs(force["vertical"] / force["closest"] - 1), 1e-3);
+  for (const auto &[gap, value] : force)
+    EXPECT_NEAR(value, force["closest"], 0.06 * force["closest"]) << gap;
+  const double rigid =
+      *solve(disk(small_with("normal", "rigid")), with_radius(1)).outputs.normal_force;
+  EXPECT_NEAR(rigid, force["closest"], 0.06 * force["closest"]);
+}
+
+/// Start from solutions far away: the same answer as from nothing.
+TEST(RigidDisk, AnswersDoNotDependOnTheStart) {
+  Problem problem(PETSC_COMM_WORLD, disk(small), {});
+  HighFidelity solver(problem, {});
+  for (const Mu &mu : {with_radius(0.7), with_radius(1.3, 0.5, 0.02), with_radius(0.7, 0.01),
+                       with_radius(1, 0.5), with_radius(1.3, 0.05, 0.09)}) {
+    const HfSolution warm = solver.solve(mu);
+    const HfSolution cold = solve(disk(small), mu);
+    EXPECT_LE((warm.lambda - cold.lambda).norm(), 1e-11 * cold.lambda.norm())
+        << describe(problem.scene().parameters, mu);
+  }
+}
+
+TEST(RigidDisk, AStifferCoreAndALessCompressibleBodyPressHarder) {
+  const Scene scene = disk(small);
+  const auto force = [&](double core, double poisson) {
+    return *solve(scene, {1, 0.05, 0.2, core, poisson}).outputs.normal_force;
+  };
+  EXPECT_GT(force(5, 0.35), force(1, 0.35));
+  EXPECT_GT(force(1, 0.35), force(0.2, 0.35));
+  EXPECT_GT(force(1, 0.45), force(1, 0.2));
+}
+
+TEST(RigidDisk, OneSolveIsTheSameOnAnyNumberOfRanks) {
+  Problem shared(PETSC_COMM_WORLD, disk(small), {}), own(PETSC_COMM_SELF, disk(small), {});
+  const HfSolution a = HighFidelity(shared, {}).solve(with_radius(0.8));
+  const HfSolution b = HighFidelity(own, {}).solve(with_radius(0.8));
+  EXPECT_LE((a.u - b.u).norm(), 1e-10 * b.u.norm());
+  EXPECT_LE((a.lambda - b.lambda).norm(), 1e-10 * b.lambda.norm());
+}
+
+TEST(RigidDisk, BadInputIsRefused) {
+  EXPECT_THROW(make_scene("rigid_disk", {{"young", "0"}}), Error);
+  EXPECT_THROW(Problem(PETSC_COMM_WORLD, disk({{"arc_edges", "7"}}), {}), Error);
+  HfOptions vi;
+  vi.method = HfMethod::vi;
+  Problem problem(PETSC_COMM_WORLD, disk(small), {});
+  EXPECT_THROW(HighFidelity(problem, vi), Error);
+}
+
+} // namespace
+} // namespace rbvi
