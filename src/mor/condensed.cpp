@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace rbvi {
 
@@ -34,12 +35,15 @@ bool symmetric(const Matrix &snapshots, Index vertices) {
   return true;
 }
 
+bool contains(const std::vector<int> &list, int i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
+
 /// The parameters of a that are free, each with so many points.
 std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   std::vector<ChebyshevAxis> axes;
   for (const int i : scene.parameters.free) {
-    const auto &of_a = *scene.a_parameters;
-    if (std::find(of_a.begin(), of_a.end(), i) == of_a.end()) continue;
+    if (scene.a_parameters && !contains(*scene.a_parameters, i)) continue;
     const Parameter &p = scene.parameters.all[static_cast<std::size_t>(i)];
     const auto found = scene.a_coordinates.find(i);
     const bool own = found != scene.a_coordinates.end();
@@ -50,30 +54,25 @@ std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   return axes;
 }
 
-/// Term p of b on the basis: contact dofs x multipliers.
-std::vector<Matrix> loads_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                             const Matrix &basis) {
-  std::vector<Matrix> loads(static_cast<std::size_t>(b.size()),
-                            Matrix::Zero(problem.trace().size, basis.cols()));
+/// The terms of b on the basis, side by side: contact dofs x (multipliers * terms).
+Matrix loads_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+                const Matrix &basis) {
+  const Index m = basis.cols();
+  Matrix loads = Matrix::Zero(problem.trace().size, m * b.size());
   Operators op;
   for (int i = 0; i < b.size(); ++i) {
     const int snapshot = b.snapshots[static_cast<std::size_t>(i)];
     problem.assemble_contact(training[static_cast<std::size_t>(snapshot)], op);
     const Matrix at_snapshot = op.b.transpose() * basis;
     for (int p = i; p < b.size(); ++p)
-      loads[static_cast<std::size_t>(p)] += b.combination(i, p) * at_snapshot;
+      loads.middleCols(p * m, m) += b.combination(i, p) * at_snapshot;
   }
   return loads;
 }
 
-/// The blocks of H for one A, below each other: column by column, m^2 entries each.
-Vector condensed_blocks(Mat a, const Trace &trace, const std::vector<Matrix> &loads) {
-  ReplicatedSolver solver(a, trace, "hf_");
-  const Index m = loads.front().cols(), terms = static_cast<Index>(loads.size());
-  Matrix all(loads.front().rows(), m * terms);
-  for (Index p = 0; p < terms; ++p)
-    all.middleCols(p * m, m) = loads[static_cast<std::size_t>(p)];
-  const Matrix h = all.transpose() * solver.responses(all);
+/// The blocks of H = `loads`^T A^-1 `loads`, below each other: column by column, m^2 entries each.
+Vector blocks_of(const Matrix &h, Index m) {
+  const Index terms = h.cols() / m;
   Vector blocks(terms * (terms + 1) / 2 * m * m);
   Index at = 0;
   for (Index p = 0; p < terms; ++p)
@@ -133,22 +132,44 @@ Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots) {
   return basis;
 }
 
-CondensedOperator condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                           const Matrix &basis, const CondensedOptions &options) {
+Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers) {
+  return basis.colwise().squaredNorm().cwiseInverse().asDiagonal() *
+         (basis.transpose() * multipliers);
+}
+
+Condensation condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+                      const Matrix &basis, const CondensedOptions &options, LinearBasis *modes) {
   const Scene &scene = problem.scene();
-  const std::vector<Matrix> loads = loads_of(problem, b, training, basis);
-  CondensedOperator condensed;
+  const Mu all = expand(scene.parameters, training.front());
+  const Matrix loads = loads_of(problem, b, training, basis);
+  const bool appends = modes != nullptr && b.size() == 1 && options.responses > 0;
+  const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all);
+  Condensation result;
+  CondensedOperator &condensed = result.condensed;
+
+  /// H of one A, factorised once.
+  const auto blocks_at = [&](const Mu &mu) {
+    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
+    if (!appends || std::find(ends.begin(), ends.end(), mu) == ends.end())
+      return blocks_of(loads.transpose() * solver.responses(loads), basis.cols());
+    const Handle<Mat> fields = solver.fields(loads);
+    const double least = result.responses == 0 ? 1e-8 : options.responses;
+    const Vector blocks =
+        blocks_of(loads.transpose() * restrict_to(problem.trace(), fields.get()), basis.cols());
+    result.responses +=
+        static_cast<int>(append_orthonormalised(*modes, fields.get(), least).size());
+    return blocks;
+  };
+  std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
   Matrix values;
   for (int points = 5;; points = 2 * points - 1) {
     condensed.axes = axes_of(scene, points);
-    const std::vector<Mu> grid =
-        free_grid(scene, condensed.axes, expand(scene.parameters, training.front()));
-    for (std::size_t k = 0; k < grid.size(); ++k) {
-      const Operators &op = problem.assemble(grid[k]);
-      const Vector blocks = condensed_blocks(op.a, problem.trace(), loads);
-      if (k == 0) values.resize(blocks.size(), static_cast<Index>(grid.size()));
-      values.col(static_cast<Index>(k)) = blocks;
-    }
+    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
+    for (const Mu &mu : grid)
+      if (!known.contains(mu)) known.emplace(mu, blocks_at(mu));
+    values.resize(known.begin()->second.size(), static_cast<Index>(grid.size()));
+    for (std::size_t k = 0; k < grid.size(); ++k)
+      values.col(static_cast<Index>(k)) = known.at(grid[k]);
     condensed.error = chebyshev_tail(condensed.axes, values);
     if (condensed.error <= options.tolerance) break;
     if (2 * points - 1 > options.max_points)
@@ -158,24 +179,7 @@ CondensedOperator condense(Problem &problem, const Eim &b, const std::vector<Mu>
                     "-condensed_tolerance");
   }
   compress(values, basis.cols() * basis.cols(), options.tolerance, condensed);
-  return condensed;
-}
-
-int append_responses(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                     const Matrix &basis, double tolerance, LinearBasis &modes) {
-  if (b.size() != 1) return 0;
-  const Scene &scene = problem.scene();
-  const Matrix loads = loads_of(problem, b, training, basis).front();
-  int added = 0;
-  double left_out = 1e-8;
-  for (const Mu &mu :
-       free_grid(scene, axes_of(scene, 3), expand(scene.parameters, training.front()))) {
-    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
-    added += static_cast<int>(
-        append_orthonormalised(modes, solver.fields(loads).get(), left_out).size());
-    left_out = tolerance;
-  }
-  return added;
+  return result;
 }
 
 } // namespace rbvi

@@ -5,8 +5,6 @@
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/mor/small_svd.hpp"
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
 
@@ -70,7 +68,8 @@ DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, doubl
 
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMatrix &product,
                                       const std::vector<FrictionBound> &bounds,
-                                      const MultiplierOptions &options) {
+                                      const MultiplierOptions &options,
+                                      const ConeOptions &cone_options) {
   MultiplierBases bases;
   if (options.reduction == MultiplierReduction::condensed) return bases;
   const Index nodes = coefficients.rows() / 2;
@@ -87,18 +86,14 @@ MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMa
     basis.nodes = pivot_nodes(modes.columns, static_cast<int>(count));
     return bases;
   }
-  if (options.cone.type == ConeType::hybrid)
-    throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
-                    "-multiplier_reduction " +
-                    multiplier_reduction_names()[static_cast<std::size_t>(options.reduction)]);
   const SparseMatrix product_n = block(product, 0, nodes), product_t = block(product, nodes, nodes);
-  const Cone cone = build_cone(normal, product_n, options.cone);
+  const Cone cone = build_cone(normal, product_n, cone_options);
   basis.normal = cone.basis.generators;
   bases.normal = cone.history;
   if (options.reduction == MultiplierReduction::cones) {
     basis.slip = slip_directions(tangential);
     const Cone left =
-        build_cone(left_to_bound(normal, tangential, bounds), product_t, options.cone);
+        build_cone(left_to_bound(normal, tangential, bounds), product_t, cone_options);
     basis.tangential = left.basis.generators;
     bases.left_to_bound = left.history;
     return bases;

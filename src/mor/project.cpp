@@ -159,18 +159,13 @@ Vector upwards(const Problem &problem) {
   return result;
 }
 
-/// Multipliers in a basis of disjoint columns, and where they are.
+/// Where a query starts: the training multipliers, and where they are.
 void add_starts(const std::vector<Sample> &samples, const Matrix &basis, SupportModel &support) {
-  const auto count = static_cast<Index>(samples.size());
-  const Vector squares = basis.colwise().squaredNorm();
-  support.starts.resize(basis.cols(), count);
-  support.starts_mu.resize(static_cast<Index>(samples.front().mu.size()), count);
-  for (Index p = 0; p < count; ++p) {
-    const Sample &sample = samples[static_cast<std::size_t>(p)];
-    support.starts.col(p) = (basis.transpose() * sample.lambda).cwiseQuotient(squares);
-    support.starts_mu.col(p) =
-        Eigen::Map<const Vector>(sample.mu.data(), static_cast<Index>(sample.mu.size()));
-  }
+  support.starts = nodal_coefficients(basis, multipliers_of(samples));
+  support.starts_mu.resize(static_cast<Index>(samples.front().mu.size()), support.starts.cols());
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    std::copy(samples[p].mu.begin(), samples[p].mu.end(),
+              support.starts_mu.col(static_cast<Index>(p)).begin());
 }
 
 } // namespace

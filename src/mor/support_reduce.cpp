@@ -15,11 +15,6 @@ std::vector<FrictionBound> bounds_at(const Scene &scene, const std::vector<Mu> &
   return bounds;
 }
 
-/// Coefficients in a basis of disjoint columns.
-Matrix coefficients_in(const Matrix &basis, const Matrix &values) {
-  return basis.colwise().squaredNorm().cwiseInverse().asDiagonal() * (basis.transpose() * values);
-}
-
 /// The functions of the multipliers at all dual dofs.
 Matrix dual_functions(const Matrix &nodal, const MultiplierBasis &basis) {
   const Index nodes = nodal.cols() / 2;
@@ -30,17 +25,30 @@ Matrix dual_functions(const Matrix &nodal, const MultiplierBasis &basis) {
 
 } // namespace
 
+void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
+  if (scene.f)
+    throw bad_input("scene " + scene.name +
+                    ": contact with a rigid support is reduced without a load only");
+  const MultiplierReduction reduction = options.multipliers.reduction;
+  if (reduction == MultiplierReduction::condensed) return;
+  if (scene.support->friction.law == FrictionLaw::none)
+    throw bad_input("the scene has no friction: use -multiplier_reduction condensed");
+  if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
+    throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
+                    "-multiplier_reduction " +
+                    multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
+  if (reduction == MultiplierReduction::collocated && options.enrichment == Enrichment::online)
+    throw bad_input("-pga_enrichment online is not for contact with a rigid support: use offline");
+}
+
 ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
                                  const ReduceOptions &options, const AffineOperators &affine,
                                  StageTimes &times) {
   const Matrix multipliers = multipliers_of(samples);
   const Scene &scene = problem.scene();
-  if (scene.f) throw failure("contact with a rigid support is reduced without a load only");
-  MultiplierOptions choice = options.multipliers;
-  choice.cone = options.cone;
-  const bool condensed = choice.reduction == MultiplierReduction::condensed;
-  if (!condensed && scene.support->friction.law == FrictionLaw::none)
-    throw bad_input("the scene has no friction: use -multiplier_reduction condensed");
+  check_support_reduction(scene, options);
+  const MultiplierOptions &choice = options.multipliers;
+  const bool collocated = choice.reduction == MultiplierReduction::collocated;
   std::vector<Mu> training;
   for (const Sample &sample : samples)
     training.push_back(sample.mu);
@@ -50,26 +58,21 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   add_modes(problem, samples, options.pod, bases, times);
   bases.support_dual = support_dual_basis(problem, multipliers);
   const Matrix &nodal = bases.support_dual;
-  if (choice.reduction != MultiplierReduction::collocated || choice.exact) {
+  if (!collocated || choice.exact) {
     const Stage stage("condensation", times);
-    bases.condensed = condense(problem, affine.b, training, nodal, options.condensed);
-    if (choice.exact && choice.reduction != MultiplierReduction::collocated &&
-        options.condensed.responses > 0)
-      bases.supremizers = append_responses(problem, affine.b, training, nodal,
-                                           options.condensed.responses, bases.pod.basis);
+    LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
+    Condensation made = condense(problem, affine.b, training, nodal, options.condensed, modes);
+    bases.condensed = std::move(made.condensed);
+    bases.supremizers = made.responses;
   }
-  if (condensed) return bases;
+  if (choice.reduction == MultiplierReduction::condensed) return bases;
   {
     const Stage stage("multipliers", times);
     const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
-    bases.multipliers = make_multiplier_basis(coefficients_in(nodal, multipliers), w,
-                                              bounds_at(scene, training), choice);
+    bases.multipliers = make_multiplier_basis(nodal_coefficients(nodal, multipliers), w,
+                                              bounds_at(scene, training), choice, options.cone);
   }
-  if (choice.reduction != MultiplierReduction::collocated ||
-      options.enrichment == Enrichment::decorrelated)
-    return bases;
-  if (options.enrichment == Enrichment::online)
-    throw bad_input("-pga_enrichment online is not for contact with a rigid support: use offline");
+  if (!collocated || options.enrichment == Enrichment::decorrelated) return bases;
   if (affine.b.size() == 1) training.resize(1);
   const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
   add_supremizers(problem, training, reference, options,
@@ -83,7 +86,7 @@ Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample
   SupportSolver solver(model, scene);
   const Index nodes = support.normal;
   const Matrix &nodal = model.dual_basis;
-  const Matrix coefficients = coefficients_in(nodal, multipliers_of(samples));
+  const Matrix coefficients = nodal_coefficients(nodal, multipliers_of(samples));
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const Mu all = expand(scene.parameters, samples[p].mu);

@@ -150,7 +150,6 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
     answer.iterations = reduced.iterations;
   } catch (const Error &) {
     if (!mends) throw;
-    answer.mended = true;
     return false;
   }
   if (terms.size() == 0) return true;
@@ -158,8 +157,7 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
   const Matrix h = (terms * body.terms).reshaped(m, m);
   answer.energy = 0.5 * answer.x.dot(h * answer.x);
   answer.residual = natural_residual(answer.x, h * answer.x + body.q, h.diagonal(), body.bound);
-  answer.mended = mends && !(answer.residual <= mended_above);
-  return !answer.mended;
+  return !mends || answer.residual <= mended_above;
 }
 
 void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,

@@ -264,24 +264,6 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
   return options;
 }
 
-/// Reductions of multipliers are for a rigid support with friction; their cones are of snapshots
-/// unless something else is asked for.
-void check_multipliers(const std::vector<std::string> &names, const Scene &scene,
-                       ReduceOptions &options) {
-  const MultiplierReduction reduction = options.multipliers.reduction;
-  if (!scene.support && contains(names, "multiplier_reduction"))
-    throw bad_input("-multiplier_reduction is for contact with a rigid support, which scene " +
-                    scene.name + " has not");
-  if (!scene.support || reduction == MultiplierReduction::condensed) return;
-  if (scene.support->friction.law == FrictionLaw::none)
-    throw bad_input("the scene has no friction: use -multiplier_reduction condensed");
-  if (!contains(names, "cone_type")) options.cone.type = ConeType::mcpg;
-  if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
-    throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
-                    "-multiplier_reduction " +
-                    multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
-}
-
 HfOptions hf_options() {
   HfOptions options;
   options.method = static_cast<HfMethod>(choice_of("hf_method", {"active_set", "uzawa", "vi"}));
@@ -334,7 +316,11 @@ ToolOptions read_options(MPI_Comm comm) {
                         : "-hf_method vi needs a bound at each node: set -lumped yes, or use "
                           "active_set");
   options.reduce = reduce_options(options.scene.parameters);
-  check_multipliers(names, options.scene, options.reduce);
+  if (!options.scene.support && contains(names, "multiplier_reduction"))
+    throw bad_input("-multiplier_reduction is for contact with a rigid support, which scene " +
+                    options.scene.name + " has not");
+  if (options.scene.support && !contains(names, "cone_type"))
+    options.reduce.cone.type = ConeType::mcpg; // a cone of snapshots; hybrid is for one body
   options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
   options.out = text_of("out");
   options.mu = text_of("mu");

@@ -135,8 +135,7 @@ TEST(CondensedModel, SurvivesItsFile) {
   }
 }
 
-/// The published reduction, and two better ones, in this order of accuracy; all of them are mended
-/// where the law is violated at some node.
+/// Where the law is violated at some node, exact steps follow.
 TEST(MultiplierReductions, AreMendedToTheExactAnswer) {
   Reduced r(disk("radius"), "grid:21");
   const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));

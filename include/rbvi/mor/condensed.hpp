@@ -15,7 +15,7 @@ namespace rbvi {
 struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
-  double responses = 3e-3; ///< tolerance of append_responses; 0: none are appended
+  double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
 };
 
 /// Multipliers of mirror images in one column each where the scene is symmetric, the mesh is, and
@@ -23,18 +23,25 @@ struct CondensedOptions {
 /// Columns for lambda_n first, as many again with friction.
 Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots);
 
+/// Coefficients of multipliers (dual dofs x P) in a basis of disjoint columns.
+Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
+
+struct Condensation {
+  CondensedOperator condensed;
+  int responses = 0; ///< functions appended to the modes
+};
+
 /// `b`: the separation of b over the samples at `training`. One factorisation and basis.cols() *
 /// b.size() solves for each Chebyshev point, shared among the ranks. Collective. Throws failure
 /// where the tolerance needs more points.
-CondensedOperator condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                           const Matrix &basis, const CondensedOptions &options);
-
-/// Appends the responses A^-1 B^T `basis` to the modes, at the ends and in the middle of each free
-/// parameter of A (once where there is none): then the displacement is as exact as the multipliers,
-/// which no set of snapshots makes it where active sets are new. Of the first point all are taken
-/// (down to a remainder of 1e-8 of their norm), of the others what is left above `tolerance`.
-/// Nothing is done where b has several terms. Returns how many were added. Collective.
-int append_responses(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                     const Matrix &basis, double tolerance, LinearBasis &modes);
+///
+/// `modes`, where given and b has one term: the responses A^-1 B^T `basis` are appended to them, at
+/// the ends and in the middle of each free parameter of A. The displacement is then as exact as the
+/// multipliers, which no set of snapshots makes it where active sets are new. Of the first A all
+/// are taken (down to a remainder of 1e-8 of their norm), of the others what is left above
+/// options.responses.
+Condensation condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+                      const Matrix &basis, const CondensedOptions &options,
+                      LinearBasis *modes = nullptr);
 
 } // namespace rbvi

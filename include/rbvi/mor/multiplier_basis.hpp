@@ -16,7 +16,6 @@ namespace rbvi {
 
 struct MultiplierOptions {
   MultiplierReduction reduction = MultiplierReduction::condensed;
-  ConeOptions cone;         ///< of lambda_n, and of what is left to the bound
   double tangential = 1e-4; ///< tolerance of POD: collocated of lambda_tau, joint of both
   int extra_nodes = 4;      ///< joint: collocation nodes beyond the number of modes
   bool exact = true;        ///< answers that break the law are mended on the condensed operator
@@ -42,6 +41,6 @@ DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, doubl
 /// directions at one node; bad_input for cones of type hybrid, which has functions of either sign.
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMatrix &product,
                                       const std::vector<FrictionBound> &bounds,
-                                      const MultiplierOptions &options);
+                                      const MultiplierOptions &options, const ConeOptions &cone);
 
 } // namespace rbvi

@@ -36,7 +36,7 @@ struct ReduceOptions {
   PgaOptions pga;
   EimOptions eim;
   CondensedOptions condensed;    ///< contact with a rigid support
-  MultiplierOptions multipliers; ///< of it; its cone is not used, `cone` is
+  MultiplierOptions multipliers; ///< of it
   GcnsOptions gcns;
   Enrichment enrichment = Enrichment::offline;
   SupremizerProduct product = SupremizerProduct::v;
@@ -57,6 +57,10 @@ struct ReducedBases {
   int supremizers = 0; ///< S
   bool online_enriched = false;
 };
+
+/// Contact with a rigid support: throws bad_input for a scene with a load, and for reductions of
+/// the multipliers that its law of friction or the type of the cones does not allow.
+void check_support_reduction(const Scene &scene, const ReduceOptions &options);
 
 /// All of the offline stage behind the snapshots. The model is complete on every rank, but for its
 /// settings, validation errors and stage times.

@@ -18,7 +18,6 @@ struct SupportAnswer {
   double residual =
       0; ///< largest relative violation of the laws, at all nodes where they are known
   int iterations = 0;
-  bool mended = false; ///< by exact steps
 };
 
 /// Starts from the multipliers of the training sample next to mu, or of the last query if that is
