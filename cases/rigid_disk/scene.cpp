@@ -26,7 +26,7 @@ constexpr double initial_gap = 0.001, core_radius = 0.6;
 enum Of { radius, indentation, friction, core_stiffness, poisson_ratio };
 
 double norm(const Point &x) {
-  return std::hypot(x[0], x[1]);
+  return std::sqrt(x[0] * x[0] + x[1] * x[1]);
 }
 
 /// Point of the exact arc.
@@ -125,6 +125,7 @@ Scene make(const SceneOptions &options) {
       },
       2);
   scene.a_parameters = {core_stiffness, poisson_ratio};
+  scene.part_stiffness = core_stiffness;
   scene.a_coordinates[core_stiffness] = {[](double x) { return std::log(x); },
                                          [](double y) { return std::exp(y); }};
   scene.a_coordinates[poisson_ratio] = {[](double x) { return std::log(1 - 2 * x); },

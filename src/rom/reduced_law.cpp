@@ -49,8 +49,7 @@ Matrix sum_of(const std::vector<Matrix> &terms, const Vector &coefficients) {
 
 CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtMu &body) {
   const Matrix functions = block_diagonal(basis.normal, basis.tangential);
-  Matrix y = (functions.transpose() * body.b).transpose();
-  body.stiffness->matrixL().solveInPlace(y);
+  const Matrix y = body.stiffness->half_response(body.b.transpose() * functions);
   Matrix h = y.transpose() * y;
   h.diagonal() *= 1 + ridge;
   return {h, functions.transpose() * body.q, basis.normal(basis.nodes, Eigen::all),

@@ -24,12 +24,6 @@ SupportCurve sample_edge(const SampleMesh &sample, Index number, int degree) {
   return curve;
 }
 
-bool depends_on(const std::vector<int> &parameters, const Mu &a, const Mu &b) {
-  for (const int i : parameters)
-    if (a[static_cast<std::size_t>(i)] != b[static_cast<std::size_t>(i)]) return true;
-  return false;
-}
-
 } // namespace
 
 Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
@@ -65,7 +59,7 @@ MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene, const Mu
 }
 
 SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene)
-    : model_(model), scene_(scene) {
+    : model_(model), scene_(scene), stiffness_(model, scene) {
   if (!scene.support || !model.support)
     throw bad_input("the model has contact with a support, its scene in this build has not, or the "
                     "other way round");
@@ -73,24 +67,6 @@ SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene)
   if (multiplier_count(curve, *scene.support) != model.dual_basis.rows())
     throw bad_input("the multipliers of the model do not fit its scene in this build");
   if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
-}
-
-void SupportSolver::update_stiffness(const Mu &all_parameters) {
-  if (!stiffness_at_.empty() &&
-      (!scene_.a_parameters ? stiffness_at_ == all_parameters
-                            : !depends_on(*scene_.a_parameters, stiffness_at_, all_parameters)))
-    return;
-  const Vector packed =
-      model_.a.reduced * affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
-  const Index n = model_.primal_size();
-  Matrix a(n, n);
-  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
-    a.col(j).tail(n - j) = packed.segment(at, n - j);
-  stiffness_.compute(a);
-  if (stiffness_.info() != Eigen::Success)
-    throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
-                  "-eim_tolerance, or stay closer to the training set");
-  stiffness_at_ = all_parameters;
 }
 
 Vector SupportSolver::nearest_start(const Mu &all_parameters) const {
@@ -132,8 +108,9 @@ BodyAtMu SupportSolver::body_at(const Mu &all_parameters, const Vector &theta_b)
   const SupportModel &support = *model_.support;
   BodyAtMu body;
   if (support.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
-  body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
-  update_stiffness(all_parameters);
+  if (support.reduction == MultiplierReduction::collocated)
+    body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
+  stiffness_.set(all_parameters);
   body.stiffness = &stiffness_;
   body.q = model_.g.reduced * support_coefficients(model_.g, false, scene_, all_parameters);
   body.bound = friction_bound(scene_.support->friction, all_parameters);
@@ -188,9 +165,9 @@ SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
   answer.theta_b = support_coefficients(model_.b, true, scene_, all_parameters);
   const BodyAtMu body = body_at(all_parameters, answer.theta_b);
   solve_law(body, all_parameters, answer);
-  const Vector load = body.b.transpose() * answer.x;
-  answer.u = -stiffness_.solve(load);
-  if (model_.support->condensed.terms.size() == 0) answer.energy = -0.5 * load.dot(answer.u);
+  answer.u = -stiffness_.response(answer.theta_b, answer.x);
+  if (model_.support->condensed.terms.size() == 0)
+    answer.energy = 0.5 * stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm();
   last_x_ = answer.x;
   last_mu_ = all_parameters;
   return answer;

@@ -86,28 +86,47 @@ template <class Found> void take(Found &&found, MethodResult &result) {
   result.reason = std::move(found.reason);
 }
 
-} // namespace
-
-MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
-                              Compliance *kept) {
+/// The multipliers, and room for the displacement.
+MethodResult solve_condensed(const ColumnSource &columns, const Vector &q, const Operators &op,
+                             const Start &start) {
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));
-  RBVI_CALL(VecZeroEntries(result.u.get()));
-  PetscReal load = 0;
-  RBVI_CALL(VecNorm(op.f, NORM_INFINITY, &load));
-  if (load > 0) solve_linear(ksp, op.f, result.u.get());
-  const Vector q = op.g - op.b * restrict_to(trace, result.u.get());
-  const auto columns = [&](const std::vector<Index> &which) {
-    return kept != nullptr ? kept->condensed_columns(ksp, trace, op, which)
-                           : condensed_columns(ksp, trace, op, which);
-  };
   if (op.normal < q.size())
     take(solve_friction(columns, q, static_cast<int>(q.size() / op.normal), op.bound, start.lambda),
          result);
   else
     take(solve_lcp(columns, q, start.active), result);
+  return result;
+}
+
+} // namespace
+
+MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
+                              Compliance *kept) {
+  Vector q = op.g;
+  PetscReal load = 0;
+  RBVI_CALL(VecNorm(op.f, NORM_INFINITY, &load));
+  if (load > 0) {
+    Handle<Vec> u;
+    RBVI_CALL(VecDuplicate(op.f, u.put()));
+    solve_linear(ksp, op.f, u.get());
+    q -= op.b * restrict_to(trace, u.get());
+  }
+  MethodResult result = solve_condensed(
+      [&](const std::vector<Index> &which) {
+        return kept != nullptr ? kept->condensed_columns(ksp, trace, op, which)
+                               : condensed_columns(ksp, trace, op, which);
+      },
+      q, op, start);
   if (result.lambda.size() == 0) return result; // not converged: there is no displacement either
   solve_linear(ksp, reaction_rhs(trace, op, result.lambda).get(), result.u.get());
+  return result;
+}
+
+MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start) {
+  MethodResult result = solve_condensed(
+      [&](const std::vector<Index> &which) { return part.columns(which); }, op.g, op, start);
+  if (result.lambda.size() > 0) part.displacement(result.lambda, result.u.get());
   return result;
 }
 

@@ -162,11 +162,18 @@ MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
   if (options_.method == HfMethod::uzawa)
     return solve_uzawa(ksp_.get(), trace, op, problem_.w_product(), options_);
   if (options_.method == HfMethod::vi) return solve_vi(problem_, op);
+  if (part_) {
+    part_->set(op);
+    return solve_active_set(*part_, op, nearest_start(mu, op));
+  }
   return solve_active_set(ksp_.get(), trace, op, nearest_start(mu, op), compliance_.get());
 }
 
 HfSolution HighFidelity::solve(const Mu &mu) {
   const double start = MPI_Wtime();
+  if (!part_ && !solved_.empty() && options_.method == HfMethod::active_set &&
+      !constant_stiffness(problem_.scene()) && ScaledPart::fits(problem_.scene()))
+    part_ = std::make_unique<ScaledPart>(problem_);
   const Operators &op = problem_.assemble(mu);
   RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
   const MethodResult result = run(mu, op);

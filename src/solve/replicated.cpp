@@ -59,7 +59,7 @@ Matrix ReplicatedSolver::solve_columns(const Matrix &loads, Index first, Index c
   Matrix right = Matrix::Zero(size, count), solution(size, count);
   for (Index k = 0; k < count; ++k)
     for (std::size_t i = 0; i < rows_.size(); ++i)
-      right(rows_[i], k) = loads(static_cast<Index>(i), first + k);
+      right(rows_[i], k) += loads(static_cast<Index>(i), first + k);
   Handle<Mat> rhs, x;
   const MPI_Comm alone = PetscObjectComm(reinterpret_cast<PetscObject>(whole_.get()));
   const auto columns = static_cast<PetscInt>(count);

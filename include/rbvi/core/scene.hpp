@@ -149,6 +149,9 @@ struct Scene {
   Form a;
   /// Parameters (indices into parameters.all) that a depends on; unset: all.
   std::optional<std::vector<int>> a_parameters;
+  /// The one that scales the stiffness of a part of the body, if there is one: a = a_rest + value
+  /// a_part.
+  std::optional<int> part_stiffness;
   std::map<int, Coordinate> a_coordinates; ///< of some of these parameters; the others: themselves
   Form b, g;                               ///< empty where there is a pair or a support
   Form f;                                  ///< empty: no load

@@ -4,16 +4,16 @@
 
 #include "rbvi/core/collocated_friction.hpp"
 #include "rbvi/core/least_squares_friction.hpp"
-#include "rbvi/rom/model.hpp"
+#include "rbvi/rom/reduced_stiffness.hpp"
 
 namespace rbvi {
 
 /// What the elastic body says at one mu.
 struct BodyAtMu {
-  Vector terms;                        ///< coefficient of each term of the condensed operator
-  Matrix b;                            ///< m x n, reduced; collocated alone
-  const Eigen::LLT<Matrix> *stiffness; ///< of A_N; collocated alone
-  Vector q;                            ///< m: the gap, and the slip, of no multipliers
+  Vector terms;                      ///< coefficient of each term of the condensed operator
+  Matrix b;                          ///< m x n, reduced; collocated alone
+  const ReducedStiffness *stiffness; ///< set to mu
+  Vector q;                          ///< m: the gap, and the slip, of no multipliers
   FrictionBound bound;
 };
 

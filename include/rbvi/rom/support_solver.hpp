@@ -35,7 +35,6 @@ private:
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
   void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);
-  void update_stiffness(const Mu &all_parameters);
   Vector nearest_start(const Mu &all_parameters) const;
   Vector term_coefficients(const Mu &all_parameters, const Vector &theta_b) const;
 
@@ -43,9 +42,8 @@ private:
   const Scene &scene_;
   std::optional<ReducedLaw> law_;
   Vector last_x_;
-  Mu last_mu_;                   ///< all parameters
-  Mu stiffness_at_;              ///< all parameters that factor_ was made for
-  Eigen::LLT<Matrix> stiffness_; ///< of A_N
+  Mu last_mu_; ///< all parameters
+  ReducedStiffness stiffness_;
 };
 
 /// theta_q(mu) of b (`matrix`) or g: the sampled entries integrated again on their one or two

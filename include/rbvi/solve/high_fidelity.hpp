@@ -51,6 +51,7 @@ struct HfSolution {
 
 struct MethodResult;
 class Compliance;
+class ScaledPart;
 
 /// Where an active-set method starts.
 struct Start {
@@ -85,6 +86,7 @@ private:
   HfOptions options_;
   Handle<KSP> ksp_;
   std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
+  std::unique_ptr<ScaledPart> part_;       ///< where a part of it is scaled, from the second mu on
   std::vector<Solved> solved_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rbvi/solve/high_fidelity.hpp"
+#include "rbvi/solve/scaled_part.hpp"
 
 namespace rbvi {
 
@@ -50,6 +51,9 @@ private:
 /// `kept`: for a sweep in which A stays the same.
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
                               Compliance *kept = nullptr);
+
+/// The same on a body with a scaled part, set to `op`.
+MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start);
 
 MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
                          const SparseMatrix &w_product, const HfOptions &options);

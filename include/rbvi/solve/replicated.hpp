@@ -11,7 +11,7 @@ namespace rbvi {
 class ReplicatedSolver {
 public:
   /// Collective on the communicator of `a`, symmetric positive definite, which is marked so.
-  /// Options under `prefix`; default: Cholesky by CHOLMOD.
+  /// Options under `prefix`; default: Cholesky by CHOLMOD. Dofs of `trace` may repeat.
   ReplicatedSolver(Mat a, const Trace &trace, const char *prefix);
 
   /// E^T A^-1 E loads, contact dofs x loads.cols(), on every rank; `loads` the same on all. Throws

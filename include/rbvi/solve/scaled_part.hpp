@@ -1,0 +1,56 @@
+// A body with a part whose stiffness a parameter scales, A(kappa) = A_rest + kappa A_part, no load
+// inside that part. The part acts on the rest through its interface alone, by kappa S, S its Schur
+// complement there. So one factorisation, at kappa_0, serves every kappa: with delta = kappa -
+// kappa_0, G = E^T A(kappa_0)^-1 E on the contact dofs c and the interface i, and the eigenvectors
+//
+//   S v = sigma G_ii^-1 v,   W = G_ii^-1 V,   Y = G_ci W,   phi = delta sigma / (1 + delta sigma),
+//
+//   E_c^T A(kappa)^-1 E_c = G_cc - Y diag(phi) Y^T
+//   A(kappa)^-1 E_c r     = A(kappa_0)^-1 (E_c r - E_i W diag(phi) Y^T r)
+//
+// (Woodbury's formula, diagonal in the basis V). Each kappa then costs two small products.
+#pragma once
+
+#include "rbvi/solve/replicated.hpp"
+
+#include "rbvi/problem/problem.hpp"
+
+#include <memory>
+
+namespace rbvi {
+
+class ScaledPart {
+public:
+  /// Whether the stiffness of a part is all that changes in A over the free parameters, and nothing
+  /// loads the body but contact.
+  static bool fits(const Scene &scene);
+
+  /// Two factorisations, at the bounds of the parameter, and n_c + 2 n_i solves, shared among the
+  /// ranks. Assembles `problem`. Collective.
+  explicit ScaledPart(Problem &problem);
+  /// The operators of the next calls. Not collective.
+  void set(const Operators &op);
+
+  /// B A^-1 B^T(:, which), dual x which.size(). Not collective.
+  Matrix columns(const std::vector<Index> &which) const;
+  /// u = -A^-1 B^T lambda. Collective.
+  void displacement(const Vector &lambda, Vec u);
+
+private:
+  void find_interface(const Problem &problem, Mat lower, Mat upper);
+
+  int parameter_;
+  double lower_, width_;
+  Trace contact_, interface_, both_;         ///< both_: contact dofs, then the interface
+  std::unique_ptr<ReplicatedSolver> solver_; ///< at kappa_0, the lower bound
+  Matrix compliance_;                        ///< G_cc
+  Matrix w_, y_;
+  Vector sigma_; ///< times the width of the parameter's range
+
+  // At the current mu.
+  const Operators *op_ = nullptr;
+  Vector phi_;
+  Matrix by_; ///< B Y
+};
+
+} // namespace rbvi
