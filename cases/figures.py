@@ -86,11 +86,11 @@ def whole_decades(axis):
     axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high) * 1.3)
 
 
-def save(figure, run, name):
-    directory = run / "figures"
+def save(figure, directory, name):
+    """Logarithmic axes without limits of their own show whole decades."""
     directory.mkdir(exist_ok=True)
     for axis in figure.axes:
-        if axis.get_yscale() == "log":
+        if axis.get_yscale() == "log" and axis.get_autoscaley_on():
             whole_decades(axis)
     figure.savefig(directory / name, bbox_inches="tight")
     plt.close(figure)
@@ -178,7 +178,7 @@ def solution(run):
                                     gridspec_kw={"width_ratios": [1, 1.5]})
         draw_bodies(axes[0], run / "u.vtu")
         draw_pressure_curve(axes[1], run / "u_contact.vtu")
-        save(figure, run, "solution.png")
+        save(figure, run / "figures", "solution.png")
         return
     contact, triangles, pressures = read_vtu(run / "u_contact.vtu")
     circle = outline(contact, triangles)
@@ -186,7 +186,7 @@ def solution(run):
     draw_membrane(figure.add_axes((0, 0.02, 0.47, 0.9), projection="3d"), points, cells, fields["u"], circle)
     draw_pressure(figure, figure.add_axes((0.58, 0.1, 0.42, 0.8)), contact, triangles,
                   pressures["pressure"], circle)
-    save(figure, run, "solution.png")
+    save(figure, run / "figures", "solution.png")
 
 
 def on_support(run):
@@ -243,7 +243,7 @@ def bases(run):
     for axis, (x, y, xlabel, ylabel, title) in zip(axes[0], panels):
         axis.plot(x, y, "." if len(x) < 30 else "-", color=BLUE)
         log_axis(axis, xlabel, ylabel, title)
-    save(figure, run, "bases.png")
+    save(figure, run / "figures", "bases.png")
 
 
 def draw_contact_field(figure, axis, points, cells, values, colours, limits, title):
@@ -278,7 +278,7 @@ def pressure_curve(run, data):
                      color=GREEN)
     for axis in axes:
         axis.set_xlabel("x")
-    save(figure, run, "pressure.png")
+    save(figure, run / "figures", "pressure.png")
 
 
 def pressure(run):
@@ -295,7 +295,7 @@ def pressure(run):
                        "reduced pressure, reference disc")
     draw_contact_field(figure, axes[1], points, cells, error, "RdBu_r", (-bound, bound),
                        "its error, worst of the validation set")
-    save(figure, run, "pressure.png")
+    save(figure, run / "figures", "pressure.png")
 
 
 def draw_constants(axis, x, beta):
@@ -347,7 +347,7 @@ def infsup(run):
                  label="bound (2.24), where positive")
     log_axis(axes[1], "supremizers S'", "", "along the supremizers")
     axes[1].legend()
-    save(figure, run, "infsup.png")
+    save(figure, run / "figures", "infsup.png")
 
 
 def draw_family(axis, data, field, along, across):
@@ -375,7 +375,7 @@ def error_map(run):
     log_axis(axes[0], "modes N", "mean relative error", "displacement u")
     draw_family(axes[1], data, "lambda", "R", "N")
     log_axis(axes[1], "dual functions R", "mean relative error", "multiplier")
-    save(figure, run, "error_map.png")
+    save(figure, run / "figures", "error_map.png")
 
 
 def mesh_quality(run):
@@ -391,7 +391,7 @@ def mesh_quality(run):
     axis.set_ylabel("largest aspect ratio")
     axis.set_title("quality of the mapped mesh", loc="left")
     axis.legend()
-    save(figure, run, "mesh_quality.png")
+    save(figure, run / "figures", "mesh_quality.png")
 
 
 def errors(run):
@@ -415,7 +415,7 @@ def errors(run):
         axes[1].plot(np.sort(data["tangential"]), color=GREEN, label="tangential multiplier")
         axes[1].legend()
     axes[0].legend()
-    save(figure, run, "errors.png")
+    save(figure, run / "figures", "errors.png")
 
 
 def main(arguments):

@@ -23,7 +23,7 @@ class Study:
 
     def __init__(self, case, variants, binaries, out, *options):
         self.case, self.variants = case, variants
-        self.rbvi, self.out, self.options = Path(binaries) / "rbvi", Path(out), options
+        self.binaries, self.out, self.options = Path(binaries), Path(out), options
         self.out.mkdir(parents=True, exist_ok=True)
         self.environment = {
             **os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -31,11 +31,11 @@ class Study:
             "OMPI_MCA_hwloc_base_binding_policy": "none", "OPENBLAS_NUM_THREADS": "1",
             "OMP_NUM_THREADS": "1"}
 
-    def call(self, *arguments):
-        done = subprocess.run([self.rbvi, *arguments], env=self.environment, capture_output=True,
-                              text=True, check=False)
+    def call(self, *arguments, program="rbvi"):
+        done = subprocess.run([self.binaries / program, *arguments], env=self.environment,
+                              capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            sys.exit(f"study: rbvi {' '.join(map(str, arguments))}\n{done.stderr}")
+            sys.exit(f"study: {program} {' '.join(map(str, arguments))}\n{done.stderr}")
         return done.stdout
 
     def run(self, variant, name, options, stability=False):
@@ -66,6 +66,20 @@ class Study:
                     print(f"{len(runs)} of {len(jobs)} runs", flush=True)
         return runs
 
+    def bench(self, run):
+        """Rows of rbvi bench on a run by method and what they include, made unless there."""
+        path = run / "bench" / "table.csv"
+        if not path.is_file():
+            self.call("bench", "-out", run)
+        with open(path, newline="") as file:
+            return {(row["method"], row["includes"]): row for row in csv.DictReader(file)}
+
+
+def pair_options(pair):
+    """N and R as given, whatever the errors."""
+    return ["-pod_tolerance", "0", "-pod_max_size", str(pair[0]), "-cone_type", "mcpg",
+            "-cone_tolerance", "0", "-cone_max_size", str(pair[1])]
+
 
 def rows_of(path):
     with open(path, newline="") as file:
@@ -82,9 +96,20 @@ def table(run, name):
     return np.atleast_1d(np.genfromtxt(run / "verify" / name, delimiter=",", names=True))
 
 
-def history(run, name):
+def stored(run, name):
+    """A number or an array of the model."""
     with h5py.File(run / "model.h5", "r") as model:
-        return model["histories/values/" + name][()].ravel()
+        return np.asarray(model[name][()])
+
+
+def history(run, name):
+    return stored(run, "histories/values/" + name).ravel()
+
+
+def first_at(values, tolerance):
+    """Index of the first value at or below the tolerance, as text."""
+    below = np.flatnonzero(np.asarray(values) <= tolerance)
+    return str(below[0]) if len(below) else "-"
 
 
 def stage_seconds(run):

@@ -15,8 +15,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, short, study_main,
-                         summary, table)
+from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, pair_options, short,
+                         study_main, summary, table)
 
 CASE = Path(__file__).parent / "published.yaml"
 MAPS = ("similarity", "graded")
@@ -38,11 +38,6 @@ FINE["hybrid"] = ["-cone_type", "hybrid", "-cone_tolerance", "1e-6", "-cone_ring
 ACCURATE = ["-eim_tolerance", "1e-4", "-pga_tolerance", "0"]
 PAIRS = {(19, 50): "0.5", (51, 70): "0.6", (89, 50): "0.95"}  # the published ones, loose tolerance
 TIGHT = "1e-3"
-
-
-def pair_options(pair):
-    return ["-pod_tolerance", "0", "-pod_max_size", str(pair[0]), "-cone_type", "mcpg",
-            "-cone_tolerance", "0", "-cone_max_size", str(pair[1])]
 
 
 def dual_bases(runs):

@@ -6,8 +6,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, contact_cells, draw_constants,
-                     draw_contact_field, draw_greedy, history, log_axis, plt, table,
-                     whole_decades)
+                     draw_contact_field, draw_greedy, history, log_axis, plt, save, table)
 
 import numpy as np
 
@@ -23,15 +22,6 @@ def same_decades(axes):
     low, high = np.log10(np.min(values)), np.log10(np.max(values))
     for axis in axes:
         axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high))
-
-
-def save(figure, directory, name):
-    for axis in figure.axes:
-        if axis.get_yscale() == "log" and axis.get_autoscaley_on():
-            whole_decades(axis)
-    figure.savefig(directory / name, bbox_inches="tight")
-    plt.close(figure)
-    print(directory / name)
 
 
 def bases(runs, directory):
@@ -169,7 +159,6 @@ def pressures(runs, directory):
 
 
 def draw_all(runs, summary, directory):
-    directory.mkdir(exist_ok=True)
     bases(runs, directory)
     floors(runs, summary, directory)
     greedy(runs, directory)

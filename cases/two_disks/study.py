@@ -14,8 +14,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, rows_of, short,
-                         study_main, summary, table)
+from study_tools import (ENRICHMENTS, enrichment_costs, first_at, history, markdown, pair_options,
+                         rows_of, short, study_main, summary, table)
 
 CASE = Path(__file__).parent / "published.yaml"
 VARIANTS = {
@@ -43,17 +43,6 @@ LEVELS, RADII = (0, 1, 2), ("0.7", "1", "1.3")
 REFERENCE = {"0.7": (1.33207, 0.103959, 3.0880), "1": (1.26721, 0.099347, 2.7084),
              "1.3": (1.21204, 0.095509, 2.4818)}
 QUANTITIES = ("normal_force", "energy", "peak_pressure")
-
-
-def pair_options(pair):
-    return ["-pod_tolerance", "0", "-pod_max_size", str(pair[0]), "-cone_type", "mcpg",
-            "-cone_tolerance", "0", "-cone_max_size", str(pair[1])]
-
-
-def first_at(values, tolerance):
-    """Index of the first value at or below the tolerance, as text."""
-    below = [k for k, value in enumerate(values) if value <= tolerance]
-    return str(below[0]) if below else "-"
 
 
 def meshes(study):

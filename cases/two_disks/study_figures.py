@@ -6,22 +6,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, draw_constants, draw_greedy,
-                     history, log_axis, plt, read_vtu, table, whole_decades)
+                     history, log_axis, plt, read_vtu, save, table)
 
 import numpy as np
 
 PAIRS = ((3, 12), (46, 70), (46, 12))
 RADII = ("0.7", "0.8", "1.0", "1.1", "1.3")
 COLOURS = (BLUE, GREEN, GREY, ORANGE, PURPLE)
-
-
-def save(figure, directory, name):
-    for axis in figure.axes:
-        if axis.get_yscale() == "log" and axis.get_autoscaley_on():
-            whole_decades(axis)
-    figure.savefig(directory / name, bbox_inches="tight")
-    plt.close(figure)
-    print(directory / name)
 
 
 def draw_pressures(axis, directory, variant, radii, colours):
