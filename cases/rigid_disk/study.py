@@ -1,0 +1,211 @@
+#!/usr/bin/env python3
+"""The study of a half-disk on a rigid disk with friction: the published reduced model, the four
+reductions of the multipliers, and more free parameters.
+
+    study.py BIN OUT [OPTION...]     e.g. cases/rigid_disk/study.py build/bin run/rigid_disk_study
+
+Options go to every run (a smaller -train; more free parameters and most benchmarks are then left
+out). Runs rbvi offline and rbvi verify for each combination (two at a time, one rank each), then
+the timed ones alone, and writes OUT/tables.md and OUT/figures/*.png. What is there is kept.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from infsup import constants
+from study_tools import (first_at, history, markdown, pair_options, short, stored, study_main,
+                         summary, table)
+
+CASE = Path(__file__).parent / "published.yaml"
+VARIANTS = {  # radius: of the free parameter alone
+    "radius": [],
+    "rigid": ["-normal", "rigid"],
+    "friction": ["-parameters", "radius,indentation,friction_coefficient"],
+    "core": ["-parameters", "radius,core_stiffness"],
+    "poisson": ["-parameters", "radius,poisson_ratio"],
+}
+RANDOM = "random:150:2"
+FREE = {  # parameters, and a grid of about as many
+    "friction": ("radius, indentation, friction coefficient", "grid:5,6,5"),
+    "core": ("radius, core stiffness", "grid:12,12"),
+    "poisson": ("radius, Poisson's ratio", "grid:12,12"),
+}
+TEXT = [*pair_options((30, 20)), "-tangential_tolerance", "2e-4"]  # (30, 20, 20)
+SEPARATED = ["-eim_tolerance", "1e-13", "-pga_tolerance", "1e-3"]
+DEFAULT = ["-multiplier_reduction", "condensed", "-multiplier_exact", "yes",
+           "-pod_tolerance", "1e-7"]
+REDUCTIONS = {
+    "condensed": ["-multiplier_reduction", "condensed"],
+    "joint 1e-10": ["-multiplier_reduction", "joint", "-tangential_tolerance", "1e-10"],
+    "joint 1e-6": ["-multiplier_reduction", "joint", "-tangential_tolerance", "1e-6"],
+    "cones 1e-3": ["-multiplier_reduction", "cones"],
+    "collocated": [],
+}
+COLLOCATED = {"text": "(30, 20, 20)", "published": "published.yaml"}
+
+
+def largest_errors(run):
+    """Of u, lambda_n and lambda_tau over the validation set."""
+    kind = "enriched" if stored(run, "size/supremizers") > 0 else "decorrelated"
+    return stored(run, "validation/" + kind)[2::2]
+
+
+def sizes(runs):
+    rows = []
+    for variant, normal in (("radius", "of the half-disk"), ("rigid", "of the rigid disk")):
+        for count in (61, 150):
+            run = runs[variant, f"grid {count}"]
+            rows.append([normal, len(stored(run, "support/starts_mu")[0]),
+                         first_at(history(run, "pod/error"), 1e-6),
+                         first_at(history(run, "normal_cone/error"), 1e-3),
+                         first_at(history(run, "tangential/error"), 1e-4)] +
+                        [first_at(history(run, "eim/" + form), t)
+                         for form in "bg" for t in (1e-3, 1e-6)])
+    rows.append(["published", "61", "30", "20", "20", "41", "", "", ""])
+    return markdown("Sizes of the bases and terms of the operators",
+                    ["normal", "training radii", "N at 1e-6", "R at 1e-3", "S at 1e-4",
+                     "b at 1e-3", "1e-6", "gap at 1e-3", "1e-6"], rows)
+
+
+def stability(runs):
+    """The constants at the smallest training radius, and the collocation nodes. Exceptions from
+    beta_on >= beta_S >= sqrt(1 - sigma^2) beta_on, beta_on being that of all supremizers."""
+    rows, exceptions, checked = [], 0, 0
+    for key, name in COLLOCATED.items():
+        run = runs["radius", key]
+        beta, c = constants(run)
+        sigma = history(run, "pga/sigma")[:len(beta)]
+        bound = np.sqrt(1 - sigma ** 2) * beta[-1]
+        slack = 1e-6 * beta[-1]  # sigma = 1 to round-off is a bound of 1e-8
+        exceptions += int(np.sum(beta > beta[-1] + slack) + np.sum(beta < bound - slack))
+        checked += 2 * len(beta)
+        radius = stored(run, "support/starts_mu").min()
+        pairs = history(run, "gcns/nodes").astype(int)
+        error = dict(zip(pairs, history(run, "gcns/error")))
+        best = min(error, key=error.get)
+        violation = dict(zip(pairs, history(run, "gcns/violation")))
+        half = len(beta) // 2
+        rows.append([name, f"{summary(run)['S']:.0f}", first_at(-beta, -1e-12)] +
+                    [short(value) for value in (radius * beta[half], radius * beta[-1],
+                                                beta[-1] / c[-1])] +
+                    [short(error[20]) if 20 in error else "-", best, short(error[best]),
+                     short(violation[best])])
+    rows.append(["published", "40", "10", "", "", "0.072", "0.39", "20", "0.39", "1e-6"])
+    text = markdown("Stability and collocation nodes",
+                    ["sizes", "supremizers", "fewest with beta > 0", "beta with half of them",
+                     "with all", "beta / c", "e_GCNS with 20 pairs", "best pairs", "e_GCNS",
+                     "violation (3.63)"], rows)
+    return text + f"\nOrder of the constants: {exceptions} exceptions in {checked} comparisons.\n"
+
+
+def functions_of(run):
+    """Sizes of the bases of the multipliers, and the pairs of collocation nodes."""
+    normal, tangential = (stored(run, "support/basis/" + name) for name in ("normal", "tangential"))
+    nodes = len(stored(run, "support/basis/nodes"))
+    if normal.size == 0:
+        return [f"{stored(run, 'size/generators')}", "all"]
+    joint = int(stored(run, "support/reduction")) == 3
+    count = f"{normal.shape[1]}" if joint else f"{normal.shape[1]} + {tangential.shape[1]}"
+    return [count, f"{nodes}" if nodes else "all"]
+
+
+def reductions(runs):
+    rows = []
+    keys = [(name, mended) for name in REDUCTIONS for mended in ("yes", "no")]
+    for key in [*keys, ("as published", )]:
+        run = runs["radius", *key]
+        s = summary(run)
+        rows.append([key[0], key[-1] if len(key) > 1 else "no", f"{s['N']:.0f} + {s['S']:.0f}",
+                     *functions_of(run), *(short(value) for value in largest_errors(run)),
+                     f"{1e3 * s['seconds']:.2f}"])
+    return markdown("Reductions of the multipliers: largest errors, ms per query",
+                    ["reduction", "mended", "N + further", "functions of the multipliers",
+                     "pairs of nodes", "u", "lambda_n", "lambda_tau", "ms"], rows)
+
+
+def free_parameters(study, runs):
+    lines = [("radius", "grid:61", "grid:61", ("radius", "default"), ("radius", "default"))]
+    lines += [(names, RANDOM, grid, (variant, "random"), (variant, "grid"))
+              for variant, (names, grid) in FREE.items()]
+    rows = []
+    for names, training, grid, key, compared in lines:
+        s, benched = summary(runs[key]), study.bench(runs[compared])
+        linear, solver = (next(row for (method, _), row in benched.items() if method == wanted)
+                          for wanted in ("multilinear interpolation", "active_set warm-started"))
+        rows.append([names, training, f"{s['N']:.0f} + {s['S']:.0f}",
+                     stored(runs[key], "support/terms").shape[1],
+                     *(short(value) for value in largest_errors(runs[key])),
+                     f"{1e3 * s['seconds']:.2f}", f"{float(solver['median_ms']):.1f}", grid,
+                     *(short(float(linear[name])) for name in ("u_max", "lambda_max"))])
+    return markdown("Free parameters: the default reduction, and linear interpolation on a grid",
+                    ["free", "training", "N + responses", "terms of H", "u", "lambda_n",
+                     "lambda_tau", "ms", "high-fidelity ms", "grid", "interpolation: u",
+                     "both multipliers"], rows)
+
+
+def costs(study, runs):
+    """Table 3.1; a query of a reduced model includes its outputs and the field."""
+    names = {"default": "condensed", "published": "published.yaml",
+             "as published": "(30, 20, 20), 20 pairs of nodes"}
+    timed = ["default"] if study.options else list(names)
+    benched = {key: study.bench(runs["radius", key]) for key in timed}
+    queries = len(table(runs["radius", "default"], "errors.csv"))
+    baseline = benched["default"]
+    lines = [(key[0], row) for key, row in baseline.items()
+             if key[1] in ("assembly, field, outputs", "field; constraints not enforced")]
+    lines += [(f"reduced: {names[key]}", row) for key, rows in benched.items()
+              for (_, includes), row in rows.items() if includes == "outputs, field"]
+    times = {name: float(row["median_ms"]) for name, row in lines}
+    solvers = ("uzawa fixed step", "active_set warm-started")
+    rows = [[name, f"{ms:.3g}", f"{queries * ms / 1e3:.3g}"] +
+            [f"{times[solver] / ms:.3g}" for solver in solvers] for name, ms in times.items()]
+    rows += [["published: high-fidelity", "", "450", "", ""],
+             ["published: reduced, (30, 20, 20)", "", "35", "13", ""]]
+    return markdown(f"Table 3.1 with our times: {queries} queries at the median of one",
+                    ["method", "ms per query", "seconds for all", "times faster than Uzawa",
+                     "than warm-started active_set"], rows)
+
+
+def jobs_of(study):
+    """What runs two at a time."""
+    jobs = {("radius", "text"): TEXT,
+            ("radius", "as published"): [*TEXT, "-gcns_max_nodes", "20"],
+            ("radius", "generators"): [*REDUCTIONS["cones 1e-3"], "-cone_tolerance", "1e-10"]}
+    for variant in ("radius", "rigid"):
+        for count in (61, 150):
+            jobs[variant, f"grid {count}"] = [*SEPARATED, "-train", f"grid:{count}"]
+    if not study.options:
+        for variant, (_, grid) in FREE.items():
+            jobs[variant, "random"] = [*DEFAULT, "-train", RANDOM]
+            jobs[variant, "grid"] = [*DEFAULT, "-train", grid]
+    return {key: (key[1], options, False) for key, options in jobs.items()}
+
+
+def all_runs(study):
+    """Every run directory by what it is; the reductions alone, to be timed."""
+    runs = study.run_all(jobs_of(study))
+    for name, options in REDUCTIONS.items():
+        for mended in ("yes", "no"):
+            runs["radius", name, mended] = study.run(
+                "radius", f"{name}, mended {mended}", [*options, "-multiplier_exact", mended])
+    runs["radius", "default"] = study.run("radius", "default", DEFAULT)
+    runs["radius", "published"] = runs["radius", "collocated", "no"]
+    return runs
+
+
+def work(study):
+    runs = all_runs(study)
+    tables = [sizes(runs), stability(runs), reductions(runs)]
+    if not study.options:
+        tables.append(free_parameters(study, runs))
+    tables.append(costs(study, runs))
+    from study_figures import draw_all
+    return tables, lambda directory: draw_all(study, runs, directory)
+
+
+if __name__ == "__main__":
+    sys.exit(study_main(__doc__, CASE, VARIANTS, work))

@@ -1,0 +1,186 @@
+"""Figures of study.py."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+
+from figures import BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_vtu, save
+from infsup import constants
+from study_tools import rows_of, stored
+
+import numpy as np
+
+RADII = ("0.7", "1", "1.3")
+FRICTION = 0.2
+SHOWN = 0.25  # of the arc: a little more than is ever in contact
+SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("published.yaml", BLUE)}
+MODELS = {  # of the tangential stress
+    "as published": ("(30, 20, 20), 20 pairs", ORANGE, "--"),
+    "published": ("published.yaml", BLUE, "-"),
+    "default": ("condensed", GREEN, "-"),
+}
+
+
+def contact_curve(path):
+    """x, pressure and tangential stress."""
+    points, _, fields = read_vtu(path)
+    return points[:, 0], fields["pressure"], fields["tangential_stress"]
+
+
+def as_published(axis, x, y, text="published"):
+    axis.plot(x, y, "x", color="black", markersize=7, label=text)
+
+
+def laws(directory):
+    """Multipliers at three radii, and Coulomb's law (figure 3.3)."""
+    figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True)
+    for radius, colour in zip(RADII, (BLUE, GREEN, ORANGE)):
+        x, pressure, stress = contact_curve(directory / f"truth_{radius}_contact.vtu")
+        axes[0].plot(x, pressure, color=colour, label=f"radius {radius}")
+        axes[1].plot(x, stress, color=colour)
+        axes[2].plot(x, FRICTION * pressure, color=colour, alpha=0.4, linewidth=3)
+        axes[2].plot(x, np.abs(stress), color=colour, linewidth=1)
+    for axis, title in zip(axes, (r"$\lambda_n$ (Pa)", r"$\lambda_\tau$ (Pa)",
+                                  r"$|\lambda_\tau|$; thick: $\nu_F \lambda_n$ (Pa)")):
+        axis.set_title(title, loc="left")
+        axis.set_xlabel("x")
+        axis.set_xlim(-SHOWN, SHOWN)
+    axes[0].legend(fontsize=8)
+    save(figure, directory, "laws.png")
+
+
+def bases(runs, directory):
+    """Projection errors over the training set (figure 3.4)."""
+    figure, axes = plt.subplots(1, 3, figsize=(13, 3.4), constrained_layout=True)
+    floor = 1e-15
+    for axis, run, name, label, colour in (
+            (axes[0], ("text", ), "pod/error", None, BLUE),
+            (axes[1], ("generators", ), "normal_cone/error", None, BLUE),
+            (axes[2], ("text", ), "tangential/error", r"$\lambda_\tau$ alone", BLUE),
+            (axes[2], ("joint 1e-10", "no"), "tangential/error",
+             r"$(\lambda_n, \lambda_\tau)$", GREEN)):
+        error = history(runs["radius", *run], name)
+        error = error[error > floor]
+        axis.plot(np.arange(len(error)), error, color=colour, label=label)
+    for axis, size, error in zip(axes, (30, 20, 20), (1e-6, 1e-3, 1e-4)):
+        as_published(axis, size, error)
+    log_axis(axes[0], "modes N", "relative error", "displacement, POD")
+    log_axis(axes[1], "generators R", "largest relative error", r"$\lambda_n$, mCPG")
+    log_axis(axes[2], "modes S", "relative error", r"$\lambda_\tau$, POD")
+    axes[0].legend(fontsize=8)
+    axes[2].legend(fontsize=8)
+    save(figure, directory, "bases.png")
+
+
+def greedy(runs, directory):
+    """Smallest beta and sigma along the supremizers (figure 3.5)."""
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
+    for key, (name, colour) in SIZES.items():
+        run = runs["radius", key]
+        beta, _ = constants(run)
+        beta *= stored(run, "support/starts_mu").min()
+        first = np.flatnonzero(beta)[0]
+        axes[0].plot(np.arange(first, len(beta)), beta[first:], ".-", color=colour, label=name)
+        sigma = history(run, "pga/sigma")
+        axes[1].plot(np.arange(len(sigma)), sigma, ".-", color=colour, label=name)
+    axes[1].axhline(0.072, color="black", linestyle=":", label="tolerance 0.072")
+    log_axis(axes[0], "supremizers", r"smallest $\beta$", "inf-sup constant; before: 0")
+    axes[0].set_xlim(left=0)
+    axes[1].set_xlabel("supremizers")
+    axes[1].set_title(r"$\sigma$", loc="left")
+    axes[1].legend(fontsize=8)
+    save(figure, directory, "pga.png")
+
+
+def interpolation(runs, directory):
+    """Errors of the empirical interpolation of b and of the gap (figure 3.6)."""
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
+    for variant, normal, colour in (("radius", "of the half-disk", BLUE),
+                                    ("rigid", "of the rigid disk", ORANGE)):
+        for count, style in ((61, "o-"), (150, "s:")):
+            for axis, form in zip(axes, "bg"):
+                error = history(runs[variant, f"grid {count}"], "eim/" + form)
+                axis.plot(np.arange(len(error)), np.maximum(error, 1e-16), style, color=colour,
+                          label=f"normal {normal}, {count} radii")
+    as_published(axes[0], 41, 1e-3)
+    log_axis(axes[0], "terms", "largest relative error", "b, training set")
+    log_axis(axes[1], "terms", "largest relative error", "gap, training set")
+    axes[0].legend(fontsize=8)
+    save(figure, directory, "eim.png")
+
+
+def nodes(runs, directory):
+    """Where the collocation nodes are, and when each was taken (figure 3.7)."""
+    figure, axes = plt.subplots(1, 2, figsize=(11, 3.4), constrained_layout=True, sharey=True)
+    for axis, (key, (name, colour)) in zip(axes, SIZES.items()):
+        run = runs["radius", key]
+        points, chosen = stored(run, "contact/points"), stored(run, "support/basis/nodes")
+        right = points[::-1, 0][:len(points) // 2 + 1]  # of pair 0, 1, ...: mirror images
+        rows = rows_of(run / "samples.csv")
+        for column, shade, label in (("contact_half_width", GREY, "edge of contact"),
+                                     ("stick_half_width", PURPLE, "edge of stick")):
+            edges = np.sin([row[column] / row["radius"] for row in rows])
+            axis.axvspan(edges.min(), edges.max(), color=shade, alpha=0.25, linewidth=0,
+                         label=label)
+        axis.plot(right, np.zeros_like(right), "|", color=GREY)
+        axis.plot(right[chosen], np.arange(1, len(chosen) + 1), "o", color=colour)
+        axis.set_xlabel("x of the node, radius 1")
+        axis.set_title(f"{name}: {len(chosen)} of {len(right)} pairs", loc="left")
+    axes[0].set_ylabel("step at which it is taken")
+    axes[1].legend(fontsize=8)
+    save(figure, directory, "nodes.png")
+
+
+def collocation(runs, directory):
+    """Errors along the greedy selection of nodes (figure 3.8)."""
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
+    for key, (name, colour) in SIZES.items():
+        run = runs["radius", key]
+        pairs = history(run, "gcns/nodes")
+        for axis, column in zip(axes, ("error", "violation")):
+            axis.plot(pairs, np.maximum(history(run, "gcns/" + column), 1e-16), ".-",
+                      color=colour, label=name)
+    as_published(axes[0], 20, 0.39)
+    as_published(axes[1], 20, 1e-6)
+    log_axis(axes[0], "pairs of nodes", "largest relative error", r"$e_{GCNS}$")
+    log_axis(axes[1], "pairs of nodes", "", "violation of the bound (3.63), Pa")
+    axes[0].legend(fontsize=8)
+    save(figure, directory, "gcns.png")
+
+
+def tangential(study, runs, directory):
+    """Reduced and high-fidelity tangential stress, and the difference (figure 3.9)."""
+    figure, axes = plt.subplots(2, 3, figsize=(13, 6), constrained_layout=True, sharex="col",
+                                sharey="row")
+    for (top, bottom), radius in zip(axes.T, RADII):
+        x, _, truth = contact_curve(directory / f"truth_{radius}_contact.vtu")
+        top.plot(x, truth, color=GREY, linewidth=4, alpha=0.5, label="high-fidelity")
+        for key, (name, colour, style) in MODELS.items():
+            path = directory / f"{key.replace(' ', '_')}_{radius}.vtu"
+            study.call(runs["radius", key] / "model.h5", "--mu", radius, "--vtu", path,
+                       program="rbvi-online")
+            _, _, stress = contact_curve(path.with_name(path.stem + "_contact.vtu"))
+            top.plot(x, stress, style, color=colour, linewidth=1.2, label=name)
+            bottom.plot(x, np.maximum(np.abs(stress - truth), 1e-16), style, color=colour,
+                        linewidth=1.2)
+        top.set_title(rf"$\lambda_\tau$ (Pa), radius {radius}", loc="left")
+        log_axis(bottom, "x", "", "its error (Pa)")
+        bottom.set_xlim(-SHOWN, SHOWN)
+        bottom.set_ylim(1e-14, 10)
+    axes[0, 0].legend(fontsize=8)
+    save(figure, directory, "tangential.png")
+
+
+def draw_all(study, runs, directory):
+    directory.mkdir(exist_ok=True)
+    for radius in RADII:
+        study.call("solve", "-case", study.case, "-mu", radius, "-vtu",
+                   directory / f"truth_{radius}.vtu")
+    laws(directory)
+    bases(runs, directory)
+    greedy(runs, directory)
+    interpolation(runs, directory)
+    nodes(runs, directory)
+    collocation(runs, directory)
+    tangential(study, runs, directory)
