@@ -411,8 +411,8 @@ def errors(run):
             label += f", {missing} without an answer" if missing else ""
             axis.plot(values[np.isfinite(values)], style, color=colour, label=label)
         log_axis(axis, "validation parameters, sorted", "relative error", title)
-    if "tangential" in data.dtype.names:
-        axes[1].plot(np.sort(data["tangential"]), color=GREEN, label="tangential multiplier")
+    if "tangential_enriched" in data.dtype.names:
+        axes[1].plot(np.sort(data["tangential_enriched"]), color=GREEN, label="tangential multiplier")
         axes[1].legend()
     axes[0].legend()
     save(figure, run / "figures", "errors.png")

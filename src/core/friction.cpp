@@ -49,6 +49,17 @@ double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
   return worst;
 }
 
+/// FrictionResult::start. `diagonal(j)`: H_jj, 0 where it is not known.
+template <class Diagonal>
+Vector start_of(const Vector &x, const Vector &w, const Diagonal &diagonal) {
+  Vector result = Vector::NullaryExpr(x.size(), diagonal);
+  const Index known = (result.array() > 0).count();
+  const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
+  for (Index j = 0; j < x.size(); ++j)
+    result[j] = x[j] - w[j] / (result[j] > 0 ? result[j] : mean);
+  return result;
+}
+
 FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
                                 const Vector &start, const FrictionOptions &options) {
   const Index nodes = laws.nodes;
@@ -81,6 +92,10 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
   result.x.head(nodes) = normal.x;
   result.w = known * pressures + q;
   result.residual = normal_residual(normal.x, result.w.head(nodes), terms.head(nodes));
+  Vector diagonal = Vector::Zero(q.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    diagonal[order[k]] = known(order[k], static_cast<Index>(k));
+  result.start = start_of(result.x, result.w, [&](Index j) { return diagonal[j]; });
   describe(result, laws, Sets(nodes, laws.dim));
   return result;
 }
@@ -93,10 +108,17 @@ public:
         left_(options.max_iterations) {}
 
   FrictionResult run(const Vector &start) {
-    Vector x = start.size() > 0 ? laws_.feasible(start) : Vector::Zero(q_.size()).eval();
-    prepare(laws_, x);
-    Point point = evaluate(h_, q_, std::move(x));
-    Outcome outcome = newton(laws_, point);
+    Outcome outcome;
+    if (start.size() > 0) {
+      best_.x = laws_.feasible(start);
+      result_.residual = std::numeric_limits<double>::infinity();
+      Point point;
+      outcome = newton_from(laws_, sets_from(h_, laws_, start), point);
+    } else {
+      prepare(laws_, Vector::Zero(q_.size()));
+      Point point = evaluate(h_, q_, Vector::Zero(q_.size()));
+      outcome = newton(laws_, point);
+    }
     if (outcome == Outcome::cycles) outcome = backup(evaluate(h_, q_, laws_.feasible(best_.x)));
     return finish(outcome);
   }
@@ -113,16 +135,19 @@ private:
     h_.require(sets.support(laws));
   }
 
-  /// From `point` until the laws hold, sets return, or ten steps bring nothing.
   Outcome newton(const Laws &laws, Point &point) {
-    constexpr int patience = 10;
-    std::set<std::string> seen;
-    Sets sets = sets_of(laws, point.x);
+    const Sets sets = sets_of(laws, point.x);
     Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
+    return newton_from(laws, std::move(verdict.next), point);
+  }
+
+  /// From the sets of the first step until the laws hold, sets return, or ten steps bring nothing.
+  Outcome newton_from(const Laws &laws, Sets sets, Point &point) {
+    constexpr int patience = 10;
+    std::set<std::string> seen;
     double least = std::numeric_limits<double>::infinity();
     for (int unrewarded = 0; unrewarded <= patience; ++unrewarded) {
-      sets = std::move(verdict.next);
       if (laws.dim == 2 && !seen.insert(sets.key()).second) return Outcome::cycles;
       if (left_ <= 0) return Outcome::limit;
       --left_;
@@ -130,11 +155,12 @@ private:
       const Solved solved = step(h_, q_, laws, sets, point);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
-      verdict = judge(h_, laws, point, sets, options_.tolerance);
+      Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
       keep(laws, point, sets, verdict);
       if (settled(verdict, least)) return Outcome::converged;
       if (verdict.residual < least) unrewarded = 0;
       least = std::min(least, verdict.residual);
+      sets = std::move(verdict.next);
     }
     return Outcome::cycles;
   }
@@ -205,10 +231,13 @@ private:
     }
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
+    result.start = start_of(result.x, result.w, [this](Index j) { return known_diagonal(j); });
     describe(result, laws_, best_sets_);
     result.reason = reason(outcome, result);
     return result;
   }
+
+  double known_diagonal(Index j) const { return h_.has(j) ? h_.diagonal(j) : 0; }
 
   std::string reason(Outcome outcome, const FrictionResult &result) const {
     if (outcome == Outcome::converged) return "no violation left";

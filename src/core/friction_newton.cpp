@@ -280,6 +280,27 @@ Sets sets_of(const Laws &laws, const Vector &x) {
   return result;
 }
 
+Sets sets_from(LazyColumns &h, const Laws &laws, const Vector &y) {
+  constexpr double round_off = 1e-10; // x itself is on its bound where it slips
+  Sets result(laws.nodes, laws.dim);
+  Vector size(laws.nodes);
+  for (Index i = 0; i < laws.nodes; ++i) {
+    result.active[at(i)] = y[i] > 0;
+    if (!laws.carries(i, y[i] > 0)) continue;
+    const auto tangential = y.segment(laws.tangent(i), laws.dim - 1);
+    size[i] = tangential.norm();
+    const bool slips = size[i] > 0 && size[i] >= (1 - round_off) * laws.bound(i, y[i]);
+    result.tangent[at(i)] = slips ? Tangent::slip : Tangent::stick;
+    if (slips) result.direction.col(i) = tangential / size[i];
+  }
+  h.require(result.support(laws));
+  for (Index i = 0; i < laws.nodes; ++i)
+    if (const double bound = laws.bound(i, y[i]); result.of(i) == Tangent::slip && bound > 0)
+      result.curvature[i] =
+          std::max(0.0, size[i] - bound) * tangential_diagonal(h, laws, i) / bound;
+  return result;
+}
+
 Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
               double tolerance) {
   return Judge(h, laws, point, sets, tolerance).all();

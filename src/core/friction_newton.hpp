@@ -73,6 +73,8 @@ Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const 
               double tolerance);
 /// The sets to judge a point by that no step gave.
 Sets sets_of(const Laws &laws, const Vector &x);
+/// The sets that y = x - w / H_jj tells; the columns of their support are asked for.
+Sets sets_from(LazyColumns &h, const Laws &laws, const Vector &y);
 
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite };

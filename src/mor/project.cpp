@@ -159,8 +159,9 @@ Vector upwards(const Problem &problem) {
   return result;
 }
 
-/// Where a query starts: the training multipliers, and where they are.
-void add_starts(const std::vector<Sample> &samples, const Matrix &basis, SupportModel &support) {
+/// The training multipliers, and where they are.
+void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis,
+                       SupportModel &support) {
   support.starts = nodal_coefficients(basis, multipliers_of(samples));
   support.starts_mu.resize(static_cast<Index>(samples.front().mu.size()), support.starts.cols());
   for (std::size_t p = 0; p < samples.size(); ++p)
@@ -203,7 +204,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     model.support->basis = bases.multipliers.basis;
     model.support->condensed = bases.condensed;
     model.support->lift = Matrix::Zero(problem.dual_size(), affine.b.size());
-    add_starts(samples, model.dual_basis, *model.support);
+    store_multipliers(samples, model.dual_basis, *model.support);
   } else {
     model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
   }

@@ -196,11 +196,13 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   {
     const Stage stage("projection", times);
     result.model = project(problem, samples, result.affine, result.bases);
+    if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
   }
   if (result.bases.reduction != MultiplierReduction::collocated) return result;
   const Stage stage("collocation nodes", times);
-  const Gcns nodes =
+  result.collocation =
       collocate(result.model, problem.scene(), samples, problem.w_product(), options.gcns);
+  const Gcns &nodes = result.collocation;
   result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
   result.model.histories["gcns/error"] = nodes.error;
   result.model.histories["gcns/violation"] = nodes.violation;

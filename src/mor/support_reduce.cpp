@@ -80,6 +80,17 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   return bases;
 }
 
+void add_starts(ReducedModel &model, const Scene &scene) {
+  Matrix starts = model.support->starts;
+  SupportSolver solver(model, scene);
+  for (Index p = 0; p < starts.cols(); ++p) {
+    const Vector mu = model.support->starts_mu.col(p);
+    starts.col(p) =
+        solver.start_of(expand(scene.parameters, {mu.begin(), mu.end()}), starts.col(p));
+  }
+  model.support->starts = std::move(starts);
+}
+
 Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
                const SparseMatrix &w_product, const GcnsOptions &options) {
   SupportModel &support = *model.support;

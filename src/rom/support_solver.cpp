@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/support_outputs.hpp"
+#include "rbvi/rom/local_fit.hpp"
 #include "rbvi/rom/online.hpp"
 
 #include <cmath>
@@ -67,30 +68,29 @@ SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene)
   if (multiplier_count(curve, *scene.support) != model.dual_basis.rows())
     throw bad_input("the multipliers of the model do not fit its scene in this build");
   if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
+  width_.resize(scene.parameters.size());
+  for (int i = 0; i < scene.parameters.size(); ++i)
+    width_[i] = scene.parameters.at(i).upper - scene.parameters.at(i).lower;
+  samples_ = width_.cwiseInverse().asDiagonal() * model.support->starts_mu;
 }
 
-Vector SupportSolver::nearest_start(const Mu &all_parameters) const {
-  const SupportModel &support = *model_.support;
+/// The free parameters as parts of the box.
+Vector SupportSolver::scaled(const Mu &all_parameters) const {
   const ParameterSpace &space = scene_.parameters;
-  Vector here(space.size()), width(space.size()), last(space.size());
-  for (int i = 0; i < space.size(); ++i) {
-    const auto at = static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)]);
-    here[i] = all_parameters[at];
-    width[i] = space.at(i).upper - space.at(i).lower;
-    last[i] = last_mu_.empty() ? 0 : last_mu_[at];
-  }
-  Index nearest = 0;
-  const auto distance = [&](const auto &mu) {
-    return (mu - here).cwiseQuotient(width).squaredNorm();
-  };
-  double best = std::numeric_limits<double>::infinity();
-  for (Index p = 0; p < support.starts.cols(); ++p)
-    if (const double d = distance(support.starts_mu.col(p)); d < best) {
-      best = d;
-      nearest = p;
-    }
-  if (!last_mu_.empty() && distance(last) < best) return last_x_;
-  return support.starts.cols() > 0 ? Vector(support.starts.col(nearest)) : Vector();
+  Vector result(space.size());
+  for (int i = 0; i < space.size(); ++i)
+    result[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])] /
+                width_[i];
+  return result;
+}
+
+Vector SupportSolver::start_at(const Vector &here) const {
+  constexpr double far_nearer = 0.1;
+  const double next = samples_.cols() > 0 ? (samples_.colwise() - here).colwise().norm().minCoeff()
+                                          : std::numeric_limits<double>::infinity();
+  if (last_start_.size() > 0 && (last_ - here).norm() <= far_nearer * next) return last_start_;
+  if (samples_.cols() == 0) return {};
+  return local_fit(model_.support->starts, samples_, here);
 }
 
 Vector SupportSolver::term_coefficients(const Mu &all_parameters, const Vector &theta_b) const {
@@ -117,6 +117,14 @@ BodyAtMu SupportSolver::body_at(const Mu &all_parameters, const Vector &theta_b)
   return body;
 }
 
+Vector SupportSolver::start_of(const Mu &all_parameters, const Vector &x) {
+  const BodyAtMu body =
+      body_at(all_parameters, support_coefficients(model_.b, true, scene_, all_parameters));
+  const Index m = model_.generators;
+  const Matrix h = (model_.support->condensed.terms * body.terms).reshaped(m, m);
+  return x - (h * x + body.q).cwiseQuotient(h.diagonal());
+}
+
 bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer) {
   const Matrix &terms = model_.support->condensed.terms;
   const bool mends = model_.support->mended && terms.size() > 0;
@@ -132,8 +140,10 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
   if (terms.size() == 0) return true;
   const Index m = model_.generators;
   const Matrix h = (terms * body.terms).reshaped(m, m);
-  answer.energy = 0.5 * answer.x.dot(h * answer.x);
-  answer.residual = natural_residual(answer.x, h * answer.x + body.q, h.diagonal(), body.bound);
+  const Vector w = h * answer.x + body.q;
+  answer.energy = 0.5 * answer.x.dot(w - body.q);
+  answer.residual = natural_residual(answer.x, w, h.diagonal(), body.bound);
+  answer.start = answer.x - w.cwiseQuotient(h.diagonal());
   return !mends || answer.residual <= mended_above;
 }
 
@@ -148,7 +158,7 @@ void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,
       result.col(static_cast<Index>(k)).noalias() = terms.middleRows(which[k] * m, m) * body.terms;
     return result;
   };
-  const Vector start = answer.x.size() > 0 ? answer.x : nearest_start(all_parameters);
+  const Vector start = answer.start.size() > 0 ? answer.start : start_at(scaled(all_parameters));
   FrictionResult found = solve_friction(
       columns, body.q, static_cast<int>(m) / model_.support->normal, body.bound, start);
   if (!found.converged || !(found.residual <= largest_residual))
@@ -158,6 +168,7 @@ void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,
   answer.residual = found.residual;
   answer.iterations += found.iterations;
   answer.x = std::move(found.x);
+  answer.start = std::move(found.start);
 }
 
 SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
@@ -168,8 +179,8 @@ SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
   answer.u = -stiffness_.response(answer.theta_b, answer.x);
   if (model_.support->condensed.terms.size() == 0)
     answer.energy = 0.5 * stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm();
-  last_x_ = answer.x;
-  last_mu_ = all_parameters;
+  last_start_ = answer.start;
+  last_ = scaled(all_parameters);
   return answer;
 }
 

@@ -91,11 +91,14 @@ MethodResult solve_condensed(const ColumnSource &columns, const Vector &q, const
                              const Start &start) {
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));
-  if (op.normal < q.size())
-    take(solve_friction(columns, q, static_cast<int>(q.size() / op.normal), op.bound, start.lambda),
-         result);
-  else
+  if (op.normal == q.size()) {
     take(solve_lcp(columns, q, start.active), result);
+  } else {
+    FrictionResult found =
+        solve_friction(columns, q, static_cast<int>(q.size() / op.normal), op.bound, start.lambda);
+    result.start = std::move(found.start);
+    take(std::move(found), result);
+  }
   return result;
 }
 

@@ -194,7 +194,8 @@ HfSolution HighFidelity::solve(const Mu &mu) {
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) +
                   ", above 1e-10: is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");
-  solved_.push_back({mu, {solution.active, solution.lambda}});
+  solved_.push_back(
+      {mu, {solution.active, result.start.size() > 0 ? result.start : solution.lambda}});
   return solution;
 }
 

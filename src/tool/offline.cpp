@@ -95,7 +95,7 @@ void command_offline(const ToolOptions &options) {
     });
   }
   if (rank != 0) return;
-  const OfflineResult result{sweep.report, made.affine, made.bases};
+  const OfflineResult result{sweep.report, made};
   print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
   std::printf("Model: %s\n", (options.out / "model.h5").c_str());
 }

@@ -52,7 +52,7 @@ StageRow interpolation_row(const ToolOptions &options, const OfflineResult *resu
     return {"interpolation", std::string("A") + (pair ? "" : ", B") + (load ? ", F" : "") +
                                  (pair ? " " : ", G ") + tolerance +
                                  "; a sum of few terms ends there" + exact};
-  const AffineOperators &affine = result->affine;
+  const AffineOperators &affine = result->made.affine;
   return {"interpolation",
           "terms: " + terms("A", affine.a) + (pair ? "" : ", " + terms("B", affine.b)) +
               (load ? ", " + terms("F", affine.f) : "") +
@@ -69,7 +69,7 @@ StageRow factorisation_row(const ToolOptions &options) {
 StageRow pod_row(const ToolOptions &options, const OfflineResult *result) {
   const std::string tolerance = "to " + short_number(options.reduce.pod.tolerance);
   if (result == nullptr) return {"POD", "displacements " + tolerance};
-  const ReducedBases &bases = result->bases;
+  const ReducedBases &bases = result->made.bases;
   const double error = bases.pod.error[static_cast<std::size_t>(bases.modes)];
   return {"POD", "N = " + count(bases.modes, "mode") + ", error " + short_number(error)};
 }
@@ -81,7 +81,7 @@ StageRow cone_row(const ToolOptions &options, const OfflineResult *result) {
     return {"cone",
             name + " for the multipliers" +
                 (cone.type == ConeType::nodal ? "" : ", to " + short_number(cone.tolerance))};
-  const Cone &made = result->bases.cone;
+  const Cone &made = result->made.bases.cone;
   const auto modes = static_cast<int>(made.modes.columns.cols());
   return {"cone", "R = " + count(static_cast<int>(made.basis.generators.cols()), "generator") +
                       (modes > 0 ? " + " + count(modes, "free mode") : "") + " (" + name +
@@ -103,7 +103,7 @@ StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
                             : "beta_off >= " + short_number(reduce.pga.stability) + " beta_on") +
                        (options.scene.pair ? "" : "; one SVD if B only scales")};
   }
-  const ReducedBases &bases = result->bases;
+  const ReducedBases &bases = result->made.bases;
   return {"PGA", "S = " + count(bases.supremizers, "supremizer") + product + ", sigma " +
                      short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};
 }
@@ -113,7 +113,7 @@ StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResul
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return {stage, "no supremizers are wanted", true};
   if (result == nullptr && !options.scene.pair) return {stage, "only if B does more than scale"};
-  if (!options.scene.pair && result->affine.b.size() == 1)
+  if (!options.scene.pair && result->made.affine.b.size() == 1)
     return {stage, "B only scales: one set and one SVD serve all mu", true};
   return {stage, "B depends on mu: part of PGA"};
 }
@@ -123,7 +123,7 @@ std::string multiplier_row(const ToolOptions &options, const OfflineResult *resu
   const auto kind = static_cast<std::size_t>(options.reduce.multipliers.reduction);
   const std::string name = multiplier_reduction_names()[kind];
   if (result == nullptr) return name;
-  const MultiplierBasis &basis = result->bases.multipliers.basis;
+  const MultiplierBasis &basis = result->made.bases.multipliers.basis;
   if (options.reduce.multipliers.reduction == MultiplierReduction::joint)
     return name + ": " + count(static_cast<int>(basis.normal.cols()), "mode") + ", " +
            count(static_cast<int>(basis.nodes.size()), "node");
@@ -140,8 +140,8 @@ void add_support_rows(const ToolOptions &options, const OfflineResult *result,
   std::string what =
       "the condensed operator, at the Chebyshev points of the parameters of A to " + tolerance;
   if (result != nullptr) {
-    const CondensedOperator &condensed = result->bases.condensed;
-    what = count(static_cast<int>(result->bases.support_dual.cols()), "multiplier") + ", " +
+    const CondensedOperator &condensed = result->made.bases.condensed;
+    what = count(static_cast<int>(result->made.bases.support_dual.cols()), "multiplier") + ", " +
            count(static_cast<int>(grid_size(condensed.axes)), "factorisation") + ", " +
            count(static_cast<int>(condensed.terms.cols()), "term");
     if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);
@@ -159,7 +159,11 @@ void add_support_rows(const ToolOptions &options, const OfflineResult *result,
     rows.push_back({"multipliers", multiplier_row(options, result)});
   if (reduction == MultiplierReduction::collocated) {
     rows.push_back(pga_row(options, result));
-    rows.push_back({"collocation nodes", "greedy (Algorithm 3), reduced problems solved exactly"});
+    rows.push_back({"collocation nodes",
+                    result == nullptr
+                        ? "greedy (Algorithm 3), reduced problems solved exactly"
+                        : count(static_cast<int>(result->made.collocation.nodes.size()), "node") +
+                              ": " + result->made.collocation.reason});
   }
   if (options.scene.support->friction.law == FrictionLaw::none)
     rows.push_back({"tangential multipliers", "the scene has no friction", true});

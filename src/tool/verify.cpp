@@ -152,7 +152,10 @@ void write_errors(const fs::path &path, const ParameterSpace &space, const Truth
   table.add("lambda_enriched", enriched.lambda);
   table.add("u_decorrelated", plain.u);
   table.add("lambda_decorrelated", plain.lambda);
-  if (plain.tangential.size() > 0) table.add("tangential", plain.tangential);
+  if (enriched.tangential.size() > 0) {
+    table.add("tangential_enriched", enriched.tangential);
+    table.add("tangential_decorrelated", plain.tangential);
+  }
   table.add("u_floor", enriched.u_floor);
   table.add("lambda_floor", enriched.lambda_floor);
   table.write(path);

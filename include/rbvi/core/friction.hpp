@@ -34,6 +34,9 @@ struct FrictionOptions {
 
 struct FrictionResult {
   Vector x, w;
+  Vector start; ///< x - w / H_jj (where H_jj was not asked for, the mean of the others): its signs
+                ///< and its sizes against the bound tell every state. Smooth where x and w are not:
+                ///< start nearby problems from it, or from interpolants of several
   std::vector<Index> active;     ///< nodes with x_n > 0, increasing
   std::vector<NodeState> states; ///< of every node; an open node can slip or stick by Tresca: its
                                  ///< state is open all the same
@@ -46,9 +49,9 @@ struct FrictionResult {
 };
 
 /// `q`: m * dim entries (m nodes), dim = 2 or 3; 1: there is no tangential part. `start`: a first
-/// guess of x, or empty. Without a bound (c = t = 0) this is solve_lcp on the normal part. Throws
-/// failure for entries that are not finite or sizes that do not fit; bad_input for a negative
-/// bound.
+/// guess of x, or better of FrictionResult::start, or empty. Without a bound (c = t = 0) this is
+/// solve_lcp on the normal part. Throws failure for entries that are not finite or sizes that do
+/// not fit; bad_input for a negative bound.
 FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
                               const FrictionBound &bound, const Vector &start = {},
                               const FrictionOptions &options = {});

@@ -68,6 +68,7 @@ struct Reduction {
   AffineOperators affine;
   ReducedBases bases;
   ReducedModel model;
+  Gcns collocation; ///< of MultiplierReduction::collocated
 };
 
 /// Collective. `problem`: on all ranks. Throws failure where there is no sample, or no contact in
@@ -89,6 +90,10 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
 /// `collocated` alone: the collocation nodes of a model that has none yet, into it. Serial.
 Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
                const SparseMatrix &w_product, const GcnsOptions &options);
+
+/// Contact with a rigid support, with the condensed operator: the training multipliers that
+/// `project` has left in the model become what a query starts from. Serial.
+void add_starts(ReducedModel &model, const Scene &scene);
 
 /// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
 /// functions that span the dual space, dual dofs x any number. Collective.

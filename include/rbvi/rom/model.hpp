@@ -88,7 +88,8 @@ struct SupportModel {
   CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
   bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
   Matrix lift;        ///< dual dofs x b.size(): B e_y, term by term
-  Matrix starts;    ///< m x P: coefficients of the training multipliers, where a query starts from
+  Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
+                    ///< operator their multipliers), where a query starts from
   Matrix starts_mu; ///< free parameters x P: where they are
 };
 

@@ -18,10 +18,11 @@ struct SupportAnswer {
   double residual =
       0; ///< largest relative violation of the laws, at all nodes where they are known
   int iterations = 0;
+  Vector start; ///< for a nearby query, as FrictionResult::start; empty where none is known
 };
 
-/// Starts from the multipliers of the training sample next to mu, or of the last query if that is
-/// nearer.
+/// Starts from what the training samples around mu predict (rom/local_fit.hpp), or from the last
+/// query if that is far nearer.
 class SupportSolver {
 public:
   /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
@@ -30,19 +31,24 @@ public:
   SupportAnswer solve(const Mu &all_parameters);
   /// What the elastic body says at mu; valid until the next call of either.
   BodyAtMu body_at(const Mu &all_parameters, const Vector &theta_b);
+  /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
+  /// operator.
+  Vector start_of(const Mu &all_parameters, const Vector &x);
 
 private:
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
   void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);
-  Vector nearest_start(const Mu &all_parameters) const;
+  Vector scaled(const Mu &all_parameters) const;
+  Vector start_at(const Vector &here) const;
   Vector term_coefficients(const Mu &all_parameters, const Vector &theta_b) const;
 
   const ReducedModel &model_;
   const Scene &scene_;
   std::optional<ReducedLaw> law_;
-  Vector last_x_;
-  Mu last_mu_; ///< all parameters
+  Vector width_;             ///< of the box
+  Matrix samples_;           ///< where the starts are, as parts of the box
+  Vector last_start_, last_; ///< of the last query, and where it was
   ReducedStiffness stiffness_;
 };
 

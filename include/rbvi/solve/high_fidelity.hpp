@@ -56,7 +56,7 @@ class ScaledPart;
 /// Where an active-set method starts.
 struct Start {
   std::vector<Index> active; ///< without friction
-  Vector lambda;             ///< with friction; empty: cold
+  Vector lambda;             ///< with friction: FrictionResult::start; empty: cold
 };
 
 /// Solves at many mu; remembers the active sets it has met (with friction the multipliers) and

@@ -10,6 +10,7 @@ namespace rbvi {
 struct MethodResult {
   Handle<Vec> u;
   Vector lambda;
+  Vector start; ///< for a nearby problem, as Start::lambda; empty: lambda itself
   std::vector<Index> active;
   int iterations = 0;
   int columns = 0;

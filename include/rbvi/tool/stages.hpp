@@ -15,8 +15,7 @@ struct StageRow {
 /// What a run knows at its end.
 struct OfflineResult {
   const SweepReport &sweep;
-  const AffineOperators &affine;
-  const ReducedBases &bases;
+  const Reduction &made;
 };
 
 /// One row per stage, in the order of the run. `result` null: as planned; what hangs on the
