@@ -84,6 +84,22 @@ Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &argume
   return outputs;
 }
 
+/// The largest violation of the laws of contact and friction at any node, relative.
+double violation(const Outputs &outputs) {
+  const double peak = outputs.peak_pressure.value_or(0);
+  const double friction = peak > 0 ? outputs.friction_violation.value_or(0) / peak : 0;
+  return std::max(outputs.kkt_residual.value_or(0), friction);
+}
+
+/// Says so where answers on a support break the laws: only a reduced law that is not mended does.
+void warn(const ReducedModel &model, double violation, std::ostream &out) {
+  constexpr double tolerated = 1e-6;
+  if (!model.support || violation <= tolerated) return;
+  out << "warning: the laws of contact and friction are violated by " << violation
+      << " of the largest pressure at some node: reduce again with -multiplier_exact yes, which "
+         "mends such answers\n";
+}
+
 void write_table(const OnlineArguments &arguments, const OnlineSolver &solver,
                  const Answers &answers, std::ostream &out) {
   std::ostringstream table;
@@ -104,6 +120,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   if (!arguments.out.empty()) write_table(arguments, solver, {{mu}, {outputs}}, out);
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs);
+  warn(solver.model(), violation(outputs), out);
   if (in_box(solver.scene().parameters, mu))
     print_expected_errors(out, solver.model());
   else
@@ -122,14 +139,16 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
                                        [&] { return answer(solver, mu, arguments, solution); }));
   write_table(arguments, solver, answers, out);
   if (arguments.out.empty()) return;
-  double seconds = 0, residual = 0;
+  double seconds = 0, residual = 0, worst = 0;
   for (const Outputs &row : answers.rows) {
     seconds += row.seconds.value_or(0);
     residual = std::max(residual, row.kkt_residual.value_or(0));
+    worst = std::max(worst, violation(row));
   }
   out << answers.rows.size() << " answers in " << arguments.out << ", "
       << 1e3 * seconds / static_cast<double>(answers.rows.size())
       << " ms each, largest kkt_residual " << residual << '\n';
+  warn(solver.model(), worst, out);
   print_expected_errors(out, solver.model());
 }
 

@@ -139,7 +139,8 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
 HighFidelity::~HighFidelity() = default;
 
 Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
-  if (solved_.empty()) return rough_start(ksp_.get(), problem_, op);
+  const bool columns_are_kept = part_ || (compliance_ && compliance_->count() > 0);
+  if (solved_.empty()) return columns_are_kept ? Start{} : rough_start(ksp_.get(), problem_, op);
   const ParameterSpace &space = problem_.scene().parameters;
   const Solved *nearest = nullptr;
   double best = 0;
@@ -171,7 +172,7 @@ MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
 
 HfSolution HighFidelity::solve(const Mu &mu) {
   const double start = MPI_Wtime();
-  if (!part_ && !solved_.empty() && options_.method == HfMethod::active_set &&
+  if (!part_ && solves_++ > 0 && options_.method == HfMethod::active_set &&
       !constant_stiffness(problem_.scene()) && ScaledPart::fits(problem_.scene()))
     part_ = std::make_unique<ScaledPart>(problem_);
   const Operators &op = problem_.assemble(mu);

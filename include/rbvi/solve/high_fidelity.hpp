@@ -88,6 +88,7 @@ private:
   std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
   std::unique_ptr<ScaledPart> part_;       ///< where a part of it is scaled, from the second mu on
   std::vector<Solved> solved_;
+  int solves_ = 0;
 };
 
 } // namespace rbvi

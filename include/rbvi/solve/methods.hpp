@@ -41,6 +41,8 @@ public:
   Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                            const std::vector<Index> &which);
 
+  Index count() const { return count_; } ///< of the columns that are kept
+
 private:
   void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs);
 
