@@ -1,6 +1,7 @@
 #include "rbvi/tool/stages.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/solve/scaled_part.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -63,6 +64,10 @@ StageRow interpolation_row(const ToolOptions &options, const OfflineResult *resu
 StageRow factorisation_row(const ToolOptions &options) {
   if (constant_stiffness(options.scene))
     return {"factorisations", "A does not depend on mu: one for the sweep, one condensed operator"};
+  if (options.hf.method == HfMethod::active_set && ScaledPart::fits(options.scene))
+    return {"factorisations",
+            "a part of A is scaled: three for the sweep of each group, the part is "
+            "eliminated once"};
   return {"factorisations", "A depends on mu: one for each solve"};
 }
 
