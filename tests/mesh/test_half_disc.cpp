@@ -1,10 +1,7 @@
 // The built-in meshes of one body on a rigid support: the half disc, and the block of the patch
 // test.
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/geometry.hpp"
-#include "rbvi/mesh/serial.hpp"
-
-#include <gtest/gtest.h>
+#include "triangles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,16 +13,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-std::size_t at(PetscInt i) {
-  return static_cast<std::size_t>(i);
-}
-
 double radius(const Point &x) {
   return std::hypot(x[0], x[1]);
-}
-
-double length(const Point &x, const Point &y) {
-  return std::hypot(x[0] - y[0], x[1] - y[1]);
 }
 
 Scene half_disc_scene(int edges) {
@@ -43,77 +32,6 @@ Scene one_block_scene() {
   scene.components = 2;
   scene.mesh = {"one_block", {}, {"sides", "top", "contact"}};
   return scene;
-}
-
-std::array<Point, 4> corners(const SerialMesh &mesh, int cell) {
-  std::array<Point, 4> points{};
-  for (std::size_t i = 0; i < 3; ++i)
-    points[i] = mesh.points[at(mesh.cells[at(cell)][i])];
-  return points;
-}
-
-std::vector<int> all_cells(const SerialMesh &mesh) {
-  std::vector<int> cells;
-  for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c)
-    cells.push_back(c);
-  return cells;
-}
-
-double area(const SerialMesh &mesh, const std::vector<int> &cells) {
-  double sum = 0;
-  for (const int cell : cells)
-    sum += simplex(2, corners(mesh, cell)).volume;
-  return sum;
-}
-
-double worst_aspect_ratio(const SerialMesh &mesh) {
-  double worst = 0;
-  for (const int cell : all_cells(mesh))
-    worst = std::max(worst, aspect_ratio(2, corners(mesh, cell)));
-  return worst;
-}
-
-using Edge = std::pair<int, int>;
-
-Edge sorted(int a, int b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
-std::map<Edge, std::vector<int>> cells_of_edges(const SerialMesh &mesh) {
-  std::map<Edge, std::vector<int>> found;
-  for (const int c : all_cells(mesh))
-    for (std::size_t i = 0; i < 3; ++i)
-      found[sorted(mesh.cells[at(c)][i], mesh.cells[at(c)][(i + 1) % 3])].push_back(c);
-  return found;
-}
-
-/// Nodes of a boundary by increasing x.
-std::vector<Point> nodes_of(const SerialMesh &mesh, const std::string &boundary) {
-  std::set<int> numbers;
-  for (const auto &facet : mesh.boundary.at(boundary))
-    numbers.insert(facet.begin(), facet.begin() + 2);
-  std::vector<Point> points;
-  for (const int v : numbers)
-    points.push_back(mesh.points[at(v)]);
-  std::sort(points.begin(), points.end());
-  return points;
-}
-
-/// Every facet of one cell alone is once in each boundary that `expected` names, and in no other;
-/// no other facet is in a boundary.
-template <class Expected> void expect_boundaries(const SerialMesh &mesh, Expected &&expected) {
-  std::map<Edge, std::multiset<std::string>> names;
-  for (const auto &[name, facets] : mesh.boundary)
-    for (const auto &facet : facets)
-      names[sorted(facet[0], facet[1])].insert(name);
-  std::size_t outer = 0;
-  for (const auto &[edge, neighbours] : cells_of_edges(mesh)) {
-    if (neighbours.size() != 1) continue;
-    ++outer;
-    const Point &x = mesh.points[at(edge.first)], &y = mesh.points[at(edge.second)];
-    EXPECT_EQ(names[edge], expected(x, y)) << x[0] << " " << x[1] << ", " << y[0] << " " << y[1];
-  }
-  EXPECT_EQ(names.size(), outer);
 }
 
 std::multiset<std::string> boundaries_of_half_disc(const Point &x, const Point &y) {
@@ -168,15 +86,8 @@ INSTANTIATE_TEST_SUITE_P(Edges, HalfDisc, testing::Values(8, 20, 100, 200, 316, 
 TEST_P(HalfDisc, IsWellShapedAndFillsThePolygon) {
   EXPECT_NO_THROW(check_mesh(mesh, "half disc"));
   EXPECT_LE(worst_aspect_ratio(mesh), 1.65);
-  double longest = 0, jump = 0;
-  for (const auto &[edge, neighbours] : cells_of_edges(mesh)) {
-    longest = std::max(longest, length(mesh.points[at(edge.first)], mesh.points[at(edge.second)]));
-    if (neighbours.size() != 2) continue;
-    const double a = area(mesh, {neighbours[0]}), b = area(mesh, {neighbours[1]});
-    jump = std::max({jump, a / b, b / a});
-  }
-  EXPECT_LT(longest, 0.22);
-  EXPECT_LE(jump, 2.5);
+  EXPECT_LT(range_of_edges(mesh).second, 0.22);
+  EXPECT_LE(largest_jump(mesh), 2.5);
   double polygon = 0; // of the origin and the edges of the arc
   for (const auto &facet : mesh.boundary.at("arc")) {
     const Point &x = mesh.points[at(facet[0])], &y = mesh.points[at(facet[1])];
@@ -188,7 +99,7 @@ TEST_P(HalfDisc, IsWellShapedAndFillsThePolygon) {
 
 TEST_P(HalfDisc, BoundariesAreCompleteAndExact) {
   expect_boundaries(mesh, boundaries_of_half_disc);
-  const std::vector<Point> arc = nodes_of(mesh, "arc"), top = nodes_of(mesh, "top");
+  const std::vector<Point> arc = points_of(mesh, "arc"), top = points_of(mesh, "top");
   for (const Point &x : arc)
     EXPECT_NEAR(radius(x), 1, 1e-15);
   for (const auto &nodes : {arc, top}) {
@@ -198,7 +109,7 @@ TEST_P(HalfDisc, BoundariesAreCompleteAndExact) {
 }
 
 TEST_P(HalfDisc, ContactArcHasEqualEdges) {
-  const std::vector<Point> contact = nodes_of(mesh, "contact");
+  const std::vector<Point> contact = points_of(mesh, "contact");
   ASSERT_EQ(contact.size(), at(GetParam() + 1));
   EXPECT_EQ(mesh.boundary.at("contact").size(), at(GetParam()));
   EXPECT_NEAR(std::atan2(contact.front()[1], contact.front()[0]), -5 * pi / 8, 1e-15);
@@ -333,7 +244,7 @@ TEST(OneBlock, FillsTheBlockWithMirroredSpacing) {
 }
 
 TEST(OneBlock, ContactEdgesHaveFourLengths) {
-  const std::vector<Point> contact = nodes_of(one_block(), "contact");
+  const std::vector<Point> contact = points_of(one_block(), "contact");
   ASSERT_EQ(contact.size(), 9u);
   std::vector<double> lengths;
   for (std::size_t i = 1; i <= 4; ++i)

@@ -1,19 +1,11 @@
 // Every test compares the mesh spread over all ranks with the same mesh made by one process.
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/geometry.hpp"
-#include "rbvi/mesh/mesh.hpp"
-
-#include <gtest/gtest.h>
+#include "triangles.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace rbvi {
 namespace {
-
-std::size_t at(PetscInt i) {
-  return static_cast<std::size_t>(i);
-}
 
 template <class T> std::vector<T> summed(std::vector<T> values, MPI_Datatype type) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), type, MPI_SUM,
@@ -31,10 +23,6 @@ double area(const Mesh &mesh, const std::string &region) {
     sum += simplex(2, corners).volume;
   }
   return summed(std::vector<double>{sum}, MPI_DOUBLE)[0];
-}
-
-double polygon_area(int sides, double radius) {
-  return 0.5 * sides * radius * radius * std::sin(2 * std::numbers::pi / sides);
 }
 
 class MakeMesh : public testing::TestWithParam<int> {
