@@ -9,12 +9,6 @@
 namespace rbvi {
 namespace {
 
-struct Case {
-  std::string arguments;
-  std::string part; ///< of the message
-  int status = 2;
-};
-
 /// Every file below `directory` with its bytes, but for those of commands that still run.
 std::vector<std::pair<std::string, std::string>> everything() {
   std::vector<std::pair<std::string, std::string>> files;
@@ -27,23 +21,10 @@ std::vector<std::pair<std::string, std::string>> everything() {
   return files;
 }
 
-void expect_refused(const Case &c, const Finished &run, int ranks) {
-  SCOPED_TRACE("rbvi " + c.arguments + ", " + std::to_string(ranks) + " ranks: status " +
-               std::to_string(run.status) + "\n" + run.err);
-  EXPECT_EQ(run.status, c.status);
-  EXPECT_TRUE(contains(run.err, c.part)) << "expected: " << c.part;
-  EXPECT_EQ(lines_with(run.err, "rbvi: "), 1);
-  for (const char *noise : {"PETSC ERROR", "WARNING!", "terminate called", "MPI_ABORT"})
-    EXPECT_FALSE(contains(run.err, noise));
-  if (ranks == 1) {
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1);
-  }
-}
-
 class BadInput : public InDirectory, public testing::WithParamInterface<int> {
 protected:
   /// Runs all, some at a time, and checks each; nothing in the directory may change.
-  void refuse(const std::vector<Case> &cases) const {
+  void refuse(const std::vector<Refusal> &cases) const {
     const auto files = everything();
     constexpr std::size_t at_once = 6;
     for (std::size_t begin = 0; begin < cases.size(); begin += at_once) {

@@ -41,10 +41,8 @@ struct Runs : InDirectory {
   }
 
   void offline(int ranks, const std::string &arguments) const {
-    const Finished run = shell(rbvi(ranks, "offline -case case.yaml " + arguments));
-    EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_EQ(run.err, "");
-    EXPECT_FALSE(contains(run.out, "\x1b")) << "escape sequences in a file";
+    const std::string out = output_of(rbvi(ranks, "offline -case case.yaml " + arguments));
+    EXPECT_FALSE(contains(out, "\x1b")) << "escape sequences in a file";
   }
 };
 
@@ -80,15 +78,6 @@ TEST_F(Runs, TheSameHybridModelFromOneAndTwoRanks) {
   }
 }
 
-/// The fields of a line of a table.
-std::vector<std::string> row_of(const std::string &table, const std::string &start) {
-  std::istringstream lines(table);
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(start)) return split(line, ',');
-  ADD_FAILURE() << "no row " << start << " in\n" << table;
-  return std::vector<std::string>(16, "0");
-}
-
 TEST_F(Runs, EveryEnrichmentIsReducedAndVerified) {
   struct Way {
     std::string options, row;
@@ -101,12 +90,10 @@ TEST_F(Runs, EveryEnrichmentIsReducedAndVerified) {
       fs::remove_all("run");
       offline(2, "-cone_ring 0 -load -60 -disc_map " + map + " -out run -pga_enrichment " +
                      way.options);
-      const Finished verify = shell(rbvi(2, "verify -out run"));
-      EXPECT_EQ(verify.status, 0) << verify.err;
-      EXPECT_EQ(verify.err, "");
+      output_of(rbvi(2, "verify -out run"));
       const std::string summary = slurp("run/verify/summary.csv");
       EXPECT_TRUE(summary.starts_with("model,N,S,R,free_modes,u_mean,")) << summary;
-      const std::vector<std::string> row = row_of(summary, way.row);
+      const std::vector<std::string> row = split(line_with(summary, way.row), ',');
       ASSERT_EQ(row.size(), 16U);
       EXPECT_EQ(row[2] == "0", way.options == "decorrelated") << summary;
       EXPECT_GT(parse_number(row[4], "free_modes"), 0) << summary;

@@ -1,9 +1,5 @@
 // Two bodies with both tools from outside: a whole run on 2 ranks, what it skips, and bad input.
-#include "rbvi/core/parameters.hpp"
 #include "run.hpp"
-
-#include <algorithm>
-#include <cmath>
 
 namespace rbvi {
 namespace {
@@ -18,47 +14,25 @@ struct TwoBodies : InDirectory {
   }
 };
 
-/// "name value" among the lines of a report.
-double value_of(const std::string &text, const std::string &name) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with(name + " "))
-      return parse_number(line.substr(line.find_last_of(' ') + 1), name);
-  ADD_FAILURE() << "no " << name << " in\n" << text;
-  return 0;
-}
-
 TEST_F(TwoBodies, AreReducedVerifiedAndAsked) {
-  const Finished offline = shell(rbvi(2, "offline -case disks.yaml -out run"));
-  ASSERT_EQ(offline.status, 0) << offline.err;
-  EXPECT_EQ(offline.err, "");
-  EXPECT_TRUE(contains(offline.out, "7 of 7 samples")) << offline.out;
-  EXPECT_TRUE(contains(offline.out, "7 solved by 2 groups of 1 rank")) << offline.out;
+  const std::string offline = output_of(rbvi(2, "offline -case disks.yaml -out run"));
+  EXPECT_TRUE(contains(offline, "7 of 7 samples")) << offline;
+  EXPECT_TRUE(contains(offline, "7 solved by 2 groups of 1 rank")) << offline;
+  const std::string verify = verified();
+  EXPECT_TRUE(contains(verify, "over 3 validation mu")) << verify;
+  EXPECT_TRUE(contains(verify, " 0 exceptions")) << verify;
 
-  const Finished verify = shell(rbvi(2, "verify -out run"));
-  ASSERT_EQ(verify.status, 0) << verify.err;
-  EXPECT_EQ(verify.err, "");
-  for (const char *table : {"errors", "summary", "error_map", "worst_pressure", "samples"})
-    EXPECT_TRUE(fs::exists(std::string("run/verify/") + table + ".csv")) << table;
-  EXPECT_TRUE(contains(verify.out, "over 3 validation mu")) << verify.out;
-  EXPECT_TRUE(contains(verify.out, " 0 exceptions")) << verify.out;
-
-  const Finished online = shell(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu"));
-  ASSERT_EQ(online.status, 0) << online.err;
-  const Finished solve = shell(rbvi(2, "solve -case disks.yaml -mu 0.85 -vtu full.vtu"));
-  ASSERT_EQ(solve.status, 0) << solve.err;
+  const std::string online = output_of(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu"));
+  const std::string solve = output_of(rbvi(2, "solve -case disks.yaml -mu 0.85 -vtu full.vtu"));
   for (const char *name : {"energy", "normal_force", "peak_pressure"}) {
-    const double truth = value_of(solve.out, name);
-    EXPECT_NEAR(value_of(online.out, name), truth, 0.02 * truth) << name;
+    const double truth = value_of(solve, name);
+    EXPECT_NEAR(value_of(online, name), truth, 0.02 * truth) << name;
   }
-  EXPECT_LE(value_of(online.out, "expected_error_u"), 1e-2);
+  EXPECT_LE(value_of(online, "expected_error_u"), 1e-2);
   for (const char *file : {"u.vtu", "full.vtu"})
     EXPECT_TRUE(contains(slurp(file), "NumberOfPoints=\"6130\" NumberOfCells=\"11014\"")) << file;
-  for (const char *file : {"u_contact.vtu", "full_contact.vtu"}) {
-    const std::string curve = slurp(file);
-    for (const char *field : {"pressure", "gap", "u"})
-      EXPECT_TRUE(contains(curve, "Name=\"" + std::string(field) + "\"")) << file << field;
-  }
+  for (const char *file : {"u_contact.vtu", "full_contact.vtu"})
+    expect_fields(file, {"pressure", "gap", "u"});
 
   const Finished model = shell(rbvi_online("run/model.h5"));
   EXPECT_TRUE(contains(model.out, "two_disks")) << model.out;
@@ -67,21 +41,12 @@ TEST_F(TwoBodies, AreReducedVerifiedAndAsked) {
   EXPECT_EQ(inspected.status, 0) << inspected.err;
 }
 
-/// The line of a stage in the table of stages.
-std::string stage_line(const std::string &table, const std::string &stage) {
-  std::istringstream lines(table);
-  for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("  " + stage + " ")) return line;
-  ADD_FAILURE() << "no stage " << stage << " in\n" << table;
-  return "";
-}
-
 TEST_F(TwoBodies, ThePlanSaysWhatIsSkipped) {
   const Finished plan = shell(rbvi(2, "offline -case disks.yaml -plan"));
   EXPECT_EQ(plan.status, 0) << plan.err;
   EXPECT_FALSE(fs::exists("run"));
   const auto expect_line = [&](const char *stage, const char *part) {
-    const std::string line = stage_line(plan.out, stage);
+    const std::string line = line_with(plan.out, "  " + std::string(stage) + " ");
     EXPECT_TRUE(contains(line, part)) << line;
   };
   expect_line("mesh", "two_quarter_discs");
@@ -114,33 +79,20 @@ TEST_F(TwoBodies, WithoutContactEverywhereThereIsNoModel) {
   EXPECT_FALSE(fs::exists("run/model.h5"));
 }
 
-/// One line and status 2, in turns on 1 and 2 ranks.
 TEST_F(TwoBodies, BadInputIsRefused) {
   const std::string disks = "offline -case disks.yaml -out run ";
-  const std::pair<std::string, std::string> cases[] = {
-      {disks + "-multiplier p2", "use one of p0, p1"},
-      {disks + "-integration exact", "use one of intersection, direct"},
-      {disks + "-young -1", "Young's modulus must be positive, not -1"},
-      {disks + "-young 0", "Young's modulus must be positive, not 0"},
-      {disks + "-poisson_ratio 0.5", "Poisson's ratio must lie between -1 and 0.5, not 0.5"},
-      {disks + "-poisson_ratio -1", "Poisson's ratio"},
-      {disks + "-indentation deep", "'deep': not a number"},
-      {disks + "-load -25", "unknown option -load"},
-      {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
-      {disks + "-hf_method vi", "bounds integrals over several: use active_set or uzawa"},
-      {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}};
-  int ranks = 1;
-  for (const auto &[arguments, part] : cases) {
-    ranks = 3 - ranks;
-    const Finished run = shell(rbvi(ranks, arguments));
-    SCOPED_TRACE(arguments + ": status " + std::to_string(run.status) + "\n" + run.err);
-    EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(lines_with(run.err, "rbvi: "), 1);
-    EXPECT_TRUE(contains(run.err, part)) << "expected: " << part;
-    EXPECT_FALSE(contains(run.err, "PETSC ERROR"));
-    EXPECT_TRUE(ranks > 1 || std::count(run.err.begin(), run.err.end(), '\n') == 1);
-    EXPECT_FALSE(fs::exists("run"));
-  }
+  expect_all_refused(
+      {{disks + "-multiplier p2", "use one of p0, p1"},
+       {disks + "-integration exact", "use one of intersection, direct"},
+       {disks + "-young -1", "Young's modulus must be positive, not -1"},
+       {disks + "-young 0", "Young's modulus must be positive, not 0"},
+       {disks + "-poisson_ratio 0.5", "Poisson's ratio must lie between -1 and 0.5, not 0.5"},
+       {disks + "-poisson_ratio -1", "Poisson's ratio"},
+       {disks + "-indentation deep", "'deep': not a number"},
+       {disks + "-load -25", "unknown option -load"},
+       {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
+       {disks + "-hf_method vi", "bounds integrals over several: use active_set or uzawa"},
+       {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}});
 }
 
 /// A radius for which the map leaves no curve is one failed sample, the others go on.
