@@ -2,6 +2,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/nonnegative_qp.hpp"
 
+#include "columns.hpp"
+#include "half_plane.hpp"
 #include "random_matrix.hpp"
 
 #include <gtest/gtest.h>
@@ -83,21 +85,15 @@ CollocatedProblem random_problem(Random &random, Index generators, Index modes, 
           {}};
 }
 
-/// Like the compliance of an elastic half-plane of m nodes, and a round punch pushed along it.
+/// A round punch on a half-plane of m nodes, pushed along it.
 CollocatedProblem punch(Index m, double radius, double slide, double coupling = 0.2) {
   const double size = static_cast<double>(m);
-  CollocatedProblem p{Matrix::Zero(2 * m, 2 * m),
+  CollocatedProblem p{half_plane(m, 2, coupling),
                       Vector(2 * m),
                       Matrix::Identity(m, m),
                       Matrix::Identity(m, m),
                       {}};
   for (Index i = 0; i < m; ++i) {
-    for (Index j = 0; j < m; ++j) {
-      const double distance = static_cast<double>(i - j);
-      p.h(i, j) = std::log(3 * size / (std::abs(distance) + 0.25)) / size;
-      p.h(m + i, m + j) = p.h(i, j);
-      if (i != j) p.h(i, m + j) = p.h(m + j, i) = std::copysign(coupling / size, distance);
-    }
     const double u = (static_cast<double>(i) - 0.45 * size) / radius;
     p.q[i] = u * u - 1;
     p.q[m + i] = slide + 0.2 * std::sin(u);
@@ -181,10 +177,7 @@ TEST(CollocatedFriction, NodalBasesGiveTheFullProblem) {
         if (bound.coefficient == 0 && bound.threshold == 0) continue;
         CollocatedProblem p = punch(40, radius, slide);
         p.bound = bound;
-        const ColumnSource columns = [&p](const std::vector<Index> &which) {
-          return Matrix(p.h(Eigen::all, which));
-        };
-        const FrictionResult full = solve_friction(columns, p.q, 2, bound);
+        const FrictionResult full = solve_friction(columns_of(p.h), p.q, 2, bound);
         ASSERT_TRUE(full.converged) << full.reason;
         EXPECT_LT(distance(expect_solved(p).x, full.x), 1e-10);
       }
@@ -270,10 +263,7 @@ TEST(CollocatedFriction, SteepDependenceOnTheBoundsAtTheEdgeOfContact) {
   const FrictionBound bound{0.2, 0, false};
   for (Index k = 0; k < generators; ++k) {
     const CollocatedProblem p = punch(m, 4 + 2 * static_cast<double>(k), 0.3, 0.8);
-    const ColumnSource columns = [&p](const std::vector<Index> &which) {
-      return Matrix(p.h(Eigen::all, which));
-    };
-    const FrictionResult truth = solve_friction(columns, p.q, 2, bound);
+    const FrictionResult truth = solve_friction(columns_of(p.h), p.q, 2, bound);
     ASSERT_TRUE(truth.converged) << truth.reason;
     pressures.col(k) = truth.x.head(m);
     tractions.col(k) = truth.x.tail(m);

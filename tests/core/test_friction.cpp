@@ -1,139 +1,9 @@
-#include "rbvi/core/error.hpp"
-#include "rbvi/core/friction.hpp"
+// Contact with friction: the answers, against the laws, other solvers and what is known by hand.
+#include "friction_problems.hpp"
 
-#include "random_matrix.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
-#include <set>
 
 using namespace rbvi;
-
-namespace {
-
-struct Problem {
-  Matrix h;
-  Vector q;
-  int dim = 2;
-
-  Index nodes() const { return q.size() / dim; }
-  Index tangent(Index i) const { return nodes() + i * (dim - 1); }
-};
-
-/// Hands out columns of a dense H and fails the test when one is asked for twice.
-ColumnSource once(const Matrix &h, std::set<Index> &given) {
-  return [&h, &given](const std::vector<Index> &which) {
-    for (const Index i : which)
-      EXPECT_TRUE(given.insert(i).second) << "column " << i << " asked for twice";
-    return Matrix(h(Eigen::all, which));
-  };
-}
-
-double bound_of(const FrictionBound &bound, double normal) {
-  return bound.coefficient * normal + (normal > 0 || !bound.only_in_contact ? bound.threshold : 0);
-}
-
-Vector projected(const Vector &y, double radius) {
-  return y.norm() > radius ? Vector(y * (radius / y.norm())) : y;
-}
-
-/// The definition: how far x is from the projections of x - rho w, rho = 1 / H_ii, in the scaling
-/// of a unit diagonal and relative to the largest x or the terms of the row.
-double violation(const Problem &p, const FrictionBound &bound, const Vector &x) {
-  const Vector w = p.h * x + p.q, terms = p.h.cwiseAbs() * x.cwiseAbs() + p.q.cwiseAbs();
-  const Vector root = p.h.diagonal().cwiseSqrt();
-  const double largest = root.cwiseProduct(x).cwiseAbs().maxCoeff();
-  double worst = 0;
-  const auto add = [&](Index j, double distance) {
-    if (distance > 0)
-      worst = std::max(worst, distance * root[j] / std::max(largest, terms[j] / root[j]));
-  };
-  for (Index i = 0; i < p.nodes(); ++i) {
-    if (x[i] < 0) return std::numeric_limits<double>::infinity();
-    add(i, std::abs(x[i] - std::max(0.0, x[i] - w[i] / p.h(i, i))));
-    const Index t = p.tangent(i), count = p.dim - 1;
-    const Vector now = x.segment(t, count), y = now - w.segment(t, count) / p.h(t, t);
-    add(t, (now - projected(y, bound_of(bound, x[i]))).norm());
-  }
-  return worst;
-}
-
-FrictionResult expect_solved(const Problem &p, const FrictionBound &bound,
-                             const Vector &start = {}) {
-  std::set<Index> given;
-  const FrictionResult result = solve_friction(once(p.h, given), p.q, p.dim, bound, start);
-  EXPECT_TRUE(result.converged) << result.reason;
-  EXPECT_LT(violation(p, bound, result.x), 1e-12);
-  EXPECT_LT(result.residual, 1e-12);
-  EXPECT_EQ(result.columns, static_cast<int>(given.size()));
-  EXPECT_LE((result.w - (p.h * result.x + p.q)).norm(),
-            1e-12 * (p.q.norm() + (p.h * result.x).norm()));
-  EXPECT_TRUE(std::is_sorted(result.active.begin(), result.active.end()));
-  for (Index i = 0; i < p.nodes(); ++i) {
-    const bool listed = std::binary_search(result.active.begin(), result.active.end(), i);
-    EXPECT_EQ(listed, result.x[i] > 0);
-    EXPECT_EQ(listed, result.states[static_cast<std::size_t>(i)] != NodeState::open);
-  }
-  return result;
-}
-
-const std::vector<FrictionBound> all_bounds{{0, 0, false},   {0.3, 0, false}, {0.8, 0, false},
-                                            {0, 0.2, false}, {0, 0.2, true},  {0.2, 0.1, false},
-                                            {0.2, 0.1, true}};
-
-Matrix random_positive(Random &random, Index n, double least) {
-  const Matrix b = random.matrix(n, n);
-  return b * b.transpose() + least * Matrix::Identity(n, n);
-}
-
-/// Condition number 1e8, eigenvectors at random.
-Matrix ill_conditioned(Random &random, Index n) {
-  const Matrix orthogonal = random.matrix(n, n).householderQr().householderQ();
-  const Vector spectrum = Vector::NullaryExpr(n, [&](Index i) {
-    return std::pow(10, -8 * static_cast<double>(i) / static_cast<double>(n - 1));
-  });
-  const Matrix h = orthogonal * spectrum.asDiagonal() * orthogonal.transpose();
-  return 0.5 * (h + h.transpose());
-}
-
-/// Like the compliance of an elastic half-plane: a logarithmic kernel in both directions, and a
-/// pressure moves the surface on its left and right in opposite tangential directions.
-Matrix half_plane(Index nodes, int dim, double coupling) {
-  const double size = static_cast<double>(nodes);
-  Matrix h = Matrix::Zero(nodes * dim, nodes * dim);
-  for (Index i = 0; i < nodes; ++i)
-    for (Index j = 0; j < nodes; ++j) {
-      const double distance = static_cast<double>(i - j);
-      const double kernel = std::log(3 * size / (std::abs(distance) + 0.25)) / size;
-      const Index ti = nodes + i * (dim - 1), tj = nodes + j * (dim - 1);
-      h(i, j) = kernel;
-      for (int k = 0; k < dim - 1; ++k)
-        h(ti + k, tj + k) = kernel;
-      if (i == j) continue;
-      h(i, tj) = coupling * std::copysign(1 / size, distance);
-      h(tj, i) = h(i, tj);
-    }
-  return h;
-}
-
-/// A round punch on it, of half-width `radius` in nodes where it would cut the surface, pushed by
-/// `slide` along it.
-Problem punch(Index nodes, int dim, double radius, double slide) {
-  Problem p{half_plane(nodes, dim, 0.2), Vector::Zero(nodes * dim), dim};
-  for (Index i = 0; i < nodes; ++i) {
-    const double u = (static_cast<double>(i) - 0.45 * static_cast<double>(nodes)) / radius;
-    p.q[i] = u * u - 1;
-    for (int k = 0; k < dim - 1; ++k)
-      p.q[p.tangent(i) + k] = slide * (1 - 0.5 * k) + 0.2 * slide * std::sin(u + k);
-  }
-  return p;
-}
-
-} // namespace
 
 TEST(Friction, LawsHoldForRandomProblems) {
   Random random(1);
@@ -141,7 +11,7 @@ TEST(Friction, LawsHoldForRandomProblems) {
     for (const int dim : {2, 3}) {
       const Index n = dim * (1 + k % 15);
       const double least = std::pow(10, -(k % 4) * 2);
-      const Problem p{random_positive(random, n, least), random.vector(n), dim};
+      const FrictionProblem p{random_positive(random, n, least), random.vector(n), dim};
       for (const FrictionBound &bound : all_bounds)
         // Where the bound jumps at the first pressure, a problem need not have a solution.
         if (!bound.only_in_contact) expect_solved(p, bound);
@@ -152,7 +22,7 @@ TEST(Friction, LawsHoldForAPunchOnAHalfPlane) {
   for (const int dim : {2, 3})
     for (const double slide : {0.01, 0.05, 0.2, 1.0})
       for (const FrictionBound &bound : all_bounds) {
-        const Problem p = punch(41, dim, 12, slide);
+        const FrictionProblem p = punch(41, dim, 12, slide);
         const FrictionResult result = expect_solved(p, bound);
         EXPECT_EQ(result.backup_steps, 0);
         EXPECT_LT(result.iterations, 25);
@@ -164,7 +34,7 @@ TEST(Friction, LawsHoldForIllConditionedMatrices) {
   for (int k = 0; k < 40; ++k)
     for (const int dim : {2, 3}) {
       const Index n = dim * (2 + k % 8);
-      const Problem p{ill_conditioned(random, n), random.vector(n), dim};
+      const FrictionProblem p{ill_conditioned(random, n), random.vector(n), dim};
       for (const FrictionBound &bound :
            {FrictionBound{0.1, 0, false}, FrictionBound{0, 0.1, false}})
         expect_solved(p, bound);
@@ -174,7 +44,7 @@ TEST(Friction, LawsHoldForIllConditionedMatrices) {
 namespace {
 
 /// The stated fixed point, repeated with a fixed small rho until nothing moves.
-Vector uzawa(const Problem &p, const FrictionBound &bound) {
+Vector uzawa(const FrictionProblem &p, const FrictionBound &bound) {
   const double rho = 0.9 / p.h.operatorNorm();
   Vector x = Vector::Zero(p.q.size());
   for (int k = 0; k < 100000; ++k) {
@@ -192,7 +62,7 @@ Vector uzawa(const Problem &p, const FrictionBound &bound) {
 
 /// Solves for one state per node (0 open, 1 stick, 2 and 3 slip, to either side; the states of
 /// Tresca in open nodes are 4 stick, 5 and 6 slip) and returns x if it has these states. d = 2.
-std::optional<Vector> solution_of(const Problem &p, const FrictionBound &bound,
+std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound &bound,
                                   const std::vector<int> &states) {
   const Index m = p.nodes(), n = 2 * m;
   Matrix a = Matrix::Identity(n, n);
@@ -220,7 +90,7 @@ std::optional<Vector> solution_of(const Problem &p, const FrictionBound &bound,
   return violation(p, bound, x) < 1e-11 ? std::optional(x) : std::nullopt;
 }
 
-std::vector<Vector> all_solutions(const Problem &p, const FrictionBound &bound) {
+std::vector<Vector> all_solutions(const FrictionProblem &p, const FrictionBound &bound) {
   std::vector<Vector> result;
   const int kinds = bound.threshold > 0 && !bound.only_in_contact ? 7 : 4;
   std::vector<int> states(static_cast<std::size_t>(p.nodes()), 0);
@@ -243,8 +113,8 @@ TEST(Friction, AgreesWithTheFixedPointOfItsDefinition) {
            {FrictionBound{0.15, 0, false}, FrictionBound{0, 0.2, false},
             FrictionBound{0.1, 0.1, false}}) {
         const Index n = dim * (1 + k);
-        const Problem p{random_positive(random, n, 0.5 * static_cast<double>(n)),
-                        static_cast<double>(n) * random.vector(n), dim};
+        const FrictionProblem p{random_positive(random, n, 0.5 * static_cast<double>(n)),
+                                static_cast<double>(n) * random.vector(n), dim};
         const Vector expected = uzawa(p, bound);
         ASSERT_LT(violation(p, bound, expected), 1e-12);
         EXPECT_LT((expect_solved(p, bound).x - expected).norm(), 1e-10 * (1 + expected.norm()));
@@ -256,7 +126,7 @@ TEST(Friction, FindsOneOfTheSolutionsThatEnumerationFinds) {
   int without_solution = 0;
   for (int k = 0; k < 300; ++k) {
     const Index n = 2 * (1 + k % 3);
-    const Problem p{random_positive(random, n, 1e-2), random.vector(n), 2};
+    const FrictionProblem p{random_positive(random, n, 1e-2), random.vector(n), 2};
     for (const FrictionBound &bound : all_bounds) {
       const std::vector<Vector> solutions = all_solutions(p, bound);
       std::set<Index> given;
@@ -278,7 +148,7 @@ TEST(Friction, WithoutABoundItIsTheNormalProblem) {
   for (int k = 0; k < 20; ++k)
     for (const int dim : {2, 3}) {
       const Index m = 1 + k, n = dim * m;
-      const Problem p{random_positive(random, n, 1e-2), random.vector(n), dim};
+      const FrictionProblem p{random_positive(random, n, 1e-2), random.vector(n), dim};
       const FrictionResult result = expect_solved(p, {});
       const Matrix normal = p.h.topLeftCorner(m, m);
       std::set<Index> given;
@@ -293,30 +163,9 @@ TEST(Friction, WithoutABoundItIsTheNormalProblem) {
     }
 }
 
-TEST(Friction, WithoutABoundNoTangentialColumnIsAskedFor) {
-  const Problem p = punch(41, 3, 12, 0.1);
-  std::set<Index> given;
-  ASSERT_TRUE(solve_friction(once(p.h, given), p.q, 3, {}).converged);
-  EXPECT_LT(*given.rbegin(), p.nodes());
-}
-
-TEST(Friction, OnlyColumnsOfNodesThatTouchAreAskedFor) {
-  const Problem p = punch(81, 2, 20, 0.1);
-  const FrictionBound coulomb{0.3, 0, false};
-  const FrictionResult cold = expect_solved(p, coulomb);
-  EXPECT_LT(cold.columns, 100);
-  const FrictionResult warm = expect_solved(p, coulomb, cold.x);
-  EXPECT_EQ(warm.columns, 2 * static_cast<int>(warm.active.size()));
-  // Nothing touches: nothing is asked for, unless tangential forces act across the gap.
-  const Problem apart{p.h, Vector::Ones(162), 2};
-  EXPECT_EQ(expect_solved(apart, coulomb).columns, 0);
-  EXPECT_EQ(expect_solved(apart, {0, 0.1, true}).columns, 0);
-  EXPECT_EQ(expect_solved(apart, {0, 0.1, false}).columns, 81);
-}
-
 TEST(Friction, AHugeCoefficientSticks) {
   for (const int dim : {2, 3}) {
-    const Problem p = punch(41, dim, 12, 0.05);
+    const FrictionProblem p = punch(41, dim, 12, 0.05);
     const FrictionResult result = expect_solved(p, {1e3, 0, false});
     std::vector<Index> entries = result.active;
     for (const Index i : result.active) {
@@ -335,7 +184,7 @@ TEST(Friction, AHugeCoefficientSticks) {
 
 TEST(Friction, ThresholdsFromZeroToHuge) {
   for (const int dim : {2, 3}) {
-    const Problem p = punch(41, dim, 12, 0.05);
+    const FrictionProblem p = punch(41, dim, 12, 0.05);
     const Vector frictionless = expect_solved(p, {}).x;
     EXPECT_LT((expect_solved(p, {0, 1e-9, false}).x - frictionless).norm(),
               1e-6 * frictionless.norm());
@@ -359,7 +208,7 @@ TEST(Friction, OpenNodesOfATrescaProblemCanCarryTangentialForces) {
   Random random(6);
   for (const int dim : {2, 3}) {
     const Index m = 6, n = dim * m;
-    Problem p{random_positive(random, n, 0.1), random.vector(n), dim};
+    FrictionProblem p{random_positive(random, n, 0.1), random.vector(n), dim};
     p.h.topRightCorner(m, n - m).setZero();
     p.h.bottomLeftCorner(n - m, m).setZero();
     p.q.head(m).setOnes();
@@ -377,7 +226,7 @@ TEST(Friction, OpenNodesOfATrescaProblemCanCarryTangentialForces) {
 
 TEST(Friction, OneNodeByHand) {
   // x_n = 2; without a bound x_tau would be -1.
-  const Problem p{Matrix::Identity(2, 2), Vector{{-2, 1}}, 2};
+  const FrictionProblem p{Matrix::Identity(2, 2), Vector{{-2, 1}}, 2};
   const FrictionResult slip = expect_solved(p, {0.25, 0, false});
   EXPECT_EQ(slip.x, (Vector{{2, -0.5}}));
   EXPECT_EQ(slip.w, (Vector{{0, 0.5}}));
@@ -389,7 +238,7 @@ TEST(Friction, OneNodeByHand) {
   EXPECT_EQ(expect_solved(p, {0.5, 0, false}).x, (Vector{{2, -1}}));
   EXPECT_EQ(expect_solved(p, {0, 0.25, false}).x, (Vector{{2, -0.25}}));
   // In three dimensions the force opposes the slip (3, 4) / 5.
-  const Problem disk{Matrix::Identity(3, 3), Vector{{-1, 3, 4}}, 3};
+  const FrictionProblem disk{Matrix::Identity(3, 3), Vector{{-1, 3, 4}}, 3};
   EXPECT_LT((expect_solved(disk, {0.5, 0, false}).x - Vector{{1, -0.3, -0.4}}).norm(), 1e-14);
   EXPECT_TRUE(solve_friction({}, Vector(), 2, {0.3, 0, false}).converged);
 }
@@ -403,7 +252,7 @@ TEST(Friction, NodesOnTheEdgeBetweenTwoStatesDoNotMakeItCycle) {
       const Matrix h = random_positive(random, n, 1);
       const double coefficient = 0.2;
       Vector x = Vector::Zero(n), w = Vector::Zero(n);
-      Problem p{h, Vector::Zero(n), dim};
+      FrictionProblem p{h, Vector::Zero(n), dim};
       for (Index i = 0; i < m; ++i) {
         if (i % 3 == 0) continue;
         x[i] = 1.5 + random();
@@ -424,7 +273,7 @@ TEST(Friction, DoesNotDependOnUnits) {
   for (const int dim : {2, 3})
     for (int k = 0; k < 10; ++k) {
       const Index m = 10, n = dim * m;
-      const Problem p{random_positive(random, n, 0.1), random.vector(n), dim};
+      const FrictionProblem p{random_positive(random, n, 0.1), random.vector(n), dim};
       Vector d(n);
       for (Index i = 0; i < m; ++i)
         d[i] = std::pow(10, 6 * random());
@@ -432,127 +281,13 @@ TEST(Friction, DoesNotDependOnUnits) {
         d.segment(p.tangent(i), dim - 1).setConstant(d[i]);
       const FrictionBound coulomb{0.3, 0, false};
       const FrictionResult plain = expect_solved(p, coulomb);
-      const Problem scaled{d.asDiagonal() * p.h * d.asDiagonal(), d.cwiseProduct(p.q), dim};
+      const FrictionProblem scaled{d.asDiagonal() * p.h * d.asDiagonal(), d.cwiseProduct(p.q), dim};
       const FrictionResult result = expect_solved(scaled, coulomb);
       EXPECT_EQ(result.states, plain.states);
       EXPECT_EQ(result.iterations, plain.iterations);
       EXPECT_LT((result.x.cwiseProduct(d) - plain.x).norm(), 1e-11 * plain.x.norm());
-      const Problem tiny{1e-200 * p.h, 1e-100 * p.q, dim};
+      const FrictionProblem tiny{1e-200 * p.h, 1e-100 * p.q, dim};
       std::set<Index> given;
       EXPECT_EQ(solve_friction(once(tiny.h, given), tiny.q, dim, coulomb).states, plain.states);
     }
-}
-
-TEST(Friction, StartsWhereItIsTold) {
-  for (const int dim : {2, 3})
-    for (const FrictionBound &bound : all_bounds) {
-      const Problem p = punch(61, dim, 20, 0.05);
-      const FrictionResult cold = expect_solved(p, bound);
-      EXPECT_EQ(expect_solved(p, bound, cold.x).iterations, 1);
-      const FrictionResult warm = expect_solved(punch(61, dim, 20.5, 0.051), bound, cold.x);
-      EXPECT_LT(warm.iterations, cold.iterations);
-      // Not a start at all: pulling pressures, forces far beyond their bounds.
-      Vector wild = Random(9).vector(61 * dim);
-      EXPECT_LT((expect_solved(p, bound, wild).x - cold.x).norm(), 1e-10 * cold.x.norm());
-    }
-}
-
-TEST(Friction, TheSafeguardTakesOverWhereNewtonCycles) {
-  for (const int dim : {2, 3}) {
-    Random random(10);
-    int taken_over = 0;
-    for (int k = 0; k < 60; ++k) {
-      const Index n = dim * (3 + k % 12);
-      const Problem p{ill_conditioned(random, n), random.vector(n), dim};
-      for (const FrictionBound &bound :
-           {FrictionBound{0, 0.3, false}, FrictionBound{0.2, 0, false}})
-        taken_over += expect_solved(p, bound).backup_steps > 0;
-    }
-    EXPECT_GT(taken_over, 10);
-  }
-}
-
-TEST(Friction, NeverCallsAWrongAnswerConverged) {
-  Random random(11);
-  int unsolved = 0;
-  for (int k = 0; k < 60; ++k)
-    for (const int dim : {2, 3}) {
-      const Index n = dim * (3 + k % 12);
-      const Problem p{ill_conditioned(random, n), random.vector(n), dim};
-      const FrictionBound hard{1, 0.1, false};
-      std::set<Index> given;
-      const FrictionResult result =
-          solve_friction(once(p.h, given), p.q, dim, hard, {}, {.max_iterations = 60});
-      unsolved += !result.converged;
-      EXPECT_EQ(result.converged, violation(p, hard, result.x) < 1e-12) << result.reason;
-      EXPECT_EQ(result.converged, result.residual < 1e-12) << result.residual;
-    }
-  EXPECT_GT(unsolved, 10);
-}
-
-TEST(Friction, SaysWhyItStopped) {
-  const Problem p = punch(41, 2, 12, 0.05);
-  std::set<Index> given;
-  const FrictionResult stopped =
-      solve_friction(once(p.h, given), p.q, 2, {0.3, 0, false}, {}, {.max_iterations = 2});
-  EXPECT_FALSE(stopped.converged);
-  EXPECT_NE(stopped.reason.find("raise the limit"), std::string::npos) << stopped.reason;
-  EXPECT_NE(stopped.reason.find("start closer"), std::string::npos) << stopped.reason;
-  EXPECT_GT(stopped.residual, 1e-6);
-  EXPECT_EQ(stopped.iterations, 2);
-  EXPECT_EQ(stopped.x.size(), p.q.size());
-
-  for (const int dim : {2, 3})
-    for (const FrictionBound &bound : {FrictionBound{0.3, 0, false}, FrictionBound{0, 1, false}}) {
-      Matrix h = Matrix::Identity(dim, dim);
-      h(0, 0) = -1;
-      given.clear();
-      const FrictionResult indefinite =
-          solve_friction(once(h, given), -Vector::Ones(dim), dim, bound);
-      EXPECT_FALSE(indefinite.converged);
-      EXPECT_NE(indefinite.reason.find("not positive definite"), std::string::npos);
-      Matrix twice = Matrix::Ones(2 * dim, 2 * dim) + 0.5 * Matrix::Identity(2 * dim, 2 * dim);
-      twice(0, 1) = twice(1, 0) = 2;
-      given.clear();
-      const FrictionResult dependent =
-          solve_friction(once(twice, given), -Vector::Ones(2 * dim), dim, bound);
-      EXPECT_FALSE(dependent.reason.empty());
-    }
-}
-
-TEST(Friction, RefusesBadInput) {
-  const Problem p = punch(5, 2, 2, 0.1);
-  std::set<Index> given;
-  const ColumnSource columns = [&](const std::vector<Index> &which) {
-    return Matrix(p.h(Eigen::all, which));
-  };
-  const FrictionBound coulomb{0.3, 0, false};
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto status = [&](const ColumnSource &source, const Vector &q, int dim,
-                          const FrictionBound &bound, const Vector &start = {}) {
-    try {
-      solve_friction(source, q, dim, bound, start);
-    } catch (const Error &error) {
-      return error.status();
-    }
-    return Status::done;
-  };
-  EXPECT_EQ(status(columns, p.q, 2, coulomb), Status::done);
-  EXPECT_EQ(status(columns, p.q, 2, {-0.1, 0, false}), Status::bad_input);
-  EXPECT_EQ(status(columns, p.q, 2, {0, -0.1, false}), Status::bad_input);
-  EXPECT_EQ(status(columns, p.q, 2, {nan, 0, false}), Status::bad_input);
-  EXPECT_EQ(status(columns, p.q, 4, coulomb), Status::failed);
-  EXPECT_EQ(status(columns, p.q, 3, coulomb), Status::failed);
-  EXPECT_EQ(status(columns, p.q, 2, coulomb, Vector::Zero(3)), Status::failed);
-  EXPECT_EQ(status(columns, p.q, 2, coulomb, Vector::Constant(10, nan)), Status::failed);
-  EXPECT_EQ(status(columns, Vector::Constant(10, nan), 2, coulomb), Status::failed);
-  const ColumnSource narrow = [](const std::vector<Index> &) {
-    return Matrix(Matrix::Ones(10, 0));
-  };
-  const ColumnSource broken = [&](const std::vector<Index> &which) {
-    return Matrix(Matrix::Constant(10, static_cast<Index>(which.size()), nan));
-  };
-  for (const FrictionBound &bound : {coulomb, FrictionBound{}})
-    for (const ColumnSource &source : {narrow, broken})
-      EXPECT_EQ(status(source, p.q, 2, bound), Status::failed);
 }

@@ -2,6 +2,7 @@
 #include "rbvi/core/general_lcp.hpp"
 #include "rbvi/core/lcp.hpp"
 
+#include "columns.hpp"
 #include "random_matrix.hpp"
 
 #include <gtest/gtest.h>
@@ -165,10 +166,7 @@ TEST(GeneralLcp, AgreesWithTheSymmetricSolver) {
     const Index n = 1 + k;
     const Matrix b = random.matrix(n, n), h = b * b.transpose() + 1e-2 * Matrix::Identity(n, n);
     const Vector q = random.vector(n);
-    const auto columns = [&](const std::vector<Index> &which) {
-      return Matrix(h(Eigen::all, which));
-    };
-    const LcpResult expected = solve_lcp(columns, q, {});
+    const LcpResult expected = solve_lcp(columns_of(h), q, {});
     const GeneralLcpResult result = expect_solved(h, q);
     EXPECT_EQ(result.active, expected.active);
     EXPECT_LT((result.z - expected.x).norm(), 1e-11 * (1 + expected.x.norm()));

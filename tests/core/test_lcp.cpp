@@ -1,6 +1,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/lcp.hpp"
 
+#include "columns.hpp"
 #include "random_matrix.hpp"
 
 #include <gtest/gtest.h>
@@ -12,17 +13,6 @@
 using namespace rbvi;
 
 namespace {
-
-;
-
-/// Hands out columns of a dense H and fails the test when one is asked for twice.
-ColumnSource once(const Matrix &h, std::set<Index> &given) {
-  return [&h, &given](const std::vector<Index> &which) {
-    for (const Index i : which)
-      EXPECT_TRUE(given.insert(i).second) << "column " << i << " asked for twice";
-    return Matrix(h(Eigen::all, which));
-  };
-}
 
 /// Largest violation relative to the terms of its own row (x: in the scaling of unit diagonal).
 double kkt_violation(const Matrix &h, const Vector &q, const Vector &x) {
@@ -195,9 +185,7 @@ TEST(Lcp, SaysWhatIsWrong) {
   EXPECT_FALSE(indefinite.converged);
   EXPECT_NE(indefinite.reason.find("not positive definite"), std::string::npos);
 
-  const auto columns = [&](const std::vector<Index> &which) {
-    return Matrix(h(Eigen::all, which));
-  };
+  const ColumnSource columns = columns_of(h);
   const auto short_columns = [](const std::vector<Index> &) { return Matrix(Matrix::Ones(2, 1)); };
   EXPECT_THROW(solve_lcp(short_columns, -Vector::Ones(2), {}), Error);
   EXPECT_THROW(solve_lcp(columns, -Vector::Ones(2), {2}), Error);

@@ -1,6 +1,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/least_squares_friction.hpp"
 
+#include "columns.hpp"
+#include "half_plane.hpp"
 #include "random_matrix.hpp"
 
 #include <gtest/gtest.h>
@@ -15,22 +17,10 @@ namespace {
 const std::vector<FrictionBound> all_bounds{
     {0, 0, false}, {0.3, 0, false}, {0, 0.1, false}, {0, 0.01, true}, {0.2, 0.1, false}};
 
-/// All nodes of a half-plane, symmetric about its middle.
+/// All nodes of a half-plane, and gaps that are symmetric about its middle.
 struct HalfPlane {
-  Index nodes = 0;
-  Matrix h;
-
-  /// A logarithmic kernel in both directions; a pressure moves the surface on its left and right in
-  /// opposite tangential directions.
-  explicit HalfPlane(Index count) : nodes(count), h(Matrix::Zero(2 * count, 2 * count)) {
-    const double size = static_cast<double>(nodes);
-    for (Index i = 0; i < nodes; ++i)
-      for (Index j = 0; j < nodes; ++j) {
-        const double distance = static_cast<double>(i - j);
-        h(i, j) = h(nodes + i, nodes + j) = std::log(3 * size / (std::abs(distance) + 0.25)) / size;
-        if (i != j) h(i, nodes + j) = h(nodes + j, i) = std::copysign(0.2 / size, distance);
-      }
-  }
+  Index nodes;
+  Matrix h = half_plane(nodes);
 
   /// A round punch: gap = shift + curvature x^2, x in [-1, 1].
   Vector punch(double shift, double curvature) const {
@@ -44,10 +34,7 @@ struct HalfPlane {
 };
 
 FrictionResult full(const Matrix &h, const Vector &q, const FrictionBound &bound) {
-  const auto columns = [&](const std::vector<Index> &which) {
-    return Matrix(h(Eigen::all, which));
-  };
-  return solve_friction(columns, q, 2, bound);
+  return solve_friction(columns_of(h), q, 2, bound);
 }
 
 std::vector<int> all_nodes(Index count) {
@@ -322,7 +309,7 @@ TEST(LeastSquaresFriction, EndsForBasesThatHoldNothing) {
 }
 
 TEST(LeastSquaresFriction, RefusesBadInput) {
-  const Matrix h = HalfPlane(5).h;
+  const Matrix h = half_plane(5);
   const LeastSquaresProblem good =
       reduced(h, Vector::Ones(10), Matrix::Identity(10, 3), all_nodes(5), {0.3, 0, false});
   EXPECT_TRUE(solve_least_squares(good).converged);

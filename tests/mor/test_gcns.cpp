@@ -1,3 +1,5 @@
+#include "../core/columns.hpp"
+#include "../core/half_plane.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/gcns.hpp"
 
@@ -11,24 +13,15 @@ using namespace rbvi;
 
 namespace {
 
-/// Round punches of different curvature on a half-plane of m nodes: log kernel, and a pressure
-/// moves the surface on its two sides in opposite directions. `slide` breaks the mirror symmetry.
+/// Round punches of different curvature on a half-plane of m nodes; `slide` breaks the mirror
+/// symmetry.
 struct Punches {
   Matrix h;
   std::vector<Vector> gaps;
   Matrix pressures, tractions; ///< truths: m x samples
 
-  Punches(Index m, int samples, double coefficient, double slide) : h(Matrix::Zero(2 * m, 2 * m)) {
+  Punches(Index m, int samples, double coefficient, double slide) : h(half_plane(m)) {
     const double size = static_cast<double>(m);
-    for (Index i = 0; i < m; ++i)
-      for (Index j = 0; j < m; ++j) {
-        const double distance = static_cast<double>(i - j);
-        h(i, j) = h(m + i, m + j) = std::log(3 * size / (std::abs(distance) + 0.25)) / size;
-        if (i != j) h(i, m + j) = h(m + j, i) = std::copysign(0.2 / size, distance);
-      }
-    const ColumnSource columns = [this](const std::vector<Index> &which) {
-      return Matrix(h(Eigen::all, which));
-    };
     pressures.resize(m, samples);
     tractions.resize(m, samples);
     for (int k = 0; k < samples; ++k) {
@@ -36,7 +29,7 @@ struct Punches {
       Vector gap = Vector::Constant(2 * m, slide);
       for (Index i = 0; i < m; ++i)
         gap[i] = std::pow((static_cast<double>(i) - 0.5 * (size - 1)) / radius, 2) - 1;
-      const FrictionResult truth = solve_friction(columns, gap, 2, {coefficient, 0, false});
+      const FrictionResult truth = solve_friction(columns_of(h), gap, 2, {coefficient, 0, false});
       EXPECT_TRUE(truth.converged) << truth.reason;
       pressures.col(k) = truth.x.head(m);
       tractions.col(k) = truth.x.tail(m);
