@@ -39,6 +39,122 @@ TEST(Friction, StartsWhereItIsTold) {
     }
 }
 
+namespace {
+
+struct Solved {
+  FrictionProblem problem;
+  FrictionBound bound;
+  FrictionResult result;
+};
+
+/// A gap that stays open, punches that touch more and more, and random problems in the scaling of a
+/// unit diagonal (where the bound jumps at the first pressure, these need not have a solution).
+std::vector<Solved> solved_problems(int dim) {
+  std::vector<Solved> list;
+  const auto add = [&](const FrictionProblem &p, const FrictionBound &bound) {
+    list.push_back({p, bound, expect_solved(p, bound)});
+  };
+  Random random(12);
+  for (int k = 0; k < 12; ++k) {
+    const Index n = dim * (1 + k);
+    const Matrix h = random_positive(random, n, 1);
+    const Vector d = h.diagonal().cwiseSqrt().cwiseInverse(), q = random.vector(n);
+    for (const FrictionBound &bound : all_bounds) {
+      add({half_plane(1 + k, dim), Vector::Ones(n), dim}, bound);
+      add(punch(41, dim, 8 + k, 0.02 * (1 + k)), bound);
+      if (!bound.only_in_contact) add({d.asDiagonal() * h * d.asDiagonal(), q, dim}, bound);
+    }
+  }
+  return list;
+}
+
+double error(const Vector &x, const Vector &expected) {
+  return (x - expected).norm() / std::max(expected.norm(), std::numeric_limits<double>::min());
+}
+
+} // namespace
+
+TEST(FrictionStart, OfItsOwnAnswerNeedsOneStep) {
+  for (const int dim : {1, 2, 3})
+    for (const auto &[p, bound, cold] : solved_problems(dim)) {
+      const FrictionResult again = expect_solved(p, bound, cold.start);
+      EXPECT_EQ(again.iterations, 1);
+      EXPECT_EQ(again.states, cold.states);
+      if (dim < 3)
+        EXPECT_EQ(again.x, cold.x);
+      else
+        EXPECT_LT(error(again.x, cold.x), 1e-11);
+    }
+}
+
+TEST(FrictionStart, TellsEveryState) {
+  for (const int dim : {1, 2, 3}) {
+    std::set<NodeState> seen;
+    for (const auto &[p, bound, result] : solved_problems(dim))
+      for (Index i = 0; i < p.nodes(); ++i) {
+        const NodeState state = result.states[static_cast<std::size_t>(i)];
+        seen.insert(state);
+        EXPECT_EQ(result.start[i] > 0, state != NodeState::open);
+        if (dim == 1) continue;
+        const Index t = p.tangent(i), count = dim - 1;
+        const double limit = bound_of(bound, result.x[i]);
+        const bool slips = result.start.segment(t, count).norm() >= limit;
+        if (state != NodeState::open) {
+          EXPECT_EQ(slips, state == NodeState::slip);
+        }
+        // By Tresca open nodes stick and slip too.
+        EXPECT_EQ(slips, result.x.segment(t, count).norm() >= (1 - 1e-12) * limit);
+      }
+    EXPECT_EQ(seen.size(), dim == 1 ? 2U : 3U);
+  }
+}
+
+TEST(FrictionStart, XItselfServesToo) {
+  for (const int dim : {1, 2, 3})
+    for (const auto &[p, bound, cold] : solved_problems(dim)) {
+      const FrictionResult again = expect_solved(p, bound, cold.x);
+      EXPECT_LE(again.iterations, dim < 3 ? 1 : 2);
+      EXPECT_EQ(again.states, cold.states);
+      EXPECT_LT(error(again.x, cold.x), 1e-11);
+    }
+}
+
+TEST(FrictionStart, OfANearbyProblemSavesSteps) {
+  for (const int dim : {1, 2, 3})
+    for (const FrictionBound &bound : all_bounds) {
+      if (bound.only_in_contact) continue; // a problem need not have a solution
+      int cold_steps = 0, warm_steps = 0;
+      for (int k = 0; k < 12; ++k) {
+        const FrictionProblem before = punch(41, dim, 8 + k, 0.02 * (1 + k));
+        const FrictionProblem p = punch(41, dim, 8.2 + k, 0.021 * (1 + k));
+        const FrictionResult cold = expect_solved(p, bound);
+        const FrictionResult warm = expect_solved(p, bound, expect_solved(before, bound).start);
+        EXPECT_LE(warm.iterations, cold.iterations);
+        cold_steps += cold.iterations;
+        warm_steps += warm.iterations;
+      }
+      EXPECT_LT(warm_steps, 0.75 * cold_steps);
+    }
+}
+
+TEST(FrictionStart, NonsenseDoesNoHarm) {
+  Random random(14);
+  for (const int dim : {1, 2, 3})
+    for (const auto &[p, bound, cold] : solved_problems(dim)) {
+      const Index n = p.q.size();
+      const std::vector<Vector> starts{Vector::Ones(n),         -Vector::Ones(n),
+                                       1e100 * Vector::Ones(n), -1e100 * Vector::Ones(n),
+                                       1e12 * random.vector(n), 1e-100 * random.vector(n)};
+      for (const Vector &start : starts) {
+        const FrictionResult result = expect_solved(p, bound, start);
+        // Where the bound jumps at the first pressure, there can be several solutions.
+        if (!bound.only_in_contact) {
+          EXPECT_LT(error(result.x, cold.x), 1e-10);
+        }
+      }
+    }
+}
+
 TEST(Friction, TheSafeguardTakesOverWhereNewtonCycles) {
   for (const int dim : {2, 3}) {
     Random random(10);
