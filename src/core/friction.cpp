@@ -49,10 +49,13 @@ double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
   return worst;
 }
 
-/// FrictionResult::start. `diagonal(j)`: H_jj, 0 where it is not known.
+/// FrictionResult::start. `diagonal(j)`: H_jj, 0 where it is not known. The tangential entries of a
+/// node share their mean: with rho of their own x_tau - rho w_tau would turn.
 template <class Diagonal>
-Vector start_of(const Vector &x, const Vector &w, const Diagonal &diagonal) {
+Vector start_of(const Laws &laws, const Vector &x, const Vector &w, const Diagonal &diagonal) {
   Vector result = Vector::NullaryExpr(x.size(), diagonal);
+  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i)
+    result.segment(laws.tangent(i), 2).setConstant(result.segment(laws.tangent(i), 2).mean());
   const Index known = (result.array() > 0).count();
   const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
   for (Index j = 0; j < x.size(); ++j)
@@ -95,7 +98,7 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
   Vector diagonal = Vector::Zero(q.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     diagonal[order[k]] = known(order[k], static_cast<Index>(k));
-  result.start = start_of(result.x, result.w, [&](Index j) { return diagonal[j]; });
+  result.start = start_of(laws, result.x, result.w, [&](Index j) { return diagonal[j]; });
   describe(result, laws, Sets(nodes, laws.dim));
   return result;
 }
@@ -104,8 +107,8 @@ class Solver {
 public:
   Solver(const ColumnSource &columns, const Vector &q, const Laws &laws,
          const FrictionOptions &options)
-      : h_(columns, q.size()), q_(q), laws_(laws), options_(options), best_sets_(0, laws.dim),
-        left_(options.max_iterations) {}
+      : h_(columns, q.size()), q_(q), laws_(laws), options_(options),
+        best_sets_(laws.nodes, laws.dim), left_(options.max_iterations) {}
 
   FrictionResult run(const Vector &start) {
     Outcome outcome;
@@ -231,7 +234,8 @@ private:
     }
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
-    result.start = start_of(result.x, result.w, [this](Index j) { return known_diagonal(j); });
+    result.start =
+        start_of(laws_, result.x, result.w, [this](Index j) { return known_diagonal(j); });
     describe(result, laws_, best_sets_);
     result.reason = reason(outcome, result);
     return result;

@@ -37,6 +37,24 @@ TEST_F(RigidDisk, IsReducedVerifiedAndAsked) {
     expect_fields(file, {"pressure", "tangential_stress", "gap", "u"});
 }
 
+TEST_F(RigidDisk, ThePlanSaysWhatIsFactorisedHowOften) {
+  const std::string plan = "offline -case disk.yaml -plan -parameters ";
+  EXPECT_TRUE(contains(output_of(rbvi(1, plan + "radius")), "one for the sweep"));
+  EXPECT_TRUE(contains(output_of(rbvi(1, plan + "core_stiffness")), "eliminated once"));
+  EXPECT_TRUE(contains(output_of(rbvi(1, plan + "poisson_ratio")), "one for each solve"));
+}
+
+TEST_F(RigidDisk, AnAnswerThatBreaksTheLawSaysSo) {
+  const std::string offline =
+      "offline -case disk.yaml -multiplier_reduction collocated -gcns_max_nodes 2 ";
+  const std::string warning = "warning: the laws of contact and friction are violated";
+  output_of(rbvi(2, offline + "-out run -multiplier_exact no"));
+  for (const char *query : {"--mu 0.85", "--queries grid:3 --out answers.csv"})
+    EXPECT_TRUE(contains(output_of(rbvi_online("run/model.h5 " + std::string(query))), warning));
+  output_of(rbvi(2, offline + "-out mended"));
+  EXPECT_FALSE(contains(output_of(rbvi_online("mended/model.h5 --mu 0.85")), warning));
+}
+
 TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused(

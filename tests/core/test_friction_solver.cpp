@@ -47,8 +47,8 @@ struct Solved {
   FrictionResult result;
 };
 
-/// A gap that stays open, punches that touch more and more, and random problems in the scaling of a
-/// unit diagonal (where the bound jumps at the first pressure, these need not have a solution).
+/// A gap that stays open, punches that touch more and more, and random problems (where the bound
+/// jumps at the first pressure, these need not have a solution).
 std::vector<Solved> solved_problems(int dim) {
   std::vector<Solved> list;
   const auto add = [&](const FrictionProblem &p, const FrictionBound &bound) {
@@ -58,11 +58,11 @@ std::vector<Solved> solved_problems(int dim) {
   for (int k = 0; k < 12; ++k) {
     const Index n = dim * (1 + k);
     const Matrix h = random_positive(random, n, 1);
-    const Vector d = h.diagonal().cwiseSqrt().cwiseInverse(), q = random.vector(n);
+    const Vector q = random.vector(n);
     for (const FrictionBound &bound : all_bounds) {
       add({half_plane(1 + k, dim), Vector::Ones(n), dim}, bound);
       add(punch(41, dim, 8 + k, 0.02 * (1 + k)), bound);
-      if (!bound.only_in_contact) add({d.asDiagonal() * h * d.asDiagonal(), q, dim}, bound);
+      if (!bound.only_in_contact) add({h, q, dim}, bound);
     }
   }
   return list;
@@ -135,6 +135,22 @@ TEST(FrictionStart, OfANearbyProblemSavesSteps) {
       }
       EXPECT_LT(warm_steps, 0.75 * cold_steps);
     }
+}
+
+TEST(FrictionStart, WhereTheFirstStepIsImpossibleItSaysSo) {
+  for (const int dim : {2, 3}) {
+    const Vector q = -Vector::Ones(dim), start = Vector::Ones(dim);
+    Matrix h = Matrix::Identity(dim, dim);
+    const FrictionBound coulomb{0.3, 0, false};
+    const FrictionResult none =
+        solve_friction(columns_of(h), q, dim, coulomb, start, {.max_iterations = 0});
+    EXPECT_FALSE(none.converged);
+    EXPECT_NE(none.reason.find("raise the limit"), std::string::npos) << none.reason;
+    h(0, 0) = -1;
+    const FrictionResult indefinite = solve_friction(columns_of(h), q, dim, coulomb, start);
+    EXPECT_FALSE(indefinite.converged);
+    EXPECT_NE(indefinite.reason.find("not positive definite"), std::string::npos);
+  }
 }
 
 TEST(FrictionStart, NonsenseDoesNoHarm) {

@@ -34,9 +34,10 @@ struct FrictionOptions {
 
 struct FrictionResult {
   Vector x, w;
-  Vector start; ///< x - w / H_jj (where H_jj was not asked for, the mean of the others): its signs
-                ///< and its sizes against the bound tell every state. Smooth where x and w are not:
-                ///< start nearby problems from it, or from interpolants of several
+  Vector start; ///< x - w / H_jj (the mean of a node's tangential H_jj; where they were not asked
+                ///< for, of all others): its signs and its sizes against the bound tell every
+                ///< state. Smooth where x and w are not: start nearby problems from it, or from
+                ///< interpolants of several
   std::vector<Index> active;     ///< nodes with x_n > 0, increasing
   std::vector<NodeState> states; ///< of every node; an open node can slip or stick by Tresca: its
                                  ///< state is open all the same
