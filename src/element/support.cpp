@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +23,10 @@ struct TracePoint {
 };
 
 std::array<TracePoint, 4> trace_points(int degree) {
-  constexpr std::array<double, 4> at{0.06943184420297371239, 0.33000947820757186760,
-                                     0.66999052179242813240, 0.93056815579702628761};
-  constexpr std::array<double, 2> weights{0.17392742256872692869, 0.32607257743127307131};
   std::array<TracePoint, 4> points{};
   for (std::size_t q = 0; q < 4; ++q) {
-    const double weight = weights[std::min(q, 3 - q)];
-    points[q] = {weight, {1 - at[q], at[q]}, {}};
+    const auto [s, weight] = edge_quadrature[q];
+    points[q] = {weight, {1 - s, s}, {}};
     std::array<double, 3> phi{};
     lagrange_values(1, degree, points[q].eta, phi);
     for (std::size_t a = 0; a < 2; ++a)

@@ -1,9 +1,9 @@
 #include "cone_tools.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/small_svd.hpp"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <limits>
@@ -20,7 +20,7 @@ constexpr double open_below = 1e-10; ///< of the largest multiplier: at or below
 /// half of the digits.
 double condition(const Matrix &triangular) {
   if (triangular.rows() < triangular.cols()) return std::numeric_limits<double>::infinity();
-  const Vector values = Eigen::BDCSVD<Matrix>(triangular).singularValues();
+  const Vector values = singular_values(triangular);
   const double ratio = values[0] / values[values.size() - 1];
   return ratio * ratio;
 }

@@ -11,9 +11,9 @@
 #include "cone_tools.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/small_svd.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <string>
@@ -59,9 +59,9 @@ Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
 /// |factor v| = |v|_W; columns of the result are coefficients on the permanent nodes.
 Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
                 const ConeOptions &options, Index generators, ConeHistory &history) {
-  const Eigen::BDCSVD<Matrix> svd(factor * remainder, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Vector &values = svd.singularValues();
-  const Matrix parts = values.asDiagonal() * svd.matrixV().transpose();
+  const SmallSvd svd = small_svd(factor * remainder);
+  const Vector &values = svd.values;
+  const Matrix parts = values.asDiagonal() * svd.right.transpose();
   // Equal singular values stay together: which of their vectors come first is round-off.
   const auto splits = [&](Index modes) {
     return modes > 0 && modes < values.size() && values[modes] > (1 - 1e-8) * values[modes - 1];
@@ -84,7 +84,7 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
     else if (modes == bound)
       history.reason = "size reached";
     if (history.reason.empty() || splits(modes)) continue;
-    Matrix columns = svd.matrixU().leftCols(modes);
+    Matrix columns = svd.left.leftCols(modes);
     if (modes > 0) factor.triangularView<Eigen::Upper>().solveInPlace(columns);
     return columns;
   }

@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/core/collocated_friction.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/nonnegative_qp.hpp"
@@ -270,8 +271,7 @@ TEST(CollocatedFriction, SteepDependenceOnTheBoundsAtTheEdgeOfContact) {
   }
   Matrix basis = Matrix::Zero(2 * m, generators + modes);
   basis.topLeftCorner(m, generators) = pressures;
-  basis.bottomRightCorner(m, modes) =
-      Eigen::JacobiSVD<Matrix>(tractions, Eigen::ComputeThinU).matrixU().leftCols(modes);
+  basis.bottomRightCorner(m, modes) = thin_svd(tractions).left.leftCols(modes);
   for (double radius = 4.3; radius < 26; radius += 0.4) {
     const CollocatedProblem full = punch(m, radius, 0.3, 0.8);
     const CollocatedProblem p{basis.transpose() * full.h * basis, basis.transpose() * full.q,

@@ -1,4 +1,5 @@
 // Contact with friction: the answers, against the laws, other solvers and what is known by hand.
+#include "../linear_algebra.hpp"
 #include "friction_problems.hpp"
 
 #include <optional>
@@ -81,7 +82,7 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
     if (state == 2 || state == 3) a(m + i, i) = -sign * bound.coefficient;
     if (state == 2 || state == 3 || state >= 5) right[m + i] = sign * bound.threshold;
   }
-  Vector x = a.fullPivLu().solve(right);
+  Vector x = solved(a, right);
   for (Index i = 0; i < m; ++i) {
     const int state = states[static_cast<std::size_t>(i)];
     if (state == 0 || state > 3) x[i] = 0;

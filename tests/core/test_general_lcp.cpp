@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/general_lcp.hpp"
 #include "rbvi/core/lcp.hpp"
@@ -56,7 +57,7 @@ std::vector<Index> members(unsigned set, Index n) {
 /// z of one active set, whatever its signs.
 Vector basic(const Matrix &m, const Vector &q, const std::vector<Index> &active) {
   Vector z = Vector::Zero(q.size());
-  if (!active.empty()) z(active) = -Matrix(m(active, active)).fullPivLu().solve(Vector(q(active)));
+  if (!active.empty()) z(active) = -solved(m(active, active), q(active));
   return z;
 }
 

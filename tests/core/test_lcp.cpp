@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/lcp.hpp"
 
@@ -59,8 +60,7 @@ bool plain_exchange_cycles(const Matrix &h, const Vector &q) {
     for (Index i = 0; i < q.size(); ++i)
       if ((set >> i & 1u) != 0) active.push_back(i);
     Vector x = Vector::Zero(q.size());
-    if (!active.empty())
-      x(active) = -Matrix(h(active, active)).fullPivLu().solve(Vector(q(active)));
+    if (!active.empty()) x(active) = -solved(h(active, active), q(active));
     const Vector w = h * x + q;
     unsigned flips = 0;
     for (Index i = 0; i < q.size(); ++i)

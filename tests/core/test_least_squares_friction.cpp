@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/least_squares_friction.hpp"
 
@@ -94,9 +95,8 @@ struct Family {
     Matrix snapshots(82, count);
     for (Index k = 0; k < count; ++k)
       snapshots.col(k) = solutions[static_cast<std::size_t>(k)];
-    const Eigen::BDCSVD<Matrix> svd(snapshots, Eigen::ComputeThinU);
-    const Vector &values = svd.singularValues();
-    return svd.matrixU().leftCols((values.array() > 1e-12 * values[0]).count());
+    const ThinSvd svd = thin_svd(snapshots);
+    return svd.left.leftCols((svd.values.array() > 1e-12 * svd.values[0]).count());
   }
   std::vector<int> few_nodes() const {
     return pivot_nodes(basis, static_cast<int>(basis.cols()) + 3);

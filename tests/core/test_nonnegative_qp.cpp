@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/nonnegative_qp.hpp"
 
@@ -31,9 +32,7 @@ double brute_force(const Matrix &y, const Vector &c, const Vector &g) {
     const Vector norms = part.colwise().norm();
     if (norms.minCoeff() == 0) continue;
     const Matrix unit = part * norms.cwiseInverse().asDiagonal();
-    Eigen::ColPivHouseholderQR<Matrix> qr(unit);
-    qr.setThreshold(1e-9);
-    if (qr.rank() < unit.cols()) continue;
+    if (rank_of(unit, 1e-9) < unit.cols()) continue;
     const Matrix gram = unit.transpose() * unit;
     const Vector right = unit.transpose() * c - Vector(g(columns)).cwiseQuotient(norms);
     const Vector x = gram.ldlt().solve(right).cwiseQuotient(norms);

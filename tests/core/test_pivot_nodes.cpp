@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/least_squares_friction.hpp"
 
@@ -42,7 +43,7 @@ std::vector<int> first_nodes(int count) {
 double condition(const Matrix &basis, std::vector<int> nodes) {
   for (int k = static_cast<int>(nodes.size()) - 1; k >= 0; --k)
     nodes.push_back(nodes[static_cast<std::size_t>(k)] + static_cast<int>(basis.rows() / 2));
-  const Vector values = Eigen::JacobiSVD<Matrix>(basis(nodes, Eigen::all)).singularValues();
+  const Vector values = thin_svd(basis(nodes, Eigen::all)).values;
   return values[0] / values[values.size() - 1];
 }
 

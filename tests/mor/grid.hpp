@@ -2,9 +2,8 @@
 // distributed and once dense, and a trace on the nodes of the lower rows.
 #pragma once
 
+#include "../linear_algebra.hpp"
 #include "rbvi/fem/trace.hpp"
-
-#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <random>
@@ -115,9 +114,8 @@ inline double brute_infsup(const Matrix &v_product, const Matrix &w_product, con
                            const Matrix &space, const Matrix &x) {
   const Matrix pairing = x.transpose() * b * space;
   const Matrix riesz = (space.transpose() * v_product * space).ldlt().solve(pairing.transpose());
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen(
-      pairing * riesz, x.transpose() * w_product * x, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(eigen.eigenvalues()(0), 0.0));
+  const Vector values = generalised_eigenvalues(pairing * riesz, x.transpose() * w_product * x);
+  return std::sqrt(std::max(values(0), 0.0));
 }
 
 } // namespace rbvi::testing_grid

@@ -1,4 +1,5 @@
 // The condensed operator of contact with a rigid support, against B A^-1 B^T at single mu.
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/condensed.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -50,7 +51,7 @@ Vector theta_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
     problem.assemble_contact(training[static_cast<std::size_t>(b.snapshots[std::size_t(i)])], op);
     terms.col(i) = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
   }
-  return (terms * b.combination).colPivHouseholderQr().solve(wanted);
+  return least_squares(terms * b.combination, wanted);
 }
 
 void expect_agreement(const Scene &scene, const std::vector<Mu> &training,
@@ -114,7 +115,7 @@ TEST(SupportDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
   }
   const Matrix folded = support_dual_basis(problem, lambda);
   ASSERT_EQ(folded.cols(), 2 * half);
-  const Vector coefficients = folded.colPivHouseholderQr().solve(lambda.col(0));
+  const Vector coefficients = least_squares(folded, lambda.col(0));
   EXPECT_LE((folded * coefficients - lambda).norm(), 1e-13 * lambda.norm());
   for (Index i = 0; i < half; ++i)
     EXPECT_NEAR(coefficients[i], lambda(i, 0), 1e-12) << "a coefficient is the value at its node";

@@ -1,5 +1,6 @@
 #include "../core/columns.hpp"
 #include "../core/half_plane.hpp"
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/gcns.hpp"
 
@@ -46,10 +47,9 @@ struct Reduced {
 
   Reduced(const Punches &p, double coefficient, double truncation) : normal(p.pressures) {
     const Index m = normal.rows();
-    const Eigen::JacobiSVD<Matrix> svd(p.tractions, Eigen::ComputeThinU);
-    const Index modes =
-        (svd.singularValues().array() > truncation * svd.singularValues()[0]).count();
-    tangential = svd.matrixU().leftCols(modes);
+    const ThinSvd svd = thin_svd(p.tractions);
+    const Index modes = (svd.values.array() > truncation * svd.values[0]).count();
+    tangential = svd.left.leftCols(modes);
     product.resize(m, m);
     product.setIdentity();
     Matrix basis = Matrix::Zero(2 * m, normal.cols() + modes);

@@ -1,4 +1,5 @@
 // The hybrid dual basis against what complementarity says of it.
+#include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/cones.hpp"
 
@@ -132,7 +133,7 @@ TEST(HybridCone, ReproducesEverySnapshotWithOneModePerTermOfTheGap) {
   ASSERT_GT(zones.permanent.size(), 6u);
   ASSERT_GT(zones.moving.size(), 20u);
   const Matrix on_permanent = membrane.terms(zones.permanent, Eigen::all);
-  const Index rank = Eigen::ColPivHouseholderQR<Matrix>(on_permanent).rank();
+  const Index rank = rank_of(on_permanent);
   const Cone cone = hybrid(snapshots, membrane, {.tolerance = 0});
   EXPECT_EQ(snapshots, copy);
   EXPECT_EQ(cone.basis.generators.cols(), static_cast<Index>(zones.moving.size()));
@@ -240,9 +241,7 @@ TEST(HybridCone, HistoryIsABoundThatFalls) {
     EXPECT_LE(distances_to_cone(snapshots, cone.basis, reference.product, some).maxCoeff(),
               history.error[k] + 1e-13);
     const Matrix part = cone.all().leftCols(hats + modes);
-    const Vector gram =
-        Eigen::SelfAdjointEigenSolver<Matrix>(part.transpose() * (reference.product * part))
-            .eigenvalues();
+    const Vector gram = symmetric_eigenvalues(part.transpose() * (reference.product * part));
     // The eigenvalues of the Gram matrix carry the condition number times round-off.
     const double condition = history.gram_condition[k - 1];
     EXPECT_NEAR(condition * gram.minCoeff() / gram.maxCoeff(), 1, 1e-14 * condition + 1e-10);

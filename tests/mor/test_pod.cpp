@@ -1,3 +1,4 @@
+#include "../linear_algebra.hpp"
 #include "rbvi/mor/pod.hpp"
 
 #include "grid.hpp"
@@ -72,7 +73,7 @@ TEST(Pod, singular_values_are_those_of_the_weighted_snapshots) {
   const Snapshots snapshots(product.get(), values);
   const Pod result = pod(snapshots.raw, product.get(), {.tolerance = 0});
   const Matrix weighted = dense_product(n).llt().matrixU() * values;
-  const Vector exact = weighted.jacobiSvd().singularValues();
+  const Vector exact = thin_svd(weighted).values;
   ASSERT_EQ(result.singular_values.size(), 12U);
   for (std::size_t k = 0; k < 12; ++k)
     EXPECT_NEAR(result.singular_values[k], exact(static_cast<Index>(k)), 1e-12 * exact(0));

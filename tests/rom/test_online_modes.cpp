@@ -1,4 +1,5 @@
 // Free modes (equations in place of inequalities) and enrichment that is made online.
+#include "../linear_algebra.hpp"
 #include "brute_force.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -132,14 +133,13 @@ TEST(FreeModes, ANegativeGeneratorIsWatchedWithoutModes) {
 Matrix compressed(const Matrix &b, Index modes) {
   const Index n = b.cols();
   const Matrix rows = b.rightCols(n - modes).transpose();
-  const Eigen::BDCSVD<Matrix> svd(rows, Eigen::ComputeThinU);
+  const ThinSvd svd = thin_svd(rows);
   Index rank = 0;
-  while (rank < svd.singularValues().size() &&
-         svd.singularValues()[rank] > 1e-12 * svd.singularValues()[0])
+  while (rank < svd.values.size() && svd.values[rank] > 1e-12 * svd.values[0])
     ++rank;
   Matrix c = Matrix::Zero(n, modes + rank);
   c.topLeftCorner(modes, modes).setIdentity();
-  c.bottomRightCorner(n - modes, rank) = svd.matrixU().leftCols(rank);
+  c.bottomRightCorner(n - modes, rank) = svd.left.leftCols(rank);
   return c;
 }
 

@@ -18,4 +18,16 @@ std::vector<QuadraturePoint> simplex_quadrature(int dim, int degree);
 /// Exact to degree 2: dim + 1 points inside, each of weight 1 / (dim + 1). dim = 1, 2, 3.
 std::vector<QuadraturePoint> positive_quadrature(int dim);
 
+/// A point s of [0, 1].
+struct EdgePoint {
+  double s, weight;
+};
+
+/// Gauss, exact to degree 7; the weights sum to 1.
+inline constexpr std::array<EdgePoint, 4> edge_quadrature{
+    {{0.06943184420297371239, 0.17392742256872692869},
+     {0.33000947820757186760, 0.32607257743127307131},
+     {0.66999052179242813240, 0.32607257743127307131},
+     {0.93056815579702628761, 0.17392742256872692869}}};
+
 } // namespace rbvi

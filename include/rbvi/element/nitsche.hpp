@@ -1,0 +1,55 @@
+// Nitsche's terms for contact with a rigid support in 2D, one point of the contact curve at a time
+// (Niakh 2022, 4.3). With the stress on the curve (sigma_n, sigma_tau), the displacement
+// (u_n, u_tau) and the gap there,
+//
+//   P_n = sigma_n - gamma (u_n - gap)     (4.19a)        P_tau = sigma_tau - gamma u_tau   (4.35)
+//
+// each term is a function of one of these scalars: an energy density, its slope (what the residual
+// tests with) and its curvature (what the tangent has). The distributed assembly and the reduced
+// models use the same functions. gamma is a pressure over a length.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/core/scene.hpp"
+
+#include <array>
+
+namespace rbvi {
+
+/// Energy density and its derivatives with respect to one scalar.
+struct PointTerm {
+  double energy, slope, curvature;
+};
+
+/// -sigma^2 / (2 gamma): what keeps the method consistent, in a_gamma (4.18), (4.40).
+PointTerm consistency_term(double sigma, double gamma);
+
+/// [p]_-^2 / (2 gamma), [p]_- = min(p, 0): contact (4.15), (4.25), (4.24a).
+PointTerm contact_term(double p, double gamma);
+
+/// (p^2 - (p - [p]_s)^2) / (2 gamma), [p]_s the projection on [-s, s]: friction of the bound s
+/// (4.36), (4.43).
+PointTerm friction_term(double p, double bound, double gamma);
+
+/// Coulomb's bound, `coefficient` |[p]_-| (4.51).
+double coulomb_bound(double p, double coefficient);
+
+/// What a point of the curve sees of the displacement of the cell beside it: functionals of its
+/// dofs, node * 2 + component, the first 2 * nodes_per_cell entries.
+struct NitschePoint {
+  using Row = Eigen::Matrix<double, 12, 1>;
+  double weight = 0;              ///< of the integral over the mapped edge
+  Row sigma_n, sigma_tau, n, tau; ///< stress and displacement
+  double gap = 0;                 ///< less the motion's share
+  double slip = 0;                ///< of the motion
+};
+
+/// The four Gauss points of edge `edge` (Lagrange order) of a triangle on the curve, of degree
+/// scene.degree. Normal and gap are the scene's at the reference point, in u_n, sigma_n and the gap
+/// alike; edges are straight. `material`: lambda and the shear modulus of the cell. Throws failure,
+/// naming mu, for an inverted cell.
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Mu &all_parameters,
+                                           const Cell &cell, int edge,
+                                           const std::array<double, 2> &material);
+
+} // namespace rbvi

@@ -1,0 +1,189 @@
+// Nitsche's terms at a point against differences of their energies and the laws they stand for, and
+// what a point sees of a displacement against fields whose stress is known.
+#include "cells.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/nitsche_curve.hpp"
+#include "support_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+constexpr double gamma_of_tests = 7;
+
+/// Central differences of a term and of its slope, at points away from its kinks.
+template <class Term> void expect_derivatives(const Term &term, double p) {
+  constexpr double h = 1e-6;
+  const PointTerm here = term(p), before = term(p - h), after = term(p + h);
+  EXPECT_NEAR(here.slope, (after.energy - before.energy) / (2 * h), 1e-8) << p;
+  EXPECT_NEAR(here.curvature, (after.slope - before.slope) / (2 * h), 1e-8) << p;
+}
+
+TEST(NitscheTerms, SlopesAndCurvaturesAreDerivatives) {
+  for (const double p : {-3.1, -0.4, 0.2, 0.9, 2.5}) {
+    expect_derivatives([](double x) { return consistency_term(x, gamma_of_tests); }, p);
+    expect_derivatives([](double x) { return contact_term(x, gamma_of_tests); }, p);
+    for (const double bound : {0.0, 0.5, 10.0})
+      expect_derivatives([&](double x) { return friction_term(x, bound, gamma_of_tests); }, p);
+  }
+}
+
+/// sigma = [sigma - gamma (u - g)]_- is contact (4.14): the slopes of both terms then cancel in
+/// sigma.
+TEST(NitscheTerms, CancelInTheStressWhereTheLawsHold) {
+  const double gap = 0.3;
+  for (const auto &[sigma, u] : {std::pair{-2.0, gap}, {0.0, 0.1}, {0.0, -4.0}, {-1e-3, gap}}) {
+    const double p = sigma - gamma_of_tests * (u - gap);
+    EXPECT_NEAR(contact_term(p, gamma_of_tests).slope +
+                    consistency_term(sigma, gamma_of_tests).slope,
+                0, 1e-15);
+  }
+  const double bound = 0.5; // sticks below it, slips against it
+  for (const auto &[sigma, u] : {std::pair{0.2, 0.0}, {-0.49, 0.0}, {0.5, -0.7}, {-0.5, 2.0}}) {
+    const double p = sigma - gamma_of_tests * u;
+    EXPECT_NEAR(friction_term(p, bound, gamma_of_tests).slope +
+                    consistency_term(sigma, gamma_of_tests).slope,
+                0, 1e-15);
+  }
+  EXPECT_EQ(coulomb_bound(-2, 0.3), 0.6);
+  EXPECT_EQ(coulomb_bound(1, 0.3), 0);
+}
+
+class PerDegree : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(NitschePoints, PerDegree, ::testing::Values(1, 2));
+
+/// u = m x: its strain is constant.
+TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
+  Random random(3);
+  const Scene scene = crooked(GetParam());
+  const Lame material = lame(15, 0.3);
+  const Mu mu{0.4};
+  int cells = 0;
+  for (int edge = 0; edge < 3; ++edge) {
+    Cell cell{2, random_cell(2, random), {}};
+    for (std::size_t v = 0; v < 3; ++v)
+      cell.mapped[v] = scene.map(mu, cell.reference[v]);
+    if (simplex(2, cell.mapped).volume < 0.05) continue; // the map can invert it
+    ++cells;
+    const Eigen::Matrix2d m = random_block(2, random).topLeftCorner<2, 2>();
+    const Eigen::Matrix2d strain = (m + m.transpose()) / 2;
+    const Eigen::Matrix2d stress = material.lambda * strain.trace() * Eigen::Matrix2d::Identity() +
+                                   2 * material.shear * strain;
+    const auto nodes = nodes_of(2, GetParam(), cell.mapped);
+    NitschePoint::Row u = NitschePoint::Row::Zero();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      u.segment<2>(2 * static_cast<Index>(i)) = m * nodes[i].head<2>();
+    const auto ends = simplex_edges[static_cast<std::size_t>(edge)];
+    const auto a = static_cast<std::size_t>(ends[0]), b = static_cast<std::size_t>(ends[1]);
+    double length = 0;
+    for (std::size_t q = 0; q < 4; ++q) {
+      const NitschePoint point =
+          nitsche_points(scene, mu, cell, edge, {material.lambda, material.shear})[q];
+      constexpr double at[] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
+                               0.93056815579702629};
+      const Point x = between(cell.reference[a], cell.reference[b], at[q]);
+      const Point mapped = between(cell.mapped[a], cell.mapped[b], at[q]);
+      const Point normal = scene.support->normal(mu, x), motion = scene.motion(mu, x);
+      const Eigen::Vector2d n(normal[0], normal[1]), tau(-n[1], n[0]);
+      const Eigen::Vector2d value = m * Eigen::Vector2d(mapped[0], mapped[1]);
+      EXPECT_NEAR(point.sigma_n.dot(u), n.dot(stress * n), 1e-12 * stress.norm());
+      EXPECT_NEAR(point.sigma_tau.dot(u), tau.dot(stress * n), 1e-12 * stress.norm());
+      EXPECT_NEAR(point.n.dot(u), n.dot(value), 1e-13);
+      EXPECT_NEAR(point.tau.dot(u), tau.dot(value), 1e-13);
+      EXPECT_NEAR(point.gap, scene.support->gap(mu, x) - dot(motion, normal), 1e-14);
+      EXPECT_NEAR(point.slip, dot(motion, turned(normal)), 1e-14);
+      length += point.weight;
+    }
+    EXPECT_NEAR(
+        length,
+        std::hypot(cell.mapped[b][0] - cell.mapped[a][0], cell.mapped[b][1] - cell.mapped[a][1]),
+        1e-14);
+  }
+  EXPECT_GT(cells, 0);
+}
+
+/// A strip of triangles above an arc, its dofs numbered vertex by vertex, then edge by edge.
+struct Strip {
+  std::vector<NitscheFace> faces;
+  Index dofs = 0;
+};
+
+Strip strip(const Scene &scene, const Mu &mu, double gamma) {
+  Strip result;
+  const Curve curve = arc(6, 0.5);
+  const int corners = static_cast<int>(curve.size());
+  for (int k = 0; k + 1 < corners; ++k) { // local node of cell k -> its number
+    const auto at = static_cast<std::size_t>(k);
+    const Point apex{(curve[at][0] + curve[at + 1][0]) / 2,
+                     (curve[at][1] + curve[at + 1][1]) / 2 + 0.2, 0};
+    Cell cell{2, {curve[at], curve[at + 1], apex}, {}};
+    for (std::size_t v = 0; v < 3; ++v)
+      cell.mapped[v] = scene.map(mu, cell.reference[v]);
+    NitscheFace face{nitsche_points(scene, mu, cell, 0, {9, 4}), gamma, {}};
+    const std::array<int, 6> nodes{
+        k, k + 1, corners + 4 * k, corners + 4 * k + 1, corners + 4 * k + 2, corners + 4 * k + 3};
+    const int count = nodes_per_cell(2, scene.degree);
+    for (int i = 0; i < 12; ++i)
+      face.dofs[static_cast<std::size_t>(i)] =
+          i < 2 * count ? 2 * nodes[static_cast<std::size_t>(i / 2)] + i % 2 : -1;
+    result.faces.push_back(face);
+  }
+  result.dofs = 2 * (corners + 4 * (corners - 1));
+  return result;
+}
+
+const NitscheLaw laws_of_tests[] = {{FrictionLaw::none, 0, false},
+                                    {FrictionLaw::tresca, 0.4, false},
+                                    {FrictionLaw::tresca, 0.4, true},
+                                    {FrictionLaw::coulomb, 0.3, false}};
+
+/// Directional derivatives of the energy and of the residual, the bounds being fixed.
+TEST_P(PerDegree, ResidualAndTangentAreDerivativesOfTheEnergy) {
+  const Scene scene = hertz(GetParam());
+  const Strip s = strip(scene, {1.1}, 30);
+  Random random(11);
+  for (const NitscheLaw &law : laws_of_tests) {
+    const Vector u = 0.05 * random.vector(s.dofs), v = random.vector(s.dofs);
+    const Vector bounds = nitsche_bounds(nitsche_pressures(s.faces, u), law);
+    constexpr double h = 1e-7;
+    const double slope =
+        (nitsche_energy(s.faces, u + h * v, bounds) - nitsche_energy(s.faces, u - h * v, bounds)) /
+        (2 * h);
+    const Vector residual = nitsche_residual(s.faces, u, bounds);
+    EXPECT_NEAR(residual.dot(v), slope, 1e-6 * std::abs(slope));
+    const Vector change = (nitsche_residual(s.faces, u + h * v, bounds) -
+                           nitsche_residual(s.faces, u - h * v, bounds)) /
+                          (2 * h);
+    const auto blocks = nitsche_tangent(s.faces, u, bounds);
+    ASSERT_EQ(blocks.size(), s.faces.size());
+    Vector product = Vector::Zero(s.dofs);
+    for (std::size_t f = 0; f < blocks.size(); ++f)
+      for (Index i = 0; i < 12; ++i)
+        for (Index j = 0; j < 12; ++j) {
+          const int row = s.faces[f].dofs[static_cast<std::size_t>(i)];
+          const int column = s.faces[f].dofs[static_cast<std::size_t>(j)];
+          if (row >= 0 && column >= 0) product[row] += blocks[f](i, j) * v[column];
+        }
+    EXPECT_LE((product - change).norm(), 1e-6 * change.norm());
+  }
+}
+
+TEST(NitscheCurve, BoundsAreThoseOfTheLaw) {
+  Matrix pressures(3, 2);
+  pressures << -2, 0.1, 0, -5, 1, 7;
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[0]).size(), 0);
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[1]), Vector::Constant(3, 0.4));
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[2]), Vector({{0.4, 0, 0}}));
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[3]), Vector({{0.6, 0, 0}}));
+}
+
+TEST(NitschePoints, AnInvertedCellIsAFailure) {
+  const Scene scene = hertz(2);
+  const Vertices inverted{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {}}};
+  EXPECT_THROW(nitsche_points(scene, {1.0}, {2, inverted, inverted}, 0, {1, 1}), Error);
+}
+
+} // namespace
+} // namespace rbvi
