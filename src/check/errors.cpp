@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/mor/stability.hpp"
+#include "rbvi/rom/packed.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -24,9 +25,8 @@ double product(Mat v, Vec x, Vec y, Vec scratch) {
 /// C^T A C of a packed symmetric matrix, packed again.
 Vector congruence(const Eigen::Ref<const Vector> &packed, const Matrix &c) {
   const Index n = c.rows(), k = c.cols();
-  Matrix a = Matrix::Zero(n, n);
-  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
-    a.col(j).tail(n - j) = packed.segment(at, n - j);
+  Matrix a(n, n);
+  unpack(packed, a);
   const Matrix reduced = c.transpose() * (a.selfadjointView<Eigen::Lower>() * c);
   Vector result(k * (k + 1) / 2);
   for (Index j = 0, at = 0; j < k; at += k - j, ++j)

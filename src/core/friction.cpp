@@ -234,14 +234,12 @@ private:
     }
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
-    result.start =
-        start_of(laws_, result.x, result.w, [this](Index j) { return known_diagonal(j); });
+    result.start = start_of(laws_, result.x, result.w,
+                            [this](Index j) { return h_.has(j) ? h_.diagonal(j) : 0; });
     describe(result, laws_, best_sets_);
     result.reason = reason(outcome, result);
     return result;
   }
-
-  double known_diagonal(Index j) const { return h_.has(j) ? h_.diagonal(j) : 0; }
 
   std::string reason(Outcome outcome, const FrictionResult &result) const {
     if (outcome == Outcome::converged) return "no violation left";

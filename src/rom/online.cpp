@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/support_outputs.hpp"
+#include "rbvi/rom/packed.hpp"
 
 #include <Eigen/QR>
 
@@ -16,12 +17,6 @@ namespace {
 constexpr double largest_residual = 1e-8;
 constexpr double largest_pull = 1e-2;    ///< of the peak: negative pressure where contact is sure
 constexpr double active_fraction = 1e-6; ///< of the peak: below it a node counts as free
-
-void unpack(const Vector &packed, Matrix &lower) {
-  const Index n = lower.rows();
-  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
-    lower.col(j).tail(n - j) = packed.segment(at, n - j);
-}
 
 /// theta / reference if both have one positive ratio, else 0: a term set of one scales.
 double ratio(const Vector &theta, const Vector &reference) {

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/online.hpp"
+#include "rbvi/rom/packed.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -11,14 +12,11 @@ namespace rbvi {
 
 namespace {
 
-/// A symmetric matrix from its lower triangle, column by column.
+/// The lower triangle; the rest is zero.
 Matrix unpacked(const Vector &packed, Index n) {
-  Matrix a(n, n);
-  for (Index j = 0, at = 0; j < n; at += n - j, ++j) {
-    a.col(j).tail(n - j) = packed.segment(at, n - j);
-    a.row(j).tail(n - j) = packed.segment(at, n - j).transpose();
-  }
-  return a;
+  Matrix lower = Matrix::Zero(n, n);
+  unpack(packed, lower);
+  return lower;
 }
 
 Mu corner(const ParameterSpace &space, double Parameter::*bound) {
@@ -50,7 +48,8 @@ void ReducedStiffness::find_common_eigenvectors() {
   Matrix eigenvalues(n, a.size());
   for (Index q = 0; q < a.size(); ++q) {
     Matrix term =
-        solver.eigenvectors().transpose() * unpacked(a.reduced.col(q), n) * solver.eigenvectors();
+        solver.eigenvectors().transpose() *
+        (unpacked(a.reduced.col(q), n).selfadjointView<Eigen::Lower>() * solver.eigenvectors());
     eigenvalues.col(q) = term.diagonal();
     term.diagonal().setZero();
     if (!(term.cwiseAbs().maxCoeff() <= 1e-10 * eigenvalues.col(q).cwiseAbs().maxCoeff())) return;

@@ -117,17 +117,23 @@ BodyAtMu SupportSolver::body_at(const Mu &all_parameters, const Vector &theta_b)
   return body;
 }
 
+SupportSolver::AtAllNodes SupportSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) const {
+  const Index m = model_.generators;
+  const Matrix h = (model_.support->condensed.terms * body.terms).reshaped(m, m);
+  AtAllNodes result{h * x + body.q, h.diagonal(), {}};
+  result.start = x - result.w.cwiseQuotient(result.diagonal);
+  return result;
+}
+
 Vector SupportSolver::start_of(const Mu &all_parameters, const Vector &x) {
   const BodyAtMu body =
       body_at(all_parameters, support_coefficients(model_.b, true, scene_, all_parameters));
-  const Index m = model_.generators;
-  const Matrix h = (model_.support->condensed.terms * body.terms).reshaped(m, m);
-  return x - (h * x + body.q).cwiseQuotient(h.diagonal());
+  return at_all_nodes(body, x).start;
 }
 
 bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer) {
-  const Matrix &terms = model_.support->condensed.terms;
-  const bool mends = model_.support->mended && terms.size() > 0;
+  const bool checks = model_.support->condensed.terms.size() > 0;
+  const bool mends = model_.support->mended && checks;
   try {
     ReducedLawAnswer reduced = law_->solve(body);
     answer.x = std::move(reduced.x);
@@ -137,13 +143,11 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
     if (!mends) throw;
     return false;
   }
-  if (terms.size() == 0) return true;
-  const Index m = model_.generators;
-  const Matrix h = (terms * body.terms).reshaped(m, m);
-  const Vector w = h * answer.x + body.q;
-  answer.energy = 0.5 * answer.x.dot(w - body.q);
-  answer.residual = natural_residual(answer.x, w, h.diagonal(), body.bound);
-  answer.start = answer.x - w.cwiseQuotient(h.diagonal());
+  if (!checks) return true;
+  AtAllNodes nodes = at_all_nodes(body, answer.x);
+  answer.energy = 0.5 * answer.x.dot(nodes.w - body.q);
+  answer.residual = natural_residual(answer.x, nodes.w, nodes.diagonal, body.bound);
+  answer.start = std::move(nodes.start);
   return !mends || answer.residual <= mended_above;
 }
 

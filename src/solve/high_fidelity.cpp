@@ -133,6 +133,7 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     throw bad_input(
         "vi needs a bound at each node, and contact of two bodies or with a rigid support bounds "
         "integrals over several: use -hf_method active_set or uzawa");
+  part_fits_ = options.method == HfMethod::active_set && ScaledPart::fits(problem.scene());
   if (constant_stiffness(problem.scene())) compliance_ = std::make_unique<Compliance>();
 }
 
@@ -172,9 +173,8 @@ MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
 
 HfSolution HighFidelity::solve(const Mu &mu) {
   const double start = MPI_Wtime();
-  if (!part_ && solves_++ > 0 && options_.method == HfMethod::active_set &&
-      !constant_stiffness(problem_.scene()) && ScaledPart::fits(problem_.scene()))
-    part_ = std::make_unique<ScaledPart>(problem_);
+  if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
+  ++solves_;
   const Operators &op = problem_.assemble(mu);
   RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
   const MethodResult result = run(mu, op);

@@ -40,11 +40,9 @@ Vector largest_in_rows(Mat a, double factor, Mat b) {
 
 bool ScaledPart::fits(const Scene &scene) {
   if (!scene.part_stiffness || !scene.a_parameters || scene.f) return false;
-  const std::vector<int> &free = scene.parameters.free;
-  return std::all_of(free.begin(), free.end(), [&](int i) {
-    const auto &of_a = *scene.a_parameters;
-    return i == *scene.part_stiffness || std::find(of_a.begin(), of_a.end(), i) == of_a.end();
-  });
+  const std::vector<int> &free = scene.parameters.free, &of_a = *scene.a_parameters;
+  const auto is_free = [&](int i) { return std::find(free.begin(), free.end(), i) != free.end(); };
+  return is_free(*scene.part_stiffness) && std::count_if(of_a.begin(), of_a.end(), is_free) == 1;
 }
 
 /// The dofs of the part (their rows change with kappa) that the rest holds too (their rows are not

@@ -1,4 +1,5 @@
 #include "../linear_algebra.hpp"
+#include "lcp_violation.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/general_lcp.hpp"
 #include "rbvi/core/lcp.hpp"
@@ -17,22 +18,11 @@ using namespace rbvi;
 
 namespace {
 
-/// Largest violation of the definition, relative to the terms of its own row.
-double violation(const Matrix &m, const Vector &q, const Vector &z) {
-  const Vector w = m * z + q, terms = m.cwiseAbs() * z.cwiseAbs() + q.cwiseAbs();
-  double worst = 0;
-  for (Index i = 0; i < q.size(); ++i) {
-    if (z[i] < 0) return std::numeric_limits<double>::infinity();
-    if (terms[i] > 0) worst = std::max(worst, (z[i] > 0 ? std::abs(w[i]) : -w[i]) / terms[i]);
-  }
-  return worst;
-}
-
 GeneralLcpResult expect_solved(const Matrix &m, const Vector &q,
                                const std::vector<Index> &start = {}) {
   GeneralLcpResult result = solve_general_lcp(m, q, start);
   EXPECT_TRUE(result.converged) << result.reason;
-  EXPECT_LT(violation(m, q, result.z), 5e-13);
+  EXPECT_LT(lcp_violation(m, q, result.z), 5e-13);
   EXPECT_LE((result.w - (m * result.z + q)).norm(), 1e-12 * (q.norm() + (m * result.z).norm()));
   EXPECT_TRUE(std::is_sorted(result.active.begin(), result.active.end()));
   for (Index i = 0; i < q.size(); ++i)
@@ -66,7 +56,7 @@ std::vector<Vector> brute_force(const Matrix &m, const Vector &q) {
   std::vector<Vector> result;
   for (unsigned set = 0; set < 1u << q.size(); ++set) {
     const Vector z = basic(m, q, members(set, q.size()));
-    if (z.allFinite() && violation(m, q, z.cwiseMax(0.0)) < 1e-11 && z.minCoeff() > -1e-11)
+    if (z.allFinite() && lcp_violation(m, q, z.cwiseMax(0.0)) < 1e-11 && z.minCoeff() > -1e-11)
       result.push_back(z);
   }
   return result;

@@ -1,4 +1,5 @@
 #include "../linear_algebra.hpp"
+#include "lcp_violation.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/lcp.hpp"
 
@@ -15,24 +16,12 @@ using namespace rbvi;
 
 namespace {
 
-/// Largest violation relative to the terms of its own row (x: in the scaling of unit diagonal).
-double kkt_violation(const Matrix &h, const Vector &q, const Vector &x) {
-  const Vector w = h * x + q, terms = h.cwiseAbs() * x.cwiseAbs() + q.cwiseAbs();
-  double worst = 0;
-  for (Index i = 0; i < q.size(); ++i) {
-    if (terms[i] == 0) continue;
-    if (x[i] < 0) return std::numeric_limits<double>::infinity();
-    worst = std::max(worst, (x[i] > 0 ? std::abs(w[i]) : -w[i]) / terms[i]);
-  }
-  return worst;
-}
-
 LcpResult expect_solved(const Matrix &h, const Vector &q, const std::vector<Index> &start = {}) {
   std::set<Index> given;
   const LcpResult result = solve_lcp(once(h, given), q, start);
   EXPECT_TRUE(result.converged) << result.reason;
   EXPECT_EQ(result.columns, static_cast<int>(given.size()));
-  EXPECT_LT(kkt_violation(h, q, result.x), 2e-13);
+  EXPECT_LT(lcp_violation(h, q, result.x), 2e-13);
   EXPECT_LE((result.w - (h * result.x + q)).norm(), 1e-13 * (q.norm() + (h * result.x).norm()));
   EXPECT_TRUE(std::is_sorted(result.active.begin(), result.active.end()));
   return result;

@@ -85,6 +85,8 @@ TEST(ScaledPart, FitsWhereNothingElseChangesInTheStiffness) {
   EXPECT_TRUE(ScaledPart::fits(disk("core_stiffness")));
   EXPECT_TRUE(ScaledPart::fits(disk("radius,core_stiffness,friction_coefficient")));
   EXPECT_FALSE(ScaledPart::fits(disk("core_stiffness,poisson_ratio")));
+  EXPECT_FALSE(ScaledPart::fits(disk("poisson_ratio")));
+  EXPECT_FALSE(ScaledPart::fits(disk("radius"))) << "nothing of A changes";
   EXPECT_FALSE(ScaledPart::fits(make_scene("membrane_obstacle")));
   EXPECT_FALSE(ScaledPart::fits(make_scene("two_disks")));
   Scene loaded = disk("core_stiffness");

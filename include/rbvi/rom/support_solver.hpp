@@ -36,6 +36,12 @@ public:
   Vector start_of(const Mu &all_parameters, const Vector &x);
 
 private:
+  /// What the condensed operator says of multipliers x.
+  struct AtAllNodes {
+    Vector w, diagonal; ///< H x + q, H_jj
+    Vector start;       ///< x - w / H_jj
+  };
+  AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x) const;
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
   void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);

@@ -86,7 +86,8 @@ private:
   HfOptions options_;
   Handle<KSP> ksp_;
   std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
-  std::unique_ptr<ScaledPart> part_;       ///< where a part of it is scaled, from the second mu on
+  bool part_fits_ = false;
+  std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on
   std::vector<Solved> solved_;
   int solves_ = 0;
 };
