@@ -10,6 +10,7 @@
 // <= nu_F p, so that the foot sticks; else nu_F p / G, and the foot slips as a whole.
 #include "scene.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/elastic_pair.hpp"
 #include "rbvi/element/lagrange.hpp"
@@ -90,6 +91,8 @@ Scene make_one(const SceneOptions &options) {
                                {"shear", "m", 0, 0.2, 0.02},
                                {"friction_coefficient", "", 0, 1, 0.3}});
   scene.parameters.free = {indentation};
+  scene.nitsche =
+      nitsche_recipe(options, [material](const Mu &, const Point &) { return material; });
   scene.mesh = {"one_block", {}, {"sides", "top", "contact"}, ""};
   scene.map = [](const Mu &, const Point &x) { return x; };
   scene.fixed = {{"top", {}}};
@@ -104,6 +107,8 @@ Scene make_one(const SceneOptions &options) {
 }
 
 Scene make(const SceneOptions &options) {
+  if (options.at("bodies") == "two" && options.at("formulation") != "mixed")
+    throw bad_input("Nitsche's method is for one body on a rigid support: use -bodies one");
   Scene scene = options.at("bodies") == "one" ? make_one(options) : make_two(options);
   scene.training = "grid:5";
   scene.validation = "random:5:1";
@@ -113,13 +118,15 @@ Scene make(const SceneOptions &options) {
 } // namespace
 
 SceneEntry patch() {
+  std::vector<SceneOption> options{
+      {"bodies", "two", "two blocks, or one on a rigid support", {"one", "two"}},
+      {"degree", "1", "of the displacement of one body", {"1", "2"}},
+      {"friction", "coulomb", "law of friction of one body", {"none", "coulomb"}}};
+  for (SceneOption &option : nitsche_options())
+    options.push_back(std::move(option));
   return {"patch",
           "patch test: blocks on top of each other, or one on a rigid support with friction",
-          elastic_pair_options(
-              {{"bodies", "two", "two blocks, or one on a rigid support", {"one", "two"}},
-               {"degree", "1", "of the displacement of one body", {"1", "2"}},
-               {"friction", "coulomb", "law of friction of one body", {"none", "coulomb"}}}),
-          make};
+          elastic_pair_options(options), make};
 }
 
 } // namespace rbvi

@@ -7,7 +7,8 @@
 // and friction: |lambda_tau| <= s (Tresca), nu_F lambda_n (Coulomb), against the total tangential
 // displacement u . tau (3.16), (3.34). The reference domain has the radius 1 and h(x) = R x: a
 // similarity, which leaves a plane stiffness as it is and multiplies b by R. What does depend on R
-// is the gap.
+// is the gap. The same with Nitsche's method in place of multipliers (Niakh 2022, chapter 4), on a
+// finer curve by default.
 #include "scene.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -21,6 +22,7 @@ namespace rbvi {
 namespace {
 
 constexpr double initial_gap = 0.001, core_radius = 0.6;
+constexpr int nitsche_edges = 316; // 2.5 mm, the mesh of the published study
 
 /// Of all parameters.
 enum Of { radius, indentation, friction, core_stiffness, poisson_ratio };
@@ -85,10 +87,10 @@ Friction friction_of(const SceneOptions &options) {
   return result;
 }
 
-ParameterSpace parameters(FrictionLaw law) {
+ParameterSpace parameters(FrictionLaw law, bool nitsche) {
   ParameterSpace space = all_free({{"radius", "m", 0.7, 1.3, 1},
                                    {"indentation", "m", 0.01, 0.09, 0.09},
-                                   {"friction_coefficient", "", 0, 0.5, 0.2},
+                                   {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2},
                                    {"core_stiffness", "", 0.2, 5, 1},
                                    {"poisson_ratio", "", 0.2, 0.45, 0.35}});
   if (law == FrictionLaw::tresca) space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1};
@@ -107,23 +109,27 @@ Scene make(const SceneOptions &options) {
   const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
   scene.support->normal = normal;
   scene.support->gap = gap_function(options.at("gap"), normal);
-  scene.parameters = parameters(scene.support->friction.law);
+  const auto material = [young](const Mu &mu, const Point &centre) {
+    const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
+    return lame(stiffness * young, mu[poisson_ratio]);
+  };
+  scene.nitsche = nitsche_recipe(options, material);
+  const bool nitsche = scene.nitsche.has_value();
+  scene.parameters = parameters(scene.support->friction.law, nitsche);
   scene.training = "grid:61";
   scene.validation = "random:30:1";
-  scene.mesh = {"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+  scene.mesh = {"half_disc",
+                {"core"},
+                {"top", "contact", "arc"},
+                "arc",
+                edges == 0 && nitsche ? nitsche_edges : edges};
   scene.map = [](const Mu &mu, const Point &x) -> Point {
     return {mu[radius] * x[0], mu[radius] * x[1], 0};
   };
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
   scene.motion = [](const Mu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
-  scene.a = elasticity(
-      "",
-      [young](const Mu &mu, const Point &centre) {
-        const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
-        return lame(stiffness * young, mu[poisson_ratio]);
-      },
-      2);
+  scene.a = elasticity("", material, 2);
   scene.a_parameters = {core_stiffness, poisson_ratio};
   scene.part_stiffness = core_stiffness;
   scene.a_coordinates[core_stiffness] = {[](double x) { return std::log(x); },
@@ -138,24 +144,29 @@ Scene make(const SceneOptions &options) {
 } // namespace
 
 SceneEntry rigid_disk() {
-  return {"rigid_disk",
-          "Hertz contact of an elastic half-disk with a rigid disk, with friction",
-          {{"friction", "coulomb", "law of friction", {"none", "tresca", "coulomb"}},
-           {"friction_bound",
-            "arc",
-            "Tresca's bound holds on the whole arc, or where there is contact",
-            {"arc", "contact"}},
-           {"normal",
-            "radial",
-            "of the half-disk (radial), or of the rigid disk at the next point",
-            {"radial", "rigid"}},
-           {"gap",
-            "closest",
-            "along the normal to the next point, along a ray, or to the point below",
-            {"closest", "ray", "vertical"}},
-           {"arc_edges", "100", "edges of the contact arc, an even number", {}},
-           {"young", "15", "Young's modulus in Pa", {}}},
-          make};
+  std::vector<SceneOption> options{
+      {"friction", "coulomb", "law of friction", {"none", "tresca", "coulomb"}},
+      {"friction_bound",
+       "arc",
+       "Tresca's bound holds on the whole arc, or where there is contact",
+       {"arc", "contact"}},
+      {"normal",
+       "radial",
+       "of the half-disk (radial), or of the rigid disk at the next point",
+       {"radial", "rigid"}},
+      {"gap",
+       "closest",
+       "along the normal to the next point, along a ray, or to the point below",
+       {"closest", "ray", "vertical"}},
+      {"arc_edges",
+       "0",
+       "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316",
+       {}},
+      {"young", "15", "Young's modulus in Pa", {}}};
+  for (SceneOption &option : nitsche_options())
+    options.push_back(std::move(option));
+  return {"rigid_disk", "Hertz contact of an elastic half-disk with a rigid disk, with friction",
+          options, make};
 }
 
 } // namespace rbvi

@@ -55,6 +55,26 @@ PairDiscretisation pair_discretisation(const SceneOptions &options) {
                                                 : PairQuadrature::intersection};
 }
 
+std::vector<SceneOption> nitsche_options() {
+  return {{"formulation",
+           "mixed",
+           "of contact: with multipliers, or by Nitsche's method",
+           {"mixed", "nitsche"}},
+          {"nitsche_gamma0",
+           "11.54",
+           "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge",
+           {}}};
+}
+
+std::optional<NitscheRecipe>
+nitsche_recipe(const SceneOptions &options,
+               const std::function<Lame(const Mu &, const Point &)> &material) {
+  const double gamma0 = number_in(options, "nitsche_gamma0");
+  if (!(gamma0 > 0)) throw bad_input("option nitsche_gamma0 must be positive");
+  if (options.at("formulation") == "mixed") return std::nullopt;
+  return NitscheRecipe{gamma0, material};
+}
+
 double number_in(const SceneOptions &options, const std::string &name) {
   return parse_number(options.at(name), "option " + name);
 }

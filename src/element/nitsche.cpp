@@ -14,7 +14,7 @@ namespace {
 /// Stress and displacement at a point by the dofs of the cell: values and gradients of its nodes.
 void set_functionals(std::size_t nodes, std::span<const double> values,
                      std::span<const std::array<double, 3>> gradients, const Point &n,
-                     const std::array<double, 2> &material, NitschePoint &point) {
+                     const Lame &material, NitschePoint &point) {
   const Point tau{-n[1], n[0], 0};
   const auto [lambda, shear] = material;
   for (NitschePoint::Row *row : {&point.sigma_n, &point.sigma_tau, &point.n, &point.tau})
@@ -52,38 +52,42 @@ double coulomb_bound(double p, double coefficient) {
   return coefficient * std::max(-p, 0.0);
 }
 
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Mu &all_parameters,
-                                           const Cell &cell, int edge,
-                                           const std::array<double, 2> &material) {
-  check_orientation(scene, all_parameters, cell);
+NitschePoint nitsche_point(const Scene &scene, const Mu &all_parameters, const Cell &cell, int edge,
+                           const Lame &material, double s) {
   const Simplex geometry = simplex(2, cell.mapped);
   const auto [first, second] = simplex_edges[static_cast<std::size_t>(edge)];
   const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(second);
-  const double length = std::hypot(cell.mapped[end][0] - cell.mapped[begin][0],
-                                   cell.mapped[end][1] - cell.mapped[begin][1]);
-  const auto nodes = static_cast<std::size_t>(nodes_per_cell(2, scene.degree));
+  const Point x{(1 - s) * cell.reference[begin][0] + s * cell.reference[end][0],
+                (1 - s) * cell.reference[begin][1] + s * cell.reference[end][1], 0};
+  const Point n = scene.support->normal(all_parameters, x);
+  NitschePoint point;
+  point.weight = std::hypot(cell.mapped[end][0] - cell.mapped[begin][0],
+                            cell.mapped[end][1] - cell.mapped[begin][1]);
+  point.gap = scene.support->gap(all_parameters, x);
+  if (scene.motion) {
+    const Point motion = scene.motion(all_parameters, x);
+    point.gap -= motion[0] * n[0] + motion[1] * n[1];
+    point.slip = motion[1] * n[0] - motion[0] * n[1];
+  }
+  std::array<double, 3> barycentric{};
+  barycentric[begin] = 1 - s;
+  barycentric[end] = s;
+  std::array<double, most_nodes> values{};
+  std::array<std::array<double, 3>, most_nodes> gradients{};
+  lagrange_values(2, scene.degree, barycentric, values);
+  lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
+  set_functionals(static_cast<std::size_t>(nodes_per_cell(2, scene.degree)), values, gradients, n,
+                  material, point);
+  return point;
+}
+
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Mu &all_parameters,
+                                           const Cell &cell, int edge, const Lame &material) {
+  check_orientation(scene, all_parameters, cell);
   std::array<NitschePoint, 4> points;
   for (std::size_t q = 0; q < points.size(); ++q) {
-    const auto [s, weight] = edge_quadrature[q];
-    const Point x{(1 - s) * cell.reference[begin][0] + s * cell.reference[end][0],
-                  (1 - s) * cell.reference[begin][1] + s * cell.reference[end][1], 0};
-    const Point n = scene.support->normal(all_parameters, x);
-    NitschePoint &point = points[q];
-    point.weight = weight * length;
-    point.gap = scene.support->gap(all_parameters, x);
-    if (scene.motion) {
-      const Point motion = scene.motion(all_parameters, x);
-      point.gap -= motion[0] * n[0] + motion[1] * n[1];
-      point.slip = motion[1] * n[0] - motion[0] * n[1];
-    }
-    std::array<double, 3> barycentric{};
-    barycentric[begin] = 1 - s;
-    barycentric[end] = s;
-    std::array<double, most_nodes> values{};
-    std::array<std::array<double, 3>, most_nodes> gradients{};
-    lagrange_values(2, scene.degree, barycentric, values);
-    lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
-    set_functionals(nodes, values, gradients, n, material, point);
+    points[q] = nitsche_point(scene, all_parameters, cell, edge, material, edge_quadrature[q].s);
+    points[q].weight *= edge_quadrature[q].weight;
   }
   return points;
 }

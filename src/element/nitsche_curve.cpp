@@ -1,5 +1,10 @@
 #include "rbvi/element/nitsche_curve.hpp"
 
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/element/lagrange.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace rbvi {
@@ -8,46 +13,110 @@ namespace {
 
 using Row = NitschePoint::Row;
 
-Row local(const NitscheFace &face, const Vector &u) {
+Row local(const std::array<int, 12> &dofs, const Vector &u) {
   Row result = Row::Zero();
-  for (std::size_t i = 0; i < face.dofs.size(); ++i)
-    if (face.dofs[i] >= 0) result[static_cast<Index>(i)] = u[face.dofs[i]];
+  for (std::size_t i = 0; i < dofs.size(); ++i)
+    if (dofs[i] >= 0) result[static_cast<Index>(i)] = u[dofs[i]];
   return result;
 }
 
-/// What the terms depend on at one point.
-struct Scalars {
-  double sigma_n, sigma_tau, p_n, p_tau;
-};
-
-Scalars scalars(const NitscheFace &face, const NitschePoint &point, const Row &u) {
-  const double sigma_n = point.sigma_n.dot(u), sigma_tau = point.sigma_tau.dot(u);
-  return {sigma_n, sigma_tau, sigma_n - face.gamma * (point.n.dot(u) - point.gap),
-          sigma_tau - face.gamma * (point.tau.dot(u) + point.slip)};
+/// Linear part of P_n and of P_tau in u.
+Row normal_row(const NitschePoint &point, double gamma) {
+  return point.sigma_n - gamma * point.n;
 }
 
-/// Calls visit(face, point, scalars, bound) at every point; bound < 0 without friction.
+Row tangential_row(const NitschePoint &point, double gamma) {
+  return point.sigma_tau - gamma * point.tau;
+}
+
+/// Calls visit(face, point, number, bound) at every point; bound < 0 without friction.
 template <class Visit>
-void at_all_points(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &bounds,
+void at_all_points(const std::vector<NitscheFace> &faces, const Vector &bounds,
                    const Visit &visit) {
   Index number = 0;
-  for (const NitscheFace &face : faces) {
-    const Row here = local(face, u);
+  for (const NitscheFace &face : faces)
     for (const NitschePoint &point : face.points) {
-      visit(face, point, scalars(face, point, here), bounds.size() > 0 ? bounds[number] : -1);
+      visit(face, point, number, bounds.size() > 0 ? bounds[number] : -1);
       ++number;
     }
-  }
+}
+
+void add_square(FaceBlock &block, double factor, const Row &row) {
+  if (factor != 0) block.noalias() += factor * row * row.transpose();
+}
+
+Point centre_of(const Cell &cell) {
+  Point centre{};
+  for (std::size_t v = 0; v < 3; ++v)
+    for (std::size_t c = 0; c < 2; ++c)
+      centre[c] += cell.reference[v][c] / 3;
+  return centre;
+}
+
+double edge_length(const std::array<Point, 4> &vertices, int edge) {
+  const auto [i, j] = simplex_edges[static_cast<std::size_t>(edge)];
+  const Point &a = vertices[static_cast<std::size_t>(i)],
+              &b = vertices[static_cast<std::size_t>(j)];
+  return std::hypot(b[0] - a[0], b[1] - a[1]);
+}
+
+/// A cell at mu with its material and gamma.
+struct CellAtMu {
+  Cell cell;
+  Lame material;
+  double gamma;
+};
+
+CellAtMu at_mu(const Scene &scene, const Mu &all_parameters, const CurveCell &beside) {
+  CellAtMu result{beside.cell, scene.nitsche->material(all_parameters, centre_of(beside.cell)), 0};
+  for (std::size_t v = 0; v < 3; ++v)
+    result.cell.mapped[v] = scene.map(all_parameters, beside.cell.reference[v]);
+  result.gamma = scene.nitsche->gamma0 * (result.material.lambda + 2 * result.material.shear) /
+                 edge_length(beside.cell.reference, beside.edge);
+  return result;
 }
 
 } // namespace
 
-Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u) {
+std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_parameters,
+                                       const std::vector<CurveCell> &cells) {
+  std::vector<NitscheFace> faces;
+  faces.reserve(cells.size());
+  for (const CurveCell &beside : cells) {
+    const CellAtMu at = at_mu(scene, all_parameters, beside);
+    faces.push_back({nitsche_points(scene, all_parameters, at.cell, beside.edge, at.material),
+                     at.gamma, beside.dofs});
+  }
+  return faces;
+}
+
+NitscheLaw nitsche_law(const Friction &friction, const Mu &all_parameters) {
+  if (friction.law == FrictionLaw::none) return {};
+  const double value = friction.value(all_parameters);
+  if (!(value >= 0))
+    throw failure("the friction coefficient or threshold is " + short_number(value) +
+                  ": it must not be negative");
+  return {friction.law, value, friction.only_in_contact};
+}
+
+Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du) {
   Matrix result(4 * static_cast<Index>(faces.size()), 2);
   Index number = 0;
-  at_all_points(faces, u, {}, [&](const auto &, const auto &, const Scalars &s, double) {
-    result.row(number++) << s.p_n, s.p_tau;
-  });
+  for (const NitscheFace &face : faces) {
+    const Row here = local(face.dofs, du);
+    for (const NitschePoint &point : face.points)
+      result.row(number++) << normal_row(point, face.gamma).dot(here),
+          tangential_row(point, face.gamma).dot(here);
+  }
+  return result;
+}
+
+Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u) {
+  Matrix result = nitsche_pressure_changes(faces, u);
+  Index number = 0;
+  for (const NitscheFace &face : faces)
+    for (const NitschePoint &point : face.points)
+      result.row(number++) += face.gamma * Eigen::RowVector2d(point.gap, -point.slip);
   return result;
 }
 
@@ -59,66 +128,167 @@ Vector nitsche_bounds(const Matrix &pressures, const NitscheLaw &law) {
   });
 }
 
+std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces, bool friction) {
+  std::vector<FaceBlock> blocks;
+  blocks.reserve(faces.size());
+  for (const NitscheFace &face : faces) {
+    FaceBlock block = FaceBlock::Zero();
+    for (const NitschePoint &point : face.points) {
+      const double factor = point.weight * consistency_term(0, face.gamma).curvature;
+      add_square(block, factor, point.sigma_n);
+      if (friction) add_square(block, factor, point.sigma_tau);
+    }
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
 double nitsche_energy(const std::vector<NitscheFace> &faces, const Vector &u,
                       const Vector &bounds) {
+  const Matrix pressures = nitsche_pressures(faces, u);
   double energy = 0;
-  at_all_points(
-      faces, u, bounds,
-      [&](const NitscheFace &face, const NitschePoint &point, const Scalars &s, double bound) {
-        double density =
-            consistency_term(s.sigma_n, face.gamma).energy + contact_term(s.p_n, face.gamma).energy;
-        if (bound >= 0)
-          density += consistency_term(s.sigma_tau, face.gamma).energy +
-                     friction_term(s.p_tau, bound, face.gamma).energy;
-        energy += point.weight * density;
-      });
+  at_all_points(faces, bounds,
+                [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
+                  double density = contact_term(pressures(i, 0), face.gamma).energy;
+                  if (bound >= 0)
+                    density += friction_term(pressures(i, 1), bound, face.gamma).energy;
+                  energy += point.weight * density;
+                });
   return energy;
+}
+
+Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u,
+                          const Matrix &pressures, const Vector &bounds) {
+  const Matrix moved = nitsche_pressures(faces, u) - pressures;
+  Vector result = Vector::Zero(u.size());
+  at_all_points(faces, bounds,
+                [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
+                  const PointTerm contact = contact_term(pressures(i, 0), face.gamma);
+                  PointTerm friction{};
+                  if (bound >= 0) friction = friction_term(pressures(i, 1), bound, face.gamma);
+                  const double normal = contact.slope + contact.curvature * moved(i, 0);
+                  const double tangential = friction.slope + friction.curvature * moved(i, 1);
+                  if (normal == 0 && tangential == 0) return;
+                  Row tested = normal * normal_row(point, face.gamma);
+                  if (tangential != 0) tested += tangential * tangential_row(point, face.gamma);
+                  for (std::size_t k = 0; k < face.dofs.size(); ++k)
+                    if (face.dofs[k] >= 0)
+                      result[face.dofs[k]] += point.weight * tested[static_cast<Index>(k)];
+                });
+  return result;
 }
 
 Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds) {
-  Vector result = Vector::Zero(u.size());
-  at_all_points(
-      faces, u, bounds,
-      [&](const NitscheFace &face, const NitschePoint &point, const Scalars &s, double bound) {
-        const double contact = contact_term(s.p_n, face.gamma).slope;
-        Row tested = (consistency_term(s.sigma_n, face.gamma).slope + contact) * point.sigma_n -
-                     face.gamma * contact * point.n;
-        if (bound >= 0) {
-          const double friction = friction_term(s.p_tau, bound, face.gamma).slope;
-          tested += (consistency_term(s.sigma_tau, face.gamma).slope + friction) * point.sigma_tau -
-                    face.gamma * friction * point.tau;
-        }
-        for (std::size_t i = 0; i < face.dofs.size(); ++i)
-          if (face.dofs[i] >= 0)
-            result[face.dofs[i]] += point.weight * tested[static_cast<Index>(i)];
-      });
-  return result;
+  return nitsche_linearised(faces, u, nitsche_pressures(faces, u), bounds);
 }
 
-std::vector<Eigen::Matrix<double, 12, 12>> nitsche_tangent(const std::vector<NitscheFace> &faces,
-                                                           const Vector &u, const Vector &bounds) {
-  using Block = Eigen::Matrix<double, 12, 12>;
-  std::vector<Block> blocks;
-  blocks.reserve(faces.size());
-  const auto add = [](Block &block, double factor, const Row &row) {
-    if (factor != 0) block.noalias() += factor * row * row.transpose();
-  };
-  std::size_t number = 0;
+std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
+                                       const Matrix &pressures, const Vector &bounds) {
+  std::vector<FaceBlock> blocks(faces.size(), FaceBlock::Zero());
   at_all_points(
-      faces, u, bounds,
-      [&](const NitscheFace &face, const NitschePoint &point, const Scalars &s, double bound) {
-        if (number++ % face.points.size() == 0) blocks.emplace_back(Block::Zero());
-        const double gamma = face.gamma, weight = point.weight;
-        Block &block = blocks.back();
-        add(block, weight * consistency_term(s.sigma_n, gamma).curvature, point.sigma_n);
-        add(block, weight * contact_term(s.p_n, gamma).curvature, point.sigma_n - gamma * point.n);
-        if (bound < 0) return;
-        add(block, weight * consistency_term(s.sigma_tau, gamma).curvature, point.sigma_tau);
-        add(block, weight * friction_term(s.p_tau, bound, gamma).curvature,
-            point.sigma_tau - gamma * point.tau);
+      faces, bounds,
+      [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
+        FaceBlock &block = blocks[static_cast<std::size_t>(i) / face.points.size()];
+        add_square(block, point.weight * contact_term(pressures(i, 0), face.gamma).curvature,
+                   normal_row(point, face.gamma));
+        if (bound >= 0)
+          add_square(block,
+                     point.weight * friction_term(pressures(i, 1), bound, face.gamma).curvature,
+                     tangential_row(point, face.gamma));
       });
   return blocks;
+}
+
+NitscheLine::NitscheLine(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
+                         const Vector &bounds)
+    : start_(nitsche_pressures(faces, u)), change_(nitsche_pressure_changes(faces, d)),
+      bounds_(bounds), factor_(start_.rows()), gamma_(start_.rows()) {
+  Index number = 0;
+  for (const NitscheFace &face : faces)
+    for (const NitschePoint &point : face.points) {
+      factor_[number] = point.weight;
+      gamma_[number++] = face.gamma;
+    }
+}
+
+double NitscheLine::slope(double t) const {
+  double sum = 0;
+  for (Index i = 0; i < factor_.size(); ++i) {
+    const Eigen::RowVector2d p = start_.row(i) + t * change_.row(i);
+    double density = contact_term(p[0], gamma_[i]).slope * change_(i, 0);
+    if (bounds_.size() > 0)
+      density += friction_term(p[1], bounds_[i], gamma_[i]).slope * change_(i, 1);
+    sum += factor_[i] * density;
+  }
+  return sum;
+}
+
+double line_minimum(double linear, double quadratic, const NitscheLine &line) {
+  const auto slope = [&](double t) { return linear + t * quadratic + line.slope(t); };
+  const double first = slope(0), enough = 1e-2 * std::abs(first);
+  double low = 0, low_slope = first, high = 1, high_slope = slope(1);
+  while (high_slope < -enough && high < 16) {
+    low = high;
+    low_slope = high_slope;
+    high *= 2;
+    high_slope = slope(high);
+  }
+  if (high_slope <= enough) return high;
+  for (int step = 0; step < 60; ++step) { // regula falsi, halved where it stalls
+    double t = low - low_slope * (high - low) / (high_slope - low_slope);
+    if (step % 3 == 2) t = (low + high) / 2;
+    const double value = slope(t);
+    if (std::abs(value) <= enough) return t;
+    (value < 0 ? low : high) = t;
+    (value < 0 ? low_slope : high_slope) = value;
+  }
+  return low > 0 ? low : high;
+}
+
+CurveFields nitsche_fields(const Scene &scene, const Mu &all_parameters,
+                           const std::vector<CurveCell> &cells, const Vector &u) {
+  const auto count = static_cast<Index>(cells.size()) + 1;
+  CurveFields fields;
+  for (Vector *field : {&fields.sigma_n, &fields.sigma_tau, &fields.p_n, &fields.p_tau,
+                        &fields.excess, &fields.arc_length})
+    *field = Vector::Zero(count);
+  Vector &excess = fields.excess;
+  Vector slip = Vector::Zero(count), gamma = Vector::Zero(count), edges = Vector::Zero(count);
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const CellAtMu at = at_mu(scene, all_parameters, cells[k]);
+    const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
+    const bool forward = at.cell.reference[static_cast<std::size_t>(ends[0])][0] <
+                         at.cell.reference[static_cast<std::size_t>(ends[1])][0];
+    const Row here = local(cells[k].dofs, u);
+    for (const double s : {0.0, 1.0}) {
+      const NitschePoint point =
+          nitsche_point(scene, all_parameters, at.cell, cells[k].edge, at.material, s);
+      const Index vertex = static_cast<Index>(k) + ((s == 1) == forward ? 1 : 0);
+      fields.sigma_n[vertex] += point.sigma_n.dot(here);
+      fields.sigma_tau[vertex] += point.sigma_tau.dot(here);
+      excess[vertex] = point.n.dot(here) - point.gap;
+      slip[vertex] = point.tau.dot(here) + point.slip;
+      gamma[vertex] += at.gamma;
+      ++edges[vertex];
+    }
+    fields.arc_length[static_cast<Index>(k) + 1] =
+        fields.arc_length[static_cast<Index>(k)] + edge_length(at.cell.mapped, cells[k].edge);
+  }
+  for (Vector *sum : {&fields.sigma_n, &fields.sigma_tau, &gamma})
+    sum->array() /= edges.array();
+  fields.p_n = fields.sigma_n - gamma.cwiseProduct(excess);
+  fields.p_tau = fields.sigma_tau - gamma.cwiseProduct(slip);
+  fields.arc_length.array() -= fields.arc_length[count - 1] / 2;
+  return fields;
+}
+
+Vector nitsche_multiplier(const CurveFields &fields, bool friction) {
+  const Index count = fields.sigma_n.size();
+  Vector result(friction ? 2 * count : count);
+  result.head(count) = -fields.sigma_n;
+  if (friction) result.tail(count) = -fields.sigma_tau;
+  return result;
 }
 
 } // namespace rbvi

@@ -22,22 +22,6 @@ Vector arc_lengths(const std::vector<Point> &points) {
   return s.array() - s[s.size() - 1] / 2;
 }
 
-double centre_pressure(const Vector &pressure, const Vector &s, double half_width) {
-  Index next = 0;
-  s.cwiseAbs().minCoeff(&next);
-  double count = 0, x = 0, xx = 0, p = 0, xp = 0; // p = a + b x, x = s^2
-  for (Index i = 0; i < s.size(); ++i) {
-    if (!(std::abs(s[i]) < 0.12 * half_width)) continue;
-    const double square = s[i] * s[i];
-    ++count;
-    x += square;
-    xx += square * square;
-    p += pressure[i];
-    xp += square * pressure[i];
-  }
-  return count < 3 ? pressure[next] : (p * xx - xp * x) / (count * xx - x * x);
-}
-
 /// Below its bound by more than round-off.
 bool sticks(double tangential, double bound) {
   return tangential < (1 - 1e-9) * bound;
@@ -62,6 +46,22 @@ Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n) {
   for (Index i = 0; i < result.size(); ++i)
     if (!bound.only_in_contact || lambda_n[i] > 0) result[i] += bound.threshold;
   return result;
+}
+
+double centre_pressure(const Vector &pressure, const Vector &s, double half_width) {
+  Index next = 0;
+  s.cwiseAbs().minCoeff(&next);
+  double count = 0, x = 0, xx = 0, p = 0, xp = 0; // p = a + b x, x = s^2
+  for (Index i = 0; i < s.size(); ++i) {
+    if (!(std::abs(s[i]) < 0.12 * half_width)) continue;
+    const double square = s[i] * s[i];
+    ++count;
+    x += square;
+    xx += square * square;
+    p += pressure[i];
+    xp += square * pressure[i];
+  }
+  return count < 3 ? pressure[next] : (p * xx - xp * x) / (count * xx - x * x);
 }
 
 void support_outputs(const SupportState &state, Outputs &outputs) {

@@ -89,6 +89,7 @@ void Problem::assemble_support(Operators &operators) {
 
 void Problem::assemble_contact(const Mu &mu, Operators &operators) {
   operators.mu = expand(scene_.parameters, mu);
+  if (scene_.nitsche) return;
   if (scene_.support)
     assemble_support(operators);
   else if (scene_.pair)

@@ -133,15 +133,17 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     throw bad_input(
         "vi needs a bound at each node, and contact of two bodies or with a rigid support bounds "
         "integrals over several: use -hf_method active_set or uzawa");
+  if (problem.nitsche()) {
+    nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
+    return;
+  }
   part_fits_ = options.method == HfMethod::active_set && ScaledPart::fits(problem.scene());
   if (constant_stiffness(problem.scene())) compliance_ = std::make_unique<Compliance>();
 }
 
 HighFidelity::~HighFidelity() = default;
 
-Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
-  const bool columns_are_kept = part_ || (compliance_ && compliance_->count() > 0);
-  if (solved_.empty()) return columns_are_kept ? Start{} : rough_start(ksp_.get(), problem_, op);
+const HighFidelity::Solved *HighFidelity::nearest(const Mu &mu) const {
   const ParameterSpace &space = problem_.scene().parameters;
   const Solved *nearest = nullptr;
   double best = 0;
@@ -156,7 +158,36 @@ Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
       best = distance;
     }
   }
-  return nearest->start;
+  return nearest;
+}
+
+Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
+  const bool columns_are_kept = part_ || (compliance_ && compliance_->count() > 0);
+  if (solved_.empty()) return columns_are_kept ? Start{} : rough_start(ksp_.get(), problem_, op);
+  return nearest(mu)->start;
+}
+
+HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
+  const Solved *near = nearest(mu);
+  NitscheSolution found = nitsche_->solve(op, near == nullptr ? nullptr : &near->nitsche);
+  const Scene &scene = problem_.scene();
+  const std::vector<CurveCell> &cells = nitsche_->layer().cells;
+  const CurveFields fields = nitsche_fields(scene, op.mu, cells, found.layer);
+  const std::vector<NitscheFace> faces = nitsche_faces(scene, op.mu, cells);
+  HfSolution solution;
+  solution.u = to_natural(problem_.dofs(), found.state.u.get());
+  solution.lambda = nitsche_multiplier(fields, scene.support->friction.law != FrictionLaw::none);
+  nitsche_outputs(faces, found.state.pressures, fields, nitsche_law(scene.support->friction, op.mu),
+                  solution.outputs);
+  solution.kkt.stationarity = found.residual;
+  solution.outputs.energy = scene.mirror_images * found.energy;
+  solution.outputs.kkt_residual = found.residual;
+  solution.outputs.iterations = solution.iterations = found.iterations;
+  solution.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
+                    std::to_string(found.outer_iterations) + " loops, " +
+                    std::to_string(found.factorisations) + " factorisations";
+  solved_.push_back({mu, {}, std::move(found.state)});
+  return solution;
 }
 
 MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
@@ -176,6 +207,11 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
   ++solves_;
   const Operators &op = problem_.assemble(mu);
+  if (nitsche_) {
+    HfSolution solution = solve_nitsche(mu, op);
+    solution.outputs.seconds = MPI_Wtime() - start;
+    return solution;
+  }
   RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
   const MethodResult result = run(mu, op);
   if (!result.converged)
@@ -196,7 +232,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
                   ", above 1e-10: is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");
   solved_.push_back(
-      {mu, {solution.active, result.start.size() > 0 ? result.start : solution.lambda}});
+      {mu, {solution.active, result.start.size() > 0 ? result.start : solution.lambda}, {}});
   return solution;
 }
 

@@ -9,7 +9,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 2;
+constexpr int sample_schema = 3;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
@@ -25,6 +25,9 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::kkt_residual,
                                     &Outputs::max_penetration,
                                     &Outputs::friction_violation,
+                                    &Outputs::law_error_normal,
+                                    &Outputs::law_error_tangential,
+                                    &Outputs::law_error_tangential_to_normal,
                                     &Outputs::iterations,
                                     &Outputs::seconds};
 

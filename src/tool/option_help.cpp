@@ -27,6 +27,12 @@ const std::vector<OptionHelp> &tool_options() {
       {"uzawa_max_iterations", "20000", "limit of iterations"},
       {"uzawa_accelerated", "no", "Nesterov's extrapolation with restart"},
       {"uzawa_step", "0", "step rho; 0 is 1 / largest eigenvalue of B A^-1 B^T"},
+      {"nitsche_loop", "nested",
+       "Coulomb's bound: frozen in an outer loop (nested), or following every Newton step "
+       "(single)"},
+      {"nitsche_bounds", "none",
+       "Nitsche's method: the nodes' normal displacements are bounded by the gap: none | "
+       "nonpenetration"},
       {"sweep_ranks_per_solve", "1", "ranks that share one solve; divides the ranks"},
       {"pod_tolerance", "1e-6", "relative error of the displacement modes (2.11)"},
       {"pod_max_size", "0", "most modes; 0 is no bound"},
@@ -83,7 +89,7 @@ void print_help() {
   }
   std::printf(
       "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
-      "(Riesz representers), -log_view, ...\n"
+      "(Riesz representers), -nitsche_snes_*, -nitsche_ksp_*, -nitsche_pc_*, -log_view, ...\n"
       "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n");
 }
 

@@ -15,8 +15,6 @@ namespace {
 
 /// Options of PETSc itself that it reads only at its end.
 const std::vector<std::string> late_options{"options_left", "options_view"};
-/// Options of PETSc objects: check_solver_options.
-const std::vector<std::string> object_prefixes{"hf_", "vi_", "v_"};
 
 bool starts_with_any(const std::string &name, const std::vector<std::string> &prefixes) {
   return std::any_of(prefixes.begin(), prefixes.end(),
@@ -224,7 +222,7 @@ void check_names(const std::vector<std::string> &names, const Scene &scene) {
   for (const Parameter &parameter : scene.parameters.all)
     known.push_back(parameter.name);
   for (const std::string &name : names)
-    if (!contains(known, name) && !starts_with_any(name, object_prefixes))
+    if (!contains(known, name) && !starts_with_any(name, solver_prefixes()))
       throw bad_input("unknown option -" + name + "; the nearest one is -" +
                       nearest_name(name, known) + " (-help lists all)");
 }
@@ -271,6 +269,8 @@ HfOptions hf_options() {
   options.uzawa_max_iterations = integer_of("uzawa_max_iterations", 1, 100000000);
   options.uzawa_accelerated = flag_of("uzawa_accelerated");
   options.uzawa_step = number_of("uzawa_step", 0, 1e300);
+  options.nitsche.single_loop = choice_of("nitsche_loop", {"nested", "single"}) == 1;
+  options.nitsche.nonpenetration = choice_of("nitsche_bounds", {"none", "nonpenetration"}) == 1;
   return options;
 }
 
@@ -308,6 +308,9 @@ ToolOptions read_options(MPI_Comm comm) {
   options.train = text_of("train", options.scene.training);
   options.valid = text_of("valid", options.scene.validation);
   options.hf = hf_options();
+  if (options.scene.nitsche && contains(names, "hf_method"))
+    throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
+                    "-nitsche_snes_type");
   if (options.hf.method == HfMethod::vi && !options.scene.lumped)
     throw bad_input(options.scene.pair || options.scene.support
                         ? "-hf_method vi needs a bound at each node, and contact of two bodies or "

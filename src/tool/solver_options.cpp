@@ -7,8 +7,6 @@ namespace rbvi {
 
 namespace {
 
-const std::vector<std::string> solver_prefixes{"hf_", "vi_", "v_"};
-
 /// Options under our prefixes that no PETSc object has asked for, as " -a -b".
 std::string unused_options() {
   PetscInt count = 0;
@@ -16,7 +14,7 @@ std::string unused_options() {
   RBVI_CALL(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   std::string unused;
   for (PetscInt i = 0; i < count; ++i)
-    for (const std::string &prefix : solver_prefixes)
+    for (const std::string &prefix : solver_prefixes())
       if (std::string(names[i]).starts_with(prefix)) unused += " -" + std::string(names[i]);
   RBVI_CALL(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return unused;
@@ -50,6 +48,12 @@ void try_solvers(Problem &problem, const HfOptions &options) {
 }
 
 } // namespace
+
+const std::vector<std::string> &solver_prefixes() {
+  static const std::vector<std::string> prefixes{
+      "hf_", "vi_", "v_", "nitsche_snes_", "nitsche_ksp_", "nitsche_pc_", "nitsche_mat_"};
+  return prefixes;
+}
 
 void check_solver_options(Problem &problem, const HfOptions &options) {
   if (unused_options().empty()) return;

@@ -108,6 +108,21 @@ struct SupportRecipe {
   Friction friction;
 };
 
+/// The two constants of an isotropic material, pressures:
+/// sigma = lambda tr(eps) I + 2 shear eps.
+struct Lame {
+  double lambda, shear;
+};
+
+/// Contact with the support by Nitsche's method in place of multipliers (Niakh 2022, chapter 4):
+/// gamma = gamma0 (lambda + 2 shear) / h on each edge of the curve, h its length in the reference
+/// domain. Below some 3 the tangent is indefinite; far above the default the answer hardly changes,
+/// and takes more steps.
+struct NitscheRecipe {
+  double gamma0;
+  std::function<Lame(const Mu &, const Point &)> material; ///< at the centre of a reference cell
+};
+
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
 /// decreasing, value = back(x).
 struct Coordinate {
@@ -145,6 +160,7 @@ struct Scene {
   std::string contact_region; ///< multipliers live on the vertices of this closed region
   std::optional<PairRecipe> pair;
   std::optional<SupportRecipe> support;
+  std::optional<NitscheRecipe> nitsche; ///< with a support
 
   Form a;
   /// Parameters (indices into parameters.all) that a depends on; unset: all.
@@ -175,6 +191,13 @@ bool constant_stiffness(const Scene &scene);
 /// The options `multiplier` and `integration` of scenes with a pair, and what they say.
 std::vector<SceneOption> pair_options();
 PairDiscretisation pair_discretisation(const SceneOptions &options);
+
+/// The options `formulation` and `nitsche_gamma0` of scenes with a support, and what they say:
+/// nothing for the mixed formulation. Throws bad_input for a gamma0 that is not positive.
+std::vector<SceneOption> nitsche_options();
+std::optional<NitscheRecipe>
+nitsche_recipe(const SceneOptions &options,
+               const std::function<Lame(const Mu &, const Point &)> &material);
 
 /// The number in an option.
 double number_in(const SceneOptions &options, const std::string &name);

@@ -6,12 +6,6 @@
 
 namespace rbvi {
 
-/// The two constants of an isotropic material, pressures:
-/// sigma = lambda tr(eps) I + 2 shear eps.
-struct Lame {
-  double lambda, shear;
-};
-
 /// lambda = E nu / ((1 + nu) (1 - 2 nu)), shear = E / (2 (1 + nu)). `young` is E (a pressure),
 /// `poisson` is nu. Throws bad_input unless E > 0 and -1 < nu < 1/2.
 Lame lame(double young, double poisson);

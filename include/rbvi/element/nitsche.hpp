@@ -44,12 +44,15 @@ struct NitschePoint {
   double slip = 0;                ///< of the motion
 };
 
-/// The four Gauss points of edge `edge` (Lagrange order) of a triangle on the curve, of degree
-/// scene.degree. Normal and gap are the scene's at the reference point, in u_n, sigma_n and the gap
-/// alike; edges are straight. `material`: lambda and the shear modulus of the cell. Throws failure,
-/// naming mu, for an inverted cell.
+/// What point s of [0, 1] on edge `edge` (Lagrange order) of a triangle sees, of degree
+/// scene.degree; weight: the length of the mapped edge. Normal and gap are the scene's at the
+/// reference point, in u_n, sigma_n and the gap alike; edges are straight.
+NitschePoint nitsche_point(const Scene &scene, const Mu &all_parameters, const Cell &cell, int edge,
+                           const Lame &material, double s);
+
+/// The Gauss points of the edge, with their weights. Throws failure, naming mu, for an inverted
+/// cell.
 std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Mu &all_parameters,
-                                           const Cell &cell, int edge,
-                                           const std::array<double, 2> &material);
+                                           const Cell &cell, int edge, const Lame &material);
 
 } // namespace rbvi

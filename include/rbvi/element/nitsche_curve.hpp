@@ -1,45 +1,116 @@
-// Nitsche's terms along the whole contact curve: energy, residual and tangent on the dofs of the
-// cells beside it (the contact layer), from the terms of element/nitsche.hpp. Serial: the layer is
-// small beside the domain, and every rank holds all of it.
+// Nitsche's terms along the whole contact curve, on the dofs of the cells beside it (the contact
+// layer), from the terms of element/nitsche.hpp. Serial: the layer is small beside the domain, and
+// every rank holds all of it. The energy is a quadratic one, a_gamma(u, u) / 2 - f(u) with
+// a_gamma = a + consistency (4.18), (4.40), and the integrals of contact and friction over the
+// pressures P_n, P_tau, which are affine in u.
 #pragma once
 
+#include "rbvi/core/outputs.hpp"
 #include "rbvi/element/nitsche.hpp"
 
 #include <vector>
 
 namespace rbvi {
 
-/// An edge of the curve and the cell beside it. Rows of NitschePoint are for these dofs.
+/// A cell beside the curve. Its dofs, node * 2 + component, are numbered in the layer; -1: fixed,
+/// or not there (degree 1).
+struct CurveCell {
+  Cell cell; ///< reference; mapped alike
+  int edge = 0;
+  std::array<int, 12> dofs;
+};
+
+/// What it sees at one mu. Rows of NitschePoint are for these dofs.
 struct NitscheFace {
   std::array<NitschePoint, 4> points;
   double gamma = 0;
-  std::array<int, 12> dofs; ///< of the layer; -1: fixed, or not there (degree 1)
+  std::array<int, 12> dofs;
 };
+
+using FaceBlock = Eigen::Matrix<double, 12, 12>;
+
+/// All faces at mu, in the order of the cells; gamma as in NitscheRecipe. Throws failure, naming
+/// mu, for an inverted cell.
+std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_parameters,
+                                       const std::vector<CurveCell> &cells);
 
 /// Friction::law with its threshold or coefficient at one mu.
 struct NitscheLaw {
   FrictionLaw law = FrictionLaw::none;
   double value = 0;
   bool only_in_contact = false; ///< Tresca's threshold holds where [P_n]_- < 0 alone
+  /// Whether the bounds depend on u.
+  bool moves() const { return law == FrictionLaw::coulomb || only_in_contact; }
 };
+
+/// Throws failure, naming the value, for a negative one.
+NitscheLaw nitsche_law(const Friction &friction, const Mu &all_parameters);
 
 /// P_n (4.19a) and P_tau (4.35) at every point, face by face: 4 * faces rows, 2 columns.
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u);
 
-/// The bound of friction at every point that these pressures tell: s (4.33), or s^c (4.51).
+/// What a change of u adds to them.
+Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du);
+
+/// The bound of friction at every point that these pressures tell: s (4.33), or s^c (4.51); empty
+/// without friction.
 Vector nitsche_bounds(const Matrix &pressures, const NitscheLaw &law);
 
-/// All integrals over the curve in J^Nitsche (4.15), with friction of these bounds (4.36); without
+/// a_gamma - a, a block for each face: (4.18), with friction (4.40).
+std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces, bool friction);
+
+/// Integrals of contact in J^Nitsche (4.15) and of friction of these bounds (4.36); without
 /// friction `bounds` is empty.
 double nitsche_energy(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &bounds);
 
-/// Its gradient in u, `u.size()` entries: the integrals of (4.17), (4.39), (4.52).
+/// Their gradient, `u.size()` entries: theta_gamma^n (4.25), theta_gamma^tau (4.43b), (4.55b).
 Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds);
 
-/// Its Hessian, one block for each face, the bounds being fixed: (4.24a), (4.43a), (4.55a), and the
-/// integrals of a_gamma.
-std::vector<Eigen::Matrix<double, 12, 12>> nitsche_tangent(const std::vector<NitscheFace> &faces,
-                                                           const Vector &u, const Vector &bounds);
+/// Their Hessian at given pressures, a block for each face, the bounds being fixed: b_gamma^n
+/// (4.24a), b_gamma^tau (4.43a), (4.55a).
+std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
+                                       const Matrix &pressures, const Vector &bounds);
+
+/// The gradient at u of the terms linearised about given pressures: those who are in contact, and
+/// who stick, there.
+Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u,
+                          const Matrix &pressures, const Vector &bounds);
+
+/// The integrals along u + t d, which are piecewise quadratic in t.
+class NitscheLine {
+public:
+  NitscheLine(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
+              const Vector &bounds);
+  double slope(double t) const; ///< of their sum
+
+private:
+  Matrix start_, change_; ///< pressures
+  Vector bounds_;
+  Vector factor_; ///< weight of each point
+  Vector gamma_;
+};
+
+/// The t > 0 where `linear` + t `quadratic` + line.slope(t) vanishes, to one per cent of its value
+/// at 0, of which it must be below zero: the minimum along a line of a convex energy. At most 16.
+double line_minimum(double linear, double quadratic, const NitscheLine &line);
+
+/// Fields at the vertices of the curve, by increasing x: stress averaged from the edges that meet
+/// there, the pressures with it, and u_n less the gap.
+struct CurveFields {
+  Vector sigma_n, sigma_tau, p_n, p_tau, excess;
+  Vector arc_length; ///< from the middle, mapped
+};
+CurveFields nitsche_fields(const Scene &scene, const Mu &all_parameters,
+                           const std::vector<CurveCell> &cells, const Vector &u);
+
+/// -sigma_n, then with friction -sigma_tau at the vertices: what stands for the multipliers of the
+/// mixed method.
+Vector nitsche_multiplier(const CurveFields &fields, bool friction);
+
+/// Fills forces, half-widths, pressures, penetration and the errors of the laws; see
+/// support_outputs.
+void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+                     const CurveFields &fields, const NitscheLaw &law, Outputs &outputs);
 
 } // namespace rbvi

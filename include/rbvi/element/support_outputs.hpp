@@ -13,6 +13,10 @@ FrictionBound friction_bound(const Friction &friction, const Mu &all_parameters)
 /// Bound of the tangential multipliers at each node: c lambda_n + t.
 Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n);
 
+/// At the middle of a curve: by a fit of p against s^2 over arc lengths |s| < 0.12 half_width, or at
+/// the next node where that holds fewer than three nodes.
+double centre_pressure(const Vector &pressure, const Vector &arc_length, double half_width);
+
 /// One state of contact on a curve.
 struct SupportState {
   const Vector &lambda;  ///< normal multipliers, then tangential ones if there are any
@@ -24,9 +28,7 @@ struct SupportState {
 
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
 /// peak_pressure, centre_pressure and, with friction, tangential_force, stick_half_width,
-/// friction_violation (a pressure). centre_pressure: at the middle of the curve, by a fit of p
-/// against s^2 over arc lengths |s| < 0.12 contact_half_width, or at the next node where that holds
-/// fewer than three nodes.
+/// friction_violation (a pressure).
 void support_outputs(const SupportState &state, Outputs &outputs);
 
 } // namespace rbvi

@@ -46,6 +46,8 @@ public:
   const Dofs &dofs() const { return dofs_; }
   bool two_bodies() const { return curves_.has_value(); }
   bool on_support() const { return support_.has_value(); }
+  /// Contact by Nitsche's method: no B, G, weights and nodal constraint are assembled.
+  bool nitsche() const { return scene_.nitsche.has_value(); }
   const ContactRegion &contact() const { return contact_.value(); }  ///< an obstacle
   const ContactCurves &curves() const { return curves_.value(); }    ///< two bodies
   const ContactSupport &support() const { return support_.value(); } ///< a rigid support

@@ -93,6 +93,42 @@ struct SupportModel {
   Matrix starts_mu; ///< free parameters x P: where they are
 };
 
+/// How a model of Nitsche's method takes the integrals of contact and friction.
+enum class CurveRule {
+  empirical,   ///< at few Gauss points of the curve, with non-negative weights of their own
+  full,        ///< at all of them
+  interpolated ///< empirical interpolation over (mu, Newton step) (4.71)-(4.80)
+};
+
+/// "empirical", "full", "interpolated".
+const std::vector<std::string> &curve_rule_names();
+
+/// An operator on the contact layer by empirical interpolation (B.36): sum_q theta_q (term q), with
+/// theta from J of its entries.
+struct LayerTerms {
+  Matrix reduced;                 ///< n x J, or of a matrix: a packed lower triangle by columns x J
+  Matrix interpolation;           ///< J x J unit lower triangular
+  std::vector<int> rows, columns; ///< J dofs of the layer; a vector has no columns
+  double error = 0;               ///< e_EIM reached
+  Index size() const { return interpolation.rows(); }
+};
+
+/// Nitsche's method: the cells beside the contact curve, and what of them is integrated online.
+struct NitscheModel {
+  Matrix vertices;        ///< (3 * cells) x 2, reference, along the curve by increasing x
+  std::vector<int> edges; ///< cells: the one on the curve
+  std::vector<int> dofs;  ///< 12 * cells: rows of trace, see CurveCell
+  Matrix trace;           ///< dofs of the layer x n: primal basis
+  LayerTerms consistency; ///< a_gamma - a, a matrix
+  CurveRule rule = CurveRule::empirical;
+  std::vector<int> points;                     ///< empirical: 4 * cell + Gauss point
+  Vector factors;                              ///< empirical: of the weights of these points, > 0
+  LayerTerms contact_matrix, contact_vector;   ///< interpolated: B^n, Theta^n
+  LayerTerms friction_matrix, friction_vector; ///< interpolated: B^tau, Theta^tau
+  Matrix starts;    ///< n x P: training samples, where a query starts from
+  Matrix starts_mu; ///< free parameters x P
+};
+
 struct ReducedModel {
   std::string scene_name;
   SceneOptions scene_options;
@@ -124,6 +160,7 @@ struct ReducedModel {
   Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
   bool two_bodies() const { return slave_nodes > 0; }
   std::optional<SupportModel> support;
+  std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
 
   // Full order, for reconstruction.
   Matrix primal_basis;            ///< dofs x n, fixed dofs included
@@ -137,7 +174,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 4;
+inline constexpr int model_schema = 5;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

@@ -1,4 +1,6 @@
-// High-fidelity solvers of the mixed problem at one mu. One result type; three methods that agree:
+// High-fidelity solvers at one mu. One result type. Scenes with Nitsche's method:
+// solve/nitsche.hpp; the multipliers are then minus the stress at the vertices of the curve. The
+// mixed problem: three methods that agree,
 //
 //   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column:
 //               the truth
@@ -10,6 +12,7 @@
 
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/problem/problem.hpp"
+#include "rbvi/solve/nitsche.hpp"
 
 #include <memory>
 #include <string>
@@ -25,6 +28,7 @@ struct HfOptions {
   int uzawa_max_iterations = 20000;
   bool uzawa_accelerated = false; ///< Nesterov's extrapolation, restarted when it overshoots
   double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
+  NitscheOptions nitsche;
 };
 
 /// Relative residuals of the optimality system.
@@ -78,13 +82,17 @@ private:
   struct Solved {
     Mu mu;
     Start start;
+    NitscheState nitsche;
   };
+  const Solved *nearest(const Mu &mu) const;
   Start nearest_start(const Mu &mu, const Operators &op) const;
   MethodResult run(const Mu &mu, const Operators &op);
+  HfSolution solve_nitsche(const Mu &mu, const Operators &op);
 
   Problem &problem_;
   HfOptions options_;
   Handle<KSP> ksp_;
+  std::unique_ptr<NitscheSolver> nitsche_;
   std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
   bool part_fits_ = false;
   std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on

@@ -47,9 +47,12 @@ ToolOptions read_options(MPI_Comm comm);
 /// The case file that a run leaves in its directory, read where no other is named.
 std::filesystem::path case_of_run(const std::filesystem::path &out);
 
-/// Collective on the communicator of `problem`. Throws bad_input if an option under -hf_, -vi_ or
-/// -v_ was given that no PETSc object asks for, or whose value it refuses. Costs nothing where none
-/// is given, and one solve where the objects alone cannot tell.
+/// How the options of PETSc objects of ours begin.
+const std::vector<std::string> &solver_prefixes();
+
+/// Collective on the communicator of `problem`. Throws bad_input if one of those was given that no
+/// PETSc object asks for, or whose value it refuses. Costs nothing where none is given, and one
+/// solve where the objects alone cannot tell.
 void check_solver_options(Problem &problem, const HfOptions &options);
 
 /// Prints the usage, the options above and those of the scenes.

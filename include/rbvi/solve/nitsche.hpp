@@ -1,0 +1,69 @@
+// Contact with a rigid support by Nitsche's method (Niakh 2022, 4.3): no multipliers, one nonlinear
+// system A_gamma u + (contact and friction of the curve) = F, solved by SNES with its VI extension
+// (infinite bounds: Newton's method). With fixed bounds of friction the system is the gradient of a
+// convex energy, and the line search finds its minimum along each step. Bounds that depend on u
+// (Coulomb's) are frozen in an outer loop (4.63), or follow every Newton step (4.53).
+//
+// A tangent differs from the last one at a few points of the curve alone: conjugate gradients with
+// an earlier factorisation solve it, and it is factorised anew where they take more than a few
+// iterations.
+#pragma once
+
+#include "rbvi/element/nitsche_curve.hpp"
+#include "rbvi/fem/contact_layer.hpp"
+#include "rbvi/problem/problem.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace rbvi {
+
+struct NitscheOptions {
+  bool single_loop = false;    ///< moving bounds of friction: (4.53) instead of (4.63)
+  bool nonpenetration = false; ///< SNES bounds the normal displacement of the nodes by the gap
+};
+
+/// A state that Newton starts from: where its pressures are in contact and stick counts, so that a
+/// state at one mu starts one at another, whose gap differs.
+struct NitscheState {
+  Handle<Vec> u;    ///< free dofs, without the motion
+  Matrix pressures; ///< at the points of the curve, see nitsche_pressures
+  Vector bounds;    ///< of friction there
+};
+
+struct NitscheSolution {
+  NitscheState state;
+  Vector layer;        ///< u on the layer
+  double energy = 0;   ///< a(u,u)/2 - f(u) (4.11)
+  double residual = 0; ///< |A_gamma u + terms - F| / (|A_gamma u| + |terms| + |F|)
+  int iterations = 0;  ///< Newton steps
+  int outer_iterations = 0;
+  int factorisations = 0;
+  std::string reason;
+};
+
+class NitscheSolver {
+public:
+  /// Collective. SNES, KSP and PC options under -nitsche_. `problem` must outlive it; its scene has
+  /// a NitscheRecipe.
+  NitscheSolver(Problem &problem, const NitscheOptions &options);
+  ~NitscheSolver();
+  /// Collective. `op`: the problem assembled at some mu; `start`: null: zero. Throws
+  /// failure, saying what to try, where SNES does not converge or a tangent is not positive
+  /// definite (gamma0 too small).
+  NitscheSolution solve(const Operators &op, const NitscheState *start = nullptr);
+  const ContactLayer &layer() const { return layer_; }
+  /// Called with u on the layer at the start of every Newton step, and the bounds of friction.
+  std::function<void(const Vector &layer, const Vector &bounds)> watch;
+
+private:
+  struct System;
+  void run(bool nested, Vec u, NitscheSolution &result);
+  Problem &problem_;
+  NitscheOptions options_;
+  ContactLayer layer_;
+  std::unique_ptr<System> system_;
+};
+
+} // namespace rbvi
