@@ -63,10 +63,12 @@ double gap_along(const Point &p, const Point &n) {
 using Normal = Point (*)(const Mu &, const Point &);
 
 /// (phi(x) - x) . n, phi(x) the partner of x on the rigid disk (3.4).
+/// `from_arc`: of the point of the exact arc beside x.
 std::function<double(const Mu &, const Point &)> gap_function(const std::string &kind,
-                                                              Normal normal) {
-  return [kind, normal](const Mu &mu, const Point &x) {
-    const Point p = from_support(mu, on_arc(mu, x)), n = normal(mu, x);
+                                                              bool from_arc, Normal normal) {
+  return [=](const Mu &mu, const Point &x) {
+    const Point at = from_arc ? on_arc(mu, x) : Point{mu[radius] * x[0], mu[radius] * x[1], 0};
+    const Point p = from_support(mu, at), n = normal(mu, x);
     if (kind == "ray") return gap_along(p, n);
     if (kind == "vertical") {
       if (!(std::abs(p[0]) < 1)) throw failure("no point of the rigid disk is below the arc");
@@ -108,7 +110,7 @@ Scene make(const SceneOptions &options) {
   scene.support = SupportRecipe{"contact", {}, {}, friction_of(options)};
   const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
   scene.support->normal = normal;
-  scene.support->gap = gap_function(options.at("gap"), normal);
+  scene.support->gap = gap_function(options.at("gap"), options.at("gap_from") == "arc", normal);
   const auto material = [young](const Mu &mu, const Point &centre) {
     const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
     return lame(stiffness * young, mu[poisson_ratio]);
@@ -158,6 +160,10 @@ SceneEntry rigid_disk() {
        "closest",
        "along the normal to the next point, along a ray, or to the point below",
        {"closest", "ray", "vertical"}},
+      {"gap_from",
+       "arc",
+       "the gap is measured from the exact arc, or from the straight edges of the mesh",
+       {"arc", "edges"}},
       {"arc_edges",
        "0",
        "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316",

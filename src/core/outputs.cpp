@@ -32,7 +32,7 @@ constexpr Column all_columns[] = {
     {"friction_violation", &Outputs::friction_violation},
     {"law_error_normal", &Outputs::law_error_normal},
     {"law_error_tangential", &Outputs::law_error_tangential},
-    {"law_error_tangential_to_normal", &Outputs::law_error_tangential_to_normal},
+    {"law_error_tau_over_n", &Outputs::law_error_tau_over_n},
     {"expected_error_u", &Outputs::expected_error_u},
     {"expected_error_lambda", &Outputs::expected_error_lambda},
     {"iterations", &Outputs::iterations},

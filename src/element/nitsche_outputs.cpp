@@ -54,7 +54,7 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   outputs.reaction = sums.vertical;
   outputs.contact_measure = sums.contact;
   outputs.contact_half_width = sums.contact / 2;
-  outputs.peak_pressure = -fields.sigma_n.minCoeff();
+  outputs.peak_pressure = std::max(0.0, -fields.sigma_n.minCoeff());
   outputs.centre_pressure = centre_pressure(-fields.sigma_n, fields.arc_length, sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
   const double normal = fields.sigma_n.norm();
@@ -70,7 +70,7 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   outputs.stick_half_width = sums.stick / 2;
   outputs.friction_violation = std::max(0.0, (fields.sigma_tau.cwiseAbs() - bounds).maxCoeff());
   outputs.law_error_tangential = ratio(error, fields.sigma_tau.norm());
-  outputs.law_error_tangential_to_normal = ratio(error, normal);
+  outputs.law_error_tau_over_n = ratio(error, normal);
 }
 
 } // namespace rbvi

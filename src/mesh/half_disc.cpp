@@ -15,8 +15,10 @@ constexpr double contact_angle = std::numbers::pi / 8; ///< of the right half
 constexpr double core_radius = 0.6;
 
 // With these values 100 contact edges give 708 nodes and 5350 dofs of degree 2.
-constexpr double growth = 0.2255;        ///< of the edges, per distance from the contact arc
-constexpr double corner_edge = 0.06;     ///< at the clamped corner, where the stress is singular
+constexpr double growth = 0.2255; ///< of the edges, per distance from the contact arc
+constexpr double corner_edge = 6; ///< at the clamped corner, where the stress is singular,
+                                  ///< per number of contact edges; at most longest_corner
+constexpr double longest_corner = 0.06;
 constexpr double corner_growth = 0.25;   ///< of the edges, per distance from the corner
 constexpr double longest_edge = 0.135;   ///< along the rings; across them up to 0.21
 constexpr double ring_distance = 0.885;  ///< of the rings below the core, in edges
@@ -52,12 +54,12 @@ double length(const Point &x, const Point &y) {
 
 /// Edge length at a point of the right half, by its distance from the contact arc and the corner.
 struct EdgeLength {
-  double shortest;
+  double shortest, corner;
   double operator()(const Point &x) const {
     const bool beside = std::atan2(x[0], -x[1]) > contact_angle;
     const double distance =
         beside ? length(x, polar(1, contact_angle)) : 1 - std::hypot(x[0], x[1]);
-    const double from_corner = corner_edge + corner_growth * length(x, {1, 0, 0});
+    const double from_corner = corner + corner_growth * length(x, {1, 0, 0});
     return std::min({shortest + growth * distance, from_corner, longest_edge});
   }
 };
@@ -238,7 +240,8 @@ SerialMesh half_disc(int edges) {
   if (edges < 8 || edges % 2 != 0)
     throw bad_input("the mesh of the half disc cannot have " + std::to_string(edges) +
                     " contact edges: their number must be even and at least 8");
-  RightHalf right{{}, {2 * contact_angle / edges}, {}, {}};
+  const EdgeLength edge{2 * contact_angle / edges, std::min(longest_corner, corner_edge / edges)};
+  RightHalf right{{}, edge, {}, {}};
   right.add_fan(edges / 2);
   right.add_rows();
   right.add_core();

@@ -10,10 +10,11 @@ namespace rbvi {
 namespace {
 
 constexpr double accuracy = 1e-11;       ///< of the residual, relative
-constexpr double round_off = 1e-9;       ///< where steps no longer change u
+constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
 constexpr double bound_accuracy = 1e-11; ///< change of u by new bounds of friction, relative
 constexpr int most_outer_iterations = 60;
 constexpr double near = 1e-4; ///< residual from which on the linear systems are solved to the end
+constexpr int most_iterations = 60;
 constexpr int dear_iterations = 10; ///< of conjugate gradients: beyond, a factorisation is cheaper
 
 constexpr const char *not_definite =
@@ -129,8 +130,9 @@ struct NitscheSolver::System {
   double energy(Vec u);
   void predict(const NitscheState &start, Vec u);
   void before_step();
+  void check_linear_solve() const;
   void search(SNESLineSearch line);
-  SNESConvergedReason judge(PetscInt step, double size, double change, double r);
+  SNESConvergedReason judge(PetscInt step, double r);
 };
 
 void NitscheSolver::System::residual(Vec u, Vec r) {
@@ -188,15 +190,24 @@ void NitscheSolver::System::before_step() {
   if (solver.watch) solver.watch(on_layer(u), bounds);
 }
 
+/// Where an earlier factorisation is too far off, the iterations end early: their result still
+/// descends, and the next step is factorised anew.
+void NitscheSolver::System::check_linear_solve() const {
+  KSP ksp = nullptr;
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
+  RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
+  if (reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC ||
+      (reason < 0 && factorised))
+    throw failure(not_definite);
+  if (factorised) check_inertia(ksp);
+}
+
 /// u <- u - t y with the t of least energy.
 void NitscheSolver::System::search(SNESLineSearch line) {
   Vec u = nullptr, r = nullptr, y = nullptr;
   RBVI_CALL(SNESLineSearchGetVecs(line, &u, &r, &y, nullptr, nullptr));
-  if (factorised) {
-    KSP ksp = nullptr;
-    RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
-    check_inertia(ksp);
-  }
+  check_linear_solve();
   RBVI_CALL(MatMult(a_gamma.get(), u, au.get()));
   RBVI_CALL(VecAXPY(au.get(), -1, f));
   RBVI_CALL(MatMult(a_gamma.get(), y, ay.get()));
@@ -210,12 +221,12 @@ void NitscheSolver::System::search(SNESLineSearch line) {
   RBVI_CALL(SNESLineSearchComputeNorms(line));
 }
 
-SNESConvergedReason NitscheSolver::System::judge(PetscInt step, double size, double change,
-                                                 double r) {
+SNESConvergedReason NitscheSolver::System::judge(PetscInt step, double r) {
   if (!std::isfinite(r)) return SNES_DIVERGED_FNORM_NAN;
+  const double before = relative;
   relative = scale > 0 ? r / scale : 0;
   if (relative <= tolerance) return SNES_CONVERGED_FNORM_RELATIVE;
-  if (step > 0 && change <= 1e-14 * size && relative <= round_off)
+  if (step > 0 && relative <= round_off && relative > 0.1 * before)
     return SNES_CONVERGED_SNORM_RELATIVE;
   return SNES_CONVERGED_ITERATING;
 }
@@ -264,9 +275,9 @@ void NitscheSolver::System::set_up(const Operators &op) {
   }));
   RBVI_CALL(SNESSetConvergenceTest(
       snes.get(),
-      [](SNES, PetscInt step, PetscReal size, PetscReal change, PetscReal r,
-         SNESConvergedReason *reason, void *context) -> PetscErrorCode {
-        *reason = system_of<System>(context).judge(step, size, change, r);
+      [](SNES, PetscInt step, PetscReal, PetscReal, PetscReal r, SNESConvergedReason *reason,
+         void *context) -> PetscErrorCode {
+        *reason = system_of<System>(context).judge(step, r);
         return 0;
       },
       this, nullptr));
@@ -295,7 +306,8 @@ void NitscheSolver::System::set_up(const Operators &op) {
   MPI_Comm_size(comm, &ranks);
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(KSPSetType(ksp, KSPCG));
-  RBVI_CALL(KSPSetTolerances(ksp, linear_tolerance, PETSC_DEFAULT, PETSC_DEFAULT, 200));
+  RBVI_CALL(KSPSetTolerances(ksp, linear_tolerance, PETSC_DEFAULT, 1e30, most_iterations));
+  RBVI_CALL(SNESSetMaxLinearSolveFailures(snes.get(), 1000));
   RBVI_CALL(KSPGetPC(ksp, &pc));
   RBVI_CALL(PCSetType(pc, PCCHOLESKY));
   RBVI_CALL(PCFactorSetMatSolverType(pc, ranks == 1 ? MATSOLVERCHOLMOD : MATSOLVERMUMPS));
@@ -340,8 +352,7 @@ int newton(SNES snes, Vec u, std::exception_ptr &failed, std::string &reason) {
   if (code != 0 || why == SNES_DIVERGED_LINEAR_SOLVE) throw failure(not_definite);
   if (why < 0)
     throw failure(reason + " after " + std::to_string(iterations) +
-                  " Newton steps: raise -nitsche_gamma0, or try -nitsche_snes_type newtonls or "
-                  "-nitsche_snes_max_it");
+                  " Newton steps: try another -nitsche_gamma0, or more -nitsche_snes_max_it");
   return static_cast<int>(iterations);
 }
 
@@ -378,7 +389,7 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheState *st
   result.state.pressures = nitsche_pressures(system.faces, result.layer);
   result.state.bounds = system.bounds;
   system.residual(u, system.force.get());
-  result.residual = norm(system.force.get()) / system.scale;
+  result.residual = system.scale > 0 ? norm(system.force.get()) / system.scale : 0;
   RBVI_CALL(MatMult(op.a, u, system.au.get()));
   result.energy = dot(system.au.get(), u) / 2 - dot(op.f, u);
   return result;
@@ -395,7 +406,7 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     if (!nested) return;
     system.set_bounds(u);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
-    const double change = norm(before.get()) / norm(u);
+    const double size = norm(u), change = size > 0 ? norm(before.get()) / size : 0;
     if (change <= bound_accuracy && system.tolerance <= accuracy) return;
     system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
     if (result.outer_iterations == most_outer_iterations)

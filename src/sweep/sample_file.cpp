@@ -27,7 +27,7 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::friction_violation,
                                     &Outputs::law_error_normal,
                                     &Outputs::law_error_tangential,
-                                    &Outputs::law_error_tangential_to_normal,
+                                    &Outputs::law_error_tau_over_n,
                                     &Outputs::iterations,
                                     &Outputs::seconds};
 

@@ -23,7 +23,7 @@ struct Outputs {
   std::optional<double> friction_violation;
   /// Nitsche's method: e_AC^n (4.83), and e_AC^ntau (4.92) over the norm of the tangential stress
   /// and of the normal one.
-  std::optional<double> law_error_normal, law_error_tangential, law_error_tangential_to_normal;
+  std::optional<double> law_error_normal, law_error_tangential, law_error_tau_over_n;
   /// Largest relative errors of the reduced model over its validation set (not of this answer).
   std::optional<double> expected_error_u, expected_error_lambda;
   std::optional<double> iterations;
