@@ -9,9 +9,9 @@ namespace rbvi {
 
 namespace {
 
-constexpr double accuracy = 1e-11;       ///< of the residual, relative
+constexpr double accuracy = 1e-12;       ///< of the residual, relative
 constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
-constexpr double bound_accuracy = 1e-11; ///< change of u by new bounds of friction, relative
+constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
 constexpr int most_outer_iterations = 60;
 constexpr double near = 1e-4; ///< residual from which on the linear systems are solved to the end
 constexpr int most_iterations = 60;
