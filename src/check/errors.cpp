@@ -59,6 +59,22 @@ double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index
   return std::sqrt(part.dot(w * part));
 }
 
+/// Of Nitsche's method: errors of the normal stress of the projected displacement.
+Vector stress_floor(const ReducedModel &model, const Matrix &projections, const Truths &truths,
+                    const SparseMatrix &w) {
+  OnlineSolver solver(model);
+  const Index normal = model.contact_points.rows();
+  Vector floor(truths.lambda_norm.size());
+  for (Index p = 0; p < floor.size(); ++p) {
+    ReducedSolution projected;
+    projected.mu = expand(model.parameters, truths.mu[static_cast<std::size_t>(p)]);
+    projected.u = projections.col(p);
+    floor[p] = part_norm(w, solver.multiplier(projected) - truths.lambda.col(p), 0, normal) /
+               std::max(truths.lambda_norm[p], 1e-300);
+  }
+  return floor;
+}
+
 /// Relative distances of the true multipliers to what the dual basis spans.
 Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const SparseMatrix &w) {
   if (model.support) return Vector::Zero(truths.lambda_norm.size());
@@ -125,7 +141,8 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
                 Matrix(model.dual_basis.rows(), count),
                 Vector(count),
                 {}};
-  const Index normal = model.support ? model.support->vertices : model.dual_basis.rows();
+  const bool on_support = model.support || model.nitsche;
+  const Index normal = on_support ? model.contact_points.rows() : model.dual_basis.rows();
   const Index rest = model.dual_basis.rows() - normal;
   if (rest > 0) truths.tangential_norm.resize(count);
   for (Index p = 0; p < count; ++p) {
@@ -190,7 +207,9 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       errors.tangential[p] =
           relative(part_norm(w_product, difference, normal, rest), truths.tangential_norm[p]);
   }
-  errors.lambda_floor = multiplier_floor(model, truths, w_product);
+  errors.lambda_floor = model.nitsche
+                            ? stress_floor(model, truths.coordinates.topRows(k), truths, w_product)
+                            : multiplier_floor(model, truths, w_product);
   std::sort(seconds.begin(), seconds.end());
   if (!seconds.empty()) errors.seconds = seconds[seconds.size() / 2];
   return errors;

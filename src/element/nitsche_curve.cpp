@@ -60,15 +60,11 @@ double edge_length(const std::array<Point, 4> &vertices, int edge) {
   return std::hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-/// A cell at mu with its material and gamma.
-struct CellAtMu {
-  Cell cell;
-  Lame material;
-  double gamma;
-};
+} // namespace
 
-CellAtMu at_mu(const Scene &scene, const Mu &all_parameters, const CurveCell &beside) {
-  CellAtMu result{beside.cell, scene.nitsche->material(all_parameters, centre_of(beside.cell)), 0};
+CurveCellAtMu curve_cell_at(const Scene &scene, const Mu &all_parameters, const CurveCell &beside) {
+  CurveCellAtMu result{beside.cell, scene.nitsche->material(all_parameters, centre_of(beside.cell)),
+                       0};
   for (std::size_t v = 0; v < 3; ++v)
     result.cell.mapped[v] = scene.map(all_parameters, beside.cell.reference[v]);
   result.gamma = scene.nitsche->gamma0 * (result.material.lambda + 2 * result.material.shear) /
@@ -76,14 +72,12 @@ CellAtMu at_mu(const Scene &scene, const Mu &all_parameters, const CurveCell &be
   return result;
 }
 
-} // namespace
-
 std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_parameters,
                                        const std::vector<CurveCell> &cells) {
   std::vector<NitscheFace> faces;
   faces.reserve(cells.size());
   for (const CurveCell &beside : cells) {
-    const CellAtMu at = at_mu(scene, all_parameters, beside);
+    const CurveCellAtMu at = curve_cell_at(scene, all_parameters, beside);
     faces.push_back({nitsche_points(scene, all_parameters, at.cell, beside.edge, at.material),
                      at.gamma, beside.dofs});
   }
@@ -200,26 +194,27 @@ std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
   return blocks;
 }
 
-NitscheLine::NitscheLine(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
-                         const Vector &bounds)
-    : start_(nitsche_pressures(faces, u)), change_(nitsche_pressure_changes(faces, d)),
-      bounds_(bounds), factor_(start_.rows()), gamma_(start_.rows()) {
+NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
+                         const Vector &bounds) {
+  const auto points = 4 * static_cast<Index>(faces.size());
+  NitscheLine line{Vector(points), Vector(points), nitsche_pressures(faces, u),
+                   nitsche_pressure_changes(faces, d), bounds};
   Index number = 0;
   for (const NitscheFace &face : faces)
     for (const NitschePoint &point : face.points) {
-      factor_[number] = point.weight;
-      gamma_[number++] = face.gamma;
+      line.weights[number] = point.weight;
+      line.gamma[number++] = face.gamma;
     }
+  return line;
 }
 
 double NitscheLine::slope(double t) const {
   double sum = 0;
-  for (Index i = 0; i < factor_.size(); ++i) {
-    const Eigen::RowVector2d p = start_.row(i) + t * change_.row(i);
-    double density = contact_term(p[0], gamma_[i]).slope * change_(i, 0);
-    if (bounds_.size() > 0)
-      density += friction_term(p[1], bounds_[i], gamma_[i]).slope * change_(i, 1);
-    sum += factor_[i] * density;
+  for (Index i = 0; i < weights.size(); ++i) {
+    const Eigen::RowVector2d p = start.row(i) + t * change.row(i);
+    double density = contact_term(p[0], gamma[i]).slope * change(i, 0);
+    if (bounds.size() > 0) density += friction_term(p[1], bounds[i], gamma[i]).slope * change(i, 1);
+    sum += weights[i] * density;
   }
   return sum;
 }
@@ -256,7 +251,7 @@ CurveFields nitsche_fields(const Scene &scene, const Mu &all_parameters,
   Vector &excess = fields.excess;
   Vector slip = Vector::Zero(count), gamma = Vector::Zero(count), edges = Vector::Zero(count);
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const CellAtMu at = at_mu(scene, all_parameters, cells[k]);
+    const CurveCellAtMu at = curve_cell_at(scene, all_parameters, cells[k]);
     const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
     const bool forward = at.cell.reference[static_cast<std::size_t>(ends[0])][0] <
                          at.cell.reference[static_cast<std::size_t>(ends[1])][0];

@@ -251,7 +251,8 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options) {
   std::vector<int> all(training.size()), none;
   std::iota(all.begin(), all.end(), 0);
-  const bool pair = problem.two_bodies(), load = static_cast<bool>(problem.scene().f);
+  const bool apart = problem.two_bodies() || problem.nitsche(),
+             load = static_cast<bool>(problem.scene().f);
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());
   std::vector<EntryKey> f_keys, g_keys;
@@ -260,9 +261,9 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   for (PetscInt i = 0; i < op.g.size(); ++i)
     g_keys.push_back({i, 0});
   Snapshots a(triangle.keys(), different_stiffness(problem, training));
-  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), pair ? none : all),
-      g(g_keys, pair ? none : all);
-  for (const int number : load || !pair ? all : a.numbers) {
+  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), apart ? none : all),
+      g(g_keys, apart ? none : all);
+  for (const int number : load || !apart ? all : a.numbers) {
     const auto p = static_cast<std::size_t>(number);
     problem.assemble(training[p]);
     a.add(p, [&] { return triangle.values(op.a); });
@@ -278,7 +279,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   result.g = g.separate(MPI_COMM_SELF, options);
   result.sample_a = sample_domain(problem, result.a.entries, true);
   result.sample_f = sample_domain(problem, result.f.entries, false);
-  if (pair) return result;
+  if (apart) return result;
   if (problem.on_support()) {
     const SupportCurve &curve = problem.support().curve;
     result.sample_b = sample_support(curve, problem.dual_size(), result.b.entries, true);

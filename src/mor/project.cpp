@@ -180,7 +180,9 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.modes = bases.modes;
   model.supremizers = bases.supremizers;
   model.online_enriched = bases.online_enriched;
-  model.dual_basis = problem.on_support() ? bases.support_dual : bases.cone.all();
+  model.dual_basis = problem.nitsche()      ? Matrix(problem.dual_size(), 0)
+                     : problem.on_support() ? bases.support_dual
+                                            : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
   describe_mesh(problem, model);
@@ -193,7 +195,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.b = start_terms(affine.b, affine.sample_b, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  if (problem.on_support()) {
+  if (problem.on_support() && !problem.nitsche()) {
     const int vertices = static_cast<int>(problem.support().curve.vertices);
     const auto parts = static_cast<int>(problem.dual_size()) / vertices;
     model.support = SupportModel{};

@@ -179,6 +179,24 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
   return bases;
 }
 
+namespace {
+
+/// Modes alone, then the curve.
+void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
+                    const ReduceOptions &options, Reduction &result, StageTimes &times) {
+  add_modes(problem, samples, options.pod, result.bases, times);
+  {
+    const Stage stage("projection", times);
+    result.model = project(problem, samples, result.affine, result.bases);
+  }
+  const Stage stage("contact curve", times);
+  const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
+  result.curve = reduce_curve(problem, samples, left, options.curve, result.model);
+  result.model.histories["curve/error"] = result.curve.error;
+}
+
+} // namespace
+
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
                  StageTimes &times) {
   std::vector<Mu> training;
@@ -189,6 +207,10 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
     const Stage stage("interpolation", times);
     if (training.empty()) throw failure("there is no sample to build a basis from");
     result.affine = separate(problem, training, options.eim);
+  }
+  if (problem.nitsche()) {
+    reduce_nitsche(problem, samples, options, result, times);
+    return result;
   }
   result.bases = problem.on_support()
                      ? build_support_bases(problem, samples, options, result.affine, times)

@@ -26,6 +26,7 @@ Matrix dual_functions(const Matrix &nodal, const MultiplierBasis &basis) {
 } // namespace
 
 void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
+  if (scene.nitsche) return;
   if (scene.f)
     throw bad_input("scene " + scene.name +
                     ": contact with a rigid support is reduced without a load only");

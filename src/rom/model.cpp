@@ -74,7 +74,8 @@ void check_fields(const ReducedModel &model, int dim) {
   require_indices(model.contact_nodes, nodes, "contact/nodes");
   require_indices(model.mesh_cells, nodes, "fields/cells");
   require_indices(model.contact_cells, contact, "fields/contact_cells");
-  const int degree = model.support ? make_scene(model.scene_name, model.scene_options).degree : 1;
+  const bool on_support = model.support || model.nitsche;
+  const int degree = on_support ? make_scene(model.scene_name, model.scene_options).degree : 1;
   require(model.mesh_cells.size() % static_cast<std::size_t>(nodes_per_cell(dim, degree)) == 0,
           "fields/cells is not a list of cells");
 }
@@ -114,6 +115,64 @@ void check_support(const ReducedModel &model, const SupportModel &support) {
                 "support/starts_mu");
 }
 
+/// `entries`: of the reduced operator.
+void check_layer_terms(const LayerTerms &terms, Index entries, Index dofs,
+                       const std::string &name) {
+  require_shape(terms.interpolation, terms.size(), terms.size(), name + "/interpolation");
+  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : entries, terms.size(),
+                name + "/reduced");
+  require(static_cast<Index>(terms.rows.size()) == terms.size() &&
+              (terms.columns.empty() || terms.columns.size() == terms.rows.size()),
+          name + "/rows does not fit");
+  require_indices(terms.rows, dofs, name + "/rows");
+  require_indices(terms.columns, dofs, name + "/columns");
+}
+
+void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
+  const auto cells = static_cast<Index>(nitsche.edges.size());
+  const Index n = model.primal_size(), packed = n * (n + 1) / 2, dofs = nitsche.trace.rows();
+  require(cells + 1 == model.contact_points.rows(), "nitsche/edges does not fit contact/points");
+  require_indices(nitsche.edges, 3, "nitsche/edges");
+  require_shape(nitsche.vertices, 3 * cells, 2, "nitsche/vertices");
+  require_shape(nitsche.trace, dofs, n, "nitsche/trace");
+  require(static_cast<Index>(nitsche.dofs.size()) == 12 * cells &&
+              std::all_of(nitsche.dofs.begin(), nitsche.dofs.end(),
+                          [&](int dof) { return dof >= -1 && dof < dofs; }),
+          "nitsche/dofs does not fit");
+  check_layer_terms(nitsche.consistency, packed, dofs, "nitsche/consistency");
+  check_layer_terms(nitsche.contact_matrix, packed, dofs, "nitsche/contact_matrix");
+  check_layer_terms(nitsche.contact_vector, n, dofs, "nitsche/contact_vector");
+  check_layer_terms(nitsche.friction_matrix, packed, dofs, "nitsche/friction_matrix");
+  check_layer_terms(nitsche.friction_vector, n, dofs, "nitsche/friction_vector");
+  require(nitsche.rule >= CurveRule::empirical && nitsche.rule <= CurveRule::interpolated,
+          "nitsche/rule is none that this build has");
+  require_indices(nitsche.points, 4 * cells, "nitsche/points");
+  require(std::is_sorted(nitsche.points.begin(), nitsche.points.end()),
+          "nitsche/points are not in order");
+  require_shape(nitsche.factors, static_cast<Index>(nitsche.points.size()), 1, "nitsche/factors");
+  require_shape(nitsche.starts_mu, model.parameters.size(), nitsche.starts.cols(),
+                "nitsche/starts_mu");
+}
+
+/// Of the first `size` of n columns.
+LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
+  LayerTerms result = terms;
+  if (terms.size() == 0) return result;
+  result.reduced = terms.columns.empty() ? Matrix(terms.reduced.topRows(size))
+                                         : leading_triangle(terms.reduced, n, size);
+  return result;
+}
+
+NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
+  NitscheModel result = nitsche;
+  result.trace = nitsche.trace.leftCols(size);
+  for (LayerTerms NitscheModel::*terms :
+       {&NitscheModel::consistency, &NitscheModel::contact_matrix, &NitscheModel::contact_vector,
+        &NitscheModel::friction_matrix, &NitscheModel::friction_vector})
+    result.*terms = leading_terms(nitsche.*terms, n, size);
+  return result;
+}
+
 } // namespace
 
 void check_model(const ReducedModel &model) {
@@ -121,14 +180,16 @@ void check_model(const ReducedModel &model) {
   const Index n = model.primal_size(), r = model.generators, dual = model.dual_basis.rows(),
               contact = model.contact_points.rows();
   require(dim == 2 || dim == 3, "contact/points has neither 2 nor 3 columns");
-  require(model.modes > 0 && model.supremizers >= 0 && r > 0, "it has no modes or no generators");
+  require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || model.nitsche),
+          "it has no modes or no generators");
   require(model.a.size() > 0, "a has no terms");
   require(model.slave_nodes >= 0 && model.slave_nodes <= contact,
           "contact/slave_nodes does not fit");
-  require(model.two_bodies() ? model.b.size() + model.g.size() == 0 : model.b.size() > 0,
-          "b has no terms, or two bodies have some");
+  require(model.two_bodies() || model.nitsche ? model.b.size() + model.g.size() == 0
+                                              : model.b.size() > 0,
+          "b has no terms, or has some where it is not separated");
   require(model.two_bodies() || contact == dual ||
-              (model.support && dual % contact == 0 && dual / contact <= dim),
+              ((model.support || model.nitsche) && dual % contact == 0 && dual / contact <= dim),
           "contact/points does not fit contact/dual_basis");
   const int corners = model.support ? dim : dim + 1;
   check_terms(model.a, n * (n + 1) / 2, dim, dim + 1, "a");
@@ -136,13 +197,15 @@ void check_model(const ReducedModel &model) {
   check_terms(model.f, n, dim, dim + 1, "f");
   check_terms(model.g, r, dim, corners, "g");
   if (model.support) check_support(model, *model.support);
+  if (model.nitsche) check_nitsche(model, *model.nitsche);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
-  require_shape(model.contact_trace, model.support ? contact * dim : contact, n, "contact/trace");
+  require_shape(model.contact_trace, model.support || model.nitsche ? contact * dim : contact, n,
+                "contact/trace");
   require(static_cast<Index>(model.contact_nodes.size()) == contact,
           "contact/nodes does not fit contact/points");
   require_shape(model.contact_points, contact, dim, "contact/points");
-  if (!model.support)
+  if (!model.support && !model.nitsche)
     require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
   check_fields(model, dim);
 }
@@ -152,8 +215,13 @@ const std::vector<std::string> &multiplier_reduction_names() {
   return names;
 }
 
+const std::vector<std::string> &curve_rule_names() {
+  static const std::vector<std::string> names{"empirical", "full", "interpolated"};
+  return names;
+}
+
 ReducedModel leading(const ReducedModel &model, int n, int r) {
-  if (n < 1 || n > model.primal_size() || r < 1 || r > model.generators)
+  if (n < 1 || n > model.primal_size() || (r < 1 && !model.nitsche) || r > model.generators)
     throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
                     " dual functions in a model of " + std::to_string(model.primal_size()) +
                     " and " + std::to_string(model.generators));
@@ -171,6 +239,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
   result.dual_basis = model.dual_basis.leftCols(r);
   result.contact_trace = model.contact_trace.leftCols(n);
+  if (model.nitsche) result.nitsche = leading_curve(*model.nitsche, model.primal_size(), n);
   if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
   if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
   if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};

@@ -1,4 +1,4 @@
-// Layout of model.h5 (schema 4). n = modes + supremizers, R generators, c = dual dofs of the
+// Layout of model.h5 (schema 5). n = modes + supremizers, R generators, c = dual dofs of the
 // contact region, d = dimension; every term set T = a, b, f, g has its own J.
 //
 //   scene/name, scene/options/{names,values}          text
@@ -25,6 +25,12 @@
 //   support/{reduction,mended}                        0 condensed, 1 collocated, 2 cones, 3 joint
 //   support/basis/{normal,tangential,slip,nodes}      see MultiplierBasis
 //   support/{starts,starts_mu}                        m x P, free parameters x P
+//   nitsche/edges                                     of the curve's cells; none: no such model
+//   nitsche/{vertices,dofs,trace}                     see NitscheModel
+//   nitsche/{rule,points,factors,starts,starts_mu}    0 empirical, 1 full, 2 interpolated
+//   nitsche/T/{reduced,interpolation,rows,columns,error}
+//                                                     T = consistency, {contact,friction}_matrix,
+//                                                     {contact,friction}_vector: see LayerTerms
 //   fields/primal_basis                               dofs x n
 //   fields/{points,cells,contact_cells}               nodes x d; lists of numbers per cell
 //   validation/{enriched,decorrelated}                count, then mean and max error of u, lambda,
@@ -221,6 +227,62 @@ std::optional<SupportModel> read_support(const H5Reader &file) {
   return support;
 }
 
+struct NamedTerms {
+  const char *name;
+  LayerTerms NitscheModel::*terms;
+};
+constexpr NamedTerms layer_terms[] = {{"nitsche/consistency", &NitscheModel::consistency},
+                                      {"nitsche/contact_matrix", &NitscheModel::contact_matrix},
+                                      {"nitsche/contact_vector", &NitscheModel::contact_vector},
+                                      {"nitsche/friction_matrix", &NitscheModel::friction_matrix},
+                                      {"nitsche/friction_vector", &NitscheModel::friction_vector}};
+
+void write_nitsche(H5Writer &file, const std::optional<NitscheModel> &nitsche) {
+  file.write("nitsche/edges", nitsche ? nitsche->edges : std::vector<int>{});
+  if (!nitsche) return;
+  file.write("nitsche/vertices", nitsche->vertices);
+  file.write("nitsche/dofs", nitsche->dofs);
+  file.write("nitsche/trace", nitsche->trace);
+  file.write("nitsche/rule", static_cast<int>(nitsche->rule));
+  file.write("nitsche/points", nitsche->points);
+  file.write("nitsche/factors", nitsche->factors);
+  file.write("nitsche/starts", nitsche->starts);
+  file.write("nitsche/starts_mu", nitsche->starts_mu);
+  for (const auto &[name, member] : layer_terms) {
+    const LayerTerms &terms = (*nitsche).*member;
+    const std::string group = name;
+    file.write(group + "/reduced", terms.reduced);
+    file.write(group + "/interpolation", terms.interpolation);
+    file.write(group + "/rows", terms.rows);
+    file.write(group + "/columns", terms.columns);
+    file.write(group + "/error", terms.error);
+  }
+}
+
+std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
+  NitscheModel nitsche;
+  nitsche.edges = file.ints("nitsche/edges");
+  if (nitsche.edges.empty()) return std::nullopt;
+  nitsche.vertices = file.matrix("nitsche/vertices");
+  nitsche.dofs = file.ints("nitsche/dofs");
+  nitsche.trace = file.matrix("nitsche/trace");
+  nitsche.rule = static_cast<CurveRule>(file.integer("nitsche/rule"));
+  nitsche.points = file.ints("nitsche/points");
+  nitsche.factors = file.vector("nitsche/factors");
+  nitsche.starts = file.matrix("nitsche/starts");
+  nitsche.starts_mu = file.matrix("nitsche/starts_mu");
+  for (const auto &[name, member] : layer_terms) {
+    LayerTerms &terms = nitsche.*member;
+    const std::string group = name;
+    terms.reduced = file.matrix(group + "/reduced");
+    terms.interpolation = file.matrix(group + "/interpolation");
+    terms.rows = file.ints(group + "/rows");
+    terms.columns = file.ints(group + "/columns");
+    terms.error = file.number(group + "/error");
+  }
+  return nitsche;
+}
+
 void write_fields(H5Writer &file, const ReducedModel &model) {
   file.write("contact/dual_basis", model.dual_basis);
   file.write("contact/trace", model.contact_trace);
@@ -265,6 +327,7 @@ ReducedModel read_members(const H5Reader &file, bool with_fields) {
   model.f = read_terms(file, "f");
   model.g = read_terms(file, "g");
   model.support = read_support(file);
+  model.nitsche = read_nitsche(file);
   read_fields(file, with_fields, model);
   read_history(file, model);
   return model;
@@ -290,6 +353,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "f", model.f);
   write_terms(file, "g", model.g);
   write_support(file, model.support);
+  write_nitsche(file, model.nitsche);
   write_fields(file, model);
   write_history(file, model);
   file.commit(path, "model", model_schema);

@@ -67,6 +67,10 @@ OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scen
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     : model_(model), scene_(std::move(scene)), qp_(solved_size(model), model.free_modes) {
   check_kernel(model.a, scene_.a, "a");
+  if (scene_.nitsche || model.nitsche) {
+    nitsche_ = std::make_unique<ReducedNitsche>(model, scene_);
+    return;
+  }
   if (scene_.support || model.support) {
     support_ = std::make_unique<SupportSolver>(model, scene_);
     return;
@@ -205,6 +209,15 @@ ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
     return affine_coefficients(terms, form, scene_, all_parameters);
   };
   ReducedSolution solution;
+  solution.mu = all_parameters;
+  if (nitsche_) {
+    NitscheAnswer answer = nitsche_->solve(all_parameters);
+    solution.u = std::move(answer.u);
+    solution.energy = answer.energy;
+    solution.kkt_residual = answer.residual;
+    solution.iterations = answer.iterations;
+    return solution;
+  }
   if (support_) {
     SupportAnswer answer = support_->solve(all_parameters);
     solution.u = std::move(answer.u);
@@ -237,6 +250,9 @@ ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
 }
 
 Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
+  if (nitsche_)
+    return nitsche_multiplier(nitsche_->fields(solution.mu, solution.u),
+                              scene_.support->friction.law != FrictionLaw::none);
   return model_.dual_basis * solution.x;
 }
 
@@ -244,7 +260,7 @@ Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) 
   const Vector trace = model_.contact_trace * solution.u;
   if (model_.two_bodies()) return solution.pair.nodal_gap - solution.pair.nodal_b * trace;
   const Mu all = expand(scene_.parameters, mu);
-  if (support_) return normal_gap(scene_, all, model_.contact_points, trace);
+  if (support_ || nitsche_) return normal_gap(scene_, all, model_.contact_points, trace);
   Vector gap = trace;
   for (Index i = 0; i < gap.size(); ++i)
     gap[i] -= scene_.obstacle(all, scene_.map(all, point_of(model_.contact_points, i)));
@@ -278,8 +294,12 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
     result.expected_error_u = expected.u_max;
     result.expected_error_lambda = std::max(expected.lambda_max, expected.tangential_max);
   }
+  if (nitsche_) {
+    nitsche_->outputs(solution.mu, solution.u, result);
+    return result;
+  }
   if (support_) {
-    support_outputs_of(expand(scene_.parameters, mu), solution, result);
+    support_outputs_of(solution.mu, solution, result);
     return result;
   }
   const Vector lambda = multiplier(solution);

@@ -61,6 +61,21 @@ void print_support(std::ostream &out, const SupportModel &support, int multiplie
   out << '\n';
 }
 
+void print_curve(std::ostream &out, const NitscheModel &nitsche) {
+  label(out, "contact curve");
+  const std::size_t all = 4 * nitsche.edges.size();
+  if (nitsche.rule == CurveRule::empirical)
+    out << nitsche.points.size() << " of " << all << " Gauss points, weights of their own";
+  else if (nitsche.rule == CurveRule::full)
+    out << "all " << all << " Gauss points";
+  else
+    out << "terms: B^n " << nitsche.contact_matrix.size() << ", Theta^n "
+        << nitsche.contact_vector.size() << ", B^tau " << nitsche.friction_matrix.size()
+        << ", Theta^tau " << nitsche.friction_vector.size();
+  out << '\n';
+  label(out, "terms of a_gamma - a") << nitsche.consistency.size() << '\n';
+}
+
 } // namespace
 
 void print_expected_errors(std::ostream &out, const ReducedModel &model) {
@@ -74,14 +89,18 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "modes") << model.modes << '\n';
   label(out, "supremizers") << model.supremizers
                             << (model.online_enriched ? " (the space is made online)" : "") << '\n';
-  if (model.support)
+  if (model.nitsche)
+    print_curve(out, *model.nitsche);
+  else if (model.support)
     print_support(out, *model.support, model.generators);
   else
     label(out, "cone generators") << model.generators - model.free_modes << '\n';
   if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
   print_terms(out, "a", model.a);
   print_terms(out, "f", model.f);
-  if (model.two_bodies()) {
+  if (model.nitsche) {
+    label(out, "b, g") << "none: Nitsche's method\n";
+  } else if (model.two_bodies()) {
     label(out, "b, g") << "assembled for each mu on " << model.slave_nodes << " + "
                        << model.contact_points.rows() - model.slave_nodes << " contact nodes\n";
   } else {

@@ -211,7 +211,7 @@ void NitscheSolver::System::search(SNESLineSearch line) {
   RBVI_CALL(MatMult(a_gamma.get(), u, au.get()));
   RBVI_CALL(VecAXPY(au.get(), -1, f));
   RBVI_CALL(MatMult(a_gamma.get(), y, ay.get()));
-  const NitscheLine along(faces, on_layer(u), -on_layer(y), bounds);
+  const NitscheLine along = nitsche_line(faces, on_layer(u), -on_layer(y), bounds);
   const double linear = -dot(au.get(), y), quadratic = dot(ay.get(), y);
   const bool descends = linear + along.slope(0) < 0;
   const double t = descends ? line_minimum(linear, quadratic, along) : 1;

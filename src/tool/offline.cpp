@@ -21,6 +21,11 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
       {"mesh_refine", std::to_string(options.mesh.refine)},
       {"pod_tolerance", short_number(options.reduce.pod.tolerance)},
       {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
+  if (options.scene.nitsche) {
+    settings["nitsche_quadrature"] =
+        curve_rule_names()[static_cast<std::size_t>(options.reduce.curve.rule)];
+    return settings;
+  }
   if (options.scene.support) {
     const MultiplierOptions &choice = options.reduce.multipliers;
     settings["condensed_tolerance"] = short_number(options.reduce.condensed.tolerance);

@@ -62,6 +62,12 @@ const std::vector<OptionHelp> &tool_options() {
       {"tangential_tolerance", "1e-4",
        "relative error of the modes of lambda_tau (collocated), of both multipliers (joint)"},
       {"joint_extra_nodes", "4", "joint: collocation nodes beyond the number of modes"},
+      {"nitsche_quadrature", "empirical",
+       "Nitsche's method reduced, integrals over the curve: empirical (few points) | full | "
+       "interpolated (EIM)"},
+      {"nitsche_quadrature_tolerance", "0",
+       "empirical: relative error that it may add to u; 0: a third of what the modes leave"},
+      {"nitsche_eim_tolerance", "1e-6", "interpolated: relative error over (mu, Newton step)"},
       {"gcns_tolerance", "0", "collocated: e_GCNS at which the selection of nodes stops"},
       {"gcns_max_nodes", "0", "collocated: most collocation nodes; 0 is no bound"}};
   return options;

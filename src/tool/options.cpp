@@ -257,6 +257,9 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
   options.multipliers.tangential = number_of("tangential_tolerance", 0, 1);
   options.multipliers.extra_nodes = integer_of("joint_extra_nodes", 0, 100000);
   options.multipliers.exact = flag_of("multiplier_exact");
+  options.curve.rule = static_cast<CurveRule>(choice_of("nitsche_quadrature", curve_rule_names()));
+  options.curve.tolerance = number_of("nitsche_quadrature_tolerance", 0, 1);
+  options.curve.eim_tolerance = number_of("nitsche_eim_tolerance", 0, 1);
   options.gcns.tolerance = number_of("gcns_tolerance", 0, 1e300);
   options.gcns.max_nodes = integer_of("gcns_max_nodes", 0, 100000);
   return options;
@@ -319,9 +322,12 @@ ToolOptions read_options(MPI_Comm comm) {
                         : "-hf_method vi needs a bound at each node: set -lumped yes, or use "
                           "active_set");
   options.reduce = reduce_options(options.scene.parameters);
-  if (!options.scene.support && contains(names, "multiplier_reduction"))
-    throw bad_input("-multiplier_reduction is for contact with a rigid support, which scene " +
-                    options.scene.name + " has not");
+  const bool multipliers = options.scene.support && !options.scene.nitsche;
+  if (!multipliers && contains(names, "multiplier_reduction"))
+    throw bad_input("-multiplier_reduction is for contact with a rigid support by multipliers, "
+                    "which this scene has not");
+  if (!options.scene.nitsche && contains(names, "nitsche_quadrature"))
+    throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
   if (options.scene.support && !contains(names, "cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // a cone of snapshots; hybrid is for one body
   options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);

@@ -45,8 +45,9 @@ std::string terms(const char *name, const Eim &eim) {
 
 StageRow interpolation_row(const ToolOptions &options, const OfflineResult *result) {
   const std::string tolerance = "to " + short_number(options.reduce.eim.tolerance);
-  const bool load = static_cast<bool>(options.scene.f), pair = options.scene.pair.has_value();
-  const std::string exact = pair ? "; B, G are assembled exactly online" : "";
+  const bool load = static_cast<bool>(options.scene.f);
+  const bool pair = options.scene.pair.has_value() || options.scene.nitsche.has_value();
+  const std::string exact = options.scene.pair ? "; B, G are assembled exactly online" : "";
   if (constant_stiffness(options.scene) && pair && !load)
     return {"interpolation", "A does not depend on mu" + exact, true};
   if (result == nullptr)
@@ -62,6 +63,9 @@ StageRow interpolation_row(const ToolOptions &options, const OfflineResult *resu
 
 /// What of the solves is done once for all mu.
 StageRow factorisation_row(const ToolOptions &options) {
+  if (options.scene.nitsche)
+    return {"factorisations",
+            "one serves many Newton steps, as long as conjugate gradients need few iterations"};
   if (constant_stiffness(options.scene))
     return {"factorisations", "A does not depend on mu: one for the sweep, one condensed operator"};
   if (options.hf.method == HfMethod::active_set && ScaledPart::fits(options.scene))
@@ -174,6 +178,27 @@ void add_support_rows(const ToolOptions &options, const OfflineResult *result,
     rows.push_back({"tangential multipliers", "the scene has no friction", true});
 }
 
+/// Nitsche's method: how the integrals over the curve are reduced.
+void add_curve_rows(const ToolOptions &options, const OfflineResult *result,
+                    std::vector<StageRow> &rows) {
+  const CurveRule rule = options.reduce.curve.rule;
+  std::string what = rule == CurveRule::full        ? "all Gauss points"
+                     : rule == CurveRule::empirical ? "few Gauss points, non-negative weights"
+                                                    : "EIM over (mu, Newton step)";
+  if (result != nullptr) {
+    const CurveReport &curve = result->made.curve;
+    if (rule != CurveRule::interpolated) what = count(curve.points, "point");
+    if (rule == CurveRule::empirical) what += ", error " + short_number(curve.error.back());
+    if (rule == CurveRule::interpolated)
+      what = "terms: B^n " + std::to_string(curve.terms[0]) + ", Theta^n " +
+             std::to_string(curve.terms[1]) + ", B^tau " + std::to_string(curve.terms[2]) +
+             ", Theta^tau " + std::to_string(curve.terms[3]) + " of " +
+             std::to_string(curve.states) + " states";
+  }
+  rows.push_back({"contact curve", what});
+  rows.push_back({"cone, PGA", "Nitsche's method has no multipliers", true});
+}
+
 /// Dual basis and supremizers of a reduced pair.
 void add_pair_rows(const ToolOptions &options, const OfflineResult *result,
                    std::vector<StageRow> &rows) {
@@ -200,7 +225,9 @@ std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t tra
   rows.push_back(interpolation_row(options, result));
   if (!options.scene.f) rows.push_back({"load vector", "the scene has no load", true});
   rows.push_back(pod_row(options, result));
-  if (options.scene.support)
+  if (options.scene.nitsche)
+    add_curve_rows(options, result, rows);
+  else if (options.scene.support)
     add_support_rows(options, result, rows);
   else
     add_pair_rows(options, result, rows);

@@ -50,7 +50,7 @@ std::vector<int> generator_counts(const ReducedModel &model) {
   if (type != model.settings.end() && (type->second == "nodal" || type->second == "nmf"))
     return {model.generators};
   const int cone = model.generators - model.free_modes;
-  if (model.support) return {model.generators};
+  if (model.support || model.nitsche) return {model.generators};
   if (model.free_modes > 0) return sizes_up_to(model.generators, {cone, cone + 4, cone + 8});
   return sizes_up_to(model.generators, {20, 50, 70, 100});
 }
@@ -195,6 +195,10 @@ std::string reduction_name(const SupportModel &support) {
   return multiplier_reduction_names()[static_cast<std::size_t>(support.reduction)];
 }
 
+std::string nitsche_name(const NitscheModel &nitsche) {
+  return "nitsche, " + curve_rule_names()[static_cast<std::size_t>(nitsche.rule)];
+}
+
 /// Errors of the model with and without supremizers and of its leading parts, into tables, and the
 /// summaries into the model file.
 void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
@@ -205,7 +209,8 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
       model.supremizers == 0
           ? whole
           : model_errors(leading(model, model.modes, model.generators), {}, truths, w);
-  const std::string name = model.support            ? reduction_name(*model.support)
+  const std::string name = model.nitsche            ? nitsche_name(*model.nitsche)
+                           : model.support          ? reduction_name(*model.support)
                            : model.supremizers == 0 ? "decorrelated"
                            : model.online_enriched  ? "online-enriched"
                                                     : "offline-enriched";
@@ -269,7 +274,7 @@ void command_verify(const ToolOptions &options) {
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
-  if (options.stability && !model.support)
+  if (options.stability && !model.support && !model.nitsche)
     check_stability(world, problem, model, training, validation, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);

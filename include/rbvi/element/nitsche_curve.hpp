@@ -29,8 +29,15 @@ struct NitscheFace {
 
 using FaceBlock = Eigen::Matrix<double, 12, 12>;
 
-/// All faces at mu, in the order of the cells; gamma as in NitscheRecipe. Throws failure, naming
-/// mu, for an inverted cell.
+/// A cell at mu: mapped, with its material and its gamma (NitscheRecipe).
+struct CurveCellAtMu {
+  Cell cell;
+  Lame material;
+  double gamma;
+};
+CurveCellAtMu curve_cell_at(const Scene &scene, const Mu &all_parameters, const CurveCell &cell);
+
+/// All faces at mu, in the order of the cells. Throws failure, naming mu, for an inverted cell.
 std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_parameters,
                                        const std::vector<CurveCell> &cells);
 
@@ -78,18 +85,14 @@ Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u
                           const Matrix &pressures, const Vector &bounds);
 
 /// The integrals along u + t d, which are piecewise quadratic in t.
-class NitscheLine {
-public:
-  NitscheLine(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
-              const Vector &bounds);
+struct NitscheLine {
+  Vector weights, gamma;
+  Matrix start, change;         ///< pressures at t = 0, and what t = 1 adds
+  Vector bounds;                ///< of friction; empty without
   double slope(double t) const; ///< of their sum
-
-private:
-  Matrix start_, change_; ///< pressures
-  Vector bounds_;
-  Vector factor_; ///< weight of each point
-  Vector gamma_;
 };
+NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
+                         const Vector &bounds);
 
 /// The t > 0 where `linear` + t `quadratic` + line.slope(t) vanishes, to one per cent of its value
 /// at 0, of which it must be below zero: the minimum along a line of a convex energy. At most 16.

@@ -9,7 +9,8 @@
 namespace rbvi {
 
 struct AffineOperators {
-  Eim a, b, f, g; ///< of size 0: f without a load; b and g of two bodies, assembled exactly online
+  Eim a, b, f, g; ///< of size 0: f without a load; b and g of two bodies (assembled exactly
+                  ///< online) and of Nitsche's method (there are none)
   SampleMesh sample_a, sample_b, sample_f, sample_g;
 };
 

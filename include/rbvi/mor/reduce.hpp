@@ -4,6 +4,7 @@
 #include "rbvi/mor/affine.hpp"
 #include "rbvi/mor/condensed.hpp"
 #include "rbvi/mor/cones.hpp"
+#include "rbvi/mor/curve_quadrature.hpp"
 #include "rbvi/mor/gcns.hpp"
 #include "rbvi/mor/multiplier_basis.hpp"
 #include "rbvi/mor/pod.hpp"
@@ -38,6 +39,7 @@ struct ReduceOptions {
   CondensedOptions condensed;    ///< contact with a rigid support
   MultiplierOptions multipliers; ///< of it
   GcnsOptions gcns;
+  CurveOptions curve; ///< Nitsche's method
   Enrichment enrichment = Enrichment::offline;
   SupremizerProduct product = SupremizerProduct::v;
   Mu reference; ///< free parameters of that a, and of the hybrid cone's; empty: centre of the box
@@ -68,7 +70,8 @@ struct Reduction {
   AffineOperators affine;
   ReducedBases bases;
   ReducedModel model;
-  Gcns collocation; ///< of MultiplierReduction::collocated
+  Gcns collocation;  ///< of MultiplierReduction::collocated
+  CurveReport curve; ///< of Nitsche's method
 };
 
 /// Collective. `problem`: on all ranks. Throws failure where there is no sample, or no contact in

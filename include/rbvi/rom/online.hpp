@@ -7,13 +7,14 @@
 // term too. Of two bodies B and G are assembled anew, on the contact curves alone. Free modes have
 // equations in place of inequalities. An online-enriched model is first reduced to V_N + S_R(mu)
 // (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
-// rom/support_solver.hpp.
+// rom/support_solver.hpp, by Nitsche's method rom/nitsche_solver.hpp.
 #pragma once
 
 #include "rbvi/core/mixed_qp.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/element/contact_pair.hpp"
 #include "rbvi/rom/model.hpp"
+#include "rbvi/rom/nitsche_solver.hpp"
 #include "rbvi/rom/support_solver.hpp"
 
 #include <memory>
@@ -21,6 +22,7 @@
 namespace rbvi {
 
 struct ReducedSolution {
+  Mu mu;                   ///< all parameters
   Vector u;                ///< n coefficients
   Vector x;                ///< R coefficients, >= 0 but for those of the free modes
   Vector theta_b;          ///< coefficients of b at this mu; two bodies: none
@@ -45,7 +47,8 @@ public:
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
-  Vector multiplier(const ReducedSolution &solution) const; ///< at the dual dofs
+  /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
+  Vector multiplier(const ReducedSolution &solution) const;
   /// Gap that is left at the contact nodes: u - psi of one body; of two at the slave nodes that
   /// have a partner (solution.pair.paired), measured vertically; on a support along the normal.
   Vector contact_gap(const Mu &mu, const ReducedSolution &solution) const;
@@ -67,7 +70,9 @@ private:
 
   const ReducedModel &model_;
   Scene scene_;
-  std::unique_ptr<SupportSolver> support_; ///< contact with a rigid support: the rest is not used
+  // Contact with a rigid support: the rest is not used.
+  std::unique_ptr<SupportSolver> support_;
+  std::unique_ptr<ReducedNitsche> nitsche_;
   MixedQp qp_;
   bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
   std::vector<Point> curves_;    ///< two bodies: the contact points

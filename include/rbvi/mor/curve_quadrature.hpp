@@ -1,0 +1,33 @@
+// What a reduced model of Nitsche's method takes of the contact curve: the cells beside it, the
+// terms that keep the method consistent, and how contact and friction are integrated.
+#pragma once
+
+#include "rbvi/mor/pod.hpp"
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/model.hpp"
+#include "rbvi/sweep/sweep.hpp"
+
+namespace rbvi {
+
+struct CurveOptions {
+  CurveRule rule = CurveRule::empirical;
+  /// empirical: largest error of u, relative, that the points add at a training parameter; 0: a
+  /// third of what the modes leave.
+  double tolerance = 0;
+  double eim_tolerance = 1e-6; ///< interpolated: of the matrices and vectors (B.32)
+};
+
+struct CurveReport {
+  int points = 0;             ///< empirical, full
+  std::vector<double> error;  ///< empirical: after each point
+  std::array<int, 4> terms{}; ///< interpolated: B^n, Theta^n, B^tau, Theta^tau
+  int states = 0;             ///< interpolated: pairs (mu, Newton step)
+};
+
+/// Fills model.nitsche; the rest of the model is there. `u_left`: relative error that the modes
+/// leave in u. Collective. Throws failure where a reduced problem has no answer at a training
+/// parameter.
+CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples, double u_left,
+                         const CurveOptions &options, ReducedModel &model);
+
+} // namespace rbvi

@@ -1,0 +1,63 @@
+// The online stage of Nitsche's method: Newton's method in the n coefficients of the reduced basis,
+//
+//   A_gamma u + (contact and friction at points of the curve) = f,
+//
+// A_gamma = A + the terms that keep the method consistent, both separated. The points are all
+// Gauss points of the curve or a few with weights of their own: a minimisation either way, convex
+// where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: full
+// Newton steps, and where they do not settle, bounds frozen in an outer loop (4.63). With
+// empirical interpolation over (mu, Newton step) it is (4.79) as printed, without an energy: a step
+// is halved until the residual falls.
+#pragma once
+
+#include "rbvi/rom/layer_terms.hpp"
+
+#include <memory>
+
+namespace rbvi {
+
+struct NitscheAnswer {
+  Vector u;            ///< n coefficients
+  double energy = 0;   ///< a(u, u) / 2 - f(u)
+  double residual = 0; ///< of the reduced system, relative
+  int iterations = 0;  ///< Newton steps
+};
+
+class ReducedNitsche {
+public:
+  /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
+  ReducedNitsche(const ReducedModel &model, const Scene &scene);
+  ~ReducedNitsche();
+  /// Starts from what the training samples predict; where there are none, from u = 0. Throws
+  /// failure, saying what to try, where Newton's method does not converge or the tangent is not
+  /// positive definite.
+  NitscheAnswer solve(const Mu &all_parameters);
+
+  /// Of the last answer, what a start of a nearby query needs (NitscheModel::starts).
+  Vector state() const;
+  /// Of the last answer: what each point adds to the residual, n x points, ...
+  Matrix point_residuals() const;
+  /// ... and the tangent, n x n.
+  Matrix tangent() const;
+
+  /// Stress and pressures along the whole curve.
+  CurveFields fields(const Mu &all_parameters, const Vector &u) const;
+  /// All that is measured but the energy; kkt_residual is that of the integrals over the whole
+  /// curve, tested with the reduced basis.
+  void outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
+
+private:
+  struct System;
+  struct Interpolated;
+  void assemble(const Mu &all_parameters);
+  Vector predicted(const Mu &all_parameters) const;
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  std::vector<CurveCell> cells_;
+  SampledLayer consistency_;
+  std::unique_ptr<System> system_;
+  std::unique_ptr<Interpolated> interpolated_;
+};
+
+} // namespace rbvi

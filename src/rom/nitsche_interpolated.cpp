@@ -1,0 +1,109 @@
+#include "nitsche_interpolated.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/rom/packed.hpp"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <numeric>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double accuracy = 1e-10; ///< change of u, relative (4.26)
+constexpr double smallest_step = 1e-3;
+constexpr int most_steps = 60;
+
+/// Cells that any of the four operators is sampled on.
+std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<CurveCell> &all) {
+  std::vector<int> numbers;
+  for (const LayerTerms *terms : {&model.contact_matrix, &model.contact_vector,
+                                  &model.friction_matrix, &model.friction_vector}) {
+    const std::vector<int> more = SampledLayer(*terms, all).cells();
+    numbers.insert(numbers.end(), more.begin(), more.end());
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return selected(all, numbers);
+}
+
+void add_matrix(const LayerTerms &terms, const Vector &theta, Matrix &a) {
+  if (terms.size() == 0) return;
+  Matrix lower(a.rows(), a.rows());
+  unpack(terms.reduced * theta, lower);
+  a += lower.selfadjointView<Eigen::Lower>() * Matrix::Identity(a.rows(), a.rows());
+}
+
+} // namespace
+
+ReducedNitsche::Interpolated::Interpolated(const NitscheModel &of,
+                                           const std::vector<CurveCell> &all)
+    : model(of), cells(touched(of, all)), contact_matrix(of.contact_matrix, cells),
+      contact_vector(of.contact_vector, cells), friction_matrix(of.friction_matrix, cells),
+      friction_vector(of.friction_vector, cells) {}
+
+ReducedNitsche::Interpolated::Terms
+ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const System &system,
+                                    const Vector &u) const {
+  const Vector layer = model.trace * u;
+  const Matrix pressures = nitsche_pressures(faces, layer);
+  const Vector contact = nitsche_residual(faces, layer, {});
+  Vector sum = Vector::Zero(u.size());
+  if (model.contact_vector.size() > 0)
+    sum += model.contact_vector.reduced * contact_vector.of_vector(contact);
+  if (model.friction_vector.size() > 0) {
+    const Vector both = nitsche_residual(faces, layer, nitsche_bounds(pressures, system.law));
+    sum += model.friction_vector.reduced * friction_vector.of_vector(both - contact);
+  }
+  const Vector au = system.a_gamma * u;
+  return {au + sum - system.f, au.norm() + sum.norm() + system.f.norm()};
+}
+
+Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &faces,
+                                             const System &system, const Vector &u) const {
+  const Matrix pressures = nitsche_pressures(faces, model.trace * u);
+  const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
+  Matrix result = system.a_gamma;
+  add_matrix(model.contact_matrix,
+             contact_matrix.of_blocks(selected(contact, contact_matrix.cells())), result);
+  if (model.friction_matrix.size() > 0) {
+    std::vector<FaceBlock> friction =
+        nitsche_tangent(faces, pressures, nitsche_bounds(pressures, system.law));
+    for (std::size_t k = 0; k < friction.size(); ++k)
+      friction[k] -= contact[k];
+    add_matrix(model.friction_matrix,
+               friction_matrix.of_blocks(selected(friction, friction_matrix.cells())), result);
+  }
+  return result;
+}
+
+int ReducedNitsche::Interpolated::solve(const Scene &scene, const Mu &all_parameters,
+                                        const Vector &start, System &system) {
+  const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
+  Vector u = start.size() == system.a.rows() ? start : Vector(Vector::Zero(system.a.rows()));
+  Terms here = terms(faces, system, u);
+  for (int step = 1; step <= most_steps; ++step) {
+    const Eigen::PartialPivLU<Matrix> factor(tangent(faces, system, u));
+    const Vector d = -factor.solve(here.residual);
+    if (!d.allFinite()) break;
+    double t = 1;
+    Terms next = terms(faces, system, u + d);
+    while (!(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
+      t /= 2;
+      next = terms(faces, system, u + t * d);
+    }
+    u += t * d;
+    here = std::move(next);
+    system.u = u;
+    system.relative = here.scale > 0 ? here.residual.norm() / here.scale : 0;
+    if (d.norm() <= accuracy * u.norm()) return step;
+  }
+  throw failure("the interpolated problem did not converge: its residual is " +
+                short_number(system.relative) +
+                "; reduce again with -nitsche_quadrature empirical");
+}
+
+} // namespace rbvi

@@ -1,0 +1,29 @@
+// Newton's method on operators of the curve that are interpolated over (mu, Newton step), as
+// printed in (4.79)-(4.80).
+#pragma once
+
+#include "nitsche_system.hpp"
+
+namespace rbvi {
+
+struct ReducedNitsche::Interpolated {
+  const NitscheModel &model;
+  std::vector<CurveCell> cells; ///< that some sampled entry touches
+  SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
+
+  Interpolated(const NitscheModel &of, const std::vector<CurveCell> &all);
+  /// From the coefficients `start` (empty: zero) into system.u. Returns the steps.
+  int solve(const Scene &scene, const Mu &all_parameters, const Vector &start, System &system);
+
+private:
+  /// The interpolated terms at one iterate.
+  struct Terms {
+    Vector residual;
+    double scale;
+  };
+  Terms terms(const std::vector<NitscheFace> &faces, const System &system, const Vector &u) const;
+  Matrix tangent(const std::vector<NitscheFace> &faces, const System &system,
+                 const Vector &u) const;
+};
+
+} // namespace rbvi

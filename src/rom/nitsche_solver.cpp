@@ -1,0 +1,130 @@
+#include "rbvi/rom/nitsche_solver.hpp"
+
+#include "nitsche_interpolated.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/rom/local_fit.hpp"
+#include "rbvi/rom/online.hpp"
+#include "rbvi/rom/packed.hpp"
+
+namespace rbvi {
+
+namespace {
+
+Matrix unpacked(const Vector &packed, Index n) {
+  Matrix lower(n, n);
+  unpack(packed, lower);
+  lower.triangularView<Eigen::StrictlyUpper>() = lower.transpose();
+  return lower;
+}
+
+const NitscheModel &checked(const ReducedModel &model, const Scene &scene) {
+  if (!scene.nitsche || !model.nitsche)
+    throw bad_input("the model and its scene in this build differ in the formulation of contact");
+  return *model.nitsche;
+}
+
+/// The free parameters as parts of the box.
+Vector in_box_of(const ParameterSpace &space, const Mu &all_parameters) {
+  Vector result(space.size());
+  for (int i = 0; i < space.size(); ++i)
+    result[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])] /
+                (space.at(i).upper - space.at(i).lower);
+  return result;
+}
+
+} // namespace
+
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, const Scene &scene)
+    : model_(model), scene_(scene), cells_(curve_cells(checked(model, scene))),
+      consistency_(model.nitsche->consistency, cells_) {
+  system_ = std::make_unique<System>(model, cells_);
+  if (model.nitsche->rule == CurveRule::interpolated)
+    interpolated_ = std::make_unique<Interpolated>(*model.nitsche, cells_);
+}
+
+ReducedNitsche::~ReducedNitsche() = default;
+
+void ReducedNitsche::assemble(const Mu &all_parameters) {
+  const Index n = model_.primal_size();
+  System &system = *system_;
+  system.law = nitsche_law(scene_.support->friction, all_parameters);
+  system.a = unpacked(
+      model_.a.reduced * affine_coefficients(model_.a, scene_.a, scene_, all_parameters), n);
+  system.f = Vector::Zero(n);
+  if (model_.f.size() > 0)
+    system.f = model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
+  const std::vector<NitscheFace> faces =
+      nitsche_faces(scene_, all_parameters, selected(cells_, consistency_.cells()));
+  const Vector theta =
+      consistency_.of_blocks(nitsche_consistency(faces, system.law.law != FrictionLaw::none));
+  system.a_gamma = system.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
+}
+
+Vector ReducedNitsche::predicted(const Mu &all_parameters) const {
+  const NitscheModel &nitsche = *model_.nitsche;
+  if (nitsche.starts.cols() == 0) return {};
+  Matrix points = nitsche.starts_mu;
+  const ParameterSpace &space = scene_.parameters;
+  for (int i = 0; i < space.size(); ++i)
+    points.row(i) /= space.at(i).upper - space.at(i).lower;
+  return local_fit(nitsche.starts, points, in_box_of(space, all_parameters));
+}
+
+NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
+  assemble(all_parameters);
+  System &system = *system_;
+  NitscheAnswer answer;
+  const Vector start = predicted(all_parameters);
+  if (interpolated_) {
+    answer.iterations = interpolated_->solve(scene_, all_parameters, start, system);
+  } else {
+    system.set_points(scene_, all_parameters, cells_);
+    system.predict(start);
+    answer.iterations = system.settle();
+  }
+  answer.u = system.u;
+  answer.residual = system.relative;
+  answer.energy = 0.5 * answer.u.dot(system.a * answer.u) - system.f.dot(answer.u);
+  return answer;
+}
+
+Vector ReducedNitsche::state() const {
+  if (interpolated_) return system_->u;
+  return system_->pressures.reshaped().head(system_->rows.rows());
+}
+
+Matrix ReducedNitsche::point_residuals() const {
+  const System &system = *system_;
+  const Vector slopes = system.slopes(system.pressures);
+  Matrix result =
+      system.rows.topRows(system.points).transpose() * slopes.head(system.points).asDiagonal();
+  if (system.bounds.size() > 0)
+    result +=
+        system.rows.bottomRows(system.points).transpose() * slopes.tail(system.points).asDiagonal();
+  return result;
+}
+
+Matrix ReducedNitsche::tangent() const {
+  return system_->tangent_at(system_->pressures);
+}
+
+CurveFields ReducedNitsche::fields(const Mu &all_parameters, const Vector &u) const {
+  return nitsche_fields(scene_, all_parameters, cells_, model_.nitsche->trace * u);
+}
+
+void ReducedNitsche::outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const {
+  const Matrix &trace = model_.nitsche->trace;
+  const Vector layer = trace * u;
+  const NitscheLaw law = nitsche_law(scene_.support->friction, all_parameters);
+  const std::vector<NitscheFace> faces = nitsche_faces(scene_, all_parameters, cells_);
+  const Matrix pressures = nitsche_pressures(faces, layer);
+  nitsche_outputs(faces, pressures, nitsche_fields(scene_, all_parameters, cells_, layer), law,
+                  outputs);
+  const Vector bounds = nitsche_bounds(pressures, law);
+  const Vector terms = trace.transpose() * nitsche_residual(faces, layer, bounds);
+  const Vector au = system_->a_gamma * u, r = au + terms - system_->f;
+  const double scale = au.norm() + terms.norm() + system_->f.norm();
+  outputs.kkt_residual = scale > 0 ? r.norm() / scale : 0;
+}
+
+} // namespace rbvi

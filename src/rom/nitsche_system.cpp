@@ -1,0 +1,214 @@
+#include "nitsche_system.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/element/quadrature.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double accuracy = 1e-13;       ///< of the residual, relative
+constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
+constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds
+constexpr int most_steps = 100, most_full_steps = 20, most_loops = 60;
+
+Matrix basis_on(const CurveCell &cell, const Matrix &trace) {
+  Matrix basis = Matrix::Zero(12, trace.cols());
+  for (std::size_t i = 0; i < 12; ++i)
+    if (cell.dofs[i] >= 0) basis.row(static_cast<Index>(i)) = trace.row(cell.dofs[i]);
+  return basis;
+}
+
+} // namespace
+
+ReducedNitsche::System::System(const ReducedModel &model, const std::vector<CurveCell> &cells) {
+  const NitscheModel &nitsche = *model.nitsche;
+  std::vector<std::pair<int, double>> chosen;
+  if (nitsche.rule == CurveRule::empirical)
+    for (std::size_t k = 0; k < nitsche.points.size(); ++k)
+      chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
+  else if (nitsche.rule == CurveRule::full)
+    for (int k = 0; k < 4 * static_cast<int>(cells.size()); ++k)
+      chosen.emplace_back(k, 1.0);
+  for (const auto &[number, factor] : chosen) {
+    const int cell = number / 4;
+    if (parts.empty() || parts.back().cell != cell)
+      parts.push_back({cell, {}, basis_on(cells[static_cast<std::size_t>(cell)], nitsche.trace)});
+    parts.back().points.emplace_back(number % 4, factor);
+  }
+  points = static_cast<Index>(chosen.size());
+  u = Vector::Zero(model.primal_size());
+}
+
+void ReducedNitsche::System::set_points(const Scene &scene, const Mu &all_parameters,
+                                        const std::vector<CurveCell> &cells) {
+  const bool friction = law.law != FrictionLaw::none;
+  rows.resize(friction ? 2 * points : points, u.size());
+  offsets.resize(rows.rows());
+  weights.resize(points);
+  gamma.resize(points);
+  Index next = 0;
+  for (const Part &part : parts) {
+    const CurveCell &beside = cells[static_cast<std::size_t>(part.cell)];
+    const CurveCellAtMu at = curve_cell_at(scene, all_parameters, beside);
+    Eigen::Matrix<double, Eigen::Dynamic, 12> functionals(
+        static_cast<Index>((friction ? 2 : 1) * part.points.size()), 12);
+    const auto count = static_cast<Index>(part.points.size());
+    for (Index k = 0; k < count; ++k) {
+      const auto [q, factor] = part.points[static_cast<std::size_t>(k)];
+      const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
+      const NitschePoint point =
+          nitsche_point(scene, all_parameters, at.cell, beside.edge, at.material, rule.s);
+      functionals.row(k) = (point.sigma_n - at.gamma * point.n).transpose();
+      offsets[next + k] = at.gamma * point.gap;
+      if (friction) {
+        functionals.row(count + k) = (point.sigma_tau - at.gamma * point.tau).transpose();
+        offsets[points + next + k] = -at.gamma * point.slip;
+      }
+      weights[next + k] = factor * rule.weight * point.weight;
+      gamma[next + k] = at.gamma;
+    }
+    rows.middleRows(next, count).noalias() = functionals.topRows(count) * part.basis;
+    if (friction)
+      rows.middleRows(points + next, count).noalias() = functionals.bottomRows(count) * part.basis;
+    next += count;
+  }
+}
+
+void ReducedNitsche::System::set(const Vector &coefficients) {
+  u = coefficients;
+  const Vector p = rows * u + offsets;
+  pressures = Matrix::Zero(points, 2);
+  pressures.reshaped().head(p.size()) = p;
+}
+
+Vector ReducedNitsche::System::slopes(const Matrix &at) const {
+  Vector result(rows.rows());
+  for (Index i = 0; i < points; ++i) {
+    result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).slope;
+    if (bounds.size() > 0)
+      result[points + i] = weights[i] * friction_term(at(i, 1), bounds[i], gamma[i]).slope;
+  }
+  return result;
+}
+
+Vector ReducedNitsche::System::curvatures(const Matrix &at) const {
+  Vector result(rows.rows());
+  for (Index i = 0; i < points; ++i) {
+    result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).curvature;
+    if (bounds.size() > 0)
+      result[points + i] = weights[i] * friction_term(at(i, 1), bounds[i], gamma[i]).curvature;
+  }
+  return result;
+}
+
+/// Sets `relative`.
+Vector ReducedNitsche::System::residual() {
+  const Vector au = a_gamma * u, terms = rows.transpose() * slopes(pressures);
+  const Vector r = au + terms - f;
+  const double scale = au.norm() + terms.norm() + f.norm();
+  relative = scale > 0 ? r.norm() / scale : 0;
+  return r;
+}
+
+Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
+  const Vector d = curvatures(at);
+  std::vector<Index> active;
+  for (Index i = 0; i < d.size(); ++i)
+    if (d[i] != 0) active.push_back(i);
+  const Matrix part = rows(active, Eigen::all);
+  return a_gamma + part.transpose() * d(active).asDiagonal() * part;
+}
+
+/// One linear solve, contact and stick being those of the pressures `start`.
+void ReducedNitsche::System::predict(const Vector &start) {
+  if (start.size() != rows.rows()) { // from u = 0
+    set(Vector::Zero(u.size()));
+    bounds = nitsche_bounds(pressures, law);
+    return;
+  }
+  Matrix at = Matrix::Zero(points, 2);
+  at.reshaped().head(start.size()) = start;
+  bounds = nitsche_bounds(at, law);
+  const Vector d = curvatures(at);
+  const Vector forces = slopes(at) + d.cwiseProduct(offsets - start);
+  const Eigen::LLT<Matrix> factor(tangent_at(at));
+  if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
+  set(factor.solve(f - rows.transpose() * forces));
+  bounds = nitsche_bounds(pressures, law);
+}
+
+/// Newton's method with bounds as they are. Returns the steps.
+int ReducedNitsche::System::minimise() {
+  double before = 1;
+  for (int step = 0; step <= most_steps; ++step) {
+    const Vector r = residual();
+    if (relative <= accuracy) return step;
+    if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
+    before = relative;
+    const Eigen::LLT<Matrix> factor(tangent_at(pressures));
+    if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
+    const Vector d = -factor.solve(r);
+    NitscheLine line{weights, gamma, pressures, Matrix::Zero(points, 2), bounds};
+    line.change.reshaped().head(rows.rows()) = rows * d;
+    const double t = line_minimum((a_gamma * u - f).dot(d), d.dot(a_gamma * d), line);
+    set(u + t * d);
+  }
+  throw failure("the reduced problem did not converge: its residual is " + short_number(relative) +
+                " after " + std::to_string(most_steps) +
+                " Newton steps; reduce again with more modes (-pod_tolerance)");
+}
+
+/// Coulomb's bound as a function of u: full Newton steps. Returns the steps, or -1 where they do
+/// not settle.
+int ReducedNitsche::System::follow_bound() {
+  double before = 1;
+  for (int step = 0; step <= most_full_steps; ++step) {
+    bounds = nitsche_bounds(pressures, law);
+    const Vector r = residual();
+    if (relative <= accuracy) return step;
+    if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
+    before = relative;
+    Matrix tangent = tangent_at(pressures);
+    for (Index i = 0; i < points; ++i) { // slipping: the bound moves with P_n
+      const double shear = pressures(i, 1);
+      if (!(std::abs(shear) > bounds[i]) || pressures(i, 0) >= 0) continue;
+      const double rate = -std::copysign(law.value, shear) * weights[i] / gamma[i];
+      tangent.noalias() += rate * rows.row(points + i).transpose() * rows.row(i);
+    }
+    const Eigen::PartialPivLU<Matrix> factor(tangent);
+    set(u - factor.solve(r));
+    if (!u.allFinite()) return -1;
+  }
+  return -1;
+}
+
+/// From the last iterate to the answer. Returns the steps.
+int ReducedNitsche::System::settle() {
+  if (!law.moves()) return minimise();
+  const Vector first = u;
+  if (law.law == FrictionLaw::coulomb)
+    if (const int steps = follow_bound(); steps >= 0) return steps;
+  int steps = 0;
+  set(first);
+  bounds = nitsche_bounds(pressures, law);
+  for (int loop = 0; loop < most_loops; ++loop) {
+    const Vector before = u;
+    steps += minimise();
+    bounds = nitsche_bounds(pressures, law);
+    if ((u - before).norm() <= bound_accuracy * u.norm()) {
+      (void)residual();
+      return steps;
+    }
+  }
+  throw failure("the bound of friction did not settle in " + std::to_string(most_loops) +
+                " loops: is the friction coefficient large?");
+}
+
+} // namespace rbvi

@@ -1,0 +1,51 @@
+// The reduced system of Nitsche's method at one mu: a quadratic part and pressures that are affine
+// in the coefficients.
+#pragma once
+
+#include "rbvi/rom/nitsche_solver.hpp"
+
+namespace rbvi {
+
+constexpr const char *tangent_not_definite = "the reduced tangent is not positive definite: raise "
+                                             "-nitsche_gamma0, or reduce again with more "
+                                             "training parameters";
+
+struct ReducedNitsche::System {
+  /// A cell with some of its points.
+  struct Part {
+    int cell;
+    std::vector<std::pair<int, double>> points; ///< Gauss point, factor of its weight
+    Matrix basis;                               ///< 12 x n
+  };
+  std::vector<Part> parts;
+  Index points = 0;
+
+  // At mu.
+  Matrix a, a_gamma; ///< n x n
+  Vector f;
+  NitscheLaw law;
+  Matrix rows;    ///< 2 points x n: of P_n, then of P_tau
+  Vector offsets; ///< 2 points
+  Vector weights, gamma;
+
+  // The last iterate.
+  Vector u;
+  Matrix pressures; ///< points x 2
+  Vector bounds;
+  double relative = 0; ///< residual
+
+  explicit System(const ReducedModel &model, const std::vector<CurveCell> &cells);
+  void set_points(const Scene &scene, const Mu &all_parameters,
+                  const std::vector<CurveCell> &cells);
+  void set(const Vector &coefficients);
+  Vector slopes(const Matrix &at) const;     ///< 2 points, with the weights
+  Vector curvatures(const Matrix &at) const; ///< 2 points, with the weights
+  Vector residual();
+  Matrix tangent_at(const Matrix &at) const;
+  void predict(const Vector &start);
+  int minimise();
+  int follow_bound();
+  int settle();
+};
+
+} // namespace rbvi
