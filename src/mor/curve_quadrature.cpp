@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rbvi {
 
@@ -44,34 +45,39 @@ Vector abscissae(const std::vector<CurveCell> &cells) {
   return x;
 }
 
-/// What each point adds to u at each training parameter, one below the other, relative to |u|.
-struct PointEffects {
-  Matrix columns;
+/// The answers of the model with all points at the training parameters.
+struct Answers {
+  Matrix u; ///< n x P
+  /// What each point adds to them to first order, at some of the parameters one below the other:
+  /// tangent^-1 residual, relative to |u|. On a symmetric curve the points of one half stand for
+  /// both.
+  Matrix effects;
   std::vector<int> points; ///< number of each column
-  Index rows_each = 0;     ///< per training parameter
 };
 
-/// Of the answers of the model with all points. The effect of a residual r is tangent^-1 r. On a
-/// symmetric curve the points of one half stand for both.
-PointEffects point_effects(ReducedNitsche &full, const Scene &scene,
-                           const std::vector<CurveCell> &cells, const std::vector<Sample> &samples,
-                           Index n) {
+Answers answers_with_all(const ReducedModel &model, const Scene &scene,
+                         const std::vector<CurveCell> &cells, const std::vector<Sample> &samples) {
+  constexpr Index enough = 64; // parameters that the points are chosen by; all are checked
   const Vector x = abscissae(cells);
-  PointEffects effects;
-  effects.rows_each = n;
-  Matrix all(n * static_cast<Index>(samples.size()), x.size());
-  for (std::size_t p = 0; p < samples.size(); ++p) {
-    const NitscheAnswer answer = full.solve(expand(scene.parameters, samples[p].mu));
-    const double size = std::max(answer.u.norm(), 1e-300);
-    all.middleRows(n * static_cast<Index>(p), n) =
-        Eigen::PartialPivLU<Matrix>(full.tangent()).solve(full.point_residuals()) / size;
+  const auto count = static_cast<Index>(samples.size()), n = Index{model.primal_size()};
+  const Index step = (count + enough - 1) / enough;
+  ReducedNitsche full(model, scene);
+  Answers answers{Matrix(n, count), {}, {}};
+  Matrix all(n * ((count + step - 1) / step), x.size());
+  for (Index p = 0; p < count; ++p) {
+    const Vector u =
+        full.solve(expand(scene.parameters, samples[static_cast<std::size_t>(p)].mu)).u;
+    answers.u.col(p) = u;
+    if (p % step == 0)
+      all.middleRows(n * (p / step), n) =
+          Eigen::PartialPivLU<Matrix>(full.tangent()).solve(full.point_residuals()) /
+          std::max(u.norm(), 1e-300);
   }
-  const double share = scene.symmetric ? 2 : 1;
   for (Index q = 0; q < x.size(); ++q)
     if ((!scene.symmetric || x[q] < 0) && !all.col(q).isZero(0))
-      effects.points.push_back(static_cast<int>(q));
-  effects.columns = share * all(Eigen::all, effects.points);
-  return effects;
+      answers.points.push_back(static_cast<int>(q));
+  answers.effects = (scene.symmetric ? 2 : 1) * all(Eigen::all, answers.points);
+  return answers;
 }
 
 /// Largest norm of the parts of a stacked vector.
@@ -80,41 +86,75 @@ double largest_part(const Vector &stacked, Index rows_each) {
       stacked.reshaped(rows_each, stacked.size() / rows_each).colwise().squaredNorm().maxCoeff());
 }
 
-/// Non-negative least squares, point by point, until every training answer is met.
-void choose_points(const PointEffects &effects, double tolerance, double share,
-                   NitscheModel &nitsche, CurveReport &report) {
-  const Vector target = effects.columns.rowwise().sum();
-  NonnegativeQp qp(effects.columns.rows(), {.max_iterations = 1});
-  report.error.push_back(largest_part(target, effects.rows_each));
-  while (report.error.back() > tolerance) {
-    const NonnegativeQpReport step = qp.solve(effects.columns, target);
-    report.error.push_back(largest_part(qp.residual(), effects.rows_each));
-    if (step.converged) break;
-  }
-  for (std::size_t k = 0; k < effects.points.size(); ++k) {
-    const double factor = qp.x().size() > 0 ? qp.x()[static_cast<Index>(k)] : 0;
+/// The points with positive factors, and where queries start from there.
+void set_points(const Answers &answers, const Vector &factors, const Matrix &pressures,
+                NitscheModel &nitsche) {
+  nitsche.points.clear();
+  std::vector<double> positive;
+  for (std::size_t k = 0; k < answers.points.size(); ++k) {
+    const double factor = factors[static_cast<Index>(k)];
     if (!(factor > 0)) continue;
-    nitsche.points.push_back(effects.points[k]);
-    nitsche.factors.conservativeResize(nitsche.factors.size() + 1);
-    nitsche.factors[nitsche.factors.size() - 1] = share * factor;
+    nitsche.points.push_back(answers.points[k]);
+    positive.push_back(factor);
+  }
+  nitsche.factors = Eigen::Map<const Vector>(positive.data(), static_cast<Index>(positive.size()));
+  std::vector<int> rows = nitsche.points;
+  const Index all = 4 * static_cast<Index>(nitsche.edges.size());
+  for (std::size_t k = 0; k < nitsche.points.size() && pressures.rows() > all; ++k)
+    rows.push_back(static_cast<int>(all) + nitsche.points[k]);
+  nitsche.starts = pressures(rows, Eigen::all);
+}
+
+/// Largest relative distance of the answers of the model, with the points it has, to those with
+/// all; infinite where it has none.
+double error_of_points(const ReducedModel &model, const Scene &scene,
+                       const std::vector<Sample> &samples, const Matrix &answers) {
+  ReducedNitsche solver(model, scene);
+  double error = 0;
+  for (std::size_t p = 0; p < samples.size(); ++p) {
+    const auto all = answers.col(static_cast<Index>(p));
+    try {
+      const Vector u = solver.solve(expand(scene.parameters, samples[p].mu)).u;
+      error = std::max(error, (u - all).norm() / std::max(all.norm(), 1e-300));
+    } catch (const Error &) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+  return error;
+}
+
+/// Non-negative least squares, point by point; to first order first, and on until the answers
+/// themselves are met. `pressures`: at all points, of the samples.
+void choose_points(const Answers &answers, double tolerance, const Scene &scene,
+                   const std::vector<Sample> &samples, const Matrix &pressures, ReducedModel &model,
+                   CurveReport &report) {
+  const Vector target = answers.effects.rowwise().sum();
+  NonnegativeQp qp(answers.effects.rows(), {.max_iterations = 1});
+  double first_order = tolerance;
+  for (bool done = answers.effects.cols() == 0; !done; first_order *= 0.7) {
+    for (double left = 2 * first_order; left > first_order && !done;) {
+      done = qp.solve(answers.effects, target).converged;
+      left = largest_part(qp.residual(), answers.u.rows());
+    }
+    set_points(answers, (scene.symmetric ? 2 : 1) * qp.x(), pressures, *model.nitsche);
+    report.points.push_back(static_cast<int>(model.nitsche->points.size()));
+    report.error.push_back(error_of_points(model, scene, samples, answers.u));
+    done = done || report.error.back() <= tolerance;
   }
 }
 
-/// NitscheModel::starts, from the model's own answers.
-void add_starts(const ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
-                NitscheModel &nitsche) {
-  ReducedNitsche solver(model, scene);
-  Matrix starts, where(scene.parameters.size(), static_cast<Index>(samples.size()));
+/// P_n and, with friction, P_tau of the samples at all points.
+Matrix pressures_of(const Scene &scene, const ContactLayer &layer,
+                    const std::vector<Sample> &samples) {
+  const bool friction = scene.support->friction.law != FrictionLaw::none;
+  const Index points = 4 * static_cast<Index>(layer.cells.size());
+  Matrix result(friction ? 2 * points : points, static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    (void)solver.solve(expand(scene.parameters, samples[p].mu));
-    const Vector state = solver.state();
-    const auto column = static_cast<Index>(p);
-    if (starts.size() == 0) starts.resize(state.size(), where.cols());
-    starts.col(column) = state;
-    where.col(column) = Eigen::Map<const Vector>(samples[p].mu.data(), where.rows());
+    const auto faces = nitsche_faces(scene, expand(scene.parameters, samples[p].mu), layer.cells);
+    const Vector u = samples[p].u(layer.natural);
+    result.col(static_cast<Index>(p)) = nitsche_pressures(faces, u).reshaped().head(result.rows());
   }
-  nitsche.starts = std::move(starts);
-  nitsche.starts_mu = std::move(where);
+  return result;
 }
 
 } // namespace
@@ -129,21 +169,22 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples, d
   NitscheModel &nitsche = *model.nitsche;
   describe_curve(layer, model, nitsche);
   nitsche.consistency = interpolate_consistency(scene, layer, samples, nitsche.trace);
+  nitsche.starts_mu.resize(scene.parameters.size(), static_cast<Index>(samples.size()));
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    std::copy(samples[p].mu.begin(), samples[p].mu.end(),
+              nitsche.starts_mu.col(static_cast<Index>(p)).begin());
   nitsche.rule = CurveRule::full;
-  report.points = 4 * static_cast<int>(layer.cells.size());
+  nitsche.starts = pressures_of(scene, layer, samples);
+  if (options.rule == CurveRule::full) report.points = {4 * static_cast<int>(layer.cells.size())};
   if (options.rule == CurveRule::empirical) {
-    add_starts(model, scene, samples, nitsche); // the next sweep takes a few steps each
-    ReducedNitsche full(model, scene);
-    const PointEffects effects =
-        point_effects(full, scene, layer.cells, samples, model.primal_size());
-    choose_points(effects, options.tolerance > 0 ? options.tolerance : u_left / 3,
-                  scene.symmetric ? 2 : 1, nitsche, report);
+    const Answers answers = answers_with_all(model, scene, layer.cells, samples);
+    const Matrix pressures = nitsche.starts;
+    nitsche.rule = CurveRule::empirical;
+    choose_points(answers, options.tolerance > 0 ? options.tolerance : u_left / 2, scene, samples,
+                  pressures, model, report);
     if (nitsche.points.empty())
       throw failure("there is no contact at any training mu, and nothing to integrate: widen the "
                     "parameter box");
-    report.points = static_cast<int>(nitsche.points.size());
-    nitsche.rule = CurveRule::empirical;
-    nitsche.starts.resize(0, 0);
   } else if (options.rule == CurveRule::interpolated) {
     report.states =
         interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance}, nitsche);
@@ -152,8 +193,9 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples, d
                     static_cast<int>(nitsche.friction_matrix.size()),
                     static_cast<int>(nitsche.friction_vector.size())};
     nitsche.rule = CurveRule::interpolated;
+    nitsche.starts.resize(0, 0); // from u = 0, as printed
+    nitsche.starts_mu.resize(nitsche.starts_mu.rows(), 0);
   }
-  if (options.rule != CurveRule::interpolated) add_starts(model, scene, samples, nitsche);
   return report;
 }
 

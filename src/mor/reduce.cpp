@@ -192,6 +192,7 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   const Stage stage("contact curve", times);
   const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
   result.curve = reduce_curve(problem, samples, left, options.curve, result.model);
+  result.model.histories["curve/points"] = {result.curve.points.begin(), result.curve.points.end()};
   result.model.histories["curve/error"] = result.curve.error;
 }
 

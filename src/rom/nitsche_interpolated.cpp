@@ -81,9 +81,9 @@ Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &fac
 }
 
 int ReducedNitsche::Interpolated::solve(const Scene &scene, const Mu &all_parameters,
-                                        const Vector &start, System &system) {
+                                        System &system) {
   const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
-  Vector u = start.size() == system.a.rows() ? start : Vector(Vector::Zero(system.a.rows()));
+  Vector u = Vector::Zero(system.a.rows());
   Terms here = terms(faces, system, u);
   for (int step = 1; step <= most_steps; ++step) {
     const Eigen::PartialPivLU<Matrix> factor(tangent(faces, system, u));

@@ -12,8 +12,8 @@ struct ReducedNitsche::Interpolated {
   SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
 
   Interpolated(const NitscheModel &of, const std::vector<CurveCell> &all);
-  /// From the coefficients `start` (empty: zero) into system.u. Returns the steps.
-  int solve(const Scene &scene, const Mu &all_parameters, const Vector &start, System &system);
+  /// From zero into system.u. Returns the steps.
+  int solve(const Scene &scene, const Mu &all_parameters, System &system);
 
 private:
   /// The interpolated terms at one iterate.

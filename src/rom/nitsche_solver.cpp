@@ -74,23 +74,17 @@ NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
   assemble(all_parameters);
   System &system = *system_;
   NitscheAnswer answer;
-  const Vector start = predicted(all_parameters);
   if (interpolated_) {
-    answer.iterations = interpolated_->solve(scene_, all_parameters, start, system);
+    answer.iterations = interpolated_->solve(scene_, all_parameters, system);
   } else {
     system.set_points(scene_, all_parameters, cells_);
-    system.predict(start);
+    system.predict(predicted(all_parameters));
     answer.iterations = system.settle();
   }
   answer.u = system.u;
   answer.residual = system.relative;
   answer.energy = 0.5 * answer.u.dot(system.a * answer.u) - system.f.dot(answer.u);
   return answer;
-}
-
-Vector ReducedNitsche::state() const {
-  if (interpolated_) return system_->u;
-  return system_->pressures.reshaped().head(system_->rows.rows());
 }
 
 Matrix ReducedNitsche::point_residuals() const {

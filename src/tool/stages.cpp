@@ -187,7 +187,7 @@ void add_curve_rows(const ToolOptions &options, const OfflineResult *result,
                                                     : "EIM over (mu, Newton step)";
   if (result != nullptr) {
     const CurveReport &curve = result->made.curve;
-    if (rule != CurveRule::interpolated) what = count(curve.points, "point");
+    if (rule != CurveRule::interpolated) what = count(curve.points.back(), "point");
     if (rule == CurveRule::empirical) what += ", error " + short_number(curve.error.back());
     if (rule == CurveRule::interpolated)
       what = "terms: B^n " + std::to_string(curve.terms[0]) + ", Theta^n " +

@@ -11,15 +11,17 @@ namespace rbvi {
 
 struct CurveOptions {
   CurveRule rule = CurveRule::empirical;
-  /// empirical: largest error of u, relative, that the points add at a training parameter; 0: a
-  /// third of what the modes leave.
+  /// empirical: largest error of u, relative, that the points add at a training parameter; 0:
+  /// half of what the modes leave.
   double tolerance = 0;
   double eim_tolerance = 1e-6; ///< interpolated: of the matrices and vectors (B.32)
 };
 
 struct CurveReport {
-  int points = 0;             ///< empirical, full
-  std::vector<double> error;  ///< empirical: after each point
+  // The last is what the model has. Empirical: after each pass, with the largest relative error of
+  // u that it adds at a training parameter.
+  std::vector<int> points;
+  std::vector<double> error;
   std::array<int, 4> terms{}; ///< interpolated: B^n, Theta^n, B^tau, Theta^tau
   int states = 0;             ///< interpolated: pairs (mu, Newton step)
 };

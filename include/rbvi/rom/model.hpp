@@ -125,8 +125,8 @@ struct NitscheModel {
   Vector factors;                              ///< empirical: of the weights of these points, > 0
   LayerTerms contact_matrix, contact_vector;   ///< interpolated: B^n, Theta^n
   LayerTerms friction_matrix, friction_vector; ///< interpolated: B^tau, Theta^tau
-  /// Where a query starts from, of the training samples: P_n, then P_tau at the points (the whole
-  /// curve: 4 per cell); interpolated: coefficients of u.
+  /// Where a query starts from: P_n, then P_tau of the training samples at the points.
+  /// Interpolated: none.
   Matrix starts;
   Matrix starts_mu; ///< free parameters x P: where they are
 };

@@ -33,8 +33,6 @@ public:
   /// positive definite.
   NitscheAnswer solve(const Mu &all_parameters);
 
-  /// Of the last answer, what a start of a nearby query needs (NitscheModel::starts).
-  Vector state() const;
   /// Of the last answer: what each point adds to the residual, n x points, ...
   Matrix point_residuals() const;
   /// ... and the tangent, n x n.
