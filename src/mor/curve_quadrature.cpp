@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace rbvi {
 
@@ -45,101 +46,160 @@ Vector abscissae(const std::vector<CurveCell> &cells) {
   return x;
 }
 
-/// The answers of the model with all points at the training parameters.
-struct Answers {
-  Matrix u; ///< n x P
-  /// What each point adds to them to first order, at some of the parameters one below the other:
-  /// tangent^-1 residual, relative to |u|. On a symmetric curve the points of one half stand for
-  /// both.
-  Matrix effects;
-  std::vector<int> points; ///< number of each column
+/// The model with all points: its answers, and what each point adds to them.
+class AllPoints {
+public:
+  AllPoints(const ReducedModel &model, const Scene &scene, const std::vector<CurveCell> &cells,
+            const std::vector<Sample> &samples)
+      : model_(model), solver_(model_, scene), scene_(scene), samples_(samples) {
+    const auto count = static_cast<Index>(samples.size());
+    answers_.resize(model.primal_size(), count);
+    std::vector<char> met(4 * cells.size(), 0); // some answer has contact or friction there
+    for (Index p = 0; p < count; ++p) {
+      answers_.col(p) = solve(p);
+      const Matrix residuals = solver_.point_residuals();
+      for (Index q = 0; q < residuals.cols(); ++q)
+        if (!residuals.col(q).isZero(0)) met[static_cast<std::size_t>(q)] = 1;
+    }
+    const Vector x = abscissae(cells);
+    for (Index q = 0; q < x.size(); ++q)
+      if ((!scene.symmetric || x[q] < 0) && met[static_cast<std::size_t>(q)] != 0)
+        points_.push_back(static_cast<int>(q));
+  }
+  const Matrix &answers() const { return answers_; } ///< n x P
+  /// Those that matter; on a symmetric curve the points of one half stand for both.
+  const std::vector<int> &points() const { return points_; }
+  double share() const { return scene_.symmetric ? 2 : 1; }
+  /// What each of them adds to answer p to first order: tangent^-1 residual, relative to |u|.
+  Matrix effects(Index p) {
+    const double size = std::max(solve(p).norm(), 1e-300);
+    const Matrix residuals = solver_.point_residuals()(Eigen::all, points_);
+    return share() / size * Eigen::PartialPivLU<Matrix>(solver_.tangent()).solve(residuals);
+  }
+
+private:
+  Vector solve(Index p) {
+    return solver_.solve(expand(scene_.parameters, samples_[static_cast<std::size_t>(p)].mu)).u;
+  }
+  const ReducedModel model_; ///< stays as it is while points are chosen for the other
+  ReducedNitsche solver_;
+  const Scene &scene_;
+  const std::vector<Sample> &samples_;
+  Matrix answers_;
+  std::vector<int> points_;
 };
 
-Answers answers_with_all(const ReducedModel &model, const Scene &scene,
-                         const std::vector<CurveCell> &cells, const std::vector<Sample> &samples) {
-  constexpr Index enough = 64; // parameters that the points are chosen by; all are checked
-  const Vector x = abscissae(cells);
-  const auto count = static_cast<Index>(samples.size()), n = Index{model.primal_size()};
-  const Index step = (count + enough - 1) / enough;
-  ReducedNitsche full(model, scene);
-  Answers answers{Matrix(n, count), {}, {}};
-  Matrix all(n * ((count + step - 1) / step), x.size());
-  for (Index p = 0; p < count; ++p) {
-    const Vector u =
-        full.solve(expand(scene.parameters, samples[static_cast<std::size_t>(p)].mu)).u;
-    answers.u.col(p) = u;
-    if (p % step == 0)
-      all.middleRows(n * (p / step), n) =
-          Eigen::PartialPivLU<Matrix>(full.tangent()).solve(full.point_residuals()) /
-          std::max(u.norm(), 1e-300);
+/// Least squares for the factors of the points: what some training parameters ask of them, one
+/// below the other.
+class PointFit {
+public:
+  /// `each`: rows of one parameter.
+  void add(const Matrix &effects, Index each) {
+    Matrix more(effects_.rows() + effects.rows(), effects.cols());
+    if (effects_.rows() > 0) more.topRows(effects_.rows()) = effects_;
+    more.bottomRows(effects.rows()) = effects;
+    effects_ = std::move(more);
+    each_ = each;
+    const std::vector<Index> active = qp_ ? qp_->active() : std::vector<Index>{};
+    qp_.emplace(effects_.rows(), NonnegativeQpOptions{.max_iterations = 1});
+    qp_->start_from(active);
+    finished_ = false;
   }
-  for (Index q = 0; q < x.size(); ++q)
-    if ((!scene.symmetric || x[q] < 0) && !all.col(q).isZero(0))
-      answers.points.push_back(static_cast<int>(q));
-  answers.effects = (scene.symmetric ? 2 : 1) * all(Eigen::all, answers.points);
-  return answers;
-}
+  /// Takes points in until the effects are met to `tolerance` at every one of the parameters.
+  void improve(double tolerance) {
+    const Vector target = effects_.rowwise().sum();
+    for (double left = 2 * tolerance; left > tolerance && !finished_;) {
+      finished_ = qp_->solve(effects_, target).converged;
+      left = std::sqrt(qp_->residual()
+                           .reshaped(each_, effects_.rows() / each_)
+                           .colwise()
+                           .squaredNorm()
+                           .maxCoeff());
+    }
+  }
+  const Vector &factors() const { return qp_->x(); }
+  bool finished() const { return finished_; } ///< no further point helps
 
-/// Largest norm of the parts of a stacked vector.
-double largest_part(const Vector &stacked, Index rows_each) {
-  return std::sqrt(
-      stacked.reshaped(rows_each, stacked.size() / rows_each).colwise().squaredNorm().maxCoeff());
-}
+private:
+  Matrix effects_;
+  Index each_ = 0;
+  std::optional<NonnegativeQp> qp_;
+  bool finished_ = false;
+};
 
 /// The points with positive factors, and where queries start from there.
-void set_points(const Answers &answers, const Vector &factors, const Matrix &pressures,
+void set_points(const AllPoints &all, const Vector &factors, const Matrix &pressures,
                 NitscheModel &nitsche) {
   nitsche.points.clear();
   std::vector<double> positive;
-  for (std::size_t k = 0; k < answers.points.size(); ++k) {
-    const double factor = factors[static_cast<Index>(k)];
+  for (std::size_t k = 0; k < all.points().size(); ++k) {
+    const double factor = all.share() * factors[static_cast<Index>(k)];
     if (!(factor > 0)) continue;
-    nitsche.points.push_back(answers.points[k]);
+    nitsche.points.push_back(all.points()[k]);
     positive.push_back(factor);
   }
   nitsche.factors = Eigen::Map<const Vector>(positive.data(), static_cast<Index>(positive.size()));
   std::vector<int> rows = nitsche.points;
-  const Index all = 4 * static_cast<Index>(nitsche.edges.size());
-  for (std::size_t k = 0; k < nitsche.points.size() && pressures.rows() > all; ++k)
-    rows.push_back(static_cast<int>(all) + nitsche.points[k]);
+  const Index count = 4 * static_cast<Index>(nitsche.edges.size());
+  for (std::size_t k = 0; k < nitsche.points.size() && pressures.rows() > count; ++k)
+    rows.push_back(static_cast<int>(count) + nitsche.points[k]);
   nitsche.starts = pressures(rows, Eigen::all);
 }
 
-/// Largest relative distance of the answers of the model, with the points it has, to those with
-/// all; infinite where it has none.
-double error_of_points(const ReducedModel &model, const Scene &scene,
-                       const std::vector<Sample> &samples, const Matrix &answers) {
+/// Relative distance of each answer of the model, with the points it has, to that with all;
+/// infinite where it has none.
+Vector errors_of_points(const ReducedModel &model, const Scene &scene,
+                        const std::vector<Sample> &samples, const Matrix &answers) {
   ReducedNitsche solver(model, scene);
-  double error = 0;
-  for (std::size_t p = 0; p < samples.size(); ++p) {
-    const auto all = answers.col(static_cast<Index>(p));
+  Vector errors(answers.cols());
+  for (Index p = 0; p < errors.size(); ++p) {
+    const auto all = answers.col(p);
     try {
-      const Vector u = solver.solve(expand(scene.parameters, samples[p].mu)).u;
-      error = std::max(error, (u - all).norm() / std::max(all.norm(), 1e-300));
+      const Mu &mu = samples[static_cast<std::size_t>(p)].mu;
+      errors[p] = (solver.solve(expand(scene.parameters, mu)).u - all).norm() /
+                  std::max(all.norm(), 1e-300);
     } catch (const Error &) {
-      return std::numeric_limits<double>::infinity();
+      errors[p] = std::numeric_limits<double>::infinity();
     }
   }
-  return error;
+  return errors;
 }
 
-/// Non-negative least squares, point by point; to first order first, and on until the answers
-/// themselves are met. `pressures`: at all points, of the samples.
-void choose_points(const Answers &answers, double tolerance, const Scene &scene,
+/// Non-negative least squares, point by point, until every answer of the model itself is met: to
+/// first order, at some training parameters and at those that turn out worst. `pressures`: at all
+/// points, of the samples.
+void choose_points(AllPoints &all, double tolerance, const Scene &scene,
                    const std::vector<Sample> &samples, const Matrix &pressures, ReducedModel &model,
                    CurveReport &report) {
-  const Vector target = answers.effects.rowwise().sum();
-  NonnegativeQp qp(answers.effects.rows(), {.max_iterations = 1});
-  double first_order = tolerance;
-  for (bool done = answers.effects.cols() == 0; !done; first_order *= 0.7) {
-    for (double left = 2 * first_order; left > first_order && !done;) {
-      done = qp.solve(answers.effects, target).converged;
-      left = largest_part(qp.residual(), answers.u.rows());
-    }
-    set_points(answers, (scene.symmetric ? 2 : 1) * qp.x(), pressures, *model.nitsche);
+  constexpr Index few = 64;
+  const auto count = static_cast<Index>(samples.size());
+  std::vector<char> taken(samples.size(), 0);
+  PointFit fit;
+  const auto take = [&](Index p) {
+    taken[static_cast<std::size_t>(p)] = 1;
+    return all.effects(p);
+  };
+  Matrix first;
+  for (Index p = 0; p < count; p += (count + few - 1) / few) {
+    first.conservativeResize(first.rows() + all.answers().rows(),
+                             static_cast<Index>(all.points().size()));
+    first.bottomRows(all.answers().rows()) = take(p);
+  }
+  fit.add(first, all.answers().rows());
+  for (double first_order = tolerance;;) {
+    fit.improve(first_order);
+    set_points(all, fit.factors(), pressures, *model.nitsche);
+    const Vector errors = errors_of_points(model, scene, samples, all.answers());
+    Index worst = 0;
     report.points.push_back(static_cast<int>(model.nitsche->points.size()));
-    report.error.push_back(error_of_points(model, scene, samples, answers.u));
-    done = done || report.error.back() <= tolerance;
+    report.error.push_back(errors.maxCoeff(&worst));
+    if (report.error.back() <= tolerance) return;
+    if (taken[static_cast<std::size_t>(worst)] == 0)
+      fit.add(take(worst), all.answers().rows());
+    else if (fit.finished())
+      return;
+    else
+      first_order *= 0.7;
   }
 }
 
@@ -177,14 +237,14 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples, d
   nitsche.starts = pressures_of(scene, layer, samples);
   if (options.rule == CurveRule::full) report.points = {4 * static_cast<int>(layer.cells.size())};
   if (options.rule == CurveRule::empirical) {
-    const Answers answers = answers_with_all(model, scene, layer.cells, samples);
+    AllPoints all(model, scene, layer.cells, samples);
     const Matrix pressures = nitsche.starts;
-    nitsche.rule = CurveRule::empirical;
-    choose_points(answers, options.tolerance > 0 ? options.tolerance : u_left / 2, scene, samples,
-                  pressures, model, report);
-    if (nitsche.points.empty())
+    if (all.points().empty())
       throw failure("there is no contact at any training mu, and nothing to integrate: widen the "
                     "parameter box");
+    nitsche.rule = CurveRule::empirical;
+    choose_points(all, options.tolerance > 0 ? options.tolerance : u_left, scene, samples,
+                  pressures, model, report);
   } else if (options.rule == CurveRule::interpolated) {
     report.states =
         interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance}, nitsche);

@@ -66,7 +66,7 @@ const std::vector<OptionHelp> &tool_options() {
        "Nitsche's method reduced, integrals over the curve: empirical (few points) | full | "
        "interpolated (EIM)"},
       {"nitsche_quadrature_tolerance", "0",
-       "empirical: relative error that it may add to u; 0: half of what the modes leave"},
+       "empirical: relative error that it may add to u; 0: as much as the modes leave"},
       {"nitsche_eim_tolerance", "1e-6", "interpolated: relative error over (mu, Newton step)"},
       {"gcns_tolerance", "0", "collocated: e_GCNS at which the selection of nodes stops"},
       {"gcns_max_nodes", "0", "collocated: most collocation nodes; 0 is no bound"}};

@@ -12,7 +12,7 @@ namespace rbvi {
 struct CurveOptions {
   CurveRule rule = CurveRule::empirical;
   /// empirical: largest error of u, relative, that the points add at a training parameter; 0:
-  /// half of what the modes leave.
+  /// what the modes leave.
   double tolerance = 0;
   double eim_tolerance = 1e-6; ///< interpolated: of the matrices and vectors (B.32)
 };
