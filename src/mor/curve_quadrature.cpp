@@ -219,8 +219,9 @@ Matrix pressures_of(const Scene &scene, const ContactLayer &layer,
 
 } // namespace
 
-CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples, double u_left,
-                         const CurveOptions &options, ReducedModel &model) {
+CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
+                         const Matrix &coefficients, double u_left, const CurveOptions &options,
+                         ReducedModel &model) {
   const Scene &scene = problem.scene();
   const ContactLayer layer =
       make_contact_layer(problem.mesh(), problem.dofs(), scene.support->boundary);
@@ -253,8 +254,7 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples, d
                     static_cast<int>(nitsche.friction_matrix.size()),
                     static_cast<int>(nitsche.friction_vector.size())};
     nitsche.rule = CurveRule::interpolated;
-    nitsche.starts.resize(0, 0); // from u = 0, as printed
-    nitsche.starts_mu.resize(nitsche.starts_mu.rows(), 0);
+    nitsche.starts = coefficients;
   }
   return report;
 }

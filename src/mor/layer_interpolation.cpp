@@ -121,7 +121,9 @@ LayerTerms interpolate_consistency(const Scene &scene, const ContactLayer &layer
 int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
                       const EimOptions &options, NitscheModel &nitsche) {
   const Scene &scene = problem.scene();
-  NitscheSolver solver(problem, {});
+  // The steps that the reduced solve will take; Coulomb's bounds would cycle without line search.
+  const bool coulomb = scene.support->friction.law == FrictionLaw::coulomb;
+  NitscheSolver solver(problem, {.full_steps = !coulomb});
   const std::vector<CurveCell> &cells = solver.layer().cells;
   const LayerPattern pattern(cells);
   Snapshots snapshots;

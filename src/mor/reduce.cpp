@@ -191,7 +191,12 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   }
   const Stage stage("contact curve", times);
   const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
-  result.curve = reduce_curve(problem, samples, left, options.curve, result.model);
+  Matrix coefficients(result.bases.modes, static_cast<Index>(samples.size()));
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    RBVI_CALL(BVDotVec(result.bases.pod.basis.columns.get(),
+                       from_natural(problem.dofs(), samples[p].u).get(),
+                       coefficients.col(static_cast<Index>(p)).data()));
+  result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
   result.model.histories["curve/points"] = {result.curve.points.begin(), result.curve.points.end()};
   result.model.histories["curve/error"] = result.curve.error;
 }

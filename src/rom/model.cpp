@@ -150,6 +150,8 @@ void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
   require(std::is_sorted(nitsche.points.begin(), nitsche.points.end()),
           "nitsche/points are not in order");
   require_shape(nitsche.factors, static_cast<Index>(nitsche.points.size()), 1, "nitsche/factors");
+  require(nitsche.rule != CurveRule::interpolated || nitsche.starts.rows() == n,
+          "nitsche/starts does not fit");
   require_shape(nitsche.starts_mu, model.parameters.size(), nitsche.starts.cols(),
                 "nitsche/starts_mu");
 }
@@ -166,6 +168,7 @@ LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
 NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
   NitscheModel result = nitsche;
   result.trace = nitsche.trace.leftCols(size);
+  if (nitsche.rule == CurveRule::interpolated) result.starts = nitsche.starts.topRows(size);
   for (LayerTerms NitscheModel::*terms :
        {&NitscheModel::consistency, &NitscheModel::contact_matrix, &NitscheModel::contact_vector,
         &NitscheModel::friction_matrix, &NitscheModel::friction_vector})

@@ -81,25 +81,30 @@ Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &fac
 }
 
 int ReducedNitsche::Interpolated::solve(const Scene &scene, const Mu &all_parameters,
-                                        System &system) {
+                                        const Vector &near, System &system) {
   const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
-  Vector u = Vector::Zero(system.a.rows());
-  Terms here = terms(faces, system, u);
-  for (int step = 1; step <= most_steps; ++step) {
-    const Eigen::PartialPivLU<Matrix> factor(tangent(faces, system, u));
-    const Vector d = -factor.solve(here.residual);
-    if (!d.allFinite()) break;
-    double t = 1;
-    Terms next = terms(faces, system, u + d);
-    while (!(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
-      t /= 2;
-      next = terms(faces, system, u + t * d);
+  int steps = 0;
+  const Vector zero = Vector::Zero(system.a.rows());
+  for (const auto &[start, damped] :
+       {std::pair{&zero, false}, std::pair{&near, false}, std::pair{&near, true}}) {
+    system.u = *start;
+    Terms here = terms(faces, system, system.u);
+    for (int step = 1; step <= most_steps; ++step) {
+      ++steps;
+      const Eigen::PartialPivLU<Matrix> factor(tangent(faces, system, system.u));
+      const Vector d = -factor.solve(here.residual);
+      if (!d.allFinite()) break;
+      double t = 1;
+      Terms next = terms(faces, system, system.u + d);
+      while (damped && !(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
+        t /= 2;
+        next = terms(faces, system, system.u + t * d);
+      }
+      system.u += t * d;
+      here = std::move(next);
+      system.relative = here.scale > 0 ? here.residual.norm() / here.scale : 0;
+      if (d.norm() <= accuracy * system.u.norm()) return steps;
     }
-    u += t * d;
-    here = std::move(next);
-    system.u = u;
-    system.relative = here.scale > 0 ? here.residual.norm() / here.scale : 0;
-    if (d.norm() <= accuracy * u.norm()) return step;
   }
   throw failure("the interpolated problem did not converge: its residual is " +
                 short_number(system.relative) +

@@ -12,8 +12,9 @@ struct ReducedNitsche::Interpolated {
   SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
 
   Interpolated(const NitscheModel &of, const std::vector<CurveCell> &all);
-  /// From zero into system.u. Returns the steps.
-  int solve(const Scene &scene, const Mu &all_parameters, System &system);
+  /// From zero, as printed; where that does not converge, from the coefficients `near`, and with
+  /// damping. Into system.u. Returns the steps.
+  int solve(const Scene &scene, const Mu &all_parameters, const Vector &near, System &system);
 
 private:
   /// The interpolated terms at one iterate.

@@ -75,7 +75,8 @@ NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
   System &system = *system_;
   NitscheAnswer answer;
   if (interpolated_) {
-    answer.iterations = interpolated_->solve(scene_, all_parameters, system);
+    answer.iterations =
+        interpolated_->solve(scene_, all_parameters, predicted(all_parameters), system);
   } else {
     system.set_points(scene_, all_parameters, cells_);
     system.predict(predicted(all_parameters));

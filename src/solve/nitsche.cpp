@@ -214,7 +214,8 @@ void NitscheSolver::System::search(SNESLineSearch line) {
   const NitscheLine along = nitsche_line(faces, on_layer(u), -on_layer(y), bounds);
   const double linear = -dot(au.get(), y), quadratic = dot(ay.get(), y);
   const bool descends = linear + along.slope(0) < 0;
-  const double t = descends ? line_minimum(linear, quadratic, along) : 1;
+  const bool searches = descends && !solver.options_.full_steps;
+  const double t = searches ? line_minimum(linear, quadratic, along) : 1;
   RBVI_CALL(VecAXPY(u, -t, y));
   RBVI_CALL(SNESLineSearchSetLambda(line, t));
   RBVI_CALL(SNESComputeFunction(snes.get(), u, r));
@@ -319,6 +320,8 @@ void NitscheSolver::System::set_up(const Operators &op) {
     RBVI_CALL(MatMumpsSetIcntl(factor, 13, 1));
   }
   RBVI_CALL(SNESSetFromOptions(snes.get()));
+  if (solver.options_.full_steps)
+    RBVI_CALL(KSPSetTolerances(ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPGetTolerances(ksp, &linear_tolerance, nullptr, nullptr, nullptr));
   const Handle<Vec> lower = like(op.f), upper = like(op.f);
   RBVI_CALL(VecSet(lower.get(), PETSC_NINFINITY));

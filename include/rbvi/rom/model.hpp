@@ -126,7 +126,7 @@ struct NitscheModel {
   LayerTerms contact_matrix, contact_vector;   ///< interpolated: B^n, Theta^n
   LayerTerms friction_matrix, friction_vector; ///< interpolated: B^tau, Theta^tau
   /// Where a query starts from: P_n, then P_tau of the training samples at the points.
-  /// Interpolated: none.
+  /// Interpolated: their n coefficients.
   Matrix starts;
   Matrix starts_mu; ///< free parameters x P: where they are
 };
