@@ -92,10 +92,9 @@ Matrix ReducedNitsche::point_residuals() const {
   const System &system = *system_;
   const Vector slopes = system.slopes(system.pressures);
   Matrix result =
-      system.rows.topRows(system.points).transpose() * slopes.head(system.points).asDiagonal();
+      system.functionals.leftCols(system.points) * slopes.head(system.points).asDiagonal();
   if (system.bounds.size() > 0)
-    result +=
-        system.rows.bottomRows(system.points).transpose() * slopes.tail(system.points).asDiagonal();
+    result += system.functionals.rightCols(system.points) * slopes.tail(system.points).asDiagonal();
   return result;
 }
 

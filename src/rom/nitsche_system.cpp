@@ -16,7 +16,7 @@ namespace {
 constexpr double accuracy = 1e-13;       ///< of the residual, relative
 constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
 constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds
-constexpr int most_steps = 100, most_full_steps = 20, most_loops = 60;
+constexpr int most_steps = 100, most_full_steps = 10, most_loops = 60;
 
 Matrix basis_on(const CurveCell &cell, const Matrix &trace) {
   Matrix basis = Matrix::Zero(12, trace.cols());
@@ -39,7 +39,8 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
   for (const auto &[number, factor] : chosen) {
     const int cell = number / 4;
     if (parts.empty() || parts.back().cell != cell)
-      parts.push_back({cell, {}, basis_on(cells[static_cast<std::size_t>(cell)], nitsche.trace)});
+      parts.push_back(
+          {cell, {}, basis_on(cells[static_cast<std::size_t>(cell)], nitsche.trace).transpose()});
     parts.back().points.emplace_back(number % 4, factor);
   }
   points = static_cast<Index>(chosen.size());
@@ -49,47 +50,46 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
 void ReducedNitsche::System::set_points(const Scene &scene, const Mu &all_parameters,
                                         const std::vector<CurveCell> &cells) {
   const bool friction = law.law != FrictionLaw::none;
-  rows.resize(friction ? 2 * points : points, u.size());
-  offsets.resize(rows.rows());
+  functionals.resize(u.size(), friction ? 2 * points : points);
+  offsets.resize(functionals.cols());
   weights.resize(points);
   gamma.resize(points);
   Index next = 0;
   for (const Part &part : parts) {
     const CurveCell &beside = cells[static_cast<std::size_t>(part.cell)];
     const CurveCellAtMu at = curve_cell_at(scene, all_parameters, beside);
-    Eigen::Matrix<double, Eigen::Dynamic, 12> functionals(
-        static_cast<Index>((friction ? 2 : 1) * part.points.size()), 12);
     const auto count = static_cast<Index>(part.points.size());
+    Eigen::Matrix<double, 12, Eigen::Dynamic> local(12, friction ? 2 * count : count);
     for (Index k = 0; k < count; ++k) {
       const auto [q, factor] = part.points[static_cast<std::size_t>(k)];
       const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
       const NitschePoint point =
           nitsche_point(scene, all_parameters, at.cell, beside.edge, at.material, rule.s);
-      functionals.row(k) = (point.sigma_n - at.gamma * point.n).transpose();
+      local.col(k) = point.sigma_n - at.gamma * point.n;
       offsets[next + k] = at.gamma * point.gap;
       if (friction) {
-        functionals.row(count + k) = (point.sigma_tau - at.gamma * point.tau).transpose();
+        local.col(count + k) = point.sigma_tau - at.gamma * point.tau;
         offsets[points + next + k] = -at.gamma * point.slip;
       }
       weights[next + k] = factor * rule.weight * point.weight;
       gamma[next + k] = at.gamma;
     }
-    rows.middleRows(next, count).noalias() = functionals.topRows(count) * part.basis;
+    functionals.middleCols(next, count).noalias() = part.basis * local.leftCols(count);
     if (friction)
-      rows.middleRows(points + next, count).noalias() = functionals.bottomRows(count) * part.basis;
+      functionals.middleCols(points + next, count).noalias() = part.basis * local.rightCols(count);
     next += count;
   }
 }
 
 void ReducedNitsche::System::set(const Vector &coefficients) {
   u = coefficients;
-  const Vector p = rows * u + offsets;
+  const Vector p = functionals.transpose() * u + offsets;
   pressures = Matrix::Zero(points, 2);
   pressures.reshaped().head(p.size()) = p;
 }
 
 Vector ReducedNitsche::System::slopes(const Matrix &at) const {
-  Vector result(rows.rows());
+  Vector result(functionals.cols());
   for (Index i = 0; i < points; ++i) {
     result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).slope;
     if (bounds.size() > 0)
@@ -99,7 +99,7 @@ Vector ReducedNitsche::System::slopes(const Matrix &at) const {
 }
 
 Vector ReducedNitsche::System::curvatures(const Matrix &at) const {
-  Vector result(rows.rows());
+  Vector result(functionals.cols());
   for (Index i = 0; i < points; ++i) {
     result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).curvature;
     if (bounds.size() > 0)
@@ -110,7 +110,7 @@ Vector ReducedNitsche::System::curvatures(const Matrix &at) const {
 
 /// Sets `relative`.
 Vector ReducedNitsche::System::residual() {
-  const Vector au = a_gamma * u, terms = rows.transpose() * slopes(pressures);
+  const Vector au = a_gamma * u, terms = functionals * slopes(pressures);
   const Vector r = au + terms - f;
   const double scale = au.norm() + terms.norm() + f.norm();
   relative = scale > 0 ? r.norm() / scale : 0;
@@ -122,13 +122,13 @@ Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
   std::vector<Index> active;
   for (Index i = 0; i < d.size(); ++i)
     if (d[i] != 0) active.push_back(i);
-  const Matrix part = rows(active, Eigen::all);
-  return a_gamma + part.transpose() * d(active).asDiagonal() * part;
+  const Matrix part = functionals(Eigen::all, active);
+  return a_gamma + (part * d(active).asDiagonal()) * part.transpose();
 }
 
 /// One linear solve, contact and stick being those of the pressures `start`.
 void ReducedNitsche::System::predict(const Vector &start) {
-  if (start.size() != rows.rows()) { // from u = 0
+  if (start.size() != functionals.cols()) { // from u = 0
     set(Vector::Zero(u.size()));
     bounds = nitsche_bounds(pressures, law);
     return;
@@ -140,7 +140,7 @@ void ReducedNitsche::System::predict(const Vector &start) {
   const Vector forces = slopes(at) + d.cwiseProduct(offsets - start);
   const Eigen::LLT<Matrix> factor(tangent_at(at));
   if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
-  set(factor.solve(f - rows.transpose() * forces));
+  set(factor.solve(f - functionals * forces));
   bounds = nitsche_bounds(pressures, law);
 }
 
@@ -156,7 +156,7 @@ int ReducedNitsche::System::minimise() {
     if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
     const Vector d = -factor.solve(r);
     NitscheLine line{weights, gamma, pressures, Matrix::Zero(points, 2), bounds};
-    line.change.reshaped().head(rows.rows()) = rows * d;
+    line.change.reshaped().head(functionals.cols()) = functionals.transpose() * d;
     const double t = line_minimum((a_gamma * u - f).dot(d), d.dot(a_gamma * d), line);
     set(u + t * d);
   }
@@ -165,9 +165,9 @@ int ReducedNitsche::System::minimise() {
                 " Newton steps; reduce again with more modes (-pod_tolerance)");
 }
 
-/// Coulomb's bound as a function of u: full Newton steps. Returns the steps, or -1 where they do
-/// not settle.
-int ReducedNitsche::System::follow_bound() {
+/// Coulomb's bound as a function of u: full Newton steps. Returns the steps, nothing where they do
+/// not settle soon.
+std::optional<int> ReducedNitsche::System::follow_bound() {
   double before = 1;
   for (int step = 0; step <= most_full_steps; ++step) {
     bounds = nitsche_bounds(pressures, law);
@@ -175,31 +175,38 @@ int ReducedNitsche::System::follow_bound() {
     if (relative <= accuracy) return step;
     if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
     before = relative;
-    Matrix tangent = tangent_at(pressures);
-    for (Index i = 0; i < points; ++i) { // slipping: the bound moves with P_n
+    std::vector<Index> slipping; // there the bound moves with P_n
+    std::vector<double> rates;
+    for (Index i = 0; i < points; ++i) {
       const double shear = pressures(i, 1);
       if (!(std::abs(shear) > bounds[i]) || pressures(i, 0) >= 0) continue;
-      const double rate = -std::copysign(law.value, shear) * weights[i] / gamma[i];
-      tangent.noalias() += rate * rows.row(points + i).transpose() * rows.row(i);
+      slipping.push_back(i);
+      rates.push_back(-std::copysign(law.value, shear) * weights[i] / gamma[i]);
     }
+    const Vector rate = Eigen::Map<const Vector>(rates.data(), static_cast<Index>(rates.size()));
+    const Matrix normal = functionals.leftCols(points)(Eigen::all, slipping);
+    const Matrix shear = functionals.rightCols(points)(Eigen::all, slipping);
+    Matrix tangent = tangent_at(pressures);
+    tangent.noalias() += (shear * rate.asDiagonal()) * normal.transpose();
     const Eigen::PartialPivLU<Matrix> factor(tangent);
     set(u - factor.solve(r));
-    if (!u.allFinite()) return -1;
+    if (!u.allFinite()) return std::nullopt;
   }
-  return -1;
+  return std::nullopt;
 }
 
 /// From the last iterate to the answer. Returns the steps.
 int ReducedNitsche::System::settle() {
   if (!law.moves()) return minimise();
-  const Vector first = u;
-  if (law.law == FrictionLaw::coulomb)
-    if (const int steps = follow_bound(); steps >= 0) return steps;
   int steps = 0;
-  set(first);
-  bounds = nitsche_bounds(pressures, law);
   for (int loop = 0; loop < most_loops; ++loop) {
     const Vector before = u;
+    if (law.law == FrictionLaw::coulomb) {
+      if (const std::optional<int> more = follow_bound()) return steps + *more;
+      steps += most_full_steps;
+      set(before);
+    }
+    bounds = nitsche_bounds(pressures, law);
     steps += minimise();
     bounds = nitsche_bounds(pressures, law);
     if ((u - before).norm() <= bound_accuracy * u.norm()) {

@@ -4,6 +4,8 @@
 
 #include "rbvi/rom/nitsche_solver.hpp"
 
+#include <optional>
+
 namespace rbvi {
 
 constexpr const char *tangent_not_definite = "the reduced tangent is not positive definite: raise "
@@ -15,7 +17,7 @@ struct ReducedNitsche::System {
   struct Part {
     int cell;
     std::vector<std::pair<int, double>> points; ///< Gauss point, factor of its weight
-    Matrix basis;                               ///< 12 x n
+    Matrix basis;                               ///< n x 12
   };
   std::vector<Part> parts;
   Index points = 0;
@@ -24,8 +26,8 @@ struct ReducedNitsche::System {
   Matrix a, a_gamma; ///< n x n
   Vector f;
   NitscheLaw law;
-  Matrix rows;    ///< 2 points x n: of P_n, then of P_tau
-  Vector offsets; ///< 2 points
+  Matrix functionals; ///< n x 2 points: of P_n, then of P_tau
+  Vector offsets;     ///< 2 points
   Vector weights, gamma;
 
   // The last iterate.
@@ -44,7 +46,7 @@ struct ReducedNitsche::System {
   Matrix tangent_at(const Matrix &at) const;
   void predict(const Vector &start);
   int minimise();
-  int follow_bound();
+  std::optional<int> follow_bound();
   int settle();
 };
 
