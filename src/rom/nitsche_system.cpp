@@ -16,7 +16,8 @@ namespace {
 constexpr double accuracy = 1e-13;       ///< of the residual, relative
 constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
 constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds
-constexpr int most_steps = 100, most_full_steps = 10, most_loops = 60;
+constexpr double shortest_step = 0.125;
+constexpr int most_steps = 100, most_full_steps = 25, most_loops = 60;
 
 Matrix basis_on(const CurveCell &cell, const Matrix &trace) {
   Matrix basis = Matrix::Zero(12, trace.cols());
@@ -165,8 +166,8 @@ int ReducedNitsche::System::minimise() {
                 " Newton steps; reduce again with more modes (-pod_tolerance)");
 }
 
-/// Coulomb's bound as a function of u: full Newton steps. Returns the steps, nothing where they do
-/// not settle soon.
+/// Coulomb's bound as a function of u: Newton steps, halved until the residual falls. Returns
+/// the steps, nothing where they do not settle soon.
 std::optional<int> ReducedNitsche::System::follow_bound() {
   double before = 1;
   for (int step = 0; step <= most_full_steps; ++step) {
@@ -188,9 +189,13 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
     const Matrix shear = functionals.rightCols(points)(Eigen::all, slipping);
     Matrix tangent = tangent_at(pressures);
     tangent.noalias() += (shear * rate.asDiagonal()) * normal.transpose();
-    const Eigen::PartialPivLU<Matrix> factor(tangent);
-    set(u - factor.solve(r));
-    if (!u.allFinite()) return std::nullopt;
+    const Vector start = u, d = -Eigen::PartialPivLU<Matrix>(tangent).solve(r);
+    if (!d.allFinite()) return std::nullopt;
+    for (double t = 1; t >= shortest_step; t /= 2) { // the shortest one is taken whatever it gives
+      set(start + t * d);
+      bounds = nitsche_bounds(pressures, law);
+      if (residual().norm() < r.norm()) break;
+    }
   }
   return std::nullopt;
 }
@@ -204,7 +209,6 @@ int ReducedNitsche::System::settle() {
     if (law.law == FrictionLaw::coulomb) {
       if (const std::optional<int> more = follow_bound()) return steps + *more;
       steps += most_full_steps;
-      set(before);
     }
     bounds = nitsche_bounds(pressures, law);
     steps += minimise();
