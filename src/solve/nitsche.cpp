@@ -12,6 +12,7 @@ namespace {
 constexpr double accuracy = 1e-12;       ///< of the residual, relative
 constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
 constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
+constexpr int patience = 4; ///< steps without a new smallest residual, the bounds moving
 constexpr int most_outer_iterations = 60;
 constexpr double near = 1e-4; ///< residual from which on the linear systems are solved to the end
 constexpr int most_iterations = 60;
@@ -117,6 +118,8 @@ struct NitscheSolver::System {
   Vector bounds;
   double tolerance = accuracy;
   double scale = 0, relative = 1; ///< of the last residual: its terms' norms, its part of them
+  double best = 1;                ///< the smallest part so far, and its step
+  PetscInt best_step = 0;
   int factorisations = 0;
   bool factorised = false; ///< in this step
   std::exception_ptr failed;
@@ -136,6 +139,7 @@ struct NitscheSolver::System {
 };
 
 void NitscheSolver::System::residual(Vec u, Vec r) {
+  if (law.moves() && solver.options_.single_loop) set_bounds(u);
   const Vector terms = nitsche_residual(faces, on_layer(u), bounds);
   RBVI_CALL(MatMult(a_gamma.get(), u, r));
   RBVI_CALL(VecAXPY(r, -1, f));
@@ -186,7 +190,6 @@ void NitscheSolver::System::before_step() {
                              relative > near ? linear_tolerance : std::min(linear_tolerance, 1e-8),
                              PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(SNESSetLagPreconditioner(snes.get(), factorised ? -2 : -1)); // now, or not at all
-  if (law.moves() && solver.options_.single_loop) set_bounds(u);
   if (solver.watch) solver.watch(on_layer(u), bounds);
 }
 
@@ -227,8 +230,14 @@ SNESConvergedReason NitscheSolver::System::judge(PetscInt step, double r) {
   const double before = relative;
   relative = scale > 0 ? r / scale : 0;
   if (relative <= tolerance) return SNES_CONVERGED_FNORM_RELATIVE;
-  if (step > 0 && relative <= round_off && relative > 0.1 * before)
-    return SNES_CONVERGED_SNORM_RELATIVE;
+  if (step == 0 || relative < best) {
+    best = relative;
+    best_step = step;
+  }
+  // Where bounds follow the steps, residuals fall slowly, and not at each step.
+  const bool stagnant = law.moves() && solver.options_.single_loop ? step - best_step >= patience
+                                                                   : relative > 0.1 * before;
+  if (step > 0 && relative <= round_off && stagnant) return SNES_CONVERGED_SNORM_RELATIVE;
   return SNES_CONVERGED_ITERATING;
 }
 
