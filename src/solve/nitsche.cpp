@@ -4,6 +4,7 @@
 #include "rbvi/core/text.hpp"
 
 #include <cmath>
+#include <cstring>
 
 namespace rbvi {
 
@@ -91,8 +92,10 @@ void check_inertia(KSP ksp) {
   RBVI_CALL(PCFactorGetMatSolverType(pc, &package));
   if (package == nullptr || std::string(package) != MATSOLVERMUMPS) return; // CHOLMOD stops itself
   Mat factor = nullptr;
-  PetscInt negative = 0;
+  PetscInt negative = 0, counts = 0;
   RBVI_CALL(PCFactorGetMatrix(pc, &factor));
+  RBVI_CALL(MatMumpsGetIcntl(factor, 13, &counts));
+  if (counts != 1) return; // a type of SNES has made the solver anew
   RBVI_CALL(MatGetInertia(factor, &negative, nullptr, nullptr));
   if (negative > 0) throw failure(not_definite);
 }
@@ -260,8 +263,11 @@ void NitscheSolver::System::set_up(const Operators &op) {
     *scratch = like(op.f);
   RBVI_CALL(SNESCreate(comm, snes.put()));
   RBVI_CALL(SNESSetOptionsPrefix(snes.get(), "nitsche_"));
-  RBVI_CALL(SNESSetType(snes.get(),
-                        solver.options_.nonpenetration ? SNESVINEWTONRSLS : SNESVINEWTONSSLS));
+  // The type comes first: a change of type destroys the line search.
+  char type[64] = SNESVINEWTONSSLS;
+  if (solver.options_.nonpenetration) std::strcpy(type, SNESVINEWTONRSLS);
+  RBVI_CALL(PetscOptionsGetString(nullptr, "nitsche_", "-snes_type", type, sizeof type, nullptr));
+  RBVI_CALL(SNESSetType(snes.get(), type));
   RBVI_CALL(SNESSetApplicationContext(snes.get(), this));
   RBVI_CALL(SNESSetFunction(
       snes.get(), force.get(),
