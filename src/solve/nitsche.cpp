@@ -13,7 +13,9 @@ namespace {
 constexpr double accuracy = 1e-12;       ///< of the residual, relative
 constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
 constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
-constexpr int patience = 4; ///< steps without a new smallest residual, the bounds moving
+constexpr int patience = 4;        ///< steps without a new smallest residual, the bounds moving
+constexpr double resting = 0.9;    ///< of the last change: from there on it is round-off
+constexpr double vanishing = 1e-9; ///< of the start: below it terms count as zero
 constexpr int most_outer_iterations = 60;
 constexpr double near = 1e-4; ///< residual from which on the linear systems are solved to the end
 constexpr int most_iterations = 60;
@@ -121,6 +123,7 @@ struct NitscheSolver::System {
   Vector bounds;
   double tolerance = accuracy;
   double scale = 0, relative = 1; ///< of the last residual: its terms' norms, its part of them
+  double smallest_scale = 0;      ///< where the answer is zero all its terms are round-off
   double best = 1;                ///< the smallest part so far, and its step
   PetscInt best_step = 0;
   int factorisations = 0;
@@ -146,7 +149,7 @@ void NitscheSolver::System::residual(Vec u, Vec r) {
   const Vector terms = nitsche_residual(faces, on_layer(u), bounds);
   RBVI_CALL(MatMult(a_gamma.get(), u, r));
   RBVI_CALL(VecAXPY(r, -1, f));
-  scale = norm(r) + terms.norm();
+  scale = std::max(norm(r) + terms.norm(), smallest_scale);
   add_extension(solver.layer_.trace, terms, r);
 }
 
@@ -401,6 +404,9 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheState *st
     system.set_bounds(u);
     if (nested) system.bounds.setZero();
   }
+  system.smallest_scale = 0;
+  system.residual(u, system.force.get());
+  system.smallest_scale = vanishing * system.scale;
   run(nested, u, result);
   result.factorisations = system.factorisations - factorised_before;
   result.layer = system.on_layer(u);
@@ -417,6 +423,7 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
   System &system = *system_;
   const Handle<Vec> before = like(u);
   system.tolerance = nested ? 1e-3 : accuracy;
+  double last_change = 1;
   for (;;) {
     RBVI_CALL(VecCopy(u, before.get()));
     result.iterations += newton(system.snes.get(), u, system.failed, result.reason);
@@ -425,7 +432,9 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     system.set_bounds(u);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
     const double size = norm(u), change = size > 0 ? norm(before.get()) / size : 0;
-    if (change <= bound_accuracy && system.tolerance <= accuracy) return;
+    const bool rests = change <= round_off && change > resting * last_change;
+    if ((change <= bound_accuracy || rests) && system.tolerance <= accuracy) return;
+    last_change = change;
     system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
     if (result.outer_iterations == most_outer_iterations)
       throw failure("Coulomb's bound did not settle in " + std::to_string(most_outer_iterations) +
