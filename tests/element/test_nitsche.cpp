@@ -3,7 +3,7 @@
 #include "cells.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/element/nitsche_curve.hpp"
+#include "rbvi/element/nitsche.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -102,81 +102,6 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
         1e-14);
   }
   EXPECT_GT(cells, 0);
-}
-
-/// A strip of triangles above an arc, its dofs numbered vertex by vertex, then edge by edge.
-struct Strip {
-  std::vector<NitscheFace> faces;
-  Index dofs = 0;
-};
-
-Strip strip(const Scene &scene, const Mu &mu, double gamma) {
-  Strip result;
-  const Curve curve = arc(6, 0.5);
-  const int corners = static_cast<int>(curve.size());
-  for (int k = 0; k + 1 < corners; ++k) { // local node of cell k -> its number
-    const auto at = static_cast<std::size_t>(k);
-    const Point apex{(curve[at][0] + curve[at + 1][0]) / 2,
-                     (curve[at][1] + curve[at + 1][1]) / 2 + 0.2, 0};
-    Cell cell{2, {curve[at], curve[at + 1], apex}, {}};
-    for (std::size_t v = 0; v < 3; ++v)
-      cell.mapped[v] = scene.map(mu, cell.reference[v]);
-    NitscheFace face{nitsche_points(scene, mu, cell, 0, {9, 4}), gamma, {}};
-    const std::array<int, 6> nodes{
-        k, k + 1, corners + 4 * k, corners + 4 * k + 1, corners + 4 * k + 2, corners + 4 * k + 3};
-    const int count = nodes_per_cell(2, scene.degree);
-    for (int i = 0; i < 12; ++i)
-      face.dofs[static_cast<std::size_t>(i)] =
-          i < 2 * count ? 2 * nodes[static_cast<std::size_t>(i / 2)] + i % 2 : -1;
-    result.faces.push_back(face);
-  }
-  result.dofs = 2 * (corners + 4 * (corners - 1));
-  return result;
-}
-
-const NitscheLaw laws_of_tests[] = {{FrictionLaw::none, 0, false},
-                                    {FrictionLaw::tresca, 0.4, false},
-                                    {FrictionLaw::tresca, 0.4, true},
-                                    {FrictionLaw::coulomb, 0.3, false}};
-
-/// Directional derivatives of the energy and of the residual, the bounds being fixed.
-TEST_P(PerDegree, ResidualAndTangentAreDerivativesOfTheEnergy) {
-  const Scene scene = hertz(GetParam());
-  const Strip s = strip(scene, {1.1}, 30);
-  Random random(11);
-  for (const NitscheLaw &law : laws_of_tests) {
-    const Vector u = 0.05 * random.vector(s.dofs), v = random.vector(s.dofs);
-    const Vector bounds = nitsche_bounds(nitsche_pressures(s.faces, u), law);
-    constexpr double h = 1e-7;
-    const double slope =
-        (nitsche_energy(s.faces, u + h * v, bounds) - nitsche_energy(s.faces, u - h * v, bounds)) /
-        (2 * h);
-    const Vector residual = nitsche_residual(s.faces, u, bounds);
-    EXPECT_NEAR(residual.dot(v), slope, 1e-6 * std::abs(slope));
-    const Vector change = (nitsche_residual(s.faces, u + h * v, bounds) -
-                           nitsche_residual(s.faces, u - h * v, bounds)) /
-                          (2 * h);
-    const auto blocks = nitsche_tangent(s.faces, nitsche_pressures(s.faces, u), bounds);
-    ASSERT_EQ(blocks.size(), s.faces.size());
-    Vector product = Vector::Zero(s.dofs);
-    for (std::size_t f = 0; f < blocks.size(); ++f)
-      for (Index i = 0; i < 12; ++i)
-        for (Index j = 0; j < 12; ++j) {
-          const int row = s.faces[f].dofs[static_cast<std::size_t>(i)];
-          const int column = s.faces[f].dofs[static_cast<std::size_t>(j)];
-          if (row >= 0 && column >= 0) product[row] += blocks[f](i, j) * v[column];
-        }
-    EXPECT_LE((product - change).norm(), 1e-6 * change.norm());
-  }
-}
-
-TEST(NitscheCurve, BoundsAreThoseOfTheLaw) {
-  Matrix pressures(3, 2);
-  pressures << -2, 0.1, 0, -5, 1, 7;
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[0]).size(), 0);
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[1]), Vector::Constant(3, 0.4));
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[2]), Vector({{0.4, 0, 0}}));
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[3]), Vector({{0.6, 0, 0}}));
 }
 
 TEST(NitschePoints, AnInvertedCellIsAFailure) {

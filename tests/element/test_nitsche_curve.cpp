@@ -1,0 +1,354 @@
+// Nitsche's terms along a curve: against differences of their energies, and the fields and outputs
+// of states that are known.
+#include "cells.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/nitsche_curve.hpp"
+#include "support_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+/// Triangles above a curve or, listing their edges against increasing x, below it; neighbours share
+/// a vertex. The edges on the curve are the local edges 0, 1 and 2 in turn.
+struct Strip {
+  std::vector<CurveCell> cells;
+  std::vector<Point> nodes; ///< of the reference domain; dof = 2 * node + component
+};
+
+enum class Side { above, below };
+
+Strip strip(int degree, const Curve &curve, Side side = Side::above) {
+  Strip result{{}, curve};
+  for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
+    const std::size_t first = side == Side::above ? k : k + 1, second = 2 * k + 1 - first;
+    const std::size_t edge = k % 3, end = (edge + 1) % 3;
+    Point apex = between(curve[k], curve[k + 1], 0.5);
+    apex[1] += side == Side::above ? 0.2 : -0.2;
+    CurveCell beside{{2, {}, {}}, static_cast<int>(edge), {}};
+    beside.cell.reference[edge] = curve[first];
+    beside.cell.reference[end] = curve[second];
+    beside.cell.reference[3 - edge - end] = apex;
+    beside.cell.mapped = beside.cell.reference;
+    beside.dofs.fill(-1);
+    const auto nodes = nodes_of(2, degree, beside.cell.reference);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      std::size_t node = result.nodes.size();
+      if (i == edge || i == end)
+        node = i == edge ? first : second;
+      else
+        result.nodes.push_back({nodes[i][0], nodes[i][1], 0});
+      beside.dofs[2 * i] = static_cast<int>(2 * node);
+      beside.dofs[2 * i + 1] = static_cast<int>(2 * node + 1);
+    }
+    result.cells.push_back(beside);
+  }
+  return result;
+}
+
+/// Displacements of the nodes by a field of the mapped domain.
+Vector nodal(const Scene &scene, const Mu &mu, const Strip &s, const Field &field) {
+  Vector u(2 * static_cast<Index>(s.nodes.size()));
+  for (std::size_t i = 0; i < s.nodes.size(); ++i) {
+    const Point value = field(scene.map(mu, s.nodes[i]));
+    u.segment<2>(2 * static_cast<Index>(i)) << value[0], value[1];
+  }
+  return u;
+}
+
+/// A half disk, stiffer on the right, that is pushed down.
+Scene half_disk(int degree) {
+  Scene scene = hertz(degree);
+  scene.motion = [](const Mu &, const Point &) { return Point{0.02, -0.1, 0}; };
+  scene.nitsche = NitscheRecipe{0.3, [](const Mu &, const Point &x) {
+                                  return Lame{9 + 3 * x[0], 4};
+                                }};
+  return scene;
+}
+
+struct Example {
+  Scene scene;
+  std::vector<NitscheFace> faces;
+  Index dofs = 0;
+  explicit Example(int degree) : scene(half_disk(degree)) {
+    const Strip s = strip(degree, arc(6, 0.5));
+    faces = nitsche_faces(scene, {1.1}, s.cells);
+    dofs = 2 * static_cast<Index>(s.nodes.size());
+  }
+  /// Some points are then in contact and others are not, some stick and others slip.
+  Vector some_state(Random &random) const { return 0.05 * random.vector(dofs); }
+};
+
+Vector product(const std::vector<NitscheFace> &faces, const std::vector<FaceBlock> &blocks,
+               const Vector &v) {
+  Vector result = Vector::Zero(v.size());
+  for (std::size_t f = 0; f < blocks.size(); ++f)
+    for (Index i = 0; i < 12; ++i)
+      for (Index j = 0; j < 12; ++j) {
+        const int row = faces[f].dofs[static_cast<std::size_t>(i)];
+        const int column = faces[f].dofs[static_cast<std::size_t>(j)];
+        if (row >= 0 && column >= 0) result[row] += blocks[f](i, j) * v[column];
+      }
+  return result;
+}
+
+const NitscheLaw laws_of_tests[] = {{FrictionLaw::none, 0, false},
+                                    {FrictionLaw::tresca, 0.4, false},
+                                    {FrictionLaw::tresca, 0.4, true},
+                                    {FrictionLaw::coulomb, 0.3, false}};
+
+/// The bounds of friction that a state tells.
+Vector bounds_of(const Example &e, const Vector &u, const NitscheLaw &law) {
+  return nitsche_bounds(nitsche_pressures(e.faces, u), law);
+}
+
+class NitscheStrip : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Degree, NitscheStrip, ::testing::Values(1, 2));
+
+TEST_P(NitscheStrip, GammaIsThatOfTheMaterialAndTheReferenceEdge) {
+  const Strip s = strip(GetParam(), arc(6, 0.5));
+  const auto faces = nitsche_faces(half_disk(GetParam()), {1.1}, s.cells);
+  ASSERT_EQ(faces.size(), 6u);
+  const double edge = 2 * std::sin(0.5 / 6);
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const double centre = between(s.nodes[k], s.nodes[k + 1], 0.5)[0];
+    EXPECT_NEAR(faces[k].gamma, 0.3 * (9 + 3 * centre + 2 * 4) / edge, 1e-12 * faces[k].gamma);
+    EXPECT_EQ(faces[k].dofs, s.cells[k].dofs);
+  }
+}
+
+/// The tests below depend on it.
+TEST_P(NitscheStrip, StatesOfTheTestsAreOnBothSidesOfTheKinks) {
+  const Example e(GetParam());
+  Random random(11);
+  const Matrix pressures = nitsche_pressures(e.faces, e.some_state(random));
+  const Index contact = (pressures.col(0).array() < 0).count();
+  const Index stick = (pressures.col(1).array().abs() < 0.4).count();
+  EXPECT_GT(contact, 0);
+  EXPECT_LT(contact, pressures.rows());
+  EXPECT_GT(stick, 0);
+  EXPECT_LT(stick, pressures.rows());
+}
+
+/// Directional derivatives of the energy and of the residual, the bounds being fixed.
+TEST_P(NitscheStrip, ResidualAndTangentAreDerivativesOfTheEnergy) {
+  const Example e(GetParam());
+  Random random(11);
+  for (const NitscheLaw &law : laws_of_tests) {
+    const Vector u = e.some_state(random), v = random.vector(e.dofs);
+    const Vector bounds = bounds_of(e, u, law);
+    constexpr double h = 1e-7;
+    const double slope =
+        (nitsche_energy(e.faces, u + h * v, bounds) - nitsche_energy(e.faces, u - h * v, bounds)) /
+        (2 * h);
+    const Vector residual = nitsche_residual(e.faces, u, bounds);
+    EXPECT_NEAR(residual.dot(v), slope, 1e-6 * std::abs(slope));
+    const Vector change = (nitsche_residual(e.faces, u + h * v, bounds) -
+                           nitsche_residual(e.faces, u - h * v, bounds)) /
+                          (2 * h);
+    const auto blocks = nitsche_tangent(e.faces, nitsche_pressures(e.faces, u), bounds);
+    ASSERT_EQ(blocks.size(), e.faces.size());
+    EXPECT_LE((product(e.faces, blocks, v) - change).norm(), 1e-6 * change.norm());
+  }
+}
+
+/// The energy that the consistency terms of the points add up to.
+double consistency_energy(const std::vector<NitscheFace> &faces, const Vector &u, bool friction) {
+  double energy = 0;
+  for (const NitscheFace &face : faces) {
+    NitschePoint::Row here = NitschePoint::Row::Zero();
+    for (std::size_t i = 0; i < face.dofs.size(); ++i)
+      if (face.dofs[i] >= 0) here[static_cast<Index>(i)] = u[face.dofs[i]];
+    for (const NitschePoint &point : face.points) {
+      energy += point.weight * consistency_term(point.sigma_n.dot(here), face.gamma).energy;
+      if (friction)
+        energy += point.weight * consistency_term(point.sigma_tau.dot(here), face.gamma).energy;
+    }
+  }
+  return energy;
+}
+
+/// E(u + v) - E(u) - E(v) is the bilinear form of a quadratic energy E.
+TEST_P(NitscheStrip, ConsistencyIsTheHessianOfItsEnergy) {
+  const Example e(GetParam());
+  Random random(5);
+  const Vector u = random.vector(e.dofs), v = random.vector(e.dofs);
+  for (const bool friction : {false, true}) {
+    const auto energy = [&](const Vector &x) { return consistency_energy(e.faces, x, friction); };
+    const auto blocks = nitsche_consistency(e.faces, friction);
+    EXPECT_NEAR(u.dot(product(e.faces, blocks, v)), energy(u + v) - energy(u) - energy(v),
+                1e-12 * std::abs(energy(u)));
+    EXPECT_LT(energy(u), 0);
+  }
+}
+
+TEST_P(NitscheStrip, LinearisedTermsAreTheTangentPlaneOfTheResidual) {
+  const Example e(GetParam());
+  Random random(17);
+  for (const NitscheLaw &law : laws_of_tests) {
+    const Vector at = e.some_state(random), u = random.vector(e.dofs);
+    const Vector bounds = bounds_of(e, at, law);
+    const Matrix pressures = nitsche_pressures(e.faces, at);
+    const Vector residual = nitsche_residual(e.faces, at, bounds);
+    EXPECT_EQ(nitsche_linearised(e.faces, at, pressures, bounds), residual);
+    const auto blocks = nitsche_tangent(e.faces, pressures, bounds);
+    const Vector plane = residual + product(e.faces, blocks, u - at);
+    EXPECT_LE((nitsche_linearised(e.faces, u, pressures, bounds) - plane).norm(),
+              1e-12 * plane.norm());
+    EXPECT_GT((nitsche_residual(e.faces, u, bounds) - plane).norm(), 0.1 * plane.norm())
+        << "u is in contact and sticks elsewhere";
+  }
+}
+
+TEST_P(NitscheStrip, TheSlopeOfALineIsTheDerivativeOfTheEnergy) {
+  const Example e(GetParam());
+  Random random(23);
+  for (const NitscheLaw &law : laws_of_tests) {
+    const Vector u = e.some_state(random), d = e.some_state(random);
+    const Vector bounds = bounds_of(e, u, law);
+    const NitscheLine line(e.faces, u, d, bounds);
+    for (const double t : {0.0, 0.37, 1.0, 5.0}) {
+      constexpr double h = 1e-6;
+      const double difference = nitsche_energy(e.faces, u + (t + h) * d, bounds) -
+                                nitsche_energy(e.faces, u + (t - h) * d, bounds);
+      EXPECT_NEAR(line.slope(t), difference / (2 * h), 1e-6 * std::abs(line.slope(t)));
+    }
+  }
+}
+
+/// |u|^2 / 2 with contact and friction, along the direction of steepest descent times `length`.
+struct Descent {
+  double linear, quadratic;
+  NitscheLine line;
+  Descent(const Example &e, const Vector &u, const Vector &bounds, double length)
+      : Descent(e, u, bounds, Vector(-length * (u + nitsche_residual(e.faces, u, bounds)))) {}
+  double slope(double t) const { return linear + t * quadratic + line.slope(t); }
+  double minimum() const { return line_minimum(linear, quadratic, line); }
+
+private:
+  Descent(const Example &e, const Vector &u, const Vector &bounds, const Vector &d)
+      : linear(u.dot(d)), quadratic(d.dot(d)), line(e.faces, u, d, bounds) {}
+};
+
+TEST_P(NitscheStrip, ALineMinimumIsFoundWhereverItIs) {
+  const Example e(GetParam());
+  Random random(29);
+  for (const NitscheLaw &law : laws_of_tests) {
+    const Vector u = e.some_state(random);
+    const Vector bounds = bounds_of(e, u, law);
+    const double unit = Descent(e, u, bounds, 1).minimum();
+    for (const double expected : {0.01, 0.3, 5.0}) { // where it is, roughly
+      const Descent descent(e, u, bounds, unit / expected);
+      ASSERT_LT(descent.slope(0), 0);
+      const double t = descent.minimum();
+      EXPECT_LE(std::abs(descent.slope(t)), 0.01 * std::abs(descent.slope(0))) << expected;
+      EXPECT_EQ(t > 1, expected > 1);
+    }
+    EXPECT_EQ(Descent(e, u, bounds, 1e-3 * unit).minimum(), 16) << "it goes no farther";
+  }
+}
+
+TEST(NitscheLines, AFullStepThatIsTheMinimumIsTaken) {
+  const Example e(2);
+  const Vector apart = Vector::Zero(e.dofs); // out of reach of the support
+  std::vector<NitscheFace> faces = e.faces;
+  for (NitscheFace &face : faces)
+    for (NitschePoint &point : face.points)
+      point.gap = 1;
+  EXPECT_EQ(line_minimum(-2, 2, NitscheLine(faces, apart, apart, {})), 1);
+}
+
+TEST(NitscheLaws, BoundsAreThoseOfTheLaw) {
+  Matrix pressures(3, 2);
+  pressures << -2, 0.1, 0, -5, 1, 7;
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[0]).size(), 0);
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[1]), Vector::Constant(3, 0.4));
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[2]), Vector({{0.4, 0, 0}}));
+  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[3]), Vector({{0.6, 0, 0}}));
+}
+
+TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
+  const auto value = [](const Mu &mu) { return mu[0]; };
+  const NitscheLaw none = nitsche_law({FrictionLaw::none, value}, {-1});
+  EXPECT_EQ(none.law, FrictionLaw::none);
+  EXPECT_FALSE(none.moves());
+  const NitscheLaw coulomb = nitsche_law({FrictionLaw::coulomb, value}, {0.3});
+  EXPECT_EQ(coulomb.value, 0.3);
+  EXPECT_TRUE(coulomb.moves());
+  EXPECT_FALSE(nitsche_law({FrictionLaw::tresca, value}, {0.3}).moves());
+  EXPECT_TRUE(nitsche_law({FrictionLaw::tresca, value, true}, {0.3}).moves());
+  EXPECT_THROW(nitsche_law({FrictionLaw::coulomb, value}, {-0.1}), Error);
+  EXPECT_THROW(nitsche_law({FrictionLaw::tresca, value}, {std::nan("")}), Error);
+}
+
+class NitscheFieldsOf : public ::testing::TestWithParam<std::tuple<int, Side>> {};
+INSTANTIATE_TEST_SUITE_P(DegreeAndSide, NitscheFieldsOf,
+                         ::testing::Combine(::testing::Values(1, 2),
+                                            ::testing::Values(Side::above, Side::below)));
+
+/// u = m x: the same stress in every cell, whichever way its edge is listed.
+TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
+  const auto [degree, side] = GetParam();
+  const Mu mu{1.1};
+  const Lame material{9, 4};
+  Scene scene = half_disk(degree);
+  scene.nitsche = NitscheRecipe{0.3, [=](const Mu &, const Point &) { return material; }};
+  const Curve curve = arc(7, 0.5);
+  const Strip s = strip(degree, curve, side);
+  Eigen::Matrix2d m;
+  m << 0.3, -0.2, 0.7, 0.1;
+  const Eigen::Matrix2d strain = (m + m.transpose()) / 2;
+  const Eigen::Matrix2d stress =
+      material.lambda * strain.trace() * Eigen::Matrix2d::Identity() + 2 * material.shear * strain;
+  const Field linear = [&](const Point &x) {
+    const Eigen::Vector2d value = m * Eigen::Vector2d(x[0], x[1]);
+    return Point{value[0], value[1], 0};
+  };
+  const CurveFields fields = nitsche_fields(scene, mu, s.cells, nodal(scene, mu, s, linear));
+  ASSERT_EQ(fields.sigma_n.size(), 8);
+  const double gamma = 0.3 * (9 + 2 * 4) / length(curve, 0);
+  for (Index i = 0; i < 8; ++i) {
+    const Point &x = curve[static_cast<std::size_t>(i)], normal = radial(mu, x);
+    const Point u = linear(scene.map(mu, x)), motion = scene.motion(mu, x);
+    const Eigen::Vector2d n(normal[0], normal[1]), tau(-n[1], n[0]);
+    const double excess = dot(u, normal) + dot(motion, normal) - scene.support->gap(mu, x);
+    const double slip = dot(u, turned(normal)) + dot(motion, turned(normal));
+    EXPECT_NEAR(fields.sigma_n[i], n.dot(stress * n), 1e-12);
+    EXPECT_NEAR(fields.sigma_tau[i], tau.dot(stress * n), 1e-12);
+    EXPECT_NEAR(fields.excess[i], excess, 1e-13);
+    EXPECT_NEAR(fields.p_n[i], n.dot(stress * n) - gamma * excess, 1e-11);
+    EXPECT_NEAR(fields.p_tau[i], tau.dot(stress * n) - gamma * slip, 1e-11);
+    EXPECT_NEAR(fields.arc_length[i], 1.1 * length(curve, 0) * (static_cast<double>(i) - 3.5),
+                1e-13);
+  }
+}
+
+/// Where the material jumps.
+TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
+  Scene scene = half_disk(2);
+  scene.nitsche = NitscheRecipe{0.3, [](const Mu &, const Point &x) {
+                                  return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
+                                }};
+  const Strip s = strip(2, line(2, -0.5, 0.5, -1));
+  scene.support->normal = [](const Mu &, const Point &) { return Point{0, -1, 0}; };
+  const Mu mu{1};
+  const Vector u = nodal(scene, mu, s, [](const Point &x) { return Point{0, 0.1 * x[1], 0}; });
+  const CurveFields fields = nitsche_fields(scene, mu, s.cells, u);
+  EXPECT_NEAR(fields.sigma_n[0], 1.7, 1e-13);
+  EXPECT_NEAR(fields.sigma_n[1], (1.7 + 3.4) / 2, 1e-13);
+  EXPECT_NEAR(fields.sigma_n[2], 3.4, 1e-13);
+  EXPECT_NEAR(fields.p_n[1], fields.sigma_n[1] - 0.3 * (17 + 34) / 2 / 0.5 * fields.excess[1],
+              1e-12);
+}
+
+TEST(NitscheFields, TheMultiplierIsMinusTheStress) {
+  CurveFields fields;
+  fields.sigma_n = Vector({{-2, -1}});
+  fields.sigma_tau = Vector({{0.5, 0}});
+  EXPECT_EQ(nitsche_multiplier(fields, false), Vector({{2, 1}}));
+  EXPECT_EQ(nitsche_multiplier(fields, true), Vector({{2, 1, -0.5, 0}}));
+}
+
+} // namespace
+} // namespace rbvi

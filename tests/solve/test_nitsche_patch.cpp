@@ -1,0 +1,135 @@
+// The patch test by Nitsche's method: one block on a flat support carries a constant stress
+// exactly, whether its foot slides, sticks or slips, and as the mixed formulation does.
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/high_fidelity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+constexpr double height = 0.5, young = 15, poisson = 0.35;
+
+Scene block(const std::string &degree, const std::string &friction,
+            const std::string &formulation = "nitsche") {
+  Scene scene = make_scene("patch", {{"bodies", "one"},
+                                     {"degree", degree},
+                                     {"friction", friction},
+                                     {"formulation", formulation}});
+  scene.parameters = all_free(scene.parameters.all);
+  return scene;
+}
+
+/// The exact state: mu = (indentation, shear, coefficient).
+struct Exact {
+  double pressure, stress, slip;
+  Exact(const Mu &mu, bool frictionless) {
+    const double modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
+    const double shear_modulus = young / (2 * (1 + poisson));
+    pressure = modulus * mu[0] / height;
+    const double most = frictionless ? 0 : mu[2] * pressure;
+    stress = std::min(shear_modulus * mu[1] / height, most);
+    slip = stress < most ? 0 : mu[1] - stress / shear_modulus * height;
+  }
+};
+
+/// Largest difference of the displacement, the motion included.
+double displacement_error(const Problem &problem, const Mu &mu, const Exact &exact,
+                          const HfSolution &s) {
+  const Mesh &mesh = problem.mesh();
+  double worst = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Point &x = mesh.points[v], motion = problem.scene().motion(mu, x);
+    const Index dof = 2 * mesh.natural_node[v];
+    const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
+    worst = std::max({worst, std::abs(across - exact.slip - (mu[1] - exact.slip) * x[1] / height),
+                      std::abs(down + mu[0] * x[1] / height)});
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
+  return worst;
+}
+
+/// `tolerance` is relative.
+void expect_exact(const std::string &degree, const std::string &friction, const Mu &mu,
+                  double tolerance, const NitscheOptions &options = {}) {
+  const bool frictionless = friction == "none";
+  const Scene scene = block(degree, friction);
+  SCOPED_TRACE(describe(scene.parameters, mu) + ", degree " + degree);
+  Problem problem(PETSC_COMM_WORLD, scene, {});
+  HfOptions hf;
+  hf.nitsche = options;
+  const HfSolution s = HighFidelity(problem, hf).solve(mu);
+  const Exact exact(mu, frictionless);
+  const double near = tolerance * exact.pressure;
+  const Index count = frictionless ? s.lambda.size() : s.lambda.size() / 2;
+  EXPECT_LE((s.lambda.head(count).array() - exact.pressure).abs().maxCoeff(), near);
+  EXPECT_LE(displacement_error(problem, mu, exact, s), tolerance * mu[0]);
+  EXPECT_NEAR(*s.outputs.normal_force, exact.pressure, near);
+  EXPECT_NEAR(*s.outputs.reaction, exact.pressure, near);
+  EXPECT_NEAR(*s.outputs.peak_pressure, exact.pressure, near);
+  EXPECT_NEAR(*s.outputs.centre_pressure, exact.pressure, near);
+  EXPECT_NEAR(*s.outputs.contact_half_width, 0.5, 1e-13);
+  EXPECT_LE(*s.outputs.law_error_normal, tolerance);
+  EXPECT_LE(*s.outputs.max_penetration, tolerance * mu[0]);
+  EXPECT_LE(s.kkt.largest(), 1e-12);
+  if (frictionless) return;
+  EXPECT_LE((s.lambda.tail(count).array() - exact.stress).abs().maxCoeff(), near);
+  EXPECT_NEAR(*s.outputs.tangential_force, exact.stress, near);
+  EXPECT_NEAR(*s.outputs.stick_half_width, exact.slip > 0 ? 0 : 0.5, 1e-13);
+  EXPECT_LE(*s.outputs.friction_violation, near);
+  EXPECT_LE(*s.outputs.law_error_tau_over_n, tolerance);
+}
+
+TEST(NitschePatch, SlidesFreelyWithoutFriction) {
+  for (const std::string degree : {"1", "2"})
+    expect_exact(degree, "none", {0.05, 0.1, 0.3}, 1e-12);
+}
+TEST(NitschePatch, AFootThatSticksIsExact) {
+  for (const std::string degree : {"1", "2"}) {
+    expect_exact(degree, "coulomb", {0.05, 0.02, 0.3}, 1e-12);
+    expect_exact(degree, "coulomb", {0.1, 0.19, 1}, 1e-12);
+  }
+}
+/// The loop over Coulomb's bound ends where it changes u by 1e-12, and a change of the bound
+/// changes stresses by more than u.
+TEST(NitschePatch, AFootThatSlipsIsExact) {
+  for (const std::string degree : {"1", "2"}) {
+    expect_exact(degree, "coulomb", {0.05, 0.2, 0.3}, 1e-11);
+    expect_exact(degree, "coulomb", {0.05, 0.2, 0}, 1e-12);
+    expect_exact(degree, "coulomb", {0.02, 0.1, 0.01}, 1e-11);
+  }
+}
+
+TEST(NitschePatch, BoundsThatFollowEveryStepEndInTheSame) {
+  NitscheOptions single;
+  single.single_loop = true;
+  for (const std::string degree : {"1", "2"}) {
+    expect_exact(degree, "coulomb", {0.05, 0.2, 0.3}, 1e-11, single);
+    expect_exact(degree, "coulomb", {0.05, 0.02, 0.3}, 1e-11, single);
+  }
+}
+
+/// On each rank by itself: the mixed formulation takes long on a few dofs that are spread over
+/// ranks.
+TEST(NitschePatch, AgreesWithTheMixedFormulation) {
+  const auto solve = [](const Scene &scene, const Mu &mu) {
+    Problem problem(PETSC_COMM_SELF, scene, {});
+    return HighFidelity(problem, {}).solve(mu);
+  };
+  for (const std::string degree : {"1", "2"})
+    for (const std::string friction : {"none", "coulomb"})
+      for (const double shear : {0.02, 0.2}) {
+        const Mu mu{0.05, shear, 0.3};
+        const HfSolution s = solve(block(degree, friction), mu);
+        const HfSolution mixed = solve(block(degree, friction, "mixed"), mu);
+        EXPECT_NEAR(*s.outputs.energy, *mixed.outputs.energy, 1e-11 * *mixed.outputs.energy);
+        EXPECT_LE((s.u - mixed.u).norm(), 1e-11 * mixed.u.norm());
+        EXPECT_LE((s.lambda - mixed.lambda).norm(), 1e-11 * mixed.lambda.norm());
+      }
+}
+
+} // namespace
+} // namespace rbvi
