@@ -4,6 +4,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +12,6 @@
 namespace rbvi {
 
 namespace {
-
-double norm(Vec v) {
-  PetscReal value = 0;
-  RBVI_CALL(VecNorm(v, NORM_2, &value));
-  return value;
-}
 
 double ratio(double value, double scale) {
   return scale > 0 ? value / scale : value;

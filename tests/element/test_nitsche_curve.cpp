@@ -207,7 +207,7 @@ TEST_P(NitscheStrip, TheSlopeOfALineIsTheDerivativeOfTheEnergy) {
   for (const NitscheLaw &law : laws_of_tests) {
     const Vector u = e.some_state(random), d = e.some_state(random);
     const Vector bounds = bounds_of(e, u, law);
-    const NitscheLine line(e.faces, u, d, bounds);
+    const NitscheLine line = nitsche_line(e.faces, u, d, bounds);
     for (const double t : {0.0, 0.37, 1.0, 5.0}) {
       constexpr double h = 1e-6;
       const double difference = nitsche_energy(e.faces, u + (t + h) * d, bounds) -
@@ -228,7 +228,7 @@ struct Descent {
 
 private:
   Descent(const Example &e, const Vector &u, const Vector &bounds, const Vector &d)
-      : linear(u.dot(d)), quadratic(d.dot(d)), line(e.faces, u, d, bounds) {}
+      : linear(u.dot(d)), quadratic(d.dot(d)), line(nitsche_line(e.faces, u, d, bounds)) {}
 };
 
 TEST_P(NitscheStrip, ALineMinimumIsFoundWhereverItIs) {
@@ -256,7 +256,7 @@ TEST(NitscheLines, AFullStepThatIsTheMinimumIsTaken) {
   for (NitscheFace &face : faces)
     for (NitschePoint &point : face.points)
       point.gap = 1;
-  EXPECT_EQ(line_minimum(-2, 2, NitscheLine(faces, apart, apart, {})), 1);
+  EXPECT_EQ(line_minimum(-2, 2, nitsche_line(faces, apart, apart, {})), 1);
 }
 
 TEST(NitscheLaws, BoundsAreThoseOfTheLaw) {

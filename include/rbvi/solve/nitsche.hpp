@@ -44,6 +44,8 @@ struct NitscheSolution {
   std::string reason;
 };
 
+struct NitscheSystem;
+
 class NitscheSolver {
 public:
   /// Collective. SNES, KSP and PC options under -nitsche_. `problem` must outlive it; its scene has
@@ -59,12 +61,11 @@ public:
   std::function<void(const Vector &layer, const Vector &bounds)> watch;
 
 private:
-  struct System;
   void run(bool nested, Vec u, NitscheSolution &result);
   Problem &problem_;
   NitscheOptions options_;
   ContactLayer layer_;
-  std::unique_ptr<System> system_;
+  std::unique_ptr<NitscheSystem> system_;
 };
 
 } // namespace rbvi

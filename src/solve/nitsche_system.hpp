@@ -1,0 +1,68 @@
+// One system of Nitsche's method at a time, and the PETSc objects that outlive it.
+#pragma once
+
+#include "local_frames.hpp"
+#include "rbvi/solve/nitsche.hpp"
+
+#include <exception>
+#include <optional>
+
+namespace rbvi {
+
+struct NitscheSystem {
+  static constexpr double accuracy = 1e-12; ///< of the residual, relative
+  static constexpr double round_off = 1e-9; ///< below it the residual may stagnate
+
+  NitscheSystem(const NitscheSolver &solver, const Problem &problem, const NitscheOptions &options);
+
+  const NitscheSolver &solver;
+  const NitscheOptions &options;
+  std::vector<PetscInt> rows; ///< of the dofs of the layer
+  std::optional<LocalFrames> frames;
+  Handle<SNES> snes;
+  Handle<Mat> a_gamma, tangent;
+  Handle<Vec> au, ay, force; ///< scratch
+  double linear_tolerance = 1e-2;
+
+  // At mu; with local frames in their unknowns.
+  Handle<Vec> f, upper; ///< upper: where the normal displacement is bounded
+  std::vector<NitscheFace> faces;
+  NitscheLaw law;
+  Vector bounds; ///< of friction
+
+  // While SNES works.
+  double tolerance = accuracy;
+  double scale = 0, relative = 1; ///< of the last residual: its terms' norms, its part of them
+  double smallest_scale = 0;      ///< where the answer is zero all its terms are round-off
+  double best = 1;                ///< the smallest part so far, and its step
+  PetscInt best_step = 0;
+  int factorisations = 0;
+  bool factorised = false; ///< in this step
+  std::exception_ptr failed;
+
+  Vector on_layer(Vec u) const { return restrict_to(solver.layer().trace, u); }
+  void set_bounds(Vec u) { bounds = nitsche_bounds(nitsche_pressures(faces, on_layer(u)), law); }
+
+  /// Collective, as are all below.
+  void set(const Scene &scene, const Operators &op);
+  void residual(Vec u, Vec r);
+  void jacobian(Vec u, Mat matrix);
+  double energy(Vec u);
+  /// One linear solve for u, where contact and stick are those of `start`.
+  void predict(const NitscheState &start, Vec u);
+  /// Newton steps from u, in place. Returns their number; throws failure.
+  int newton(Vec u, std::string &reason);
+  /// The part that the residual has of its terms; where a bound holds u back it may push.
+  double relative_residual(Vec u);
+
+private:
+  void make_snes(const Operators &op);
+  void set_callbacks();
+  void set_linear_solver();
+  void before_step();
+  void check_linear_solve() const;
+  void search(SNESLineSearch line);
+  SNESConvergedReason judge(PetscInt step, double r);
+};
+
+} // namespace rbvi
