@@ -32,6 +32,8 @@ void describe_curve(const ContactLayer &layer, const ReducedModel &model, Nitsch
   nitsche.trace = model.primal_basis(layer.natural, Eigen::all);
 }
 
+constexpr double round_off = 1e-10; ///< of an answer: where the modes leave less, enough
+
 /// Abscissa of each Gauss point of the curve.
 Vector abscissae(const std::vector<CurveCell> &cells) {
   Vector x(4 * static_cast<Index>(cells.size()));
@@ -108,14 +110,15 @@ public:
   /// Takes points in until the effects are met to `tolerance` at every one of the parameters.
   void improve(double tolerance) {
     const Vector target = effects_.rowwise().sum();
-    for (double left = 2 * tolerance; left > tolerance && !finished_;) {
+    double left = 0;
+    do {
       finished_ = qp_->solve(effects_, target).converged;
       left = std::sqrt(qp_->residual()
                            .reshaped(each_, effects_.rows() / each_)
                            .colwise()
                            .squaredNorm()
                            .maxCoeff());
-    }
+    } while (left > tolerance && !finished_);
   }
   const Vector &factors() const { return qp_->x(); }
   bool finished() const { return finished_; } ///< no further point helps
@@ -244,8 +247,8 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
       throw failure("there is no contact at any training mu, and nothing to integrate: widen the "
                     "parameter box");
     nitsche.rule = CurveRule::empirical;
-    choose_points(all, options.tolerance > 0 ? options.tolerance : u_left, scene, samples,
-                  pressures, model, report);
+    choose_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, round_off),
+                  scene, samples, pressures, model, report);
   } else if (options.rule == CurveRule::interpolated) {
     report.states =
         interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance}, nitsche);

@@ -171,6 +171,10 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
       free += (free.empty() ? "" : ",") + parameter.name;
   }
   settings["parameters"] = free;
+  if (scene.nitsche) {
+    settings["nitsche_bounds"] = options.nitsche.nonpenetration ? "nonpenetration" : "none";
+    return settings;
+  }
   const char *methods[] = {"active_set", "uzawa", "vi"};
   settings["hf_method"] = methods[static_cast<int>(options.method)];
   if (options.method == HfMethod::uzawa)

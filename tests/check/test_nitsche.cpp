@@ -1,0 +1,189 @@
+// Nitsche's method from snapshots to answers: all points of the curve, few of them, or interpolated
+// operators; every law, every parameter.
+#include "reduced.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace rbvi {
+namespace {
+
+using namespace testing_reduced;
+
+Scene disk(const std::string &friction, const std::string &free = "radius") {
+  Scene scene = make_scene(
+      "rigid_disk", {{"formulation", "nitsche"}, {"friction", friction}, {"arc_edges", "40"}});
+  scene.parameters = free_only(scene.parameters, free);
+  return scene;
+}
+
+ReduceOptions with(CurveRule rule, PetscInt modes = 0) {
+  ReduceOptions options;
+  options.pod.tolerance = 1e-9;
+  options.pod.max_size = modes;
+  options.curve.rule = rule;
+  options.curve.eim_tolerance = 1e-10;
+  return options;
+}
+
+/// The reduced model with all modes against its own snapshots.
+void expect_snapshots_back(Reduced &r, CurveRule rule, double tolerance) {
+  r.reduce(with(rule));
+  check_model(r.model);
+  const ModelErrors e = r.errors_at(r.samples);
+  EXPECT_EQ(e.failed, 0);
+  EXPECT_LE(e.u.maxCoeff(), tolerance);
+  EXPECT_LE(e.lambda.maxCoeff(), 100 * tolerance); // stress: derivatives of u
+}
+
+class NitscheLaws : public ::testing::TestWithParam<const char *> {};
+INSTANTIATE_TEST_SUITE_P(Reduced, NitscheLaws, ::testing::Values("none", "tresca", "coulomb"));
+
+TEST_P(NitscheLaws, TheWholeCurveGivesTheSnapshotsBack) {
+  Reduced r(disk(GetParam()), "grid:9");
+  expect_snapshots_back(r, CurveRule::full, 1e-8);
+}
+
+TEST_P(NitscheLaws, FewPointsAddWhatTheToleranceAllows) {
+  Reduced r(disk(GetParam()), "grid:13");
+  ReduceOptions options = with(CurveRule::empirical, 6);
+  for (const double tolerance : {1e-3, 1e-6}) {
+    options.curve.tolerance = tolerance;
+    options.curve.rule = CurveRule::full;
+    r.reduce(options);
+    OnlineSolver full(r.model);
+    const ReducedModel all = r.model;
+    OnlineSolver of_all(all);
+    options.curve.rule = CurveRule::empirical;
+    r.reduce(options);
+    const NitscheModel &curve = *r.model.nitsche;
+    EXPECT_GT(curve.factors.minCoeff(), 0);
+    EXPECT_LT(curve.points.size(), 160u / 2) << "of 160, half of them mirror images";
+    OnlineSolver few(r.model);
+    for (const Sample &sample : r.samples) {
+      const Vector u = of_all.solve(sample.mu).u;
+      EXPECT_LE((few.solve(sample.mu).u - u).norm(), tolerance * u.norm());
+    }
+  }
+}
+
+TEST_P(NitscheLaws, EverySizeAnswersTheWholeBox) {
+  Reduced r(disk(GetParam()), "grid:13");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:6:3"));
+  for (const int modes : {1, 2, 5, 9})
+    for (const CurveRule rule : {CurveRule::empirical, CurveRule::full}) {
+      r.reduce(with(rule, modes));
+      const ModelErrors e = r.errors_at(unseen);
+      EXPECT_EQ(e.failed, 0) << modes;
+      EXPECT_LE(e.u.maxCoeff(), 2 * e.u_floor.maxCoeff()) << modes;
+    }
+}
+
+TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
+  for (const char *friction : {"none", "coulomb"}) {
+    SCOPED_TRACE(friction);
+    Reduced r(disk(friction), "grid:7");
+    expect_snapshots_back(r, CurveRule::interpolated, 1e-6);
+    EXPECT_GT(r.model.nitsche->contact_matrix.size(), 0);
+    EXPECT_EQ(r.model.nitsche->friction_vector.size() > 0, friction == std::string("coulomb"));
+  }
+}
+
+/// a_gamma - a is of one term where the map is a similarity, of the three products of two Lame
+/// constants (over lambda + 2 shear) with Poisson's ratio.
+TEST(NitscheReduced, ConsistencyIsASumOfFewTerms) {
+  for (const auto &[free, terms] :
+       {std::pair{"radius", 1}, {"radius,core_stiffness", 1}, {"radius,poisson_ratio", 3}}) {
+    Reduced r(disk("coulomb", free), free == std::string("radius") ? "grid:4" : "grid:3,4");
+    r.reduce(with(CurveRule::full));
+    EXPECT_EQ(r.model.nitsche->consistency.size(), terms) << free;
+  }
+}
+
+TEST(NitscheReduced, EveryParameterIsReduced) {
+  for (const auto &[free, error] : {std::pair{"radius,core_stiffness", 5e-3},
+                                    {"radius,poisson_ratio", 1e-2},
+                                    {"indentation,friction_coefficient", 2e-2}}) {
+    SCOPED_TRACE(free);
+    Reduced r(disk("coulomb", free), "grid:7,7");
+    const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:3"));
+    ReduceOptions options = with(CurveRule::empirical);
+    options.pod.tolerance = 1e-5;
+    r.reduce(options);
+    const ModelErrors e = r.errors_at(unseen);
+    EXPECT_EQ(e.failed, 0);
+    EXPECT_LE(e.u.maxCoeff(), std::max(error, 2 * e.u_floor.maxCoeff()));
+  }
+}
+
+TEST(NitscheReduced, OutputsAreThoseOfTheSnapshots) {
+  Reduced r(disk("coulomb"), "grid:9");
+  r.reduce(with(CurveRule::full));
+  OnlineSolver online(r.model);
+  for (const Sample &truth : r.samples) {
+    const ReducedSolution solution = online.solve(truth.mu);
+    const Outputs found = online.outputs(truth.mu, solution);
+    for (const auto quantity :
+         {&Outputs::energy, &Outputs::normal_force, &Outputs::reaction, &Outputs::tangential_force,
+          &Outputs::contact_half_width, &Outputs::peak_pressure, &Outputs::centre_pressure,
+          &Outputs::law_error_normal, &Outputs::law_error_tangential})
+      EXPECT_NEAR(*(found.*quantity), *(truth.outputs.*quantity),
+                  1e-5 * std::abs(*(truth.outputs.*quantity)));
+    EXPECT_LE(*found.kkt_residual, 1e-9) << "of the integrals over the whole curve";
+  }
+}
+
+/// The answer of few points is compared with the integrals over the whole curve.
+TEST(NitscheReduced, OutputsTellHowFarTheIntegralsAreMissed) {
+  Reduced r(disk("none"), "grid:13");
+  ReduceOptions options = with(CurveRule::empirical, 6);
+  double last = 1;
+  for (const double tolerance : {1e-2, 1e-4, 1e-7}) {
+    options.curve.tolerance = tolerance;
+    r.reduce(options);
+    OnlineSolver online(r.model);
+    const ReducedSolution solution = online.solve({0.93});
+    EXPECT_LE(solution.kkt_residual, 1e-9) << "of its own problem";
+    const double missed = *online.outputs({0.93}, solution).kkt_residual;
+    EXPECT_LT(missed, last);
+    last = missed;
+  }
+}
+
+TEST(NitscheReduced, AFileGivesTheSameModelAndItsLeadingPart) {
+  Reduced r(disk("coulomb"), "grid:9");
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "nitsche_model.h5";
+  for (const CurveRule rule : {CurveRule::empirical, CurveRule::full, CurveRule::interpolated}) {
+    r.reduce(with(rule));
+    int rank = 0;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    if (rank == 0) {
+      write_model(r.model, file);
+      const ReducedModel read = read_model(file);
+      const Vector u = OnlineSolver(r.model).solve({0.87}).u;
+      EXPECT_EQ(OnlineSolver(read).solve({0.87}).u, u);
+      EXPECT_EQ(read.nitsche->points, r.model.nitsche->points);
+      const ReducedModel part = leading(read, 3, 0);
+      check_model(part);
+      if (rule == CurveRule::full) {
+        EXPECT_EQ(OnlineSolver(part).solve({0.87}).u.size(), 3);
+      }
+      std::filesystem::remove(file);
+    }
+    MPI_Barrier(PETSC_COMM_WORLD);
+  }
+}
+
+TEST(NitscheReduced, NoContactAnywhereIsAFailureThatSaysSo) {
+  Scene scene = disk("none", "radius");
+  scene.parameters.all[1].value = 0.0005; // indentation, below the gap
+  Reduced r(scene, "grid:3");
+  EXPECT_THROW(r.reduce(with(CurveRule::empirical)), Error);
+}
+
+} // namespace
+} // namespace rbvi
