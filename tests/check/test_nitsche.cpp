@@ -40,6 +40,12 @@ void expect_snapshots_back(Reduced &r, CurveRule rule, double tolerance) {
   EXPECT_LE(e.lambda.maxCoeff(), 100 * tolerance); // stress: derivatives of u
 }
 
+/// On each rank by itself: how one problem is shared among ranks is tested with the solver.
+struct ReducedAlone : Reduced {
+  ReducedAlone(const Scene &scene, const std::string &training)
+      : Reduced(scene, training, PETSC_COMM_SELF) {}
+};
+
 class NitscheLaws : public ::testing::TestWithParam<const char *> {};
 INSTANTIATE_TEST_SUITE_P(Reduced, NitscheLaws, ::testing::Values("none", "tresca", "coulomb"));
 
@@ -49,7 +55,7 @@ TEST_P(NitscheLaws, TheWholeCurveGivesTheSnapshotsBack) {
 }
 
 TEST_P(NitscheLaws, FewPointsAddWhatTheToleranceAllows) {
-  Reduced r(disk(GetParam()), "grid:13");
+  ReducedAlone r(disk(GetParam()), "grid:13");
   ReduceOptions options = with(CurveRule::empirical, 6);
   for (const double tolerance : {1e-3, 1e-6}) {
     options.curve.tolerance = tolerance;
@@ -72,7 +78,7 @@ TEST_P(NitscheLaws, FewPointsAddWhatTheToleranceAllows) {
 }
 
 TEST_P(NitscheLaws, EverySizeAnswersTheWholeBox) {
-  Reduced r(disk(GetParam()), "grid:13");
+  ReducedAlone r(disk(GetParam()), "grid:13");
   const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:6:3"));
   for (const int modes : {1, 2, 5, 9})
     for (const CurveRule rule : {CurveRule::empirical, CurveRule::full}) {
@@ -86,7 +92,7 @@ TEST_P(NitscheLaws, EverySizeAnswersTheWholeBox) {
 TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
   for (const char *friction : {"none", "coulomb"}) {
     SCOPED_TRACE(friction);
-    Reduced r(disk(friction), "grid:7");
+    ReducedAlone r(disk(friction), "grid:7");
     expect_snapshots_back(r, CurveRule::interpolated, 1e-6);
     EXPECT_GT(r.model.nitsche->contact_matrix.size(), 0);
     EXPECT_EQ(r.model.nitsche->friction_vector.size() > 0, friction == std::string("coulomb"));
@@ -98,7 +104,7 @@ TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
 TEST(NitscheReduced, ConsistencyIsASumOfFewTerms) {
   for (const auto &[free, terms] :
        {std::pair{"radius", 1}, {"radius,core_stiffness", 1}, {"radius,poisson_ratio", 3}}) {
-    Reduced r(disk("coulomb", free), free == std::string("radius") ? "grid:4" : "grid:3,4");
+    ReducedAlone r(disk("coulomb", free), free == std::string("radius") ? "grid:4" : "grid:3,4");
     r.reduce(with(CurveRule::full));
     EXPECT_EQ(r.model.nitsche->consistency.size(), terms) << free;
   }
@@ -109,7 +115,7 @@ TEST(NitscheReduced, EveryParameterIsReduced) {
                                     {"radius,poisson_ratio", 1e-2},
                                     {"indentation,friction_coefficient", 2e-2}}) {
     SCOPED_TRACE(free);
-    Reduced r(disk("coulomb", free), "grid:7,7");
+    ReducedAlone r(disk("coulomb", free), "grid:7,7");
     const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:3"));
     ReduceOptions options = with(CurveRule::empirical);
     options.pod.tolerance = 1e-5;
@@ -121,7 +127,7 @@ TEST(NitscheReduced, EveryParameterIsReduced) {
 }
 
 TEST(NitscheReduced, OutputsAreThoseOfTheSnapshots) {
-  Reduced r(disk("coulomb"), "grid:9");
+  ReducedAlone r(disk("coulomb"), "grid:9");
   r.reduce(with(CurveRule::full));
   OnlineSolver online(r.model);
   for (const Sample &truth : r.samples) {
@@ -139,7 +145,7 @@ TEST(NitscheReduced, OutputsAreThoseOfTheSnapshots) {
 
 /// The answer of few points is compared with the integrals over the whole curve.
 TEST(NitscheReduced, OutputsTellHowFarTheIntegralsAreMissed) {
-  Reduced r(disk("none"), "grid:13");
+  ReducedAlone r(disk("none"), "grid:13");
   ReduceOptions options = with(CurveRule::empirical, 6);
   double last = 1;
   for (const double tolerance : {1e-2, 1e-4, 1e-7}) {
@@ -155,33 +161,31 @@ TEST(NitscheReduced, OutputsTellHowFarTheIntegralsAreMissed) {
 }
 
 TEST(NitscheReduced, AFileGivesTheSameModelAndItsLeadingPart) {
-  Reduced r(disk("coulomb"), "grid:9");
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "nitsche_model.h5";
+  ReducedAlone r(disk("coulomb"), "grid:9");
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("nitsche_model_" + std::to_string(rank) + ".h5");
   for (const CurveRule rule : {CurveRule::empirical, CurveRule::full, CurveRule::interpolated}) {
     r.reduce(with(rule));
-    int rank = 0;
-    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-    if (rank == 0) {
-      write_model(r.model, file);
-      const ReducedModel read = read_model(file);
-      const Vector u = OnlineSolver(r.model).solve({0.87}).u;
-      EXPECT_EQ(OnlineSolver(read).solve({0.87}).u, u);
-      EXPECT_EQ(read.nitsche->points, r.model.nitsche->points);
-      const ReducedModel part = leading(read, 3, 0);
-      check_model(part);
-      if (rule == CurveRule::full) {
-        EXPECT_EQ(OnlineSolver(part).solve({0.87}).u.size(), 3);
-      }
-      std::filesystem::remove(file);
+    write_model(r.model, file);
+    const ReducedModel read = read_model(file);
+    const Vector u = OnlineSolver(r.model).solve({0.87}).u;
+    EXPECT_EQ(OnlineSolver(read).solve({0.87}).u, u);
+    EXPECT_EQ(read.nitsche->points, r.model.nitsche->points);
+    const ReducedModel part = leading(read, 3, 0);
+    check_model(part);
+    if (rule == CurveRule::full) {
+      EXPECT_EQ(OnlineSolver(part).solve({0.87}).u.size(), 3);
     }
-    MPI_Barrier(PETSC_COMM_WORLD);
+    std::filesystem::remove(file);
   }
 }
 
 TEST(NitscheReduced, NoContactAnywhereIsAFailureThatSaysSo) {
   Scene scene = disk("none", "radius");
   scene.parameters.all[1].value = 0.0005; // indentation, below the gap
-  Reduced r(scene, "grid:3");
+  ReducedAlone r(scene, "grid:3");
   EXPECT_THROW(r.reduce(with(CurveRule::empirical)), Error);
 }
 
