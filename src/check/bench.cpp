@@ -61,7 +61,8 @@ BenchRow timed_row(std::string method, std::string includes, const std::vector<d
   return row;
 }
 
-std::string solver_name(const HfOptions &options, bool cold) {
+std::string solver_name(const Problem &problem, const HfOptions &options, bool cold) {
+  if (problem.nitsche()) return cold ? "nitsche cold" : "nitsche warm-started";
   switch (options.method) {
   case HfMethod::active_set:
     return cold ? "active_set cold" : "active_set warm-started";
@@ -121,7 +122,7 @@ BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vec
   });
   for (std::size_t p = 0; p < answers.size(); ++p)
     errors.add(answers[p].u, answers[p].lambda, truths[p]);
-  BenchRow row = timed_row(solver_name(options, cold), "assembly, field, outputs", seconds);
+  BenchRow row = timed_row(solver_name(problem, options, cold), "assembly, field, outputs", seconds);
   errors.store(row);
   return row;
 }
