@@ -134,7 +134,7 @@ int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
       add_state(pattern, cells, faces, layer, bounds, snapshots);
     };
     const NitscheSolution last = solver.solve(op);
-    add_state(pattern, cells, faces, last.layer, last.state.bounds, snapshots);
+    add_state(pattern, cells, faces, last.layer, last.bounds, snapshots);
   }
   std::vector<EntryKey> dofs;
   for (PetscInt i = 0; i < solver.layer().trace.size; ++i)

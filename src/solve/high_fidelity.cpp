@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/support_outputs.hpp"
+#include "rbvi/rom/local_fit.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "vectors.hpp"
 
@@ -162,17 +163,36 @@ Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
   return nearest(mu)->start;
 }
 
+Matrix HighFidelity::predicted_pressures(const Mu &mu) const {
+  const ParameterSpace &space = problem_.scene().parameters;
+  const auto scaled = [&](const Mu &values) {
+    Vector result(space.size());
+    for (int i = 0; i < space.size(); ++i)
+      result[i] = values[static_cast<std::size_t>(i)] / (space.at(i).upper - space.at(i).lower);
+    return result;
+  };
+  const auto count = static_cast<Index>(solved_.size());
+  Matrix pressures(solved_.front().pressures.size(), count), points(space.size(), count);
+  for (Index p = 0; p < count; ++p) {
+    const Solved &solved = solved_[static_cast<std::size_t>(p)];
+    pressures.col(p) = solved.pressures.reshaped();
+    points.col(p) = scaled(solved.mu);
+  }
+  return local_fit(pressures, points, scaled(mu)).reshaped(pressures.rows() / 2, 2);
+}
+
 HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
-  const Solved *near = nearest(mu);
-  NitscheSolution found = nitsche_->solve(op, near == nullptr ? nullptr : &near->nitsche);
+  NitscheStart start{};
+  if (!solved_.empty()) start = {nearest(mu)->u.get(), predicted_pressures(mu)};
+  NitscheSolution found = nitsche_->solve(op, solved_.empty() ? nullptr : &start);
   const Scene &scene = problem_.scene();
   const std::vector<CurveCell> &cells = nitsche_->layer().cells;
   const CurveFields fields = nitsche_fields(scene, op.mu, cells, found.layer);
   const std::vector<NitscheFace> faces = nitsche_faces(scene, op.mu, cells);
   HfSolution solution;
-  solution.u = to_natural(problem_.dofs(), found.state.u.get());
+  solution.u = to_natural(problem_.dofs(), found.u.get());
   solution.lambda = nitsche_multiplier(fields, scene.support->friction.law != FrictionLaw::none);
-  nitsche_outputs(faces, found.state.pressures, fields, nitsche_law(scene.support->friction, op.mu),
+  nitsche_outputs(faces, found.pressures, fields, nitsche_law(scene.support->friction, op.mu),
                   solution.outputs);
   solution.kkt.stationarity = found.residual;
   solution.outputs.energy = scene.mirror_images * found.energy;
@@ -181,7 +201,7 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   solution.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
                     std::to_string(found.outer_iterations) + " loops, " +
                     std::to_string(found.factorisations) + " factorisations";
-  solved_.push_back({mu, {}, std::move(found.state)});
+  solved_.push_back({mu, {}, std::move(found.u), std::move(found.pressures)});
   return solution;
 }
 
@@ -227,7 +247,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
                   ", above 1e-10: is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");
   solved_.push_back(
-      {mu, {solution.active, result.start.size() > 0 ? result.start : solution.lambda}, {}});
+      {mu, {solution.active, result.start.size() > 0 ? result.start : solution.lambda}, {}, {}});
   return solution;
 }
 

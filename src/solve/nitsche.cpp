@@ -25,7 +25,7 @@ NitscheSolver::NitscheSolver(Problem &problem, const NitscheOptions &options)
 
 NitscheSolver::~NitscheSolver() = default;
 
-NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheState *start) {
+NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *start) {
   NitscheSystem &system = *system_;
   system.set(problem_.scene(), op);
   NitscheSolution result;
@@ -36,8 +36,6 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheState *st
   const bool nested = system.law.moves() && !options_.single_loop;
   if (start != nullptr) {
     system.predict(*start, u);
-    system.bounds = start->bounds;
-    if (!system.law.moves()) system.set_bounds(u);
   } else {
     RBVI_CALL(VecZeroEntries(u));
     system.set_bounds(u);
@@ -49,10 +47,10 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheState *st
   run(nested, u, result);
   result.factorisations = system.factorisations - factorised_before;
   result.residual = system.relative_residual(u);
-  result.state.pressures = nitsche_pressures(system.faces, system.on_layer(u));
-  result.state.bounds = system.bounds;
-  result.state.u = system.frames ? system.frames->turned_back(u) : std::move(unknowns);
-  u = result.state.u.get();
+  result.pressures = nitsche_pressures(system.faces, system.on_layer(u));
+  result.bounds = system.bounds;
+  result.u = system.frames ? system.frames->turned_back(u) : std::move(unknowns);
+  u = result.u.get();
   result.layer = system.on_layer(u);
   RBVI_CALL(MatMult(op.a, u, system.au.get()));
   result.energy = dot(system.au.get(), u) / 2 - dot(op.f, u);

@@ -11,7 +11,7 @@ namespace rbvi {
 namespace {
 
 constexpr double at_bound = 1e-13; ///< closer to its bound an unknown is held by it
-constexpr int patience = 4;   ///< steps without a new smallest residual, the bounds moving
+constexpr int patience = 4;        ///< steps without a new smallest residual, the bounds moving
 constexpr double near = 1e-4; ///< residual from which on the linear systems are solved to the end
 constexpr int most_iterations = 60;
 constexpr int dear_iterations = 10; ///< of conjugate gradients: beyond, a factorisation is cheaper
@@ -132,17 +132,18 @@ double NitscheSystem::energy(Vec u) {
   return dot(u, au.get()) / 2 - dot(u, f.get()) + nitsche_energy(faces, on_layer(u), bounds);
 }
 
-void NitscheSystem::predict(const NitscheState &start, Vec u) {
+void NitscheSystem::predict(const NitscheStart &start, Vec u) {
+  bounds = nitsche_bounds(start.pressures, law);
   KSP ksp = nullptr;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(MatCopy(a_gamma.get(), tangent.get(), SAME_NONZERO_PATTERN));
-  add_blocks(faces, nitsche_tangent(faces, start.pressures, start.bounds), rows, tangent.get());
+  add_blocks(faces, nitsche_tangent(faces, start.pressures, bounds), rows, tangent.get());
   Handle<Vec> turned;
-  if (frames) turned = frames->turned(start.u.get());
-  Vec from = frames ? turned.get() : start.u.get();
+  if (frames) turned = frames->turned(start.u);
+  Vec from = frames ? turned.get() : start.u;
   RBVI_CALL(MatMult(a_gamma.get(), from, au.get()));
   RBVI_CALL(VecAXPY(au.get(), -1, f.get()));
-  const Vector terms = nitsche_linearised(faces, on_layer(from), start.pressures, start.bounds);
+  const Vector terms = nitsche_linearised(faces, on_layer(from), start.pressures, bounds);
   add_extension(solver.layer().trace, terms, au.get());
   RBVI_CALL(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPSetOperators(ksp, tangent.get(), tangent.get()));

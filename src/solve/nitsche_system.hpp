@@ -48,8 +48,8 @@ struct NitscheSystem {
   void residual(Vec u, Vec r);
   void jacobian(Vec u, Mat matrix);
   double energy(Vec u);
-  /// One linear solve for u, where contact and stick are those of `start`.
-  void predict(const NitscheState &start, Vec u);
+  /// One linear solve for u, where contact and stick are those of `start`. Sets the bounds, too.
+  void predict(const NitscheStart &start, Vec u);
   /// Newton steps from u, in place. Returns their number; throws failure.
   int newton(Vec u, std::string &reason);
   /// The part that the residual has of its terms; where a bound holds u back it may push.

@@ -82,11 +82,13 @@ private:
   struct Solved {
     Mu mu;
     Start start;
-    NitscheState nitsche;
+    Handle<Vec> u; ///< Nitsche's method, as the pressures
+    Matrix pressures;
   };
   const Solved *nearest(const Mu &mu) const;
   Start nearest_start(const Mu &mu, const Operators &op) const;
   MethodResult run(const Mu &mu, const Operators &op);
+  Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);
 
   Problem &problem_;

@@ -25,16 +25,17 @@ struct NitscheOptions {
   bool nonpenetration = false; ///< SNES bounds the normal displacement of the nodes by the gap
 };
 
-/// A state that Newton starts from: where its pressures are in contact and stick counts, so that a
-/// state at one mu starts one at another, whose gap differs.
-struct NitscheState {
-  Handle<Vec> u;    ///< free dofs, without the motion
-  Matrix pressures; ///< at the points of the curve, see nitsche_pressures
-  Vector bounds;    ///< of friction there
+/// Where Newton starts: what is in contact and sticks by these pressures, which those at nearby mu
+/// predict better than their displacements do.
+struct NitscheStart {
+  Vec u; ///< of some nearby mu
+  Matrix pressures;
 };
 
 struct NitscheSolution {
-  NitscheState state;
+  Handle<Vec> u;       ///< free dofs, without the motion
+  Matrix pressures;    ///< at the points of the curve, see nitsche_pressures
+  Vector bounds;       ///< of friction there
   Vector layer;        ///< u on the layer
   double energy = 0;   ///< a(u,u)/2 - f(u) (4.11)
   double residual = 0; ///< |A_gamma u + terms - F| / (|A_gamma u| + |terms| + |F|)
@@ -55,7 +56,7 @@ public:
   /// Collective. `op`: the problem assembled at some mu; `start`: null: zero. Throws
   /// failure, saying what to try, where SNES does not converge or a tangent is not positive
   /// definite (gamma0 too small).
-  NitscheSolution solve(const Operators &op, const NitscheState *start = nullptr);
+  NitscheSolution solve(const Operators &op, const NitscheStart *start = nullptr);
   const ContactLayer &layer() const { return layer_; }
   /// Called with u on the layer at the start of every Newton step, and the bounds of friction.
   std::function<void(const Vector &layer, const Vector &bounds)> watch;
