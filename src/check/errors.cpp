@@ -24,14 +24,7 @@ double product(Mat v, Vec x, Vec y, Vec scratch) {
 
 /// C^T A C of a packed symmetric matrix, packed again.
 Vector congruence(const Eigen::Ref<const Vector> &packed, const Matrix &c) {
-  const Index n = c.rows(), k = c.cols();
-  Matrix a(n, n);
-  unpack(packed, a);
-  const Matrix reduced = c.transpose() * (a.selfadjointView<Eigen::Lower>() * c);
-  Vector result(k * (k + 1) / 2);
-  for (Index j = 0, at = 0; j < k; at += k - j, ++j)
-    result.segment(at, k - j) = reduced.col(j).tail(k - j);
-  return result;
+  return pack(c.transpose() * (unpacked(packed, c.rows()) * c));
 }
 
 /// The reduced operators in the basis V C.

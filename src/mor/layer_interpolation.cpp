@@ -1,5 +1,7 @@
 #include "layer_interpolation.hpp"
 
+#include "rbvi/rom/packed.hpp"
+
 #include <algorithm>
 
 namespace rbvi {
@@ -36,12 +38,7 @@ public:
     for (std::size_t k = 0; k < keys_.size(); ++k)
       entries.emplace_back(keys_[k].row, keys_[k].column, values[static_cast<Index>(k)]);
     lower.setFromTriplets(entries.begin(), entries.end());
-    const Matrix product = trace.transpose() * (lower.selfadjointView<Eigen::Lower>() * trace);
-    const Index n = trace.cols();
-    Vector packed(n * (n + 1) / 2);
-    for (Index j = 0, at = 0; j < n; at += n - j, ++j)
-      packed.segment(at, n - j) = product.col(j).tail(n - j);
-    return packed;
+    return pack(trace.transpose() * (lower.selfadjointView<Eigen::Lower>() * trace));
   }
 
 private:

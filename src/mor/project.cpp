@@ -1,6 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/par/gather.hpp"
+#include "rbvi/rom/packed.hpp"
 
 #include <algorithm>
 
@@ -42,15 +43,7 @@ Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
   RBVI_CALL(MatMatMult(a, basis, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
   Matrix full = BorrowedRows(basis).rows().transpose() * BorrowedRows(product.get()).rows();
   sum_over_ranks(comm, full);
-  const Index n = full.cols();
-  Vector packed(n * (n + 1) / 2);
-  Index next = 0;
-  for (Index j = 0; j < n; ++j) {
-    packed.segment(next, n - j) =
-        (full.col(j).tail(n - j) + full.row(j).tail(n - j).transpose()) / 2;
-    next += n - j;
-  }
-  return packed;
+  return pack((full + full.transpose()) / 2);
 }
 
 /// The training numbers that some operator was sampled at, each once.

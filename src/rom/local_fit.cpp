@@ -8,6 +8,19 @@
 
 namespace rbvi {
 
+Vector parts_of_box(const ParameterSpace &space, const Mu &all_parameters) {
+  Vector values(space.size());
+  for (int i = 0; i < space.size(); ++i)
+    values[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])];
+  return parts_of_box(space, Matrix(values));
+}
+
+Matrix parts_of_box(const ParameterSpace &space, Matrix free) {
+  for (int i = 0; i < space.size(); ++i)
+    free.row(i) /= space.at(i).upper - space.at(i).lower;
+  return free;
+}
+
 Vector local_fit(const Matrix &values, const Matrix &points, const Vector &here) {
   constexpr double largest_weights = 3; // their sum of sizes; 1 inside the samples
   const Index d = points.rows(), count = std::min<Index>(points.cols(), 2 * (d + 1));

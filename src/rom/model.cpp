@@ -190,7 +190,7 @@ void check_model(const ReducedModel &model) {
           "contact/slave_nodes does not fit");
   require(model.two_bodies() || model.nitsche ? model.b.size() + model.g.size() == 0
                                               : model.b.size() > 0,
-          "b has no terms, or has some where it is not separated");
+          "b has no terms, or two bodies have some, or Nitsche's method");
   require(model.two_bodies() || contact == dual ||
               ((model.support || model.nitsche) && dual % contact == 0 && dual / contact <= dim),
           "contact/points does not fit contact/dual_basis");

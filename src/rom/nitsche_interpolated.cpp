@@ -32,9 +32,7 @@ std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<Curv
 
 void add_matrix(const LayerTerms &terms, const Vector &theta, Matrix &a) {
   if (terms.size() == 0) return;
-  Matrix lower(a.rows(), a.rows());
-  unpack(terms.reduced * theta, lower);
-  a += lower.selfadjointView<Eigen::Lower>() * Matrix::Identity(a.rows(), a.rows());
+  a += unpacked(terms.reduced * theta, a.rows());
 }
 
 } // namespace
@@ -58,15 +56,15 @@ ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const
     const Vector both = nitsche_residual(faces, layer, nitsche_bounds(pressures, system.law));
     sum += model.friction_vector.reduced * friction_vector.of_vector(both - contact);
   }
-  const Vector au = system.a_gamma * u;
-  return {au + sum - system.f, au.norm() + sum.norm() + system.f.norm()};
+  const Vector au = system.quadratic.a_gamma * u;
+  return {au + sum - system.quadratic.f, au.norm() + sum.norm() + system.quadratic.f.norm()};
 }
 
 Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &faces,
                                              const System &system, const Vector &u) const {
   const Matrix pressures = nitsche_pressures(faces, model.trace * u);
   const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
-  Matrix result = system.a_gamma;
+  Matrix result = system.quadratic.a_gamma;
   add_matrix(model.contact_matrix,
              contact_matrix.of_blocks(selected(contact, contact_matrix.cells())), result);
   if (model.friction_matrix.size() > 0) {
@@ -84,7 +82,7 @@ int ReducedNitsche::Interpolated::solve(const Scene &scene, const Mu &all_parame
                                         const Vector &near, System &system) {
   const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
   int steps = 0;
-  const Vector zero = Vector::Zero(system.a.rows());
+  const Vector zero = Vector::Zero(system.u.size());
   for (const auto &[start, damped] :
        {std::pair{&zero, false}, std::pair{&near, false}, std::pair{&near, true}}) {
     system.u = *start;

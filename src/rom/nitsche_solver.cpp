@@ -10,26 +10,10 @@ namespace rbvi {
 
 namespace {
 
-Matrix unpacked(const Vector &packed, Index n) {
-  Matrix lower(n, n);
-  unpack(packed, lower);
-  lower.triangularView<Eigen::StrictlyUpper>() = lower.transpose();
-  return lower;
-}
-
 const NitscheModel &checked(const ReducedModel &model, const Scene &scene) {
   if (!scene.nitsche || !model.nitsche)
     throw bad_input("the model and its scene in this build differ in the formulation of contact");
   return *model.nitsche;
-}
-
-/// The free parameters as parts of the box.
-Vector in_box_of(const ParameterSpace &space, const Mu &all_parameters) {
-  Vector result(space.size());
-  for (int i = 0; i < space.size(); ++i)
-    result[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])] /
-                (space.at(i).upper - space.at(i).lower);
-  return result;
 }
 
 } // namespace
@@ -44,35 +28,33 @@ ReducedNitsche::ReducedNitsche(const ReducedModel &model, const Scene &scene)
 
 ReducedNitsche::~ReducedNitsche() = default;
 
-void ReducedNitsche::assemble(const Mu &all_parameters) {
+ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const Mu &all_parameters) const {
   const Index n = model_.primal_size();
-  System &system = *system_;
-  system.law = nitsche_law(scene_.support->friction, all_parameters);
-  system.a = unpacked(
+  Quadratic result;
+  result.a = unpacked(
       model_.a.reduced * affine_coefficients(model_.a, scene_.a, scene_, all_parameters), n);
-  system.f = Vector::Zero(n);
+  result.f = Vector::Zero(n);
   if (model_.f.size() > 0)
-    system.f = model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
+    result.f = model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
   const std::vector<NitscheFace> faces =
       nitsche_faces(scene_, all_parameters, selected(cells_, consistency_.cells()));
-  const Vector theta =
-      consistency_.of_blocks(nitsche_consistency(faces, system.law.law != FrictionLaw::none));
-  system.a_gamma = system.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
+  const bool friction = scene_.support->friction.law != FrictionLaw::none;
+  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, friction));
+  result.a_gamma = result.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
+  return result;
 }
 
 Vector ReducedNitsche::predicted(const Mu &all_parameters) const {
   const NitscheModel &nitsche = *model_.nitsche;
   if (nitsche.starts.cols() == 0) return {};
-  Matrix points = nitsche.starts_mu;
-  const ParameterSpace &space = scene_.parameters;
-  for (int i = 0; i < space.size(); ++i)
-    points.row(i) /= space.at(i).upper - space.at(i).lower;
-  return local_fit(nitsche.starts, points, in_box_of(space, all_parameters));
+  return local_fit(nitsche.starts, parts_of_box(scene_.parameters, nitsche.starts_mu),
+                   parts_of_box(scene_.parameters, all_parameters));
 }
 
 NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
-  assemble(all_parameters);
   System &system = *system_;
+  system.law = nitsche_law(scene_.support->friction, all_parameters);
+  system.quadratic = quadratic_at(all_parameters);
   NitscheAnswer answer;
   if (interpolated_) {
     answer.iterations =
@@ -84,7 +66,8 @@ NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
   }
   answer.u = system.u;
   answer.residual = system.relative;
-  answer.energy = 0.5 * answer.u.dot(system.a * answer.u) - system.f.dot(answer.u);
+  answer.energy =
+      0.5 * answer.u.dot(system.quadratic.a * answer.u) - system.quadratic.f.dot(answer.u);
   return answer;
 }
 
@@ -116,8 +99,9 @@ void ReducedNitsche::outputs(const Mu &all_parameters, const Vector &u, Outputs 
                   outputs);
   const Vector bounds = nitsche_bounds(pressures, law);
   const Vector terms = trace.transpose() * nitsche_residual(faces, layer, bounds);
-  const Vector au = system_->a_gamma * u, r = au + terms - system_->f;
-  const double scale = au.norm() + terms.norm() + system_->f.norm();
+  const Quadratic quadratic = quadratic_at(all_parameters);
+  const Vector au = quadratic.a_gamma * u, r = au + terms - quadratic.f;
+  const double scale = au.norm() + terms.norm() + quadratic.f.norm();
   outputs.kkt_residual = scale > 0 ? r.norm() / scale : 0;
 }
 

@@ -111,9 +111,9 @@ Vector ReducedNitsche::System::curvatures(const Matrix &at) const {
 
 /// Sets `relative`.
 Vector ReducedNitsche::System::residual() {
-  const Vector au = a_gamma * u, terms = functionals * slopes(pressures);
-  const Vector r = au + terms - f;
-  const double scale = au.norm() + terms.norm() + f.norm();
+  const Vector au = quadratic.a_gamma * u, terms = functionals * slopes(pressures);
+  const Vector r = au + terms - quadratic.f;
+  const double scale = au.norm() + terms.norm() + quadratic.f.norm();
   relative = scale > 0 ? r.norm() / scale : 0;
   return r;
 }
@@ -124,7 +124,7 @@ Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
   for (Index i = 0; i < d.size(); ++i)
     if (d[i] != 0) active.push_back(i);
   const Matrix part = functionals(Eigen::all, active);
-  return a_gamma + (part * d(active).asDiagonal()) * part.transpose();
+  return quadratic.a_gamma + (part * d(active).asDiagonal()) * part.transpose();
 }
 
 /// One linear solve, contact and stick being those of the pressures `start`.
@@ -141,7 +141,7 @@ void ReducedNitsche::System::predict(const Vector &start) {
   const Vector forces = slopes(at) + d.cwiseProduct(offsets - start);
   const Eigen::LLT<Matrix> factor(tangent_at(at));
   if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
-  set(factor.solve(f - functionals * forces));
+  set(factor.solve(quadratic.f - functionals * forces));
   bounds = nitsche_bounds(pressures, law);
 }
 
@@ -158,7 +158,8 @@ int ReducedNitsche::System::minimise() {
     const Vector d = -factor.solve(r);
     NitscheLine line{weights, gamma, pressures, Matrix::Zero(points, 2), bounds};
     line.change.reshaped().head(functionals.cols()) = functionals.transpose() * d;
-    const double t = line_minimum((a_gamma * u - f).dot(d), d.dot(a_gamma * d), line);
+    const double t = line_minimum((quadratic.a_gamma * u - quadratic.f).dot(d),
+                                  d.dot(quadratic.a_gamma * d), line);
     set(u + t * d);
   }
   throw failure("the reduced problem did not converge: its residual is " + short_number(relative) +

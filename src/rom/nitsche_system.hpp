@@ -23,8 +23,7 @@ struct ReducedNitsche::System {
   Index points = 0;
 
   // At mu.
-  Matrix a, a_gamma; ///< n x n
-  Vector f;
+  Quadratic quadratic;
   NitscheLaw law;
   Matrix functionals; ///< n x 2 points: of P_n, then of P_tau
   Vector offsets;     ///< 2 points

@@ -12,13 +12,6 @@ namespace rbvi {
 
 namespace {
 
-/// The lower triangle; the rest is zero.
-Matrix unpacked(const Vector &packed, Index n) {
-  Matrix lower = Matrix::Zero(n, n);
-  unpack(packed, lower);
-  return lower;
-}
-
 Mu corner(const ParameterSpace &space, double Parameter::*bound) {
   Mu mu;
   for (int i = 0; i < space.size(); ++i)

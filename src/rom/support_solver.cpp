@@ -68,22 +68,10 @@ SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene)
   if (multiplier_count(curve, *scene.support) != model.dual_basis.rows())
     throw bad_input("the multipliers of the model do not fit its scene in this build");
   if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
-  width_.resize(scene.parameters.size());
-  for (int i = 0; i < scene.parameters.size(); ++i)
-    width_[i] = scene.parameters.at(i).upper - scene.parameters.at(i).lower;
-  samples_ = width_.cwiseInverse().asDiagonal() * model.support->starts_mu;
+  samples_ = parts_of_box(scene.parameters, model.support->starts_mu);
 }
 
 /// The free parameters as parts of the box.
-Vector SupportSolver::scaled(const Mu &all_parameters) const {
-  const ParameterSpace &space = scene_.parameters;
-  Vector result(space.size());
-  for (int i = 0; i < space.size(); ++i)
-    result[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])] /
-                width_[i];
-  return result;
-}
-
 Vector SupportSolver::start_at(const Vector &here) const {
   constexpr double far_nearer = 0.1;
   const double next = samples_.cols() > 0 ? (samples_.colwise() - here).colwise().norm().minCoeff()
@@ -162,7 +150,9 @@ void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,
       result.col(static_cast<Index>(k)).noalias() = terms.middleRows(which[k] * m, m) * body.terms;
     return result;
   };
-  const Vector start = answer.start.size() > 0 ? answer.start : start_at(scaled(all_parameters));
+  const Vector start = answer.start.size() > 0
+                           ? answer.start
+                           : start_at(parts_of_box(scene_.parameters, all_parameters));
   FrictionResult found = solve_friction(
       columns, body.q, static_cast<int>(m) / model_.support->normal, body.bound, start);
   if (!found.converged || !(found.residual <= largest_residual))
@@ -184,7 +174,7 @@ SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
   if (model_.support->condensed.terms.size() == 0)
     answer.energy = 0.5 * stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm();
   last_start_ = answer.start;
-  last_ = scaled(all_parameters);
+  last_ = parts_of_box(scene_.parameters, all_parameters);
   return answer;
 }
 

@@ -165,20 +165,15 @@ Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
 
 Matrix HighFidelity::predicted_pressures(const Mu &mu) const {
   const ParameterSpace &space = problem_.scene().parameters;
-  const auto scaled = [&](const Mu &values) {
-    Vector result(space.size());
-    for (int i = 0; i < space.size(); ++i)
-      result[i] = values[static_cast<std::size_t>(i)] / (space.at(i).upper - space.at(i).lower);
-    return result;
-  };
   const auto count = static_cast<Index>(solved_.size());
   Matrix pressures(solved_.front().pressures.size(), count), points(space.size(), count);
   for (Index p = 0; p < count; ++p) {
     const Solved &solved = solved_[static_cast<std::size_t>(p)];
     pressures.col(p) = solved.pressures.reshaped();
-    points.col(p) = scaled(solved.mu);
+    points.col(p) = parts_of_box(space, expand(space, solved.mu));
   }
-  return local_fit(pressures, points, scaled(mu)).reshaped(pressures.rows() / 2, 2);
+  return local_fit(pressures, points, parts_of_box(space, expand(space, mu)))
+      .reshaped(pressures.rows() / 2, 2);
 }
 
 HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {

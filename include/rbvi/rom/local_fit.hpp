@@ -2,8 +2,14 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/core/parameters.hpp"
 
 namespace rbvi {
+
+/// The free parameters among all, as parts of the width of their box: coordinates of like size.
+Vector parts_of_box(const ParameterSpace &space, const Mu &all_parameters);
+/// The same of columns of free parameters, d x P.
+Matrix parts_of_box(const ParameterSpace &space, Matrix free);
 
 /// Values at `here` of the affine function that fits those of the nearest samples, 2 (d + 1) of
 /// them, best, weighted by the inverse square of their distance; of the nearest sample alone where

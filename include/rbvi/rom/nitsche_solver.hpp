@@ -47,7 +47,13 @@ public:
 private:
   struct System;
   struct Interpolated;
-  void assemble(const Mu &all_parameters);
+
+  /// a(u, u) / 2 - f(u), and a_gamma.
+  struct Quadratic {
+    Matrix a, a_gamma; ///< n x n
+    Vector f;
+  };
+  Quadratic quadratic_at(const Mu &all_parameters) const;
   Vector predicted(const Mu &all_parameters) const;
 
   const ReducedModel &model_;

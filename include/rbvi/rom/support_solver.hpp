@@ -45,14 +45,12 @@ private:
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
   void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);
-  Vector scaled(const Mu &all_parameters) const;
   Vector start_at(const Vector &here) const;
   Vector term_coefficients(const Mu &all_parameters, const Vector &theta_b) const;
 
   const ReducedModel &model_;
   const Scene &scene_;
   std::optional<ReducedLaw> law_;
-  Vector width_;             ///< of the box
   Matrix samples_;           ///< where the starts are, as parts of the box
   Vector last_start_, last_; ///< of the last query, and where it was
   ReducedStiffness stiffness_;
