@@ -250,8 +250,8 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
     choose_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, round_off),
                   scene, samples, pressures, model, report);
   } else if (options.rule == CurveRule::interpolated) {
-    report.states =
-        interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance}, nitsche);
+    report.states = interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance},
+                                      nitsche, report.eim_errors);
     report.terms = {static_cast<int>(nitsche.contact_matrix.size()),
                     static_cast<int>(nitsche.contact_vector.size()),
                     static_cast<int>(nitsche.friction_matrix.size()),

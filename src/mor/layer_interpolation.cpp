@@ -54,11 +54,13 @@ private:
 /// `project`: of one column of `values` onto the basis.
 template <class Project>
 LayerTerms interpolated(const Matrix &values, const std::vector<EntryKey> &keys, bool matrix,
-                        const EimOptions &options, const Project &project) {
+                        const EimOptions &options, const Project &project,
+                        std::vector<double> *errors = nullptr) {
   const Eim found = eim(MPI_COMM_SELF, values, keys, options);
   LayerTerms terms;
   terms.interpolation = found.interpolation;
   terms.error = found.error.empty() ? 0 : found.error.back();
+  if (errors != nullptr) *errors = found.error;
   for (const EntryKey &entry : found.entries) {
     terms.rows.push_back(static_cast<int>(entry.row));
     if (matrix) terms.columns.push_back(static_cast<int>(entry.column));
@@ -116,7 +118,8 @@ LayerTerms interpolate_consistency(const Scene &scene, const ContactLayer &layer
 }
 
 int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
-                      const EimOptions &options, NitscheModel &nitsche) {
+                      const EimOptions &options, NitscheModel &nitsche,
+                      std::array<std::vector<double>, 4> &errors) {
   const Scene &scene = problem.scene();
   // The steps that the reduced solve will take; Coulomb's bounds would cycle without line search.
   const bool coulomb = scene.support->friction.law == FrictionLaw::coulomb;
@@ -136,22 +139,22 @@ int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
   std::vector<EntryKey> dofs;
   for (PetscInt i = 0; i < solver.layer().trace.size; ++i)
     dofs.push_back({i, 0});
-  const auto matrix = [&](const std::vector<Vector> &values) {
+  const auto matrix = [&](const std::vector<Vector> &values, std::vector<double> &history) {
     if (values.empty()) return LayerTerms{};
     return interpolated(
         side_by_side(values), pattern.keys(), true, options,
-        [&](const Vector &column) { return pattern.projected(column, nitsche.trace); });
+        [&](const Vector &column) { return pattern.projected(column, nitsche.trace); }, &history);
   };
-  const auto vector = [&](const std::vector<Vector> &values) {
+  const auto vector = [&](const std::vector<Vector> &values, std::vector<double> &history) {
     if (values.empty()) return LayerTerms{};
-    return interpolated(side_by_side(values), dofs, false, options, [&](const Vector &column) {
-      return Vector(nitsche.trace.transpose() * column);
-    });
+    return interpolated(
+        side_by_side(values), dofs, false, options,
+        [&](const Vector &column) { return Vector(nitsche.trace.transpose() * column); }, &history);
   };
-  nitsche.contact_matrix = matrix(snapshots.contact_matrix);
-  nitsche.contact_vector = vector(snapshots.contact_vector);
-  nitsche.friction_matrix = matrix(snapshots.friction_matrix);
-  nitsche.friction_vector = vector(snapshots.friction_vector);
+  nitsche.contact_matrix = matrix(snapshots.contact_matrix, errors[0]);
+  nitsche.contact_vector = vector(snapshots.contact_vector, errors[1]);
+  nitsche.friction_matrix = matrix(snapshots.friction_matrix, errors[2]);
+  nitsche.friction_vector = vector(snapshots.friction_vector, errors[3]);
   return static_cast<int>(snapshots.contact_vector.size());
 }
 

@@ -4,6 +4,7 @@
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace rbvi {
 
@@ -199,6 +200,14 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
   result.model.histories["curve/points"] = {result.curve.points.begin(), result.curve.points.end()};
   result.model.histories["curve/error"] = result.curve.error;
+  constexpr std::array<const char *, 4> interpolated{"curve/contact_matrix", "curve/contact_vector",
+                                                     "curve/friction_matrix",
+                                                     "curve/friction_vector"};
+  if (result.curve.states > 0)
+    result.model.histories["curve/states"] = {static_cast<double>(result.curve.states)};
+  for (std::size_t k = 0; k < interpolated.size(); ++k)
+    if (!result.curve.eim_errors[k].empty())
+      result.model.histories[interpolated[k]] = result.curve.eim_errors[k];
 }
 
 } // namespace

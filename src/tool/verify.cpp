@@ -44,6 +44,12 @@ std::vector<int> sizes_up_to(int last, const std::vector<int> &wanted) {
   return sizes;
 }
 
+/// The N of the error map: a model of Nitsche's method has no second size.
+std::vector<int> mode_counts(const ReducedModel &model) {
+  if (model.nitsche) return {5, 10, 15, 20, 30, 40, 50};
+  return {10, 19, 51};
+}
+
 /// The R at which the model's dual basis means something on its own.
 std::vector<int> generator_counts(const ReducedModel &model) {
   const auto type = model.settings.find("cone_type");
@@ -65,22 +71,25 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   };
   std::vector<Pair> pairs;
   for (int kind = 0; kind <= (knows_enriched_pairs(model) ? 1 : 0); ++kind)
-    for (const int n : sizes_up_to(model.modes, {10, 19, 51}))
+    for (const int n : sizes_up_to(model.modes, mode_counts(model)))
       for (const int r : generator_counts(model))
         pairs.push_back({kind, n, r});
   int rank = 0, ranks = 1;
   MPI_Comm_rank(world, &rank);
   MPI_Comm_size(world, &ranks);
   const auto count = static_cast<int>(pairs.size());
-  Matrix rows = Matrix::Zero(count, 11);
+  const bool friction = truths.tangential_norm.size() > 0;
+  Matrix rows = Matrix::Zero(count, friction ? 14 : 13);
   collectively(world, [&] {
     for (int k = rank; k < count; k += ranks) {
       const auto [kind, n, r] = pairs[static_cast<std::size_t>(k)];
       const SubModel pair =
           kind == 1 ? enriched_pair(model, n, r) : SubModel{leading(model, n, r), {}};
       const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w);
-      rows.row(k) << kind, n, r, e.u.mean(), e.u.maxCoeff(), e.u_floor.mean(), e.lambda.mean(),
-          e.lambda.maxCoeff(), e.lambda_floor.mean(), e.seconds, e.failed;
+      rows.row(k).head(13) << kind, n, r, e.u.mean(), e.u.maxCoeff(), e.u_floor.mean(),
+          e.lambda.mean(), e.lambda.maxCoeff(), e.lambda_floor.mean(), e.seconds, e.failed,
+          e.u_floor.maxCoeff(), e.lambda_floor.maxCoeff();
+      if (friction) rows(k, 13) = e.tangential.maxCoeff();
     }
   });
   MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPI_DOUBLE, MPI_SUM,
@@ -90,10 +99,13 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
     std::vector<std::vector<double>> columns;
     for (const auto &column : rows.colwise())
       columns.emplace_back(column.begin(), column.end());
-    write_columns(path,
-                  {"enriched", "N", "R", "u_mean", "u_max", "u_floor_mean", "lambda_mean",
-                   "lambda_max", "lambda_floor_mean", "seconds", "failed"},
-                  columns);
+    std::vector<std::string> names{"enriched",        "N",          "R",
+                                   "u_mean",          "u_max",      "u_floor_mean",
+                                   "lambda_mean",     "lambda_max", "lambda_floor_mean",
+                                   "seconds",         "failed",     "u_floor_max",
+                                   "lambda_floor_max"};
+    if (friction) names.emplace_back("tangential_max");
+    write_columns(path, names, columns);
   });
 }
 

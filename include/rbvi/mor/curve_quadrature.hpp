@@ -7,6 +7,9 @@
 #include "rbvi/rom/model.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
+#include <array>
+#include <vector>
+
 namespace rbvi {
 
 struct CurveOptions {
@@ -22,8 +25,9 @@ struct CurveReport {
   // u that it adds at a training parameter.
   std::vector<int> points;
   std::vector<double> error;
-  std::array<int, 4> terms{}; ///< interpolated: B^n, Theta^n, B^tau, Theta^tau
-  int states = 0;             ///< interpolated: pairs (mu, Newton step)
+  std::array<int, 4> terms{};                    ///< interpolated: B^n, Theta^n, B^tau, Theta^tau
+  std::array<std::vector<double>, 4> eim_errors; ///< their e_EIM along the terms (B.32)
+  int states = 0;                                ///< interpolated: pairs (mu, Newton step)
 };
 
 /// Fills model.nitsche; the rest of the model is there. `coefficients`: of the samples in the
