@@ -208,7 +208,7 @@ std::string reduction_name(const SupportModel &support) {
 }
 
 std::string nitsche_name(const NitscheModel &nitsche) {
-  return "nitsche, " + curve_rule_names()[static_cast<std::size_t>(nitsche.rule)];
+  return "nitsche " + curve_rule_names()[static_cast<std::size_t>(nitsche.rule)];
 }
 
 /// Errors of the model with and without supremizers and of its leading parts, into tables, and the
