@@ -121,9 +121,9 @@ int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
                       const EimOptions &options, NitscheModel &nitsche,
                       std::array<std::vector<double>, 4> &errors) {
   const Scene &scene = problem.scene();
-  // The steps that the reduced solve will take; Coulomb's bounds would cycle without line search.
-  const bool coulomb = scene.support->friction.law == FrictionLaw::coulomb;
-  NitscheSolver solver(problem, {.full_steps = !coulomb});
+  // The steps that the reduced solve will take; with friction they can cycle without line search.
+  const bool friction = scene.support->friction.law != FrictionLaw::none;
+  NitscheSolver solver(problem, {.full_steps = !friction});
   const std::vector<CurveCell> &cells = solver.layer().cells;
   const LayerPattern pattern(cells);
   Snapshots snapshots;
