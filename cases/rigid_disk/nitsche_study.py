@@ -2,7 +2,7 @@
 """The study of Nitsche's method for a half-disk on a rigid disk: the high-fidelity answers, the
 reduced models with three treatments of the contact curve, and the mixed method on the same mesh.
 
-    nitsche_study.py BIN OUT [OPTION...]     e.g. cases/rigid_disk/nitsche_study.py build/bin run/nitsche
+    nitsche_study.py BIN OUT [OPTION...]   e.g. cases/rigid_disk/nitsche_study.py build/bin run/ns
 
 Options go to every run (a smaller -train, fewer -arc_edges; runs with more training radii and other
 meshes are then left out). Writes OUT/tables.md and OUT/figures/*.png. What is there is kept.
@@ -40,7 +40,8 @@ VARIANTS = {
 PUBLISHED = {  # Niakh (2022), tables 4.1 and 4.2, in % for h = 5, 2.5, 1.25 mm
     "none": {"0.7": "1 / 0.52 / 0.28", "1": "1.45 / 0.72 / 0.33", "1.3": "1.17 / 1.1 / 0.43"},
     "tresca": {"0.7": "5.49 / 3.33 / 2.36", "1": "5.5 / 3.35 / 2.33", "1.3": "5.76 / 3.4 / 2.37"},
-    "coulomb": {"0.7": "4.34 / 3.03 / 2.12", "1": "5.51 / 3.63 / 2.57", "1.3": "6.65 / 4.46 / 3.16"},
+    "coulomb": {"0.7": "4.34 / 3.03 / 2.12", "1": "5.51 / 3.63 / 2.57",
+                "1.3": "6.65 / 4.46 / 3.16"},
 }
 OTHER_LAW_ERRORS = {"0.7": "1.02 / 0.51 / 0.26", "1": "1.25 / 0.65 / 0.34",
                     "1.3": "1.53 / 0.84 / 0.43"}
@@ -115,7 +116,7 @@ def values(answers):
             rows.append(row)
     header = ["friction", "R"]
     for title in ("J", "F_n", "integral of abs(sigma_tau)", "half-width", "centre pressure"):
-        header += [title, "other"]
+        header += [title, "elsewhere"]
     return markdown("Values, and those computed with other software", header, rows)
 
 
@@ -158,15 +159,18 @@ def gamma_study(answers):
 
 def newton_steps(runs, answers):
     rows = []
-    for law, name in LAWS.items():
-        warm = rows_of(runs[law, "default"] / "samples.csv")
-        warm_steps, warm_seconds = ([row[key] for row in warm] for key in ("iterations", "seconds"))
-        cold = [answers["cold", law, radius] for radius in RADII]
+    lines = [(law, name, [answers["cold", law, radius] for radius in RADII])
+             for law, name in LAWS.items()]
+    lines.append(("mixed", "none, mixed method", [answers["mixed", radius] for radius in RADII]))
+    for key, name, cold in lines:
+        warm = rows_of(runs[key, "default"] / "samples.csv")
+        warm_steps, warm_seconds = ([row[column] for row in warm]
+                                    for column in ("iterations", "seconds"))
         rows.append([name, " / ".join(f"{row['iterations']:.0f}" for row in cold),
                      " / ".join(f"{row['seconds']:.2f}" for row in cold),
                      f"{np.median(warm_steps):.0f}", f"{max(warm_steps):.0f}",
                      f"{np.median(warm_seconds):.3f}"])
-    return markdown("Newton steps, and seconds of a solve: alone at R = 0.7 / 1 / 1.3, and in a sweep",
+    return markdown("Newton steps and seconds of a solve: alone at R = 0.7 / 1 / 1.3; in a sweep",
                     ["friction", "steps, alone", "seconds", "median steps, in a sweep", "most",
                      "median seconds"], rows)
 
@@ -235,9 +239,10 @@ def methods(runs):
         s = summary(run)
         solves, rest = offline_seconds(run)
         each = np.median([row["seconds"] for row in rows_of(run / "samples.csv")])
-        rows.append([name, f"{s['N']:.0f} + {s['S']:.0f}", short(s["u_max"]), short(s["lambda_max"]),
-                     short(s["u_floor_max"]), f"{1e3 * s['seconds']:.2f}", f"{1e3 * each:.0f}",
-                     f"{solves:.1f}", f"{rest:.1f}"])
+        rows.append([name, f"{s['N']:.0f} + {s['S']:.0f}", short(s["u_max"]),
+                     short(s["lambda_max"]), short(s["u_floor_max"]),
+                     f"{1e3 * s['seconds']:.2f}", f"{1e3 * each:.0f}", f"{solves:.1f}",
+                     f"{rest:.1f}"])
     return markdown("Methods on one mesh, without friction",
                     ["method", "N + further", "u", "normal stress", "u, projection",
                      "ms per query", "ms per solve in a sweep", "s, all solves",
@@ -246,7 +251,7 @@ def methods(runs):
 
 def jobs_of(study):
     jobs = {(law, rule): ["-nitsche_quadrature", rule, *ALL_SIZES]
-            for law in LAWS for rule in reversed(RULES)}
+            for rule in ("full", "interpolated", "empirical") for law in LAWS}
     if not study.options:
         for count in (201, 241):
             jobs["none", f"grid {count}"] = ["-train", f"grid:{count}", "-pod_tolerance", "1e-6"]
@@ -273,7 +278,7 @@ def work(study):
     tables = [values(answers), law_errors(study, answers), newton_steps(runs, answers),
               gamma_study(answers), interpolated_terms(runs), reduced_errors(runs), methods(runs)]
     from nitsche_study_figures import draw_all
-    return tables, lambda directory: draw_all(study, runs, answers, directory)
+    return tables, lambda directory: draw_all(study, runs, directory)
 
 
 if __name__ == "__main__":

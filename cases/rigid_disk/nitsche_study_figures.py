@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, history, log_axis, plt,
                      read_vtu, save)
-from nitsche_study import EDGES, GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
+from nitsche_study import GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
 from study_tools import rows_of, summary
 
 import numpy as np
@@ -132,6 +132,7 @@ def interpolation(runs, directory):
         log_axis(axis, "terms", "largest relative error" if law == "none" else "",
                  f"friction: {name}")
         axis.legend(fontsize=8)
+    axes[0].set_ylim(1e-7, 5)
     save(figure, directory, "eim.png")
 
 
@@ -163,7 +164,7 @@ def errors(runs, directory):
     save(figure, directory, "errors.png")
 
 
-def mixed(study, runs, answers, directory):
+def mixed(runs, directory):
     """The mixed method on the same mesh: energy, errors of both unknowns (figures 4.7, 4.8)."""
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.8), constrained_layout=True)
     for key, label, style in (("none", "Nitsche", "-"), ("mixed", "mixed", ":")):
@@ -191,7 +192,7 @@ def mixed(study, runs, answers, directory):
     save(figure, directory, "mixed.png")
 
 
-def draw_all(study, runs, answers, directory):
+def draw_all(study, runs, directory):
     directory.mkdir(exist_ok=True)
     deformed(study, directory)
     normal_stress(study, directory)
@@ -199,4 +200,4 @@ def draw_all(study, runs, answers, directory):
     modes(runs, directory)
     interpolation(runs, directory)
     errors(runs, directory)
-    mixed(study, runs, answers, directory)
+    mixed(runs, directory)
