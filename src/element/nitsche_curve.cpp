@@ -1,8 +1,7 @@
 #include "rbvi/element/nitsche_curve.hpp"
 
-#include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/support_outputs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +52,28 @@ Point centre_of(const Cell &cell) {
   return centre;
 }
 
+/// The terms tested with every dof of the layer: those at `pressures`, and what they change to
+/// first order with the pressures `moved`.
+Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Matrix &pressures,
+              const Matrix &moved, const Vector &bounds) {
+  Vector result = Vector::Zero(dofs);
+  at_all_points(faces, bounds,
+                [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
+                  const PointTerm contact = contact_term(pressures(i, 0), face.gamma);
+                  PointTerm friction{};
+                  if (bound >= 0) friction = friction_term(pressures(i, 1), bound, face.gamma);
+                  const double normal = contact.slope + contact.curvature * moved(i, 0);
+                  const double tangential = friction.slope + friction.curvature * moved(i, 1);
+                  if (normal == 0 && tangential == 0) return;
+                  Row row = normal * normal_row(point, face.gamma);
+                  if (tangential != 0) row += tangential * tangential_row(point, face.gamma);
+                  for (std::size_t k = 0; k < face.dofs.size(); ++k)
+                    if (face.dofs[k] >= 0)
+                      result[face.dofs[k]] += point.weight * row[static_cast<Index>(k)];
+                });
+  return result;
+}
+
 double edge_length(const std::array<Point, 4> &vertices, int edge) {
   const auto [i, j] = simplex_edges[static_cast<std::size_t>(edge)];
   const Point &a = vertices[static_cast<std::size_t>(i)],
@@ -86,11 +107,8 @@ std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_paramet
 
 NitscheLaw nitsche_law(const Friction &friction, const Mu &all_parameters) {
   if (friction.law == FrictionLaw::none) return {};
-  const double value = friction.value(all_parameters);
-  if (!(value >= 0))
-    throw failure("the friction coefficient or threshold is " + short_number(value) +
-                  ": it must not be negative");
-  return {friction.law, value, friction.only_in_contact};
+  const FrictionBound bound = friction_bound(friction, all_parameters); // of one kind
+  return {friction.law, bound.coefficient + bound.threshold, bound.only_in_contact};
 }
 
 Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du) {
@@ -153,28 +171,13 @@ double nitsche_energy(const std::vector<NitscheFace> &faces, const Vector &u,
 
 Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u,
                           const Matrix &pressures, const Vector &bounds) {
-  const Matrix moved = nitsche_pressures(faces, u) - pressures;
-  Vector result = Vector::Zero(u.size());
-  at_all_points(faces, bounds,
-                [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
-                  const PointTerm contact = contact_term(pressures(i, 0), face.gamma);
-                  PointTerm friction{};
-                  if (bound >= 0) friction = friction_term(pressures(i, 1), bound, face.gamma);
-                  const double normal = contact.slope + contact.curvature * moved(i, 0);
-                  const double tangential = friction.slope + friction.curvature * moved(i, 1);
-                  if (normal == 0 && tangential == 0) return;
-                  Row tested = normal * normal_row(point, face.gamma);
-                  if (tangential != 0) tested += tangential * tangential_row(point, face.gamma);
-                  for (std::size_t k = 0; k < face.dofs.size(); ++k)
-                    if (face.dofs[k] >= 0)
-                      result[face.dofs[k]] += point.weight * tested[static_cast<Index>(k)];
-                });
-  return result;
+  return tested(faces, u.size(), pressures, nitsche_pressures(faces, u) - pressures, bounds);
 }
 
 Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds) {
-  return nitsche_linearised(faces, u, nitsche_pressures(faces, u), bounds);
+  const Matrix pressures = nitsche_pressures(faces, u);
+  return tested(faces, u.size(), pressures, Matrix::Zero(pressures.rows(), 2), bounds);
 }
 
 std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,

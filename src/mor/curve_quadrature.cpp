@@ -239,7 +239,6 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
               nitsche.starts_mu.col(static_cast<Index>(p)).begin());
   nitsche.rule = CurveRule::full;
   nitsche.starts = pressures_of(scene, layer, samples);
-  if (options.rule == CurveRule::full) report.points = {4 * static_cast<int>(layer.cells.size())};
   if (options.rule == CurveRule::empirical) {
     AllPoints all(model, scene, layer.cells, samples);
     const Matrix pressures = nitsche.starts;
@@ -252,10 +251,6 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
   } else if (options.rule == CurveRule::interpolated) {
     report.states = interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance},
                                       nitsche, report.eim_errors);
-    report.terms = {static_cast<int>(nitsche.contact_matrix.size()),
-                    static_cast<int>(nitsche.contact_vector.size()),
-                    static_cast<int>(nitsche.friction_matrix.size()),
-                    static_cast<int>(nitsche.friction_vector.size())};
     nitsche.rule = CurveRule::interpolated;
     nitsche.starts = coefficients;
   }

@@ -182,6 +182,16 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
 
 namespace {
 
+/// Of each sample in the modes, n x P.
+Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &samples,
+                       const LinearBasis &modes) {
+  Matrix result(modes.size(), static_cast<Index>(samples.size()));
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    RBVI_CALL(BVDotVec(modes.columns.get(), from_natural(problem.dofs(), samples[p].u).get(),
+                       result.col(static_cast<Index>(p)).data()));
+  return result;
+}
+
 /// Modes alone, then the curve.
 void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
                     const ReduceOptions &options, Reduction &result, StageTimes &times) {
@@ -192,11 +202,9 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   }
   const Stage stage("contact curve", times);
   const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
-  Matrix coefficients(result.bases.modes, static_cast<Index>(samples.size()));
-  for (std::size_t p = 0; p < samples.size(); ++p)
-    RBVI_CALL(BVDotVec(result.bases.pod.basis.columns.get(),
-                       from_natural(problem.dofs(), samples[p].u).get(),
-                       coefficients.col(static_cast<Index>(p)).data()));
+  Matrix coefficients;
+  if (options.curve.rule == CurveRule::interpolated)
+    coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
   result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
   result.model.histories["curve/points"] = {result.curve.points.begin(), result.curve.points.end()};
   result.model.histories["curve/error"] = result.curve.error;

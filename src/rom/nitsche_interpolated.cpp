@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <numeric>
 
 namespace rbvi {
 

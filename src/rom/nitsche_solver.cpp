@@ -73,7 +73,7 @@ NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
 
 Matrix ReducedNitsche::point_residuals() const {
   const System &system = *system_;
-  const Vector slopes = system.slopes(system.pressures);
+  const Vector slopes = system.weighted(&PointTerm::slope, system.pressures);
   Matrix result =
       system.functionals.leftCols(system.points) * slopes.head(system.points).asDiagonal();
   if (system.bounds.size() > 0)

@@ -89,29 +89,20 @@ void ReducedNitsche::System::set(const Vector &coefficients) {
   pressures.reshaped().head(p.size()) = p;
 }
 
-Vector ReducedNitsche::System::slopes(const Matrix &at) const {
+Vector ReducedNitsche::System::weighted(double PointTerm::*part, const Matrix &at) const {
   Vector result(functionals.cols());
   for (Index i = 0; i < points; ++i) {
-    result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).slope;
+    result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).*part;
     if (bounds.size() > 0)
-      result[points + i] = weights[i] * friction_term(at(i, 1), bounds[i], gamma[i]).slope;
-  }
-  return result;
-}
-
-Vector ReducedNitsche::System::curvatures(const Matrix &at) const {
-  Vector result(functionals.cols());
-  for (Index i = 0; i < points; ++i) {
-    result[i] = weights[i] * contact_term(at(i, 0), gamma[i]).curvature;
-    if (bounds.size() > 0)
-      result[points + i] = weights[i] * friction_term(at(i, 1), bounds[i], gamma[i]).curvature;
+      result[points + i] = weights[i] * friction_term(at(i, 1), bounds[i], gamma[i]).*part;
   }
   return result;
 }
 
 /// Sets `relative`.
 Vector ReducedNitsche::System::residual() {
-  const Vector au = quadratic.a_gamma * u, terms = functionals * slopes(pressures);
+  const Vector au = quadratic.a_gamma * u,
+               terms = functionals * weighted(&PointTerm::slope, pressures);
   const Vector r = au + terms - quadratic.f;
   const double scale = au.norm() + terms.norm() + quadratic.f.norm();
   relative = scale > 0 ? r.norm() / scale : 0;
@@ -119,7 +110,7 @@ Vector ReducedNitsche::System::residual() {
 }
 
 Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
-  const Vector d = curvatures(at);
+  const Vector d = weighted(&PointTerm::curvature, at);
   std::vector<Index> active;
   for (Index i = 0; i < d.size(); ++i)
     if (d[i] != 0) active.push_back(i);
@@ -137,8 +128,8 @@ void ReducedNitsche::System::predict(const Vector &start) {
   Matrix at = Matrix::Zero(points, 2);
   at.reshaped().head(start.size()) = start;
   bounds = nitsche_bounds(at, law);
-  const Vector d = curvatures(at);
-  const Vector forces = slopes(at) + d.cwiseProduct(offsets - start);
+  const Vector d = weighted(&PointTerm::curvature, at);
+  const Vector forces = weighted(&PointTerm::slope, at) + d.cwiseProduct(offsets - start);
   const Eigen::LLT<Matrix> factor(tangent_at(at));
   if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
   set(factor.solve(quadratic.f - functionals * forces));

@@ -39,8 +39,8 @@ struct ReducedNitsche::System {
   void set_points(const Scene &scene, const Mu &all_parameters,
                   const std::vector<CurveCell> &cells);
   void set(const Vector &coefficients);
-  Vector slopes(const Matrix &at) const;     ///< 2 points, with the weights
-  Vector curvatures(const Matrix &at) const; ///< 2 points, with the weights
+  /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.
+  Vector weighted(double PointTerm::*part, const Matrix &at) const;
   Vector residual();
   Matrix tangent_at(const Matrix &at) const;
   void predict(const Vector &start);

@@ -62,21 +62,23 @@ void print_support(std::ostream &out, const SupportModel &support, int multiplie
 }
 
 void print_curve(std::ostream &out, const NitscheModel &nitsche) {
-  label(out, "contact curve");
-  const std::size_t all = 4 * nitsche.edges.size();
-  if (nitsche.rule == CurveRule::empirical)
-    out << nitsche.points.size() << " of " << all << " Gauss points, weights of their own";
-  else if (nitsche.rule == CurveRule::full)
-    out << "all " << all << " Gauss points";
-  else
-    out << "terms: B^n " << nitsche.contact_matrix.size() << ", Theta^n "
-        << nitsche.contact_vector.size() << ", B^tau " << nitsche.friction_matrix.size()
-        << ", Theta^tau " << nitsche.friction_vector.size();
-  out << '\n';
+  label(out, "contact curve") << describe_curve(nitsche) << '\n';
   label(out, "terms of a_gamma - a") << nitsche.consistency.size() << '\n';
 }
 
 } // namespace
+
+std::string describe_curve(const NitscheModel &nitsche) {
+  const auto number = [](auto size) { return std::to_string(size); };
+  if (nitsche.rule == CurveRule::interpolated)
+    return "terms: B^n " + number(nitsche.contact_matrix.size()) + ", Theta^n " +
+           number(nitsche.contact_vector.size()) + ", B^tau " +
+           number(nitsche.friction_matrix.size()) + ", Theta^tau " +
+           number(nitsche.friction_vector.size());
+  const std::size_t all = 4 * nitsche.edges.size();
+  const bool few = nitsche.rule == CurveRule::empirical;
+  return number(few ? nitsche.points.size() : all) + " of " + number(all) + " Gauss points";
+}
 
 void print_expected_errors(std::ostream &out, const ReducedModel &model) {
   label(out, "expected error") << validation(expected_errors(model)) << '\n';

@@ -1,6 +1,7 @@
 #include "rbvi/tool/stages.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/solve/scaled_part.hpp"
 
 #include <algorithm>
@@ -46,19 +47,19 @@ std::string terms(const char *name, const Eim &eim) {
 StageRow interpolation_row(const ToolOptions &options, const OfflineResult *result) {
   const std::string tolerance = "to " + short_number(options.reduce.eim.tolerance);
   const bool load = static_cast<bool>(options.scene.f);
-  const bool pair = options.scene.pair.has_value() || options.scene.nitsche.has_value();
+  const bool apart = options.scene.pair.has_value() || options.scene.nitsche.has_value();
   const std::string exact = options.scene.pair ? "; B, G are assembled exactly online" : "";
-  if (constant_stiffness(options.scene) && pair && !load)
+  if (constant_stiffness(options.scene) && apart && !load)
     return {"interpolation", "A does not depend on mu" + exact, true};
   if (result == nullptr)
-    return {"interpolation", std::string("A") + (pair ? "" : ", B") + (load ? ", F" : "") +
-                                 (pair ? " " : ", G ") + tolerance +
+    return {"interpolation", std::string("A") + (apart ? "" : ", B") + (load ? ", F" : "") +
+                                 (apart ? " " : ", G ") + tolerance +
                                  "; a sum of few terms ends there" + exact};
   const AffineOperators &affine = result->made.affine;
   return {"interpolation",
-          "terms: " + terms("A", affine.a) + (pair ? "" : ", " + terms("B", affine.b)) +
+          "terms: " + terms("A", affine.a) + (apart ? "" : ", " + terms("B", affine.b)) +
               (load ? ", " + terms("F", affine.f) : "") +
-              (pair ? "" : ", " + terms("G", affine.g)) + "; " + tolerance + exact};
+              (apart ? "" : ", " + terms("G", affine.g)) + "; " + tolerance + exact};
 }
 
 /// What of the solves is done once for all mu.
@@ -187,13 +188,9 @@ void add_curve_rows(const ToolOptions &options, const OfflineResult *result,
                                                     : "EIM over (mu, Newton step)";
   if (result != nullptr) {
     const CurveReport &curve = result->made.curve;
-    if (rule != CurveRule::interpolated) what = count(curve.points.back(), "point");
+    what = describe_curve(*result->made.model.nitsche);
     if (rule == CurveRule::empirical) what += ", error " + short_number(curve.error.back());
-    if (rule == CurveRule::interpolated)
-      what = "terms: B^n " + std::to_string(curve.terms[0]) + ", Theta^n " +
-             std::to_string(curve.terms[1]) + ", B^tau " + std::to_string(curve.terms[2]) +
-             ", Theta^tau " + std::to_string(curve.terms[3]) + " of " +
-             std::to_string(curve.states) + " states";
+    if (rule == CurveRule::interpolated) what += ", of " + std::to_string(curve.states) + " states";
   }
   rows.push_back({"contact curve", what});
   rows.push_back({"cone, PGA", "Nitsche's method has no multipliers", true});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rbvi/rom/online.hpp"
+#include "rbvi/rom/packed.hpp"
 
 #include <cmath>
 #include <random>
@@ -17,14 +18,6 @@ struct Sizes {
 inline Matrix random_matrix(std::mt19937 &random, Index rows, Index cols) {
   std::normal_distribution<double> normal;
   return Matrix::NullaryExpr(rows, cols, [&] { return normal(random); });
-}
-
-inline Vector packed_lower(const Matrix &matrix) {
-  const Index n = matrix.rows();
-  Vector packed(n * (n + 1) / 2);
-  for (Index j = 0, at = 0; j < n; at += n - j, ++j)
-    packed.segment(at, n - j) = matrix.col(j).tail(n - j);
-  return packed;
 }
 
 inline Matrix random_spd(std::mt19937 &random, Index n) {
@@ -115,7 +108,7 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene 
   for (int q = 0; q < sizes.a; ++q) {
     const Matrix term = random_spd(random, n);
     a += term;
-    model.a.reduced.col(q) = packed_lower(term);
+    model.a.reduced.col(q) = pack(term);
   }
   model.b = random_terms(random, r * n, sizes.b, 1);
   model.f = random_terms(random, n, sizes.f, 1);

@@ -50,7 +50,7 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
   ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size();
   model.a = random_terms(random, n * (n + 1) / 2, 1, 1);
-  model.a.reduced.col(0) = packed_lower(random_spd(random, n));
+  model.a.reduced.col(0) = pack(random_spd(random, n));
   sample_one_cell(model.a);
   model.a.sample.vertices << 0, 1, 0.2, 1, 0, 1.2; // in the upper disk
   scale_terms(model.a, scene.a, scene);

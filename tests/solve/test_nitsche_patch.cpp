@@ -1,7 +1,7 @@
 // The patch test by Nitsche's method: one block on a flat support carries a constant stress
 // exactly, whether its foot slides, sticks or slips, and as the mixed formulation does.
+#include "block_on_support.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,52 +11,13 @@
 namespace rbvi {
 namespace {
 
-constexpr double height = 0.5, young = 15, poisson = 0.35;
-
-Scene block(const std::string &degree, const std::string &friction,
-            const std::string &formulation = "nitsche") {
-  Scene scene = make_scene("patch", {{"bodies", "one"},
-                                     {"degree", degree},
-                                     {"friction", friction},
-                                     {"formulation", formulation}});
-  scene.parameters = all_free(scene.parameters.all);
-  return scene;
-}
-
-/// The exact state: mu = (indentation, shear, coefficient).
-struct Exact {
-  double pressure, stress, slip;
-  Exact(const Mu &mu, bool frictionless) {
-    const double modulus = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson));
-    const double shear_modulus = young / (2 * (1 + poisson));
-    pressure = modulus * mu[0] / height;
-    const double most = frictionless ? 0 : mu[2] * pressure;
-    stress = std::min(shear_modulus * mu[1] / height, most);
-    slip = stress < most ? 0 : mu[1] - stress / shear_modulus * height;
-  }
-};
-
-/// Largest difference of the displacement, the motion included.
-double displacement_error(const Problem &problem, const Mu &mu, const Exact &exact,
-                          const HfSolution &s) {
-  const Mesh &mesh = problem.mesh();
-  double worst = 0;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const Point &x = mesh.points[v], motion = problem.scene().motion(mu, x);
-    const Index dof = 2 * mesh.natural_node[v];
-    const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
-    worst = std::max({worst, std::abs(across - exact.slip - (mu[1] - exact.slip) * x[1] / height),
-                      std::abs(down + mu[0] * x[1] / height)});
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
-  return worst;
-}
+using namespace block_on_support;
 
 /// `tolerance` is relative.
 void expect_exact(const std::string &degree, const std::string &friction, const Mu &mu,
                   double tolerance, const NitscheOptions &options = {}) {
   const bool frictionless = friction == "none";
-  const Scene scene = block(degree, friction);
+  const Scene scene = block(degree, friction, "nitsche");
   SCOPED_TRACE(describe(scene.parameters, mu) + ", degree " + degree);
   Problem problem(PETSC_COMM_WORLD, scene, {});
   HfOptions hf;
@@ -123,8 +84,8 @@ TEST(NitschePatch, AgreesWithTheMixedFormulation) {
     for (const std::string friction : {"none", "coulomb"})
       for (const double shear : {0.02, 0.2}) {
         const Mu mu{0.05, shear, 0.3};
-        const HfSolution s = solve(block(degree, friction), mu);
-        const HfSolution mixed = solve(block(degree, friction, "mixed"), mu);
+        const HfSolution s = solve(block(degree, friction, "nitsche"), mu);
+        const HfSolution mixed = solve(block(degree, friction), mu);
         EXPECT_NEAR(*s.outputs.energy, *mixed.outputs.energy, 1e-11 * *mixed.outputs.energy);
         EXPECT_LE((s.u - mixed.u).norm(), 1e-11 * mixed.u.norm());
         EXPECT_LE((s.lambda - mixed.lambda).norm(), 1e-11 * mixed.lambda.norm());

@@ -1,7 +1,6 @@
 // The patch test with Coulomb friction: one block on a flat support carries a constant stress
 // exactly, whether its foot sticks or slips, of degree 1 and 2.
-#include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/solve/high_fidelity.hpp"
+#include "block_on_support.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,42 +9,7 @@
 namespace rbvi {
 namespace {
 
-constexpr double height = 0.5;
-
-Scene block(const std::string &degree, const std::string &friction = "coulomb") {
-  Scene scene =
-      make_scene("patch", {{"bodies", "one"}, {"degree", degree}, {"friction", friction}});
-  scene.parameters = all_free(scene.parameters.all);
-  return scene;
-}
-
-/// The exact state: mu = (indentation, shear, coefficient).
-struct Exact {
-  double pressure, stress, slip;
-  Exact(const Mu &mu, bool frictionless) {
-    const Lame material = lame(15, 0.35);
-    pressure = (material.lambda + 2 * material.shear) * mu[0] / height;
-    const double most = frictionless ? 0 : mu[2] * pressure;
-    stress = std::clamp(material.shear * mu[1] / height, -most, most);
-    slip = mu[1] - stress / material.shear * height;
-  }
-};
-
-/// Largest difference of the displacement, the motion included.
-double displacement_error(const Problem &problem, const Mu &mu, const Exact &exact,
-                          const HfSolution &s) {
-  const Mesh &mesh = problem.mesh();
-  double worst = 0;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const Point &x = mesh.points[v], motion = problem.scene().motion(mu, x);
-    const Index dof = 2 * mesh.natural_node[v];
-    const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
-    worst = std::max({worst, std::abs(across - exact.slip - (mu[1] - exact.slip) * x[1] / height),
-                      std::abs(down + mu[0] * x[1] / height)});
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
-  return worst;
-}
+using namespace block_on_support;
 
 void expect_exact(const Scene &scene, const Mu &mu, bool frictionless = false) {
   SCOPED_TRACE(describe(scene.parameters, mu));

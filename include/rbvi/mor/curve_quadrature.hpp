@@ -21,19 +21,18 @@ struct CurveOptions {
 };
 
 struct CurveReport {
-  // The last is what the model has. Empirical: after each pass, with the largest relative error of
-  // u that it adds at a training parameter.
+  // Empirical: after each pass, with the largest relative error of u that it adds at a training
+  // parameter; the last is what the model has.
   std::vector<int> points;
   std::vector<double> error;
-  std::array<int, 4> terms{};                    ///< interpolated: B^n, Theta^n, B^tau, Theta^tau
-  std::array<std::vector<double>, 4> eim_errors; ///< their e_EIM along the terms (B.32)
-  int states = 0;                                ///< interpolated: pairs (mu, Newton step)
+  // Interpolated: e_EIM along the terms of B^n, Theta^n, B^tau, Theta^tau (B.32).
+  std::array<std::vector<double>, 4> eim_errors;
+  int states = 0; ///< pairs (mu, Newton step)
 };
 
 /// Fills model.nitsche; the rest of the model is there. `coefficients`: of the samples in the
-/// modes, n x P. `u_left`: relative error that the modes
-/// leave in u. Collective. Throws failure where a reduced problem has no answer at a training
-/// parameter.
+/// modes, n x P (interpolated alone asks for them). `u_left`: relative error that the modes leave
+/// in u. Collective. Throws failure where a reduced problem has no answer at a training parameter.
 CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model);

@@ -4,10 +4,11 @@
 //
 // A_gamma = A + the terms that keep the method consistent, both separated. The points are all
 // Gauss points of the curve or a few with weights of their own: a minimisation either way, convex
-// where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: full
-// Newton steps, and where they do not settle, bounds frozen in an outer loop (4.63). With
-// empirical interpolation over (mu, Newton step) it is (4.79) as printed, without an energy: a step
-// is halved until the residual falls.
+// where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: Newton
+// steps, halved until the residual falls, and where they do not settle, bounds frozen in an outer
+// loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
+// printed, full steps from u = 0; where they do not converge, from a neighbour, at last with halved
+// steps.
 #pragma once
 
 #include "rbvi/rom/layer_terms.hpp"

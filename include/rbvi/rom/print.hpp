@@ -4,6 +4,7 @@
 #include "rbvi/rom/model.hpp"
 
 #include <ostream>
+#include <string>
 
 namespace rbvi {
 
@@ -12,5 +13,8 @@ void print_model(std::ostream &out, const ReducedModel &model);
 
 /// One line: the errors measured over the validation set, or that none were.
 void print_expected_errors(std::ostream &out, const ReducedModel &model);
+
+/// How a model of Nitsche's method integrates over the contact curve: "78 of 1264 Gauss points".
+std::string describe_curve(const NitscheModel &nitsche);
 
 } // namespace rbvi
