@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "vectors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -12,8 +13,9 @@ namespace {
 
 constexpr double at_bound = 1e-13; ///< closer to its bound an unknown is held by it
 constexpr int patience = 4;        ///< steps without a new smallest residual, the bounds moving
-constexpr double near = 1e-4; ///< residual from which on the linear systems are solved to the end
+constexpr double near = 1e-3; ///< residual from which on the linear systems are solved to the end
 constexpr int most_iterations = 60;
+constexpr double edge_depth = 0.5;  ///< at the edge of contact, over the largest: Hertz's
 constexpr int dear_iterations = 10; ///< of conjugate gradients: beyond, a factorisation is cheaper
 
 constexpr const char *not_definite =
@@ -132,8 +134,17 @@ double NitscheSystem::energy(Vec u) {
   return dot(u, au.get()) / 2 - dot(u, f.get()) + nitsche_energy(faces, on_layer(u), bounds);
 }
 
-void NitscheSystem::predict(const NitscheStart &start, Vec u) {
-  bounds = nitsche_bounds(start.pressures, law);
+void NitscheSystem::predict_from_rest(Vec u) {
+  const Handle<Vec> rest = like(u);
+  RBVI_CALL(VecZeroEntries(rest.get()));
+  Matrix pressures = nitsche_pressures(faces, on_layer(rest.get()));
+  const Vector of_law = nitsche_bounds(pressures, law);
+  pressures.col(0).array() -= edge_depth * std::min(0.0, pressures.col(0).minCoeff());
+  predict({rest.get(), pressures}, law.moves() ? Vector(Vector::Zero(of_law.size())) : of_law, u);
+}
+
+void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bounds, Vec u) {
+  bounds = friction_bounds;
   KSP ksp = nullptr;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(MatCopy(a_gamma.get(), tangent.get(), SAME_NONZERO_PATTERN));
@@ -147,9 +158,11 @@ void NitscheSystem::predict(const NitscheStart &start, Vec u) {
   add_extension(solver.layer().trace, terms, au.get());
   RBVI_CALL(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPSetOperators(ksp, tangent.get(), tangent.get()));
-  RBVI_CALL(KSPSetReusePreconditioner(ksp, factorisations > 0 ? PETSC_TRUE : PETSC_FALSE));
-  factorisations = std::max(factorisations, 1);
-  RBVI_CALL(KSPSolve(ksp, au.get(), ay.get()));
+  factorised = factorisations == 0;
+  if (factorised) ++factorisations;
+  RBVI_CALL(KSPSetReusePreconditioner(ksp, factorised ? PETSC_FALSE : PETSC_TRUE));
+  if (KSPSolve(ksp, au.get(), ay.get()) != 0) throw failure(not_definite);
+  check_linear_solve();
   RBVI_CALL(VecWAXPY(u, -1, ay.get(), from));
 }
 

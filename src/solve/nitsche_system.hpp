@@ -49,7 +49,9 @@ struct NitscheSystem {
   void jacobian(Vec u, Mat matrix);
   double energy(Vec u);
   /// One linear solve for u, where contact and stick are those of `start`. Sets the bounds, too.
-  void predict(const NitscheStart &start, Vec u);
+  void predict(const NitscheStart &start, const Vector &friction_bounds, Vec u);
+  /// Where nothing is known: contact where u = 0 penetrates deeply; no friction whose bound moves.
+  void predict_from_rest(Vec u);
   /// Newton steps from u, in place. Returns their number; throws failure.
   int newton(Vec u, std::string &reason);
   /// The part that the residual has of its terms; where a bound holds u back it may push.

@@ -38,7 +38,7 @@ struct NitscheSolution {
   Vector bounds;       ///< of friction there
   Vector layer;        ///< u on the layer
   double energy = 0;   ///< a(u,u)/2 - f(u) (4.11)
-  double residual = 0; ///< |A_gamma u + terms - F| / (|A_gamma u| + |terms| + |F|)
+  double residual = 0; ///< |A_gamma u - F + terms| / (|A_gamma u - F| + |terms|)
   int iterations = 0;  ///< Newton steps
   int outer_iterations = 0;
   int factorisations = 0;
@@ -53,9 +53,9 @@ public:
   /// a NitscheRecipe.
   NitscheSolver(Problem &problem, const NitscheOptions &options);
   ~NitscheSolver();
-  /// Collective. `op`: the problem assembled at some mu; `start`: null: zero. Throws
-  /// failure, saying what to try, where SNES does not converge or a tangent is not positive
-  /// definite (gamma0 too small).
+  /// Collective. `op`: the problem assembled at some mu; `start`: null: u = 0, in contact where its
+  /// penetration is above half of the largest. Throws failure, saying what to try, where SNES does
+  /// not converge or a tangent is not positive definite (gamma0 too small).
   NitscheSolution solve(const Operators &op, const NitscheStart *start = nullptr);
   const ContactLayer &layer() const { return layer_; }
   /// Called with u on the layer at the start of every Newton step, and the bounds of friction.
