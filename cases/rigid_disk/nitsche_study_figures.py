@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, history, log_axis, plt,
                      read_vtu, save)
-from nitsche_study import GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
+from nitsche_study import EIM_ERRORS, GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
 from study_tools import rows_of, summary
 
 import numpy as np
@@ -119,20 +119,25 @@ def modes(runs, directory):
 
 
 def interpolation(runs, directory):
-    """Errors of the empirical interpolation over (mu, Newton step) (figures 4.5, 4.11, 4.12)."""
-    parts = (("contact_matrix", "$B^n$", BLUE, "-"), ("contact_vector", r"$\Theta^n$", GREEN, "-"),
-             ("friction_matrix", r"$B^\tau$", ORANGE, "--"),
-             ("friction_vector", r"$\Theta^\tau$", PURPLE, "--"))
-    figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True, sharey=True)
-    for axis, (law, name) in zip(axes, LAWS.items()):
-        for part, label, colour, style in parts[:2 if law == "none" else 4]:
-            error = np.maximum(history(runs[law, "interpolated"], "curve/" + part), 1e-16)
-            error = error[error > 1e-9]
-            axis.plot(np.arange(len(error)), error, style, color=colour, label=label)
-        log_axis(axis, "terms", "largest relative error" if law == "none" else "",
-                 f"friction: {name}")
-        axis.legend(fontsize=8)
-    axes[0].set_ylim(1e-7, 5)
+    """Errors of the empirical interpolation over (mu, Newton step): matrices above, vectors below;
+    over the training set, other parameters, and the last steps there (figures 4.5, 4.11, 4.12)."""
+    parts = (("matrix", "$B^n$", r"$B^\tau$"), ("vector", r"$\Theta^n$", r"$\Theta^\tau$"))
+    sets = (("", "training", "-"), ("_validation", "validation", ":"),
+            ("_converged", "validation, last step", "--"))
+    figure, axes = plt.subplots(2, 3, figsize=(13, 6.2), constrained_layout=True, sharey=True)
+    for row, (kind, *labels) in zip(axes, parts):
+        for axis, (law, name) in zip(row, LAWS.items()):
+            sides = ("contact",) if law == "none" else ("contact", "friction")
+            for side, label, colour in zip(sides, labels, (BLUE, ORANGE)):
+                for suffix, title, style in sets:
+                    error = history(runs[law, EIM_ERRORS], f"curve/{side}_{kind}{suffix}")
+                    error = error[error > 1e-9]
+                    axis.plot(np.arange(len(error)), error, style, color=colour,
+                              label=f"{label}, {title}")
+            log_axis(axis, "terms", "largest relative error" if law == "none" else "",
+                     f"friction: {name}" if kind == "matrix" else "")
+            axis.legend(fontsize=7)
+    axes[0, 0].set_ylim(1e-7, 5)
     save(figure, directory, "eim.png")
 
 
@@ -153,9 +158,9 @@ def errors(runs, directory):
         rows = error_map(runs[law, "full"])
         top.plot([row["N"] for row in rows], [row["u_floor_max"] for row in rows], ":",
                  color="black", label="projection")
-        if law == "none":
-            bottom.plot([row["N"] for row in rows], [row["lambda_floor_max"] for row in rows], ":",
-                        color="black", label="projection")
+        floor = stress.replace("_max", "_floor_max")
+        bottom.plot([row["N"] for row in rows], [row[floor] for row in rows], ":", color="black",
+                    label="projection")
         log_axis(top, "", "largest relative error" if law == "none" else "",
                  f"displacement, friction: {name}")
         log_axis(bottom, "modes N", "largest relative error" if law == "none" else "",

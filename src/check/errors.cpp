@@ -45,6 +45,10 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   return result;
 }
 
+double relative(double error, double size) {
+  return size > 0 ? error / size : error;
+}
+
 /// |values(first .. first + count - 1)|_W.
 double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index count) {
   Vector part = Vector::Zero(values.size());
@@ -52,20 +56,23 @@ double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index
   return std::sqrt(part.dot(w * part));
 }
 
-/// Of Nitsche's method: errors of the normal stress of the projected displacement.
-Vector stress_floor(const ReducedModel &model, const Matrix &projections, const Truths &truths,
-                    const SparseMatrix &w) {
+/// Of Nitsche's method: errors of the stresses of the projected displacement.
+void add_stress_floors(const ReducedModel &model, const Matrix &projections, const Truths &truths,
+                       const SparseMatrix &w, ModelErrors &errors) {
   OnlineSolver solver(model);
-  const Index normal = model.contact_points.rows();
-  Vector floor(truths.lambda_norm.size());
-  for (Index p = 0; p < floor.size(); ++p) {
+  const Index normal = model.contact_points.rows(), count = projections.cols();
+  errors.lambda_floor.resize(count);
+  errors.tangential_floor.resize(truths.tangential_norm.size());
+  for (Index p = 0; p < count; ++p) {
     ReducedSolution projected;
     projected.mu = expand(model.parameters, truths.mu[static_cast<std::size_t>(p)]);
     projected.u = projections.col(p);
-    floor[p] = part_norm(w, solver.multiplier(projected) - truths.lambda.col(p), 0, normal) /
-               std::max(truths.lambda_norm[p], 1e-300);
+    const Vector difference = solver.multiplier(projected) - truths.lambda.col(p);
+    errors.lambda_floor[p] = relative(part_norm(w, difference, 0, normal), truths.lambda_norm[p]);
+    if (errors.tangential_floor.size() > 0)
+      errors.tangential_floor[p] =
+          relative(part_norm(w, difference, normal, normal), truths.tangential_norm[p]);
   }
-  return floor;
 }
 
 /// Relative distances of the true multipliers to what the dual basis spans.
@@ -194,15 +201,15 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       c.head(k) = answer->u;
     errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
     const Vector difference = solver.multiplier(*answer) - truths.lambda.col(p);
-    const auto relative = [](double error, double size) { return size > 0 ? error / size : error; };
     errors.lambda[p] = relative(part_norm(w_product, difference, 0, normal), truths.lambda_norm[p]);
     if (rest > 0)
       errors.tangential[p] =
           relative(part_norm(w_product, difference, normal, rest), truths.tangential_norm[p]);
   }
-  errors.lambda_floor = model.nitsche
-                            ? stress_floor(model, truths.coordinates.topRows(k), truths, w_product)
-                            : multiplier_floor(model, truths, w_product);
+  if (model.nitsche)
+    add_stress_floors(model, truths.coordinates.topRows(k), truths, w_product, errors);
+  else
+    errors.lambda_floor = multiplier_floor(model, truths, w_product);
   std::sort(seconds.begin(), seconds.end());
   if (!seconds.empty()) errors.seconds = seconds[seconds.size() / 2];
   return errors;

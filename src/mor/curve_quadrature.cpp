@@ -249,8 +249,7 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
     choose_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, round_off),
                   scene, samples, pressures, model, report);
   } else if (options.rule == CurveRule::interpolated) {
-    report.states = interpolate_terms(problem, samples, {.tolerance = options.eim_tolerance},
-                                      nitsche, report.eim_errors);
+    interpolate_terms(problem, samples, options, nitsche, report);
     nitsche.rule = CurveRule::interpolated;
     nitsche.starts = coefficients;
   }

@@ -51,16 +51,20 @@ private:
   std::vector<EntryKey> keys_;
 };
 
+struct Interpolation {
+  LayerTerms terms;
+  Eim eim;
+};
+
 /// `project`: of one column of `values` onto the basis.
 template <class Project>
-LayerTerms interpolated(const Matrix &values, const std::vector<EntryKey> &keys, bool matrix,
-                        const EimOptions &options, const Project &project,
-                        std::vector<double> *errors = nullptr) {
-  const Eim found = eim(MPI_COMM_SELF, values, keys, options);
-  LayerTerms terms;
+Interpolation interpolated(const Matrix &values, const std::vector<EntryKey> &keys, bool matrix,
+                           double tolerance, const Project &project) {
+  Interpolation result{{}, eim(MPI_COMM_SELF, values, keys, {.tolerance = tolerance})};
+  const Eim &found = result.eim;
+  LayerTerms &terms = result.terms;
   terms.interpolation = found.interpolation;
   terms.error = found.error.empty() ? 0 : found.error.back();
-  if (errors != nullptr) *errors = found.error;
   for (const EntryKey &entry : found.entries) {
     terms.rows.push_back(static_cast<int>(entry.row));
     if (matrix) terms.columns.push_back(static_cast<int>(entry.column));
@@ -72,13 +76,27 @@ LayerTerms interpolated(const Matrix &values, const std::vector<EntryKey> &keys,
     taken.col(i) = column;
   }
   terms.reduced = taken * found.combination.triangularView<Eigen::Upper>();
-  return terms;
+  return result;
 }
 
-/// The states of a sweep from u = 0, and the operators of contact and friction there.
-struct Snapshots {
-  std::vector<Vector> contact_matrix, contact_vector, friction_matrix, friction_vector;
-};
+/// e_EIM along the terms over columns that are not of the training set: each term removes what is
+/// left at its entry.
+std::vector<double> errors_over(Matrix others, const Matrix &values,
+                                const std::vector<EntryKey> &keys, const Eim &found) {
+  const double largest = others.size() > 0 ? others.cwiseAbs().maxCoeff() : 0;
+  if (largest == 0) return {};
+  const Matrix functions =
+      values(Eigen::all, found.snapshots) * found.combination.triangularView<Eigen::Upper>();
+  std::vector<double> errors{1};
+  for (int j = 0; j < found.size(); ++j) {
+    const auto entry =
+        std::lower_bound(keys.begin(), keys.end(), found.entries[static_cast<std::size_t>(j)]);
+    const Eigen::RowVectorXd left = others.row(entry - keys.begin());
+    others.noalias() -= functions.col(j) * left;
+    errors.push_back(others.cwiseAbs().maxCoeff() / largest);
+  }
+  return errors;
+}
 
 Matrix side_by_side(const std::vector<Vector> &columns) {
   Matrix result(columns.empty() ? 0 : columns.front().size(), static_cast<Index>(columns.size()));
@@ -87,19 +105,41 @@ Matrix side_by_side(const std::vector<Vector> &columns) {
   return result;
 }
 
-/// Adds the operators at one state.
+/// The operators at each step of Newton's method.
+struct States {
+  std::array<std::vector<Vector>, 4> values; ///< B^n, Theta^n, B^tau, Theta^tau
+  std::vector<Index> converged;              ///< the last steps
+};
+
 void add_state(const LayerPattern &pattern, const std::vector<CurveCell> &cells,
                const std::vector<NitscheFace> &faces, const Vector &layer, const Vector &bounds,
-               Snapshots &snapshots) {
+               States &states) {
   const Matrix pressures = nitsche_pressures(faces, layer);
   const Vector matrix = pattern.values(cells, nitsche_tangent(faces, pressures, {}));
   const Vector vector = nitsche_residual(faces, layer, {});
-  snapshots.contact_matrix.push_back(matrix);
-  snapshots.contact_vector.push_back(vector);
+  states.values[0].push_back(matrix);
+  states.values[1].push_back(vector);
   if (bounds.size() == 0) return;
-  snapshots.friction_matrix.push_back(
-      pattern.values(cells, nitsche_tangent(faces, pressures, bounds)) - matrix);
-  snapshots.friction_vector.push_back(nitsche_residual(faces, layer, bounds) - vector);
+  states.values[2].push_back(pattern.values(cells, nitsche_tangent(faces, pressures, bounds)) -
+                             matrix);
+  states.values[3].push_back(nitsche_residual(faces, layer, bounds) - vector);
+}
+
+States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pattern,
+                 const std::vector<Mu> &all_mu) {
+  const std::vector<CurveCell> &cells = solver.layer().cells;
+  States states;
+  for (const Mu &mu : all_mu) {
+    const Operators &op = problem.assemble(mu);
+    const std::vector<NitscheFace> faces = nitsche_faces(problem.scene(), op.mu, cells);
+    solver.watch = [&](const Vector &layer, const Vector &bounds) {
+      add_state(pattern, cells, faces, layer, bounds, states);
+    };
+    const NitscheSolution last = solver.solve(op);
+    states.converged.push_back(static_cast<Index>(states.values[0].size()));
+    add_state(pattern, cells, faces, last.layer, last.bounds, states);
+  }
+  return states;
 }
 
 } // namespace
@@ -113,49 +153,43 @@ LayerTerms interpolate_consistency(const Scene &scene, const ContactLayer &layer
     const auto faces = nitsche_faces(scene, expand(scene.parameters, sample.mu), layer.cells);
     values.push_back(pattern.values(layer.cells, nitsche_consistency(faces, friction)));
   }
-  return interpolated(side_by_side(values), pattern.keys(), true, {.tolerance = exact},
-                      [&](const Vector &column) { return pattern.projected(column, trace); });
+  return interpolated(side_by_side(values), pattern.keys(), true, exact,
+                      [&](const Vector &column) { return pattern.projected(column, trace); })
+      .terms;
 }
 
-int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
-                      const EimOptions &options, NitscheModel &nitsche,
-                      std::array<std::vector<double>, 4> &errors) {
-  const Scene &scene = problem.scene();
-  // The steps that the reduced solve will take; with friction they can cycle without line search.
-  const bool friction = scene.support->friction.law != FrictionLaw::none;
+void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
+                       const CurveOptions &options, NitscheModel &nitsche, CurveReport &report) {
+  // The steps as printed; with friction they can cycle without line search.
+  const bool friction = problem.scene().support->friction.law != FrictionLaw::none;
   NitscheSolver solver(problem, {.full_steps = !friction});
-  const std::vector<CurveCell> &cells = solver.layer().cells;
-  const LayerPattern pattern(cells);
-  Snapshots snapshots;
-  for (const Sample &sample : samples) {
-    const Operators &op = problem.assemble(sample.mu);
-    const std::vector<NitscheFace> faces = nitsche_faces(scene, op.mu, cells);
-    solver.watch = [&](const Vector &layer, const Vector &bounds) {
-      add_state(pattern, cells, faces, layer, bounds, snapshots);
-    };
-    const NitscheSolution last = solver.solve(op);
-    add_state(pattern, cells, faces, last.layer, last.bounds, snapshots);
-  }
+  const LayerPattern pattern(solver.layer().cells);
+  std::vector<Mu> training;
+  for (const Sample &sample : samples)
+    training.push_back(sample.mu);
+  const States states = states_at(problem, solver, pattern, training);
+  const States others = states_at(problem, solver, pattern, options.eim_validation);
+  report.states = static_cast<int>(states.values[0].size());
   std::vector<EntryKey> dofs;
   for (PetscInt i = 0; i < solver.layer().trace.size; ++i)
     dofs.push_back({i, 0});
-  const auto matrix = [&](const std::vector<Vector> &values, std::vector<double> &history) {
-    if (values.empty()) return LayerTerms{};
-    return interpolated(
-        side_by_side(values), pattern.keys(), true, options,
-        [&](const Vector &column) { return pattern.projected(column, nitsche.trace); }, &history);
-  };
-  const auto vector = [&](const std::vector<Vector> &values, std::vector<double> &history) {
-    if (values.empty()) return LayerTerms{};
-    return interpolated(
-        side_by_side(values), dofs, false, options,
-        [&](const Vector &column) { return Vector(nitsche.trace.transpose() * column); }, &history);
-  };
-  nitsche.contact_matrix = matrix(snapshots.contact_matrix, errors[0]);
-  nitsche.contact_vector = vector(snapshots.contact_vector, errors[1]);
-  nitsche.friction_matrix = matrix(snapshots.friction_matrix, errors[2]);
-  nitsche.friction_vector = vector(snapshots.friction_vector, errors[3]);
-  return static_cast<int>(snapshots.contact_vector.size());
+  const std::array<LayerTerms *, 4> terms{&nitsche.contact_matrix, &nitsche.contact_vector,
+                                          &nitsche.friction_matrix, &nitsche.friction_vector};
+  for (std::size_t k = 0; k < (friction ? 4 : 2); ++k) {
+    const bool matrix = k % 2 == 0;
+    const std::vector<EntryKey> &keys = matrix ? pattern.keys() : dofs;
+    const Matrix values = side_by_side(states.values[k]);
+    Interpolation found =
+        interpolated(values, keys, matrix, options.eim_tolerance, [&](const Vector &column) {
+          return matrix ? pattern.projected(column, nitsche.trace)
+                        : Vector(nitsche.trace.transpose() * column);
+        });
+    *terms[k] = std::move(found.terms);
+    const Matrix unseen = side_by_side(others.values[k]);
+    report.eim_errors[k] = {
+        found.eim.error, errors_over(unseen, values, keys, found.eim),
+        errors_over(unseen(Eigen::all, others.converged), values, keys, found.eim)};
+  }
 }
 
 } // namespace rbvi

@@ -1,13 +1,10 @@
 // Empirical interpolation of operators on the contact layer.
 #pragma once
 
+#include "rbvi/mor/curve_quadrature.hpp"
 #include "rbvi/mor/eim.hpp"
 #include "rbvi/rom/layer_terms.hpp"
 #include "rbvi/solve/nitsche.hpp"
-#include "rbvi/sweep/sweep.hpp"
-
-#include <array>
-#include <vector>
 
 namespace rbvi {
 
@@ -17,10 +14,9 @@ LayerTerms interpolate_consistency(const Scene &scene, const ContactLayer &layer
                                    const std::vector<Sample> &samples, const Matrix &trace);
 
 /// B^n, Theta^n and, with friction, B^tau, Theta^tau over all pairs of a training parameter and a
-/// Newton step from u = 0 (4.71)-(4.78). Solves the high-fidelity problems again. Collective.
-/// Returns the number of pairs; `errors`: e_EIM along the terms of each (B.32).
-int interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
-                      const EimOptions &options, NitscheModel &nitsche,
-                      std::array<std::vector<double>, 4> &errors);
+/// Newton step (4.71)-(4.78), without friction from u = 0. Solves the high-fidelity problems again.
+/// Collective. Sets the errors and the number of pairs in the report.
+void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
+                       const CurveOptions &options, NitscheModel &nitsche, CurveReport &report);
 
 } // namespace rbvi

@@ -192,6 +192,23 @@ Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &sample
   return result;
 }
 
+void add_histories(const CurveReport &curve,
+                   std::map<std::string, std::vector<double>> &histories) {
+  histories["curve/points"] = {curve.points.begin(), curve.points.end()};
+  histories["curve/error"] = curve.error;
+  if (curve.states == 0) return;
+  histories["curve/states"] = {static_cast<double>(curve.states)};
+  constexpr std::array operators{"contact_matrix", "contact_vector", "friction_matrix",
+                                 "friction_vector"};
+  for (std::size_t k = 0; k < operators.size(); ++k) {
+    const std::string name = std::string("curve/") + operators[k];
+    const EimErrors &errors = curve.eim_errors[k];
+    if (!errors.training.empty()) histories[name] = errors.training;
+    if (!errors.validation.empty()) histories[name + "_validation"] = errors.validation;
+    if (!errors.converged.empty()) histories[name + "_converged"] = errors.converged;
+  }
+}
+
 /// Modes alone, then the curve.
 void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
                     const ReduceOptions &options, Reduction &result, StageTimes &times) {
@@ -206,16 +223,7 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   if (options.curve.rule == CurveRule::interpolated)
     coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
   result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
-  result.model.histories["curve/points"] = {result.curve.points.begin(), result.curve.points.end()};
-  result.model.histories["curve/error"] = result.curve.error;
-  constexpr std::array<const char *, 4> interpolated{"curve/contact_matrix", "curve/contact_vector",
-                                                     "curve/friction_matrix",
-                                                     "curve/friction_vector"};
-  if (result.curve.states > 0)
-    result.model.histories["curve/states"] = {static_cast<double>(result.curve.states)};
-  for (std::size_t k = 0; k < interpolated.size(); ++k)
-    if (!result.curve.eim_errors[k].empty())
-      result.model.histories[interpolated[k]] = result.curve.eim_errors[k];
+  add_histories(result.curve, result.model.histories);
 }
 
 } // namespace

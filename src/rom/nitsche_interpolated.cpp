@@ -14,7 +14,7 @@ namespace {
 
 constexpr double accuracy = 1e-10; ///< change of u, relative (4.26)
 constexpr double smallest_step = 1e-3;
-constexpr int most_steps = 60;
+constexpr int most_printed_steps = 20, most_halved_steps = 60;
 
 /// Cells that any of the four operators is sampled on.
 std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<CurveCell> &all) {
@@ -77,23 +77,60 @@ Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &fac
   return result;
 }
 
+/// But for bounds that move.
+Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &faces,
+                                                const System &system, const Vector &u) const {
+  const Matrix pressures = nitsche_pressures(faces, model.trace * u);
+  const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
+  Matrix result = system.quadratic.a_gamma;
+  const auto add = [&](const LayerTerms &terms, const SampledLayer &sampled,
+                       const Matrix &on_layer) {
+    Matrix theta(terms.size(), u.size());
+    for (Index j = 0; j < u.size(); ++j)
+      theta.col(j) = sampled.of_vector(on_layer.col(j));
+    result += terms.reduced * theta;
+  };
+  const Matrix of_contact = times_trace(contact);
+  if (model.contact_vector.size() > 0) add(model.contact_vector, contact_vector, of_contact);
+  if (model.friction_vector.size() > 0) {
+    const Vector bounds = nitsche_bounds(pressures, system.law);
+    add(model.friction_vector, friction_vector,
+        times_trace(nitsche_tangent(faces, pressures, bounds)) - of_contact);
+  }
+  return result;
+}
+
+/// Of the blocks of `cells`: a row for each dof of the layer.
+Matrix ReducedNitsche::Interpolated::times_trace(const std::vector<FaceBlock> &blocks) const {
+  Matrix result = Matrix::Zero(model.trace.rows(), model.trace.cols());
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const std::array<int, 12> &dofs = cells[k].dofs;
+    for (std::size_t i = 0; i < 12; ++i)
+      for (std::size_t j = 0; j < 12; ++j)
+        if (dofs[i] >= 0 && dofs[j] >= 0)
+          result.row(dofs[i]) +=
+              blocks[k](static_cast<Index>(i), static_cast<Index>(j)) * model.trace.row(dofs[j]);
+  }
+  return result;
+}
+
 int ReducedNitsche::Interpolated::solve(const Scene &scene, const Mu &all_parameters,
                                         const Vector &near, System &system) {
   const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
   int steps = 0;
-  const Vector zero = Vector::Zero(system.u.size());
-  for (const auto &[start, damped] :
-       {std::pair{&zero, false}, std::pair{&near, false}, std::pair{&near, true}}) {
-    system.u = *start;
+  for (const bool printed : {true, false}) {
+    system.u = near;
     Terms here = terms(faces, system, system.u);
+    const int most_steps = printed ? most_printed_steps : most_halved_steps;
     for (int step = 1; step <= most_steps; ++step) {
       ++steps;
-      const Eigen::PartialPivLU<Matrix> factor(tangent(faces, system, system.u));
-      const Vector d = -factor.solve(here.residual);
+      const Matrix slope =
+          printed ? tangent(faces, system, system.u) : derivative(faces, system, system.u);
+      const Vector d = -Eigen::PartialPivLU<Matrix>(slope).solve(here.residual);
       if (!d.allFinite()) break;
       double t = 1;
       Terms next = terms(faces, system, system.u + d);
-      while (damped && !(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
+      while (!printed && !(next.residual.norm() < here.residual.norm()) && t > smallest_step) {
         t /= 2;
         next = terms(faces, system, system.u + t * d);
       }

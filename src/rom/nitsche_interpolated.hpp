@@ -12,8 +12,9 @@ struct ReducedNitsche::Interpolated {
   SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
 
   Interpolated(const NitscheModel &of, const std::vector<CurveCell> &all);
-  /// From zero, as printed; where that does not converge, from the coefficients `near`, and with
-  /// damping. Into system.u. Returns the steps.
+  /// From the coefficients `near`, by (4.79); where that does not converge (its matrix is not the
+  /// derivative of its vectors), by the derivative, with halved steps. Into system.u. Returns the
+  /// steps.
   int solve(const Scene &scene, const Mu &all_parameters, const Vector &near, System &system);
 
 private:
@@ -25,6 +26,9 @@ private:
   Terms terms(const std::vector<NitscheFace> &faces, const System &system, const Vector &u) const;
   Matrix tangent(const std::vector<NitscheFace> &faces, const System &system,
                  const Vector &u) const;
+  Matrix derivative(const std::vector<NitscheFace> &faces, const System &system,
+                    const Vector &u) const;
+  Matrix times_trace(const std::vector<FaceBlock> &blocks) const;
 };
 
 } // namespace rbvi

@@ -34,10 +34,14 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
   RBVI_CALL(VecDuplicate(op.f, unknowns.put()));
   Vec u = unknowns.get();
   const bool nested = system.law.moves() && !options_.single_loop;
-  if (start != nullptr)
+  if (start != nullptr) {
     system.predict(*start, nitsche_bounds(start->pressures, system.law), u);
-  else
+  } else if (options_.full_steps) {
+    RBVI_CALL(VecZeroEntries(u));
+    system.set_bounds(u);
+  } else {
     system.predict_from_rest(u);
+  }
   system.smallest_scale = 0;
   system.residual(u, system.force.get());
   system.smallest_scale = vanishing * system.scale;

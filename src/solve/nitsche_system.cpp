@@ -14,7 +14,7 @@ namespace {
 constexpr double at_bound = 1e-13; ///< closer to its bound an unknown is held by it
 constexpr int patience = 4;        ///< steps without a new smallest residual, the bounds moving
 constexpr double near = 1e-3; ///< residual from which on the linear systems are solved to the end
-constexpr int most_iterations = 60;
+constexpr int most_iterations = 15;
 constexpr double edge_depth = 0.5;  ///< at the edge of contact, over the largest: Hertz's
 constexpr int dear_iterations = 10; ///< of conjugate gradients: beyond, a factorisation is cheaper
 
@@ -158,11 +158,14 @@ void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bo
   add_extension(solver.layer().trace, terms, au.get());
   RBVI_CALL(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPSetOperators(ksp, tangent.get(), tangent.get()));
-  factorised = factorisations == 0;
-  if (factorised) ++factorisations;
-  RBVI_CALL(KSPSetReusePreconditioner(ksp, factorised ? PETSC_FALSE : PETSC_TRUE));
-  if (KSPSolve(ksp, au.get(), ay.get()) != 0) throw failure(not_definite);
-  check_linear_solve();
+  KSPConvergedReason reason = KSP_DIVERGED_ITS;
+  for (factorised = factorisations == 0; reason == KSP_DIVERGED_ITS; factorised = true) {
+    if (factorised) ++factorisations;
+    RBVI_CALL(KSPSetReusePreconditioner(ksp, factorised ? PETSC_FALSE : PETSC_TRUE));
+    if (KSPSolve(ksp, au.get(), ay.get()) != 0) throw failure(not_definite);
+    check_linear_solve();
+    RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
+  }
   RBVI_CALL(VecWAXPY(u, -1, ay.get(), from));
 }
 

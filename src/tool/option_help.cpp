@@ -68,6 +68,8 @@ const std::vector<OptionHelp> &tool_options() {
       {"nitsche_quadrature_tolerance", "0",
        "empirical: relative error that it may add to u; 0: as much as the modes leave"},
       {"nitsche_eim_tolerance", "1e-6", "interpolated: relative error over (mu, Newton step)"},
+      {"nitsche_eim_validation", "",
+       "interpolated: further mu, as -train, whose steps measure that error, too"},
       {"gcns_tolerance", "0", "collocated: e_GCNS at which the selection of nodes stops"},
       {"gcns_max_nodes", "0", "collocated: most collocation nodes; 0 is no bound"}};
   return options;

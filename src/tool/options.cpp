@@ -260,6 +260,9 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
   options.curve.rule = static_cast<CurveRule>(choice_of("nitsche_quadrature", curve_rule_names()));
   options.curve.tolerance = number_of("nitsche_quadrature_tolerance", 0, 1);
   options.curve.eim_tolerance = number_of("nitsche_eim_tolerance", 0, 1);
+  if (const std::string unseen = text_of("nitsche_eim_validation"); !unseen.empty())
+    options.curve.eim_validation = while_doing("reading option -nitsche_eim_validation",
+                                               [&] { return parse_set(space, unseen); });
   options.gcns.tolerance = number_of("gcns_tolerance", 0, 1e300);
   options.gcns.max_nodes = integer_of("gcns_max_nodes", 0, 100000);
   return options;

@@ -79,7 +79,8 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   MPI_Comm_size(world, &ranks);
   const auto count = static_cast<int>(pairs.size());
   const bool friction = truths.tangential_norm.size() > 0;
-  Matrix rows = Matrix::Zero(count, friction ? 14 : 13);
+  const bool stresses = friction && model.nitsche;
+  Matrix rows = Matrix::Zero(count, stresses ? 15 : friction ? 14 : 13);
   collectively(world, [&] {
     for (int k = rank; k < count; k += ranks) {
       const auto [kind, n, r] = pairs[static_cast<std::size_t>(k)];
@@ -90,6 +91,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
           e.lambda.mean(), e.lambda.maxCoeff(), e.lambda_floor.mean(), e.seconds, e.failed,
           e.u_floor.maxCoeff(), e.lambda_floor.maxCoeff();
       if (friction) rows(k, 13) = e.tangential.maxCoeff();
+      if (stresses) rows(k, 14) = e.tangential_floor.maxCoeff();
     }
   });
   MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPI_DOUBLE, MPI_SUM,
@@ -105,6 +107,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
                                    "seconds",         "failed",     "u_floor_max",
                                    "lambda_floor_max"};
     if (friction) names.emplace_back("tangential_max");
+    if (stresses) names.emplace_back("tangential_floor_max");
     write_columns(path, names, columns);
   });
 }
@@ -235,6 +238,9 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
     print_errors(label.c_str(), *errors);
   std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e\n", "bases alone", whole.u_floor.mean(),
               whole.u_floor.maxCoeff(), whole.lambda_floor.mean(), whole.lambda_floor.maxCoeff());
+  if (whole.tangential_floor.size() > 0)
+    std::printf("  %-18s %9s %9s   %9.2e %9.2e\n", "  lambda_tau", "", "",
+                whole.tangential_floor.mean(), whole.tangential_floor.maxCoeff());
   write_errors(out / "errors.csv", options.scene.parameters, truths, whole, plain);
   write_summary(out / "summary.csv", rows, model);
   if (whole.failed == 0) write_worst_pressure(out / "worst_pressure.csv", model, truths, whole);

@@ -99,6 +99,41 @@ TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
   }
 }
 
+/// Over the training set, they are those that the selection saw.
+TEST(NitscheReduced, ErrorsOfTheInterpolationAreMeasuredOverFurtherParameters) {
+  ReducedAlone r(disk("none"), "grid:7");
+  ReduceOptions options = with(CurveRule::interpolated);
+  options.curve.eim_tolerance = 1e-6;
+  const auto histories_with = [&](const std::vector<Mu> &others) {
+    options.curve.eim_validation = others;
+    r.reduce(options);
+    return r.model.histories;
+  };
+  const ParameterSpace &space = r.problem.scene().parameters;
+  const auto same = histories_with(parse_set(space, "grid:7"));
+  const auto unseen = histories_with(parse_set(space, "random:3:5"));
+  for (const std::string name : {"curve/contact_matrix", "curve/contact_vector"}) {
+    const std::vector<double> &training = same.at(name), &again = same.at(name + "_validation");
+    ASSERT_EQ(again.size(), training.size());
+    for (std::size_t j = 0; j < training.size(); ++j)
+      EXPECT_NEAR(again[j], training[j], 1e-9) << name << ", " << j << " terms";
+    EXPECT_GT(unseen.at(name + "_validation").back(), 1e-4);
+  }
+}
+
+/// Matrices and vectors are interpolated apart, so that one is not the derivative of the other.
+TEST(NitscheReduced, RoughlyInterpolatedOperatorsAnswerTheWholeBox) {
+  ReducedAlone r(disk("tresca"), "grid:13");
+  for (const int modes : {5, 9}) {
+    ReduceOptions options = with(CurveRule::interpolated, modes);
+    options.curve.eim_tolerance = 1e-2;
+    r.reduce(options);
+    OnlineSolver online(r.model);
+    for (const Mu &mu : parse_set(r.problem.scene().parameters, "grid:61"))
+      EXPECT_LE(online.solve(mu).kkt_residual, 1e-8) << mu[0]; // (4.26): u within 1e-10
+  }
+}
+
 /// a_gamma - a is of one term where the map is a similarity, of the three products of two Lame
 /// constants (over lambda + 2 shear) with Poisson's ratio.
 TEST(NitscheReduced, ConsistencyIsASumOfFewTerms) {

@@ -31,6 +31,7 @@ struct ModelErrors {
   Vector u, lambda;             ///< of the reduced answers; with friction lambda_n
   Vector tangential;            ///< lambda_tau; empty without friction
   Vector u_floor, lambda_floor; ///< of the projections on the space and on the cone
+  Vector tangential_floor;      ///< Nitsche's method with friction alone
   double seconds = 0;           ///< median per query, outputs and reconstruction left out
   double kkt_residual = 0;      ///< largest
   int failed = 0;               ///< queries without an answer: their errors are infinite

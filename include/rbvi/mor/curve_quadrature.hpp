@@ -18,6 +18,14 @@ struct CurveOptions {
   /// what the modes leave.
   double tolerance = 0;
   double eim_tolerance = 1e-6; ///< interpolated: of the matrices and vectors (B.32)
+  /// interpolated: the errors over the Newton steps at these are reported, too.
+  std::vector<Mu> eim_validation;
+};
+
+/// e_EIM along the terms (B.32): over the training pairs (mu, Newton step), over those of other mu
+/// (4.85), and over their last steps alone (4.87).
+struct EimErrors {
+  std::vector<double> training, validation, converged;
 };
 
 struct CurveReport {
@@ -25,9 +33,9 @@ struct CurveReport {
   // parameter; the last is what the model has.
   std::vector<int> points;
   std::vector<double> error;
-  // Interpolated: e_EIM along the terms of B^n, Theta^n, B^tau, Theta^tau (B.32).
-  std::array<std::vector<double>, 4> eim_errors;
-  int states = 0; ///< pairs (mu, Newton step)
+  // Interpolated.
+  std::array<EimErrors, 4> eim_errors; ///< of B^n, Theta^n, B^tau, Theta^tau
+  int states = 0;                      ///< pairs (mu, Newton step)
 };
 
 /// Fills model.nitsche; the rest of the model is there. `coefficients`: of the samples in the

@@ -7,8 +7,8 @@
 // where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: Newton
 // steps, halved until the residual falls, and where they do not settle, bounds frozen in an outer
 // loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
-// printed, full steps from u = 0; where they do not converge, from a neighbour, at last with halved
-// steps.
+// printed, from neighbouring samples; where it does not converge, the derivative of its vectors,
+// with halved steps.
 #pragma once
 
 #include "rbvi/rom/layer_terms.hpp"

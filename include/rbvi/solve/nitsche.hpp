@@ -21,7 +21,7 @@ namespace rbvi {
 
 struct NitscheOptions {
   bool single_loop = false;    ///< moving bounds of friction: (4.53) instead of (4.63)
-  bool full_steps = false;     ///< Newton's steps as they are, solved to the end: (4.23) as printed
+  bool full_steps = false;     ///< Newton's steps as they are, from u = 0: (4.23) as printed
   bool nonpenetration = false; ///< SNES bounds the normal displacement of the nodes by the gap
 };
 
