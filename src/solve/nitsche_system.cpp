@@ -192,6 +192,9 @@ void NitscheSystem::check_linear_solve() const {
   KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
+  if (reason == KSP_DIVERGED_ITS && factorised)
+    throw failure("conjugate gradients did not converge with a new preconditioner: raise "
+                  "-nitsche_ksp_max_it");
   if (reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_INDEFINITE_PC ||
       (reason < 0 && factorised))
     throw failure(not_definite);
@@ -373,7 +376,7 @@ void NitscheSystem::set_linear_solver() {
   }
   RBVI_CALL(SNESSetFromOptions(snes.get()));
   if (options.full_steps)
-    RBVI_CALL(KSPSetTolerances(ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
+    RBVI_CALL(KSPSetTolerances(ksp, 1e-10, PETSC_DEFAULT, PETSC_DEFAULT, 200));
   RBVI_CALL(KSPGetTolerances(ksp, &linear_tolerance, nullptr, nullptr, nullptr));
 }
 
