@@ -5,8 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, history, log_axis, plt,
-                     read_vtu, save)
+from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, draw_bodies, history, log_axis,
+                     plt, read_vtu, save)
 from nitsche_study import EIM_ERRORS, GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
 from study_tools import rows_of, summary
 
@@ -130,10 +130,14 @@ def interpolation(runs, directory):
             sides = ("contact",) if law == "none" else ("contact", "friction")
             for side, label, colour in zip(sides, labels, (BLUE, ORANGE)):
                 for suffix, title, style in sets:
-                    error = history(runs[law, EIM_ERRORS], f"curve/{side}_{kind}{suffix}")
+                    try:
+                        error = history(runs[law, EIM_ERRORS], f"curve/{side}_{kind}{suffix}")
+                    except Missing:  # zero at all these steps
+                        continue
                     error = error[error > 1e-9]
-                    axis.plot(np.arange(len(error)), error, style, color=colour,
-                              label=f"{label}, {title}")
+                    if len(error) > 0:
+                        axis.plot(np.arange(len(error)), error, style, color=colour,
+                                  label=f"{label}, {title}")
             log_axis(axis, "terms", "largest relative error" if law == "none" else "",
                      f"friction: {name}" if kind == "matrix" else "")
             axis.legend(fontsize=7)
