@@ -41,6 +41,22 @@ Sums integrate(const std::vector<NitscheFace> &faces, const Matrix &pressures,
   return sums;
 }
 
+/// Contact pressure averaged over each edge. It balances the other forces there, whereas sigma_n
+/// overshoots beside a kink.
+Vector edge_pressures(const std::vector<NitscheFace> &faces, const Matrix &pressures) {
+  Vector result(static_cast<Index>(faces.size()));
+  Index number = 0, edge = 0;
+  for (const NitscheFace &face : faces) {
+    double force = 0, length = 0;
+    for (const NitschePoint &point : face.points) {
+      force += point.weight * std::max(0.0, -pressures(number++, 0));
+      length += point.weight;
+    }
+    result[edge++] = force / length;
+  }
+  return result;
+}
+
 double ratio(double value, double scale) {
   return scale > 0 ? value / scale : value;
 }
@@ -55,7 +71,10 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   outputs.contact_measure = sums.contact;
   outputs.contact_half_width = sums.contact / 2;
   outputs.peak_pressure = std::max(0.0, -fields.sigma_n.minCoeff());
-  outputs.centre_pressure = centre_pressure(-fields.sigma_n, fields.arc_length, sums.contact / 2);
+  const Index edges = fields.arc_length.size() - 1;
+  outputs.centre_pressure = centre_pressure(
+      edge_pressures(faces, pressures),
+      (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2, sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
   const double normal = fields.sigma_n.norm();
   outputs.law_error_normal = ratio((fields.sigma_n - fields.p_n.cwiseMin(0)).norm(), normal);

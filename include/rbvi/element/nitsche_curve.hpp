@@ -112,7 +112,7 @@ CurveFields nitsche_fields(const Scene &scene, const Mu &all_parameters,
 Vector nitsche_multiplier(const CurveFields &fields, bool friction);
 
 /// Fills forces, half-widths, pressures, penetration and the errors of the laws; see
-/// support_outputs.
+/// support_outputs. centre_pressure is that of -[P_n]_- averaged over each edge.
 void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
                      const CurveFields &fields, const NitscheLaw &law, Outputs &outputs);
 

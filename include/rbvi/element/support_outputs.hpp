@@ -13,8 +13,8 @@ FrictionBound friction_bound(const Friction &friction, const Mu &all_parameters)
 /// Bound of the tangential multipliers at each node: c lambda_n + t.
 Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n);
 
-/// At the middle of a curve: by a fit of p against s^2 over arc lengths |s| < 0.12 half_width, or at
-/// the next node where that holds fewer than three nodes.
+/// At the middle of a curve: by a fit of p against s^2 over arc lengths |s| < 0.12 half_width, or
+/// the next value where that holds fewer than three.
 double centre_pressure(const Vector &pressure, const Vector &arc_length, double half_width);
 
 /// One state of contact on a curve.
