@@ -189,13 +189,34 @@ def solution(run):
     save(figure, run / "figures", "solution.png")
 
 
-def on_support(run):
-    """Whether the model is of contact with a rigid support."""
+def kind_of(run):
+    """What the model reduces: a "pair" of bases, contact with a rigid "support" by multipliers, or
+    by "nitsche"."""
     path = run / "model.h5"
     if not path.is_file():
         raise Missing(f"{path} is missing: run rbvi offline -out {run} first")
     with h5py.File(path, "r") as model:
-        return int(np.ravel(model["support/vertices"][()])[0]) > 0
+        if model["nitsche/edges"].size > 0:
+            return "nitsche"
+        return "support" if int(np.ravel(model["support/vertices"][()])[0]) > 0 else "pair"
+
+
+def nitsche_panels(run):
+    """How the integrals over the contact curve are reduced, if they are."""
+    with h5py.File(run / "model.h5", "r") as model:
+        curve = {name: error[()].ravel() for name, error in model["histories/values/curve"].items()}
+    panels = []
+    if len(curve["points"]) > 0:
+        panels.append((curve["points"], curve["error"], "Gauss points", "error added to u",
+                       "contact curve"))
+    for name, title in (("contact_matrix", "$B^n$"), ("contact_vector", r"$\Theta^n$"),
+                        ("friction_matrix", r"$B^\tau$"), ("friction_vector", r"$\Theta^\tau$")):
+        error = curve.get(name, np.zeros(0))
+        error = error[error > 1e-14]
+        if len(error) > 0:
+            panels.append((np.arange(len(error)), error, "terms", "largest relative error",
+                           f"interpolation of {title}"))
+    return panels
 
 
 def support_panels(run):
@@ -237,7 +258,8 @@ def bases(run):
     pod = history(run, "pod/error")
     pod = pod[pod > 1e-14]
     panels = [(np.arange(len(pod)), pod, "modes N", "relative error", "displacement, POD"),
-              *(support_panels(run) if on_support(run) else pair_panels(run))]
+              *{"nitsche": nitsche_panels, "support": support_panels,
+                "pair": pair_panels}[kind_of(run)](run)]
     figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels), 3), squeeze=False,
                                 constrained_layout=True)
     for axis, (x, y, xlabel, ylabel, title) in zip(axes[0], panels):
@@ -323,7 +345,7 @@ def draw_greedy(axes, tight, loose, colour, label, floor):
 
 def infsup(run):
     """Inf-sup constants over the validation set, and what each supremizer brings."""
-    if on_support(run):
+    if kind_of(run) != "pair":
         return  # verify does not make them
     beta, steps = table(run, "infsup.csv"), table(run, "stability.csv")
     order = np.argsort(beta["beta_on"])
@@ -371,6 +393,15 @@ def error_map(run):
         print("error_map.png: left out, no pair has all its answers")
         return
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), constrained_layout=True)
+    if kind_of(run) == "nitsche":
+        for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", "normal stress")):
+            axis.plot(data["N"], data[field + "_mean"], "o-", color=BLUE, label="reduced answers")
+            axis.plot(data["N"], data[field + "_floor_mean"], ":", color="black",
+                      label="projection on the basis")
+            log_axis(axis, "modes N", "mean relative error", title)
+            axis.legend()
+        save(figure, run / "figures", "error_map.png")
+        return
     draw_family(axes[0], data, "u", "N", "R")
     log_axis(axes[0], "modes N", "mean relative error", "displacement u")
     draw_family(axes[1], data, "lambda", "R", "N")
@@ -400,11 +431,13 @@ def errors(run):
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
     curves = [("_enriched", "with supremizers", BLUE, "-"),
               ("_floor", "projection on the basis", "black", ":")]
-    if on_support(run):
-        curves[0] = ("_enriched", "reduced answers", BLUE, "-")
-    else:
+    kind = kind_of(run)
+    if kind == "pair":
         curves.insert(0, ("_decorrelated", "without supremizers", ORANGE, "--"))
-    for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", "multiplier")):
+    else:
+        curves[0] = ("_enriched", "reduced answers", BLUE, "-")
+    dual = "normal stress" if kind == "nitsche" else "multiplier"
+    for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", dual)):
         for suffix, label, colour, style in curves:
             values = np.sort(data[field + suffix])
             missing = np.sum(~np.isfinite(values))
@@ -412,7 +445,7 @@ def errors(run):
             axis.plot(values[np.isfinite(values)], style, color=colour, label=label)
         log_axis(axis, "validation parameters, sorted", "relative error", title)
     if "tangential_enriched" in data.dtype.names:
-        axes[1].plot(np.sort(data["tangential_enriched"]), color=GREEN, label="tangential multiplier")
+        axes[1].plot(np.sort(data["tangential_enriched"]), color=GREEN, label="tangential part")
         axes[1].legend()
     axes[0].legend()
     save(figure, run / "figures", "errors.png")

@@ -75,7 +75,7 @@ Interpolation interpolated(const Matrix &values, const std::vector<EntryKey> &ke
     if (i == 0) taken.resize(column.size(), found.size());
     taken.col(i) = column;
   }
-  terms.reduced = taken * found.combination.triangularView<Eigen::Upper>();
+  if (found.size() > 0) terms.reduced = taken * found.combination.triangularView<Eigen::Upper>();
   return result;
 }
 
@@ -85,6 +85,7 @@ std::vector<double> errors_over(Matrix others, const Matrix &values,
                                 const std::vector<EntryKey> &keys, const Eim &found) {
   const double largest = others.size() > 0 ? others.cwiseAbs().maxCoeff() : 0;
   if (largest == 0) return {};
+  if (found.size() == 0) return {1};
   const Matrix functions =
       values(Eigen::all, found.snapshots) * found.combination.triangularView<Eigen::Upper>();
   std::vector<double> errors{1};

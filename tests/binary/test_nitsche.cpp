@@ -32,6 +32,11 @@ TEST_F(Nitsche, IsReducedVerifiedAndAsked) {
   }
   for (const char *file : {"u_contact.vtu", "full_contact.vtu"})
     expect_fields(file, {"pressure", "tangential_stress", "gap", "u"});
+  output_of(rbvi_online("run/model.h5 --mu 0.85 --vtu run/u.vtu"));
+  const std::string drawn = output_of(RBVI_FIGURES " run");
+  for (const char *figure :
+       {"solution", "bases", "pressure", "error_map", "mesh_quality", "errors"})
+    EXPECT_TRUE(contains(drawn, figure + std::string(".png"))) << drawn;
   const std::string inspect = output_of(rbvi_online("run/model.h5"));
   EXPECT_TRUE(contains(inspect, "of 160 Gauss points")) << inspect;
 }
