@@ -11,6 +11,9 @@ namespace {
 /// Force on the body, and lengths of contact and of stick.
 struct Sums {
   double normal = 0, tangential = 0, vertical = 0, contact = 0, stick = 0;
+  /// Contact pressure averaged over each edge. It balances the other forces there, whereas sigma_n
+  /// overshoots beside a kink.
+  Vector edge_pressures;
 };
 
 /// The y component of a unit vector, from the functionals of the displacement along it: shape
@@ -25,36 +28,26 @@ double vertical(const NitschePoint::Row &row) {
 Sums integrate(const std::vector<NitscheFace> &faces, const Matrix &pressures,
                const Vector &bounds) {
   Sums sums;
-  Index number = 0;
-  for (const NitscheFace &face : faces)
-    for (const NitschePoint &point : face.points) {
-      const double pressure = std::max(0.0, -pressures(number, 0)), shear = pressures(number, 1);
-      const double bound = bounds.size() > 0 ? bounds[number] : 0;
-      const double held = std::clamp(shear, -bound, bound);
-      sums.normal += point.weight * pressure;
-      sums.tangential += point.weight * std::abs(held);
-      sums.vertical += point.weight * (held * vertical(point.tau) - pressure * vertical(point.n));
-      if (pressure > 0) sums.contact += point.weight;
-      if (pressure > 0 && std::abs(shear) < bound) sums.stick += point.weight;
-      ++number;
-    }
-  return sums;
-}
-
-/// Contact pressure averaged over each edge. It balances the other forces there, whereas sigma_n
-/// overshoots beside a kink.
-Vector edge_pressures(const std::vector<NitscheFace> &faces, const Matrix &pressures) {
-  Vector result(static_cast<Index>(faces.size()));
+  sums.edge_pressures.resize(static_cast<Index>(faces.size()));
   Index number = 0, edge = 0;
   for (const NitscheFace &face : faces) {
     double force = 0, length = 0;
     for (const NitschePoint &point : face.points) {
-      force += point.weight * std::max(0.0, -pressures(number++, 0));
+      const double pressure = std::max(0.0, -pressures(number, 0)), shear = pressures(number, 1);
+      const double bound = bounds.size() > 0 ? bounds[number] : 0;
+      const double held = std::clamp(shear, -bound, bound);
+      force += point.weight * pressure;
+      sums.tangential += point.weight * std::abs(held);
+      sums.vertical += point.weight * (held * vertical(point.tau) - pressure * vertical(point.n));
+      if (pressure > 0) sums.contact += point.weight;
+      if (pressure > 0 && std::abs(shear) < bound) sums.stick += point.weight;
       length += point.weight;
+      ++number;
     }
-    result[edge++] = force / length;
+    sums.normal += force;
+    sums.edge_pressures[edge++] = force / length;
   }
-  return result;
+  return sums;
 }
 
 double ratio(double value, double scale) {
@@ -73,8 +66,8 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   outputs.peak_pressure = std::max(0.0, -fields.sigma_n.minCoeff());
   const Index edges = fields.arc_length.size() - 1;
   outputs.centre_pressure = centre_pressure(
-      edge_pressures(faces, pressures),
-      (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2, sums.contact / 2);
+      sums.edge_pressures, (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2,
+      sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
   const double normal = fields.sigma_n.norm();
   outputs.law_error_normal = ratio((fields.sigma_n - fields.p_n.cwiseMin(0)).norm(), normal);

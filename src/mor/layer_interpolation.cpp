@@ -79,24 +79,27 @@ Interpolation interpolated(const Matrix &values, const std::vector<EntryKey> &ke
   return result;
 }
 
-/// e_EIM along the terms over columns that are not of the training set: each term removes what is
-/// left at its entry.
-std::vector<double> errors_over(Matrix others, const Matrix &values,
-                                const std::vector<EntryKey> &keys, const Eim &found) {
-  const double largest = others.size() > 0 ? others.cwiseAbs().maxCoeff() : 0;
-  if (largest == 0) return {};
-  if (found.size() == 0) return {1};
+/// Adds e_EIM along the terms over other columns, and over those that are the last steps: each term
+/// removes what is left at its entry.
+void add_errors_over(Matrix others, const std::vector<Index> &converged, const Matrix &values,
+                     const std::vector<EntryKey> &keys, const Eim &found, EimErrors &errors) {
+  if (others.size() == 0 || found.size() == 0) return;
+  const auto largest = [](const auto &columns) { return columns.cwiseAbs().maxCoeff(); };
+  const double scale = largest(others), last_scale = largest(others(Eigen::all, converged));
+  if (scale == 0) return;
   const Matrix functions =
       values(Eigen::all, found.snapshots) * found.combination.triangularView<Eigen::Upper>();
-  std::vector<double> errors{1};
+  errors.validation = {1};
+  if (last_scale > 0) errors.converged = {1};
   for (int j = 0; j < found.size(); ++j) {
     const auto entry =
         std::lower_bound(keys.begin(), keys.end(), found.entries[static_cast<std::size_t>(j)]);
     const Eigen::RowVectorXd left = others.row(entry - keys.begin());
     others.noalias() -= functions.col(j) * left;
-    errors.push_back(others.cwiseAbs().maxCoeff() / largest);
+    errors.validation.push_back(largest(others) / scale);
+    if (last_scale > 0)
+      errors.converged.push_back(largest(others(Eigen::all, converged)) / last_scale);
   }
-  return errors;
 }
 
 Matrix side_by_side(const std::vector<Vector> &columns) {
@@ -186,10 +189,9 @@ void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
                         : Vector(nitsche.trace.transpose() * column);
         });
     *terms[k] = std::move(found.terms);
-    const Matrix unseen = side_by_side(others.values[k]);
-    report.eim_errors[k] = {
-        found.eim.error, errors_over(unseen, values, keys, found.eim),
-        errors_over(unseen(Eigen::all, others.converged), values, keys, found.eim)};
+    report.eim_errors[k].training = found.eim.error;
+    add_errors_over(side_by_side(others.values[k]), others.converged, values, keys, found.eim,
+                    report.eim_errors[k]);
   }
 }
 

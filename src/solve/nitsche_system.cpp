@@ -158,14 +158,17 @@ void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bo
   add_extension(solver.layer().trace, terms, au.get());
   RBVI_CALL(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPSetOperators(ksp, tangent.get(), tangent.get()));
-  KSPConvergedReason reason = KSP_DIVERGED_ITS;
-  for (factorised = factorisations == 0; reason == KSP_DIVERGED_ITS; factorised = true) {
-    if (factorised) ++factorisations;
-    RBVI_CALL(KSPSetReusePreconditioner(ksp, factorised ? PETSC_FALSE : PETSC_TRUE));
+  const auto converges = [&](bool anew) {
+    factorised = anew;
+    if (anew) ++factorisations;
+    RBVI_CALL(KSPSetReusePreconditioner(ksp, anew ? PETSC_FALSE : PETSC_TRUE));
     if (KSPSolve(ksp, au.get(), ay.get()) != 0) throw failure(not_definite);
     check_linear_solve();
+    KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
     RBVI_CALL(KSPGetConvergedReason(ksp, &reason));
-  }
+    return reason > 0;
+  };
+  if (!converges(factorisations == 0)) converges(true);
   RBVI_CALL(VecWAXPY(u, -1, ay.get(), from));
 }
 
