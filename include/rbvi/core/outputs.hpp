@@ -18,7 +18,12 @@ struct Outputs {
   std::optional<double> contact_half_width, stick_half_width;
   std::optional<double> peak_pressure, centre_pressure;
   std::optional<double> min_u;
-  std::optional<double> kkt_residual;    ///< relative: stationarity, feasibility, complementarity
+  /// Of the problem that was solved, relative: stationarity, feasibility, complementarity; of a
+  /// reduced answer that of the reduced problem, by Nitsche's method the residual of its equation.
+  std::optional<double> kkt_residual;
+  /// Nitsche's method reduced: residual of the integrals over the whole curve, tested with the
+  /// reduced basis; what integrating at few points leaves.
+  std::optional<double> quadrature_residual;
   std::optional<double> max_penetration; ///< pointwise at the nodes of the contact region
   std::optional<double> friction_violation;
   /// Nitsche's method: e_AC^n (4.83), and e_AC^ntau (4.92) over the norm of the tangential stress
@@ -29,6 +34,23 @@ struct Outputs {
   std::optional<double> iterations;
   std::optional<double> seconds;
 };
+
+/// What an output is, which tells how accurate a reduced one must be.
+enum class OutputKind {
+  quantity, ///< energy, forces, pressures, displacements: as accurate as the fields
+  measure,  ///< counted along the contact: to one edge of the mesh
+  check     ///< residuals, violations, iterations, seconds: of the answer itself
+};
+
+struct OutputColumn {
+  const char *name;
+  std::optional<double> Outputs::*value;
+  OutputKind kind;
+  const char *says; ///< its definition, one line
+};
+
+/// All columns in the order of every table.
+const std::vector<OutputColumn> &output_columns();
 
 /// Writes "radius,...,energy,...,seconds" and one row per mu; numbers with 10 digits,
 /// mu with all that it takes to read it back.

@@ -1,6 +1,7 @@
 // Parameters, their box D, and sets of parameter values (training, validation, queries).
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -9,11 +10,18 @@ namespace rbvi {
 /// One value per parameter, in the order of the ParameterSpace it belongs to.
 using Mu = std::vector<double>;
 
+/// A closed interval; by default all numbers.
+struct Range {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+};
+
 struct Parameter {
   std::string name;
   std::string unit; ///< "" when it has none
   double lower = 0, upper = 0;
   double value = 0; ///< used while the parameter is fixed
+  Range valid{};    ///< where the scene makes sense: no box and no value may leave it
 };
 
 /// All parameters of a scene, and which of them are free. A `mu` given by a user, in a training

@@ -44,6 +44,17 @@ using SceneOptions = std::map<std::string, std::string>;
 struct SceneOption {
   std::string name, default_value, help;
   std::vector<std::string> choices; ///< empty: a number
+  Range valid{};                    ///< of a number
+};
+
+/// One thing that a mesh must be like to be the scene's, whoever made it.
+struct MeshFact {
+  std::string part; ///< a region or a boundary of the recipe; "": the whole mesh
+  std::string says; ///< what the part does: "lies on the circle of radius 1 about the origin"
+  /// Distance of a vertex of the part from where it may lie, >= 0; empty: anywhere.
+  std::function<double(const Point &)> distance{};
+  double size = 0;         ///< length, area or volume of the part; 0: any
+  std::string within = ""; ///< a boundary that holds all facets of the part
 };
 
 /// Names the built-in mesh generator; `region` and `boundary` are the labels it sets.
@@ -53,8 +64,9 @@ struct MeshRecipe {
   std::vector<std::string> boundaries;
   /// Boundary whose refined vertices Scene::snap brings back onto its curve.
   std::string curved = "";
-  int edges =
-      0; ///< of the contact boundary where the generator lets them be chosen; 0: its default
+  /// Edges of the contact boundary where the generator lets them be chosen; 0: its default.
+  int edges = 0;
+  std::vector<MeshFact> facts{}; ///< what a mesh must fulfil beside the names above
 };
 
 /// A boundary on which some components of the displacement are imposed.

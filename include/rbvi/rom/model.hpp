@@ -41,11 +41,32 @@ struct AffineTerms {
   int size() const { return static_cast<int>(interpolation.rows()); }
 };
 
+/// Error of one output over the validation set. `scale`: the range of the high-fidelity values
+/// there or, where that is smaller, a hundredth of their largest magnitude (of a pressure, a tenth:
+/// its range alone says little).
+struct OutputError {
+  std::string name;         ///< OutputColumn::name
+  double mean = 0, max = 0; ///< absolute
+  double mean_of_scale = 0, max_of_scale = 0;
+  double mean_of_value = 0, max_of_value = 0; ///< relative to each value; where that is 0, absolute
+};
+
 /// Errors measured by `rbvi verify`, relative, over the validation set; negative: not measured.
 struct ValidationErrors {
   int count = 0;
   double u_mean = -1, u_max = -1, lambda_mean = -1, lambda_max = -1;
   double tangential_mean = -1, tangential_max = -1; ///< with friction; lambda is the normal part
+  std::vector<OutputError> outputs{};               ///< in the order of output_columns()
+};
+
+/// Queries that `rbvi offline` asked of the model that it had just made, random in its box.
+struct SelfCheck {
+  int queries = 0; ///< 0: none were asked
+  int unanswered = 0;
+  std::string reason = "";            ///< of the first one without an answer
+  double residual = 0, violation = 0; ///< largest kkt_residual, and violation of a law, relative
+  Mu unanswered_at{}, residual_at{}, violation_at{}; ///< free parameters; empty where there is none
+  bool clean() const { return unanswered == 0 && residual <= 1e-10; }
 };
 
 /// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
@@ -172,11 +193,14 @@ struct ReducedModel {
   std::vector<int> contact_cells; ///< one body: (dim + 1) contact nodes per cell of the region
 
   ValidationErrors validation_enriched, validation_decorrelated;
+  SelfCheck self_check;
+  Matrix trained_mu; ///< free parameters x samples
+  Matrix failed_mu;  ///< free parameters x samples that have no high-fidelity answer
   std::map<std::string, std::vector<double>> histories; ///< "pod/error", "cone/e_orth", ...
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 5;
+inline constexpr int model_schema = 6;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).
