@@ -11,12 +11,12 @@ namespace {
 
 constexpr Index block = 128; ///< right-hand sides at a time: bounds the memory
 
-struct Range {
+struct Share {
   Index first, count;
 };
 
 /// This rank's part of 0 .. size - 1.
-Range my_share(MPI_Comm comm, Index size) {
+Share my_share(MPI_Comm comm, Index size) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
@@ -79,7 +79,7 @@ Matrix ReplicatedSolver::solve_columns(const Matrix &loads, Index first, Index c
 }
 
 Matrix ReplicatedSolver::responses(const Matrix &loads) {
-  const Range mine = my_share(comm_, loads.cols());
+  const Share mine = my_share(comm_, loads.cols());
   Matrix result = Matrix::Zero(loads.rows(), loads.cols());
   for (Index done = 0; done < mine.count; done += block) {
     const Index count = std::min(block, mine.count - done);
@@ -100,7 +100,7 @@ Handle<Mat> ReplicatedSolver::fields(const Matrix &loads) {
   RBVI_CALL(MatDenseGetLDA(result.get(), &stride));
   for (Index first = 0; first < loads.cols(); first += block) {
     const Matrix part = loads.middleCols(first, std::min(block, loads.cols() - first));
-    const Range mine = my_share(comm_, part.cols());
+    const Share mine = my_share(comm_, part.cols());
     Matrix all = Matrix::Zero(size, part.cols());
     if (mine.count > 0)
       all.middleCols(mine.first, mine.count) = solve_columns(part, mine.first, mine.count);
