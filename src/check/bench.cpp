@@ -122,7 +122,8 @@ BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vec
   });
   for (std::size_t p = 0; p < answers.size(); ++p)
     errors.add(answers[p].u, answers[p].lambda, truths[p]);
-  BenchRow row = timed_row(solver_name(problem, options, cold), "assembly, field, outputs", seconds);
+  BenchRow row =
+      timed_row(solver_name(problem, options, cold), "assembly, field, outputs", seconds);
   errors.store(row);
   return row;
 }

@@ -140,6 +140,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
                 Vector(count),
                 Matrix(model.dual_basis.rows(), count),
                 Vector(count),
+                {},
                 {}};
   const bool on_support = model.support || model.nitsche;
   const Index normal = on_support ? model.contact_points.rows() : model.dual_basis.rows();
@@ -156,6 +157,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
     RBVI_CALL(VecMAXPY(u.get(), static_cast<PetscInt>(n), back.data(), raw.data()));
     truths.remainder[p] = std::sqrt(std::max(0.0, product(v, u.get(), u.get(), scratch.get())));
     truths.mu.push_back(sample.mu);
+    truths.outputs.push_back(sample.outputs);
     truths.lambda.col(p) = sample.lambda;
     truths.lambda_norm[p] = part_norm(problem.w_product(), sample.lambda, 0, normal);
     if (rest > 0)

@@ -1,9 +1,9 @@
 #include "rbvi/core/outputs.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <iomanip>
 
@@ -15,12 +15,6 @@ std::string ten_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", value);
   return text;
-}
-
-/// The shortest text that reads back as the same number.
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 } // namespace
@@ -64,37 +58,112 @@ const std::vector<OutputColumn> &output_columns() {
   return columns;
 }
 
+namespace {
+
+std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", value);
+  return text;
+}
+
+/// In double quotes, which are doubled inside, without line breaks: one field of a CSV row.
+std::string quoted(const std::string &text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return result + '"';
+}
+
+} // namespace
+
+OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const Outputs &like,
+                         ErrorOfOutput errors, bool status)
+    : out_(out), parameters_(space.size()), errors_(std::move(errors)), status_(status) {
+  for (const OutputColumn &column : output_columns())
+    if (like.*column.value) columns_.push_back(column);
+  for (int i = 0; i < parameters_; ++i)
+    out_ << (i > 0 ? "," : "") << space.at(i).name;
+  for (const OutputColumn &column : columns_) {
+    out_ << ',' << column.name;
+    if (errors_.contains(column.name)) out_ << ',' << column.name << "_error";
+  }
+  out_ << (status_ ? ",status\n" : "\n");
+}
+
+void OutputTable::begin(const Mu &mu) {
+  for (int i = 0; i < parameters_; ++i)
+    out_ << (i > 0 ? "," : "")
+         << (mu.empty() ? "" : shortest_number(mu[static_cast<std::size_t>(i)]));
+}
+
+void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold) {
+  begin(mu);
+  for (const OutputColumn &column : columns_) {
+    const std::optional<double> value = outputs.*column.value;
+    out_ << ',' << (value ? ten_digits(*value) : "");
+    const auto error = errors_.find(column.name);
+    if (error != errors_.end()) out_ << ',' << (errors_hold ? two_digits(error->second) : "");
+  }
+  out_ << (status_ ? ",ok\n" : "\n");
+}
+
+void OutputTable::add_failure(const Mu &mu, const std::string &reason) {
+  begin(mu);
+  for (const OutputColumn &column : columns_)
+    out_ << (errors_.contains(column.name) ? ",," : ",");
+  out_ << ',' << quoted(reason) << '\n';
+}
+
 void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector<Mu> &mus,
                const std::vector<Outputs> &rows) {
   if (mus.size() != rows.size())
     throw failure("a table of " + std::to_string(mus.size()) + " parameters and " +
                   std::to_string(rows.size()) + " results");
-  std::vector<OutputColumn> columns;
+  Outputs like;
   for (const OutputColumn &column : output_columns())
-    if (std::any_of(rows.begin(), rows.end(),
-                    [&](const Outputs &row) { return (row.*column.value).has_value(); }))
-      columns.push_back(column);
+    for (const Outputs &row : rows)
+      if (row.*column.value) like.*column.value = row.*column.value;
+  OutputTable table(out, space, like);
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    table.add(mus[r], rows[r]);
+}
 
-  for (int i = 0; i < space.size(); ++i)
-    out << (i > 0 ? "," : "") << space.at(i).name;
-  for (const OutputColumn &column : columns)
-    out << ',' << column.name;
-  out << '\n';
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t i = 0; i < mus[r].size(); ++i)
-      out << (i > 0 ? "," : "") << exact(mus[r][i]);
-    for (const OutputColumn &column : columns) {
-      const std::optional<double> value = rows[r].*column.value;
-      out << ',' << (value ? ten_digits(*value) : "");
-    }
+void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
+  for (const OutputColumn &column : output_columns()) {
+    const std::optional<double> value = outputs.*column.value;
+    if (!value) continue;
+    out << std::left << std::setw(22) << column.name << ten_digits(*value);
+    const auto error = errors.find(column.name);
+    if (error != errors.end())
+      out << std::setw(static_cast<int>(18 - ten_digits(*value).size())) << ""
+          << "(error " << two_digits(error->second) << ')';
     out << '\n';
   }
 }
 
-void print_outputs(std::ostream &out, const Outputs &outputs) {
-  for (const OutputColumn &column : output_columns())
-    if (const std::optional<double> value = outputs.*column.value)
-      out << std::left << std::setw(22) << column.name << ten_digits(*value) << '\n';
+bool is_table_column(const std::string &name) {
+  static const std::vector<std::string> others{"status",
+                                               "training",
+                                               "max_aspect_ratio",
+                                               "u_enriched",
+                                               "u_floor",
+                                               "lambda_floor",
+                                               "lambda_enriched",
+                                               "tangential_enriched",
+                                               "u_decorrelated",
+                                               "lambda_decorrelated",
+                                               "tangential_decorrelated",
+                                               "beta_hf",
+                                               "beta_on",
+                                               "beta_off",
+                                               "beta_dec"};
+  if (std::find(others.begin(), others.end(), name) != others.end()) return true;
+  return std::any_of(output_columns().begin(), output_columns().end(),
+                     [&](const OutputColumn &column) {
+                       return name == column.name || name == std::string(column.name) + "_error";
+                     });
 }
 
 } // namespace rbvi

@@ -1,6 +1,8 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/rom/self_check.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
@@ -226,6 +228,53 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   add_histories(result.curve, result.model.histories);
 }
 
+void add_collocation(Problem &problem, const std::vector<Sample> &samples,
+                     const GcnsOptions &options, Reduction &result, StageTimes &times) {
+  const Stage stage("collocation nodes", times);
+  result.collocation =
+      collocate(result.model, problem.scene(), samples, problem.w_product(), options);
+  const Gcns &nodes = result.collocation;
+  result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
+  result.model.histories["gcns/error"] = nodes.error;
+  result.model.histories["gcns/violation"] = nodes.violation;
+}
+
+/// Collective. The self-check into the model of rank 0; whether it is clean, on every rank.
+bool check_answers(const Problem &problem, ReducedModel &model, StageTimes &times) {
+  const Stage stage("self-check", times);
+  int clean = 0, rank = 0;
+  MPI_Comm_rank(problem.comm(), &rank);
+  collectively(problem.comm(), [&] {
+    if (rank != 0) return;
+    model.self_check = self_check(model, problem.scene());
+    clean = model.self_check.clean() ? 1 : 0;
+  });
+  MPI_Bcast(&clean, 1, MPI_INT, 0, problem.comm());
+  return clean != 0;
+}
+
+/// A pair whose answers are checked. The zones of a hybrid cone are those of the training samples:
+/// where contact opens or closes between them, its layers of nodes are doubled until every query is
+/// answered, or until that changes nothing.
+void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
+                 Reduction &result, StageTimes &times) {
+  constexpr int widest = 64;
+  Index before = -1;
+  for (;; options.cone.ring = std::max(1, 2 * options.cone.ring)) {
+    result.ring = options.cone.ring;
+    result.bases = build_bases(problem, samples, options, result.affine.b.size() == 1, times);
+    {
+      const Stage stage("projection", times);
+      result.model = project(problem, samples, result.affine, result.bases);
+    }
+    const bool clean = check_answers(problem, result.model, times);
+    const Index hats = result.bases.cone.basis.generators.cols();
+    if (clean || options.cone.type != ConeType::hybrid || hats == before || result.ring >= widest)
+      return;
+    before = hats;
+  }
+}
+
 } // namespace
 
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
@@ -241,24 +290,22 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   }
   if (problem.nitsche()) {
     reduce_nitsche(problem, samples, options, result, times);
+    check_answers(problem, result.model, times);
     return result;
   }
-  result.bases = problem.on_support()
-                     ? build_support_bases(problem, samples, options, result.affine, times)
-                     : build_bases(problem, samples, options, result.affine.b.size() == 1, times);
+  if (!problem.on_support()) {
+    reduce_pair(problem, samples, options, result, times);
+    return result;
+  }
+  result.bases = build_support_bases(problem, samples, options, result.affine, times);
   {
     const Stage stage("projection", times);
     result.model = project(problem, samples, result.affine, result.bases);
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
   }
-  if (result.bases.reduction != MultiplierReduction::collocated) return result;
-  const Stage stage("collocation nodes", times);
-  result.collocation =
-      collocate(result.model, problem.scene(), samples, problem.w_product(), options.gcns);
-  const Gcns &nodes = result.collocation;
-  result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
-  result.model.histories["gcns/error"] = nodes.error;
-  result.model.histories["gcns/violation"] = nodes.violation;
+  if (result.bases.reduction == MultiplierReduction::collocated)
+    add_collocation(problem, samples, options.gcns, result, times);
+  check_answers(problem, result.model, times);
   return result;
 }
 

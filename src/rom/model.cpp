@@ -245,6 +245,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (model.nitsche) result.nitsche = leading_curve(*model.nitsche, model.primal_size(), n);
   if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
   if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
+  if (r != model.generators || n != model.primal_size()) result.self_check = {};
   if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};
   return result;
 }
@@ -252,6 +253,15 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
 const ValidationErrors &expected_errors(const ReducedModel &model) {
   const bool plain = model.supremizers == 0 && model.validation_decorrelated.count > 0;
   return plain ? model.validation_decorrelated : model.validation_enriched;
+}
+
+ErrorOfOutput errors_of_outputs(const ReducedModel &model) {
+  ErrorOfOutput errors;
+  for (const OutputError &error : expected_errors(model).outputs)
+    for (const OutputColumn &column : output_columns())
+      if (error.name == column.name && column.kind != OutputKind::check)
+        errors[error.name] = error.max;
+  return errors;
 }
 
 Point point_of(const Matrix &points, Index i) {

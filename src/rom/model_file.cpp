@@ -1,4 +1,4 @@
-// Layout of model.h5 (schema 5). n = modes + supremizers, R generators, c = dual dofs of the
+// Layout of model.h5 (schema 6). n = modes + supremizers, R generators, c = dual dofs of the
 // contact region, d = dimension; every term set T = a, b, f, g has its own J.
 //
 //   scene/name, scene/options/{names,values}          text
@@ -35,11 +35,17 @@
 //   fields/{points,cells,contact_cells}               nodes x d; lists of numbers per cell
 //   validation/{enriched,decorrelated}                count, then mean and max error of u, lambda,
 //                                                     lambda_tau
+//   validation/{enriched,decorrelated}_outputs/{names,values}
+//                                                     a row of 6 for each: see OutputError
+//   self_check/{counts,reason,unanswered_at}          queries, unanswered; see SelfCheck
+//   self_check/{residual,penetration,friction}{,_at}  the largest, and its free parameters
 //   histories/names, histories/values/<name>          convergence histories
 //   stages/{names,seconds}                            wall time of each offline stage
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 #include "rbvi/rom/model.hpp"
+
+#include <array>
 
 namespace rbvi {
 
@@ -142,18 +148,63 @@ void write_validation(H5Writer &file, const std::string &name, const ValidationE
   file.write(name, std::vector<double>{static_cast<double>(errors.count), errors.u_mean,
                                        errors.u_max, errors.lambda_mean, errors.lambda_max,
                                        errors.tangential_mean, errors.tangential_max});
+  std::vector<std::string> names;
+  Matrix values(static_cast<Index>(errors.outputs.size()), 6);
+  for (const OutputError &e : errors.outputs) {
+    values.row(static_cast<Index>(names.size())) << e.mean, e.max, e.mean_of_range, e.max_of_range,
+        e.mean_of_value, e.max_of_value;
+    names.push_back(e.name);
+  }
+  file.write(name + "_outputs/names", names);
+  file.write(name + "_outputs/values", values);
 }
 
 ValidationErrors read_validation(const H5Reader &file, const std::string &name) {
   const std::vector<double> values = file.doubles(name);
   if (values.size() != 7) throw bad_input(name + " has not 7 entries");
-  return {static_cast<int>(values[0]),
-          values[1],
-          values[2],
-          values[3],
-          values[4],
-          values[5],
-          values[6]};
+  ValidationErrors errors{static_cast<int>(values[0]),
+                          values[1],
+                          values[2],
+                          values[3],
+                          values[4],
+                          values[5],
+                          values[6]};
+  const std::vector<std::string> names = file.strings(name + "_outputs/names");
+  const Matrix rows = file.matrix(name + "_outputs/values");
+  if (rows.rows() != static_cast<Index>(names.size()) || (rows.size() > 0 && rows.cols() != 6))
+    throw bad_input(name + "_outputs: names without six values each");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto row = rows.row(static_cast<Index>(i));
+    errors.outputs.push_back({names[i], row[0], row[1], row[2], row[3], row[4], row[5]});
+  }
+  return errors;
+}
+
+constexpr std::array worst_of_check{std::pair{"self_check/residual", &SelfCheck::residual},
+                                    std::pair{"self_check/penetration", &SelfCheck::penetration},
+                                    std::pair{"self_check/friction", &SelfCheck::friction}};
+
+void write_self_check(H5Writer &file, const SelfCheck &check) {
+  file.write("self_check/counts", std::vector<int>{check.queries, check.unanswered});
+  file.write("self_check/unanswered_at", check.unanswered_at);
+  file.write("self_check/reason", check.reason);
+  for (const auto &[name, worst] : worst_of_check) {
+    file.write(name, (check.*worst).value);
+    file.write(std::string(name) + "_at", (check.*worst).at);
+  }
+}
+
+SelfCheck read_self_check(const H5Reader &file) {
+  SelfCheck check;
+  const std::vector<int> counts = file.ints("self_check/counts");
+  if (counts.size() != 2) throw bad_input("self_check/counts has not 2 entries");
+  check.queries = counts[0];
+  check.unanswered = counts[1];
+  check.unanswered_at = file.doubles("self_check/unanswered_at");
+  check.reason = file.string("self_check/reason");
+  for (const auto &[name, worst] : worst_of_check)
+    check.*worst = {file.number(name), file.doubles(std::string(name) + "_at")};
+  return check;
 }
 
 void write_history(H5Writer &file, const ReducedModel &model) {
@@ -169,6 +220,7 @@ void write_history(H5Writer &file, const ReducedModel &model) {
   file.write("stages/seconds", seconds);
   write_validation(file, "validation/enriched", model.validation_enriched);
   write_validation(file, "validation/decorrelated", model.validation_decorrelated);
+  write_self_check(file, model.self_check);
 }
 
 void read_history(const H5Reader &file, ReducedModel &model) {
@@ -177,6 +229,7 @@ void read_history(const H5Reader &file, ReducedModel &model) {
   model.stage_seconds = zip("stages", file.strings("stages/names"), file.doubles("stages/seconds"));
   model.validation_enriched = read_validation(file, "validation/enriched");
   model.validation_decorrelated = read_validation(file, "validation/decorrelated");
+  model.self_check = read_self_check(file);
 }
 
 void write_support(H5Writer &file, const std::optional<SupportModel> &support) {

@@ -2,6 +2,7 @@
 
 #include "nitsche_interpolated.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/rom/local_fit.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/packed.hpp"
@@ -18,10 +19,43 @@ const NitscheModel &checked(const ReducedModel &model, const Scene &scene) {
 
 } // namespace
 
+namespace {
+
+using ChosenPoints = std::vector<std::pair<int, double>>;
+
+/// The points that the model integrates at; none where it interpolates.
+ChosenPoints points_of(const NitscheModel &nitsche) {
+  ChosenPoints chosen;
+  if (nitsche.rule == CurveRule::empirical)
+    for (std::size_t k = 0; k < nitsche.points.size(); ++k)
+      chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
+  else if (nitsche.rule == CurveRule::full)
+    for (int k = 0; k < 4 * static_cast<int>(nitsche.edges.size()); ++k)
+      chosen.emplace_back(k, 1.0);
+  return chosen;
+}
+
+/// All points of the curve; where the scene is symmetric those of one half, which count twice.
+ChosenPoints whole_curve(const std::vector<CurveCell> &cells, bool symmetric) {
+  ChosenPoints chosen;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
+    double middle = 0;
+    for (const int end : ends)
+      middle += cells[k].cell.reference[static_cast<std::size_t>(end)][0] / 2;
+    if (symmetric && middle > 0) continue;
+    for (int q = 0; q < 4; ++q)
+      chosen.emplace_back(4 * static_cast<int>(k) + q, symmetric ? 2.0 : 1.0);
+  }
+  return chosen;
+}
+
+} // namespace
+
 ReducedNitsche::ReducedNitsche(const ReducedModel &model, const Scene &scene)
     : model_(model), scene_(scene), cells_(curve_cells(checked(model, scene))),
       consistency_(model.nitsche->consistency, cells_) {
-  system_ = std::make_unique<System>(model, cells_);
+  system_ = std::make_unique<System>(model, cells_, points_of(*model.nitsche));
   if (model.nitsche->rule == CurveRule::interpolated)
     interpolated_ = std::make_unique<Interpolated>(*model.nitsche, cells_);
 }
@@ -89,20 +123,28 @@ CurveFields ReducedNitsche::fields(const Mu &all_parameters, const Vector &u) co
   return nitsche_fields(scene_, all_parameters, cells_, model_.nitsche->trace * u);
 }
 
+Vector ReducedNitsche::over_whole_curve(const Mu &all_parameters, const Vector &u,
+                                        Outputs &outputs) const {
+  if (model_.nitsche->rule == CurveRule::full) return u;
+  if (!whole_)
+    whole_ = std::make_unique<System>(model_, cells_, whole_curve(cells_, scene_.symmetric));
+  whole_->law = nitsche_law(scene_.support->friction, all_parameters);
+  whole_->quadratic = quadratic_at(all_parameters);
+  whole_->set_points(scene_, all_parameters, cells_);
+  whole_->set(u);
+  whole_->bounds = nitsche_bounds(whole_->pressures, whole_->law);
+  (void)whole_->residual();
+  outputs.quadrature_residual = whole_->relative;
+  (void)whole_->settle();
+  return whole_->u;
+}
+
 void ReducedNitsche::outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const {
-  const Matrix &trace = model_.nitsche->trace;
-  const Vector layer = trace * u;
-  const NitscheLaw law = nitsche_law(scene_.support->friction, all_parameters);
+  const Vector layer = model_.nitsche->trace * over_whole_curve(all_parameters, u, outputs);
   const std::vector<NitscheFace> faces = nitsche_faces(scene_, all_parameters, cells_);
-  const Matrix pressures = nitsche_pressures(faces, layer);
-  nitsche_outputs(faces, pressures, nitsche_fields(scene_, all_parameters, cells_, layer), law,
-                  outputs);
-  const Vector bounds = nitsche_bounds(pressures, law);
-  const Vector terms = trace.transpose() * nitsche_residual(faces, layer, bounds);
-  const Quadratic quadratic = quadratic_at(all_parameters);
-  const Vector au = quadratic.a_gamma * u, r = au + terms - quadratic.f;
-  const double scale = au.norm() + terms.norm() + quadratic.f.norm();
-  outputs.kkt_residual = scale > 0 ? r.norm() / scale : 0;
+  nitsche_outputs(faces, nitsche_pressures(faces, layer),
+                  nitsche_fields(scene_, all_parameters, cells_, layer),
+                  nitsche_law(scene_.support->friction, all_parameters), outputs);
 }
 
 } // namespace rbvi

@@ -28,20 +28,15 @@ Matrix basis_on(const CurveCell &cell, const Matrix &trace) {
 
 } // namespace
 
-ReducedNitsche::System::System(const ReducedModel &model, const std::vector<CurveCell> &cells) {
-  const NitscheModel &nitsche = *model.nitsche;
-  std::vector<std::pair<int, double>> chosen;
-  if (nitsche.rule == CurveRule::empirical)
-    for (std::size_t k = 0; k < nitsche.points.size(); ++k)
-      chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
-  else if (nitsche.rule == CurveRule::full)
-    for (int k = 0; k < 4 * static_cast<int>(cells.size()); ++k)
-      chosen.emplace_back(k, 1.0);
+ReducedNitsche::System::System(const ReducedModel &model, const std::vector<CurveCell> &cells,
+                               const ChosenPoints &chosen) {
   for (const auto &[number, factor] : chosen) {
     const int cell = number / 4;
     if (parts.empty() || parts.back().cell != cell)
       parts.push_back(
-          {cell, {}, basis_on(cells[static_cast<std::size_t>(cell)], nitsche.trace).transpose()});
+          {cell,
+           {},
+           basis_on(cells[static_cast<std::size_t>(cell)], model.nitsche->trace).transpose()});
     parts.back().points.emplace_back(number % 4, factor);
   }
   points = static_cast<Index>(chosen.size());

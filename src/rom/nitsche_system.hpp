@@ -35,7 +35,10 @@ struct ReducedNitsche::System {
   Vector bounds;
   double relative = 0; ///< residual
 
-  explicit System(const ReducedModel &model, const std::vector<CurveCell> &cells);
+  /// Points of the curve (4 * cell + Gauss point, in order) with factors of their weights.
+  using ChosenPoints = std::vector<std::pair<int, double>>;
+  System(const ReducedModel &model, const std::vector<CurveCell> &cells,
+         const ChosenPoints &chosen);
   void set_points(const Scene &scene, const Mu &all_parameters,
                   const std::vector<CurveCell> &cells);
   void set(const Vector &coefficients);

@@ -1,9 +1,8 @@
-#include "rbvi/rom/online_tool.hpp"
+#include "online_batch.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/vtu.hpp"
 
@@ -20,9 +19,9 @@ namespace {
 constexpr const char *usage =
     R"(rbvi-online MODEL                        what the model is: parameters, sizes, errors
 rbvi-online MODEL --mu VALUES            one answer (0.18,0.02,-0.01 or radius=0.18,center_x=0.02)
-rbvi-online MODEL --queries SET          one row per parameter of a CSV file, grid:5,5,5 or
-                                         random:COUNT:SEED
-  --out FILE       the table as CSV (standard output without it)
+rbvi-online MODEL --queries SET          one row per parameter of a CSV file, grid:5,5,5,
+                                         random:COUNT:SEED or - (a CSV table on standard input)
+  --out FILE       the table as CSV (standard output without it, or as -)
   --vtu FILE       with --mu: the field, and the contact region in FILE_contact
   --full           reconstruct the field: adds min_u
   --decorrelated   without the supremizers
@@ -67,12 +66,8 @@ void check_combination(const OnlineArguments &given) {
   if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
 }
 
-struct Answers {
-  std::vector<Mu> mus;
-  std::vector<Outputs> rows;
-};
+} // namespace
 
-/// seconds: theta, assembly and solution, the checks and the outputs, and with `full` the field.
 Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
                ReducedSolution &solution) {
   const auto start = std::chrono::steady_clock::now();
@@ -84,31 +79,7 @@ Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &argume
   return outputs;
 }
 
-/// The largest violation of the laws of contact and friction at any node, relative.
-double violation(const Outputs &outputs) {
-  const double peak = outputs.peak_pressure.value_or(0);
-  const double friction = peak > 0 ? outputs.friction_violation.value_or(0) / peak : 0;
-  return std::max(outputs.kkt_residual.value_or(0), friction);
-}
-
-/// Says so where answers on a support break the laws: only a reduced law that is not mended does.
-void warn(const ReducedModel &model, double violation, std::ostream &out) {
-  constexpr double tolerated = 1e-6;
-  if (!model.support || violation <= tolerated) return;
-  out << "warning: the laws of contact and friction are violated by " << violation
-      << " of the largest pressure at some node: reduce again with -multiplier_exact yes, which "
-         "mends such answers\n";
-}
-
-void write_table(const OnlineArguments &arguments, const OnlineSolver &solver,
-                 const Answers &answers, std::ostream &out) {
-  std::ostringstream table;
-  write_csv(table, solver.scene().parameters, answers.mus, answers.rows);
-  if (arguments.out.empty())
-    out << table.str();
-  else
-    write_atomically(arguments.out, table.str());
-}
+namespace {
 
 void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
@@ -117,39 +88,21 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   if (!arguments.vtu.empty())
     write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu), solver.model(),
               solver.field(solution), solver.multiplier(solution));
-  if (!arguments.out.empty()) write_table(arguments, solver, {{mu}, {outputs}}, out);
+  const bool inside = in_box(solver.scene().parameters, mu);
+  const ErrorOfOutput errors = inside ? errors_of_outputs(solver.model()) : ErrorOfOutput{};
+  if (!arguments.out.empty()) {
+    std::ostringstream table;
+    OutputTable(table, solver.scene().parameters, outputs, errors, true).add(mu, outputs);
+    write_atomically(arguments.out, table.str());
+  }
   out << describe(solver.scene().parameters, mu) << '\n';
-  print_outputs(out, outputs);
-  warn(solver.model(), violation(outputs), out);
-  if (in_box(solver.scene().parameters, mu))
+  print_outputs(out, outputs, errors);
+  warn_of_violation(solver.model(), violation(outputs), out);
+  if (inside)
     print_expected_errors(out, solver.model());
   else
     out << std::left << std::setw(22) << "expected error"
         << "unknown outside the box\n";
-}
-
-void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
-  Answers answers;
-  answers.mus = parse_set(solver.scene().parameters, arguments.queries, arguments.extrapolate);
-  ReducedSolution solution;
-  for (const Mu &mu : answers.mus)
-    answers.rows.push_back(while_doing("answering query " +
-                                           std::to_string(answers.rows.size() + 1) + " of " +
-                                           std::to_string(answers.mus.size()),
-                                       [&] { return answer(solver, mu, arguments, solution); }));
-  write_table(arguments, solver, answers, out);
-  if (arguments.out.empty()) return;
-  double seconds = 0, residual = 0, worst = 0;
-  for (const Outputs &row : answers.rows) {
-    seconds += row.seconds.value_or(0);
-    residual = std::max(residual, row.kkt_residual.value_or(0));
-    worst = std::max(worst, violation(row));
-  }
-  out << answers.rows.size() << " answers in " << arguments.out << ", "
-      << 1e3 * seconds / static_cast<double>(answers.rows.size())
-      << " ms each, largest kkt_residual " << residual << '\n';
-  warn(solver.model(), worst, out);
-  print_expected_errors(out, solver.model());
 }
 
 } // namespace

@@ -1,5 +1,7 @@
 #include "rbvi/rom/print.hpp"
 
+#include "rbvi/rom/self_check.hpp"
+
 #include <algorithm>
 #include <iomanip>
 #include <sstream>
@@ -114,6 +116,8 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   for (const auto &[name, value] : model.settings)
     label(out, name) << value << '\n';
   print_expected_errors(out, model);
+  label(out, "self-check");
+  print_self_check(out, model.self_check, model.parameters);
   if (model.supremizers > 0)
     label(out, "  decorrelated") << validation(model.validation_decorrelated) << '\n';
 }

@@ -3,12 +3,14 @@
 #include "rbvi/core/h5.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/self_check.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/stages.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
 #include <cstdio>
+#include <sstream>
 
 namespace rbvi {
 
@@ -89,6 +91,7 @@ void command_offline(const ToolOptions &options) {
   Reduction made = reduce(problem, sweep.samples, options.reduce, times);
   ReducedModel &model = made.model;
   model.settings = model_settings(options, sweep.samples.size());
+  if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
   for (const auto &[stage, seconds] : times)
     model.stage_seconds[stage] = seconds;
   {
@@ -102,6 +105,9 @@ void command_offline(const ToolOptions &options) {
   if (rank != 0) return;
   const OfflineResult result{sweep.report, made};
   print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
+  std::ostringstream check;
+  print_self_check(check, model.self_check, model.parameters);
+  std::printf("Self-check: %s", check.str().c_str());
   std::printf("Model: %s\n", (options.out / "model.h5").c_str());
 }
 

@@ -96,7 +96,10 @@ StageRow cone_row(const ToolOptions &options, const OfflineResult *result) {
   return {"cone", "R = " + count(static_cast<int>(made.basis.generators.cols()), "generator") +
                       (modes > 0 ? " + " + count(modes, "free mode") : "") + " (" + name +
                       "), error " + short_number(made.history.error.back()) + ", " +
-                      made.history.reason};
+                      made.history.reason +
+                      (result->made.ring > cone.ring
+                           ? ", widened to a ring of " + std::to_string(result->made.ring)
+                           : "")};
 }
 
 StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
@@ -209,6 +212,14 @@ void add_pair_rows(const ToolOptions &options, const OfflineResult *result,
   rows.push_back({"tangential multipliers", "the scene has no friction", true});
 }
 
+std::string self_check_row(const OfflineResult *result) {
+  if (result == nullptr) return "random queries of the model just made";
+  const SelfCheck &check = result->made.model.self_check;
+  return count(check.queries - check.unanswered, "answer") + " to " +
+         std::to_string(check.queries) + " random queries, residual " +
+         short_number(check.residual.value);
+}
+
 } // namespace
 
 std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t training, int groups,
@@ -229,6 +240,7 @@ std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t tra
   else
     add_pair_rows(options, result, rows);
   rows.push_back({"projection", "the separated operators onto the bases"});
+  rows.push_back({"self-check", self_check_row(result)});
   rows.push_back({"writing", "model.h5, samples.csv"});
   rows.push_back({"reconstruction", "online, only when asked", true});
   return rows;

@@ -1,5 +1,6 @@
 // rbvi verify: a finished model against high-fidelity solves over the validation set.
 #include "rbvi/check/errors.hpp"
+#include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 #include "rbvi/element/geometry.hpp"
@@ -214,6 +215,49 @@ std::string nitsche_name(const NitscheModel &nitsche) {
   return "nitsche " + curve_rule_names()[static_cast<std::size_t>(nitsche.rule)];
 }
 
+const char *kind_name(OutputKind kind) {
+  return kind == OutputKind::quantity  ? "quantity"
+         : kind == OutputKind::measure ? "measure"
+                                       : "check";
+}
+
+/// Every output: its definition's kind, absolute errors, and errors over its range and its value.
+void write_output_errors(const fs::path &path, const std::vector<OutputError> &errors) {
+  std::ostringstream text;
+  text << std::setprecision(4)
+       << "output,kind,mean,max,mean_of_range,max_of_range,mean_of_value,max_of_value\n";
+  for (const OutputError &e : errors)
+    for (const OutputColumn &column : output_columns())
+      if (e.name == column.name)
+        text << e.name << ',' << kind_name(column.kind) << ',' << e.mean << ',' << e.max << ','
+             << e.mean_of_range << ',' << e.max_of_range << ',' << e.mean_of_value << ','
+             << e.max_of_value << '\n';
+  write_atomically(path, text.str());
+}
+
+/// Those that have a target: quantities and measures.
+void print_output_errors(const std::vector<OutputError> &errors) {
+  std::printf("Errors of the outputs: largest, over the range, over the value\n");
+  for (const OutputError &e : errors)
+    for (const OutputColumn &column : output_columns())
+      if (e.name == column.name && column.kind != OutputKind::check)
+        std::printf("  %-20s %9.1e %9.1e %9.1e\n", column.name, e.max, e.max_of_range,
+                    e.max_of_value);
+}
+
+/// The reduced outputs at the validation mu, and their errors.
+std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &truths,
+                                       const fs::path &out) {
+  const std::vector<Outputs> reduced = reduced_outputs(model, truths.mu);
+  std::vector<OutputError> errors = output_errors(reduced, truths.outputs);
+  print_output_errors(errors);
+  write_output_errors(out / "outputs.csv", errors);
+  std::ostringstream table;
+  write_csv(table, model.parameters, truths.mu, reduced);
+  write_atomically(out / "reduced.csv", table.str());
+  return errors;
+}
+
 /// Errors of the model with and without supremizers and of its leading parts, into tables, and the
 /// summaries into the model file.
 void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
@@ -246,6 +290,8 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
   if (whole.failed == 0) write_worst_pressure(out / "worst_pressure.csv", model, truths, whole);
   model.validation_enriched = model.supremizers > 0 ? summary(whole) : ValidationErrors{};
   model.validation_decorrelated = summary(plain);
+  (model.supremizers > 0 ? model.validation_enriched : model.validation_decorrelated).outputs =
+      check_outputs(model, truths, out);
   write_model(model, options.out / "model.h5");
 }
 

@@ -2,6 +2,7 @@
 #include "rbvi/core/outputs.hpp"
 
 #include <gtest/gtest.h>
+#include <set>
 #include <sstream>
 
 namespace rbvi {
@@ -24,6 +25,38 @@ TEST(WriteCsv, ColumnsThatAreSetInTheAgreedOrder) {
 TEST(WriteCsv, RefusesTablesOfTwoLengths) {
   std::ostringstream out;
   EXPECT_THROW(write_csv(out, all_free({{"x", "", 0, 1, 0}}), {{0.5}}, {}), Error);
+}
+
+TEST(OutputTable, ErrorsStandBesideTheirOutputsAndFailuresSayWhy) {
+  const ParameterSpace space = all_free({{"radius", "m", 0, 1, 0}});
+  Outputs like;
+  like.energy = like.kkt_residual = 0;
+  std::ostringstream out;
+  OutputTable table(out, space, like, {{"energy", 1.23e-5}, {"min_u", 1}}, true);
+  Outputs row;
+  row.energy = 0.5;
+  row.kkt_residual = 1e-15;
+  table.add({0.25}, row);
+  table.add({2}, row, false);
+  table.add_failure({0.5}, "it \"fails\", here\nand there");
+  table.add_failure({}, "not a number");
+  EXPECT_EQ(out.str(), "radius,energy,energy_error,kkt_residual,status\n"
+                       "0.25,0.5,1.2e-05,1e-15,ok\n"
+                       "2,0.5,,1e-15,ok\n"
+                       "0.5,,,,\"it \"\"fails\"\", here and there\"\n"
+                       ",,,,\"not a number\"\n");
+}
+
+TEST(OutputColumns, EachHasANameOfItsOwnAndADefinition) {
+  std::set<std::string> names;
+  for (const OutputColumn &column : output_columns()) {
+    EXPECT_TRUE(names.insert(column.name).second) << column.name;
+    EXPECT_GT(std::string(column.says).size(), 10U) << column.name;
+    EXPECT_TRUE(is_table_column(column.name));
+    EXPECT_TRUE(is_table_column(std::string(column.name) + "_error"));
+  }
+  EXPECT_TRUE(is_table_column("status"));
+  EXPECT_FALSE(is_table_column("radius"));
 }
 
 TEST(PrintOutputs, OneLineForEach) {

@@ -1,5 +1,5 @@
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/parameters.hpp"
+#include "rbvi/core/parameter_sets.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -141,6 +141,37 @@ TEST_F(CsvSet, ColumnsInAnyOrder) {
             (std::vector<Mu>{{0.2, 0.01}, {0.16, -0.01}}));
 }
 
+TEST_F(CsvSet, PassesOverTheOtherColumnsOfATable) {
+  EXPECT_EQ(read("radius,energy,energy_error,x,status\n0.2,7,1e-5,0.01,ok\n"
+                 "0.16,,,0,\"no answer, \"\"here\"\"\"\n"),
+            (std::vector<Mu>{{0.2, 0.01}, {0.16, 0}}));
+}
+
+TEST_F(CsvSet, IsReadRowByRowAndGoesOnBehindAWrongOne) {
+  std::ofstream(name) << "radius,x\n0.2,0\n0.9,0\n0.16,0.01\n";
+  const ParameterSpace box = space();
+  ParameterReader reader(box, name);
+  EXPECT_EQ(reader.next(), (Mu{0.2, 0}));
+  EXPECT_TRUE(refuses("line 3", [&] { (void)reader.next(); }));
+  EXPECT_EQ(reader.next(), (Mu{0.16, 0.01}));
+  EXPECT_EQ(reader.next(), std::nullopt);
+  EXPECT_EQ(reader.next(), std::nullopt);
+  EXPECT_FALSE(is_stream(name));
+  EXPECT_TRUE(is_stream("-"));
+  EXPECT_TRUE(is_stream("/dev/null"));
+  EXPECT_FALSE(is_stream("grid:2,2"));
+}
+
+TEST(ParameterReader, GivesTheSetsOneByOne) {
+  const ParameterSpace box = space();
+  for (const char *text : {"grid:3,2", "random:5:2"}) {
+    ParameterReader reader(box, text);
+    for (const Mu &mu : parse_set(box, text))
+      EXPECT_EQ(reader.next(), mu) << text;
+    EXPECT_EQ(reader.next(), std::nullopt);
+  }
+}
+
 TEST_F(CsvSet, RefusesWhatIsWrong) {
   const auto refused = [&](const std::string &text, const std::string &part) {
     return refuses(part, [&] { (void)read(text); });
@@ -150,7 +181,8 @@ TEST_F(CsvSet, RefusesWhatIsWrong) {
   EXPECT_TRUE(refused("radius\n0.2\n", "every free parameter"));
   EXPECT_TRUE(refused("radius,y\n0.2,0\n", "no parameter 'y'"));
   EXPECT_TRUE(refused("radius,x,x\n0.2,0,0\n", "two columns"));
-  EXPECT_TRUE(refused("radius,x,energy\n0.2,0,1\n", "no parameter 'energy'"));
+  EXPECT_TRUE(refused("radius,x,energie\n0.2,0,1\n", "no parameter 'energie'"));
+  EXPECT_TRUE(refused("radius,x,status\n0.2,0,\"ok\n", "line 2"));
   EXPECT_TRUE(refused("radius,x\n0.2,0\n0.2\n", "line 3"));
   EXPECT_TRUE(refused("radius,x\n0.2,0,1\n", "3 entries under 2 columns, while reading line 2"));
   EXPECT_TRUE(refused("radius,x\n0.2,0\n\n0.2,oops\n", "line 4"));

@@ -53,6 +53,9 @@ ReducedModel full_model() {
   model.histories = {{"pod/error", {1, 0.1}}, {"cone/e_orth", {}}};
   model.stage_seconds = {{"snapshots", 12.5}};
   model.validation_enriched = {64, 1e-4, 2e-4, 3e-4, 4e-4};
+  model.validation_enriched.outputs = {{"energy", 1, 2, 3, 4, 5, 6},
+                                       {"kkt_residual", 0, 1e-15, 0, 0, 0, 0}};
+  model.self_check = {200, 3, {0.2, 0.01}, "contact opens", {1e-12, {0.17, 0}}, {1e-3, {0.2, 0}}};
   return model;
 }
 
@@ -90,6 +93,17 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_EQ(copy.stage_seconds, model.stage_seconds);
   EXPECT_EQ(copy.validation_enriched.lambda_max, 4e-4);
   EXPECT_EQ(copy.validation_decorrelated.count, 0);
+  ASSERT_EQ(copy.validation_enriched.outputs.size(), 2U);
+  EXPECT_EQ(copy.validation_enriched.outputs[0].name, "energy");
+  EXPECT_EQ(copy.validation_enriched.outputs[0].max_of_value, 6);
+  EXPECT_EQ(errors_of_outputs(copy), (ErrorOfOutput{{"energy", 2}}));
+  EXPECT_EQ(copy.self_check.queries, 200);
+  EXPECT_EQ(copy.self_check.unanswered, 3);
+  EXPECT_EQ(copy.self_check.unanswered_at, (Mu{0.2, 0.01}));
+  EXPECT_EQ(copy.self_check.reason, "contact opens");
+  EXPECT_EQ(copy.self_check.residual.at, (Mu{0.17, 0}));
+  EXPECT_EQ(copy.self_check.penetration.value, 1e-3);
+  EXPECT_TRUE(copy.self_check.friction.at.empty());
 }
 
 TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {

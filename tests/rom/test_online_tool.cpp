@@ -7,6 +7,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -129,6 +130,8 @@ TEST_F(OnlineBinary, AnswersMany) {
   EXPECT_TRUE(lines[0].starts_with("radius,center_x,center_y,energy,normal_force"));
   EXPECT_TRUE(contains(lines[0], ",kkt_residual,"));
   EXPECT_TRUE(contains(lines[0], ",expected_error_u,expected_error_lambda,"));
+  EXPECT_TRUE(lines[0].ends_with(",status"));
+  EXPECT_TRUE(lines[1].ends_with(",ok"));
   EXPECT_FALSE(contains(lines[0], "min_u"));
   EXPECT_TRUE(lines[1].starts_with("0.18,0.02,-0.01,"));
   EXPECT_EQ(split(lines[2], ',').size(), split(lines[0], ',').size());
@@ -184,9 +187,117 @@ TEST_F(OnlineBinary, FailsWithStatusOne) {
   write_model(model, "model.h5");
   const Finished run = online("model.h5 --queries grid:2,2,2 --out out.csv");
   EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.out, "8 of 8 queries have no answer")) << run.out;
   EXPECT_TRUE(contains(run.out, "not positive definite")) << run.out;
-  EXPECT_TRUE(contains(run.out, "query 1 of 8")) << run.out;
-  EXPECT_FALSE(std::filesystem::exists("out.csv"));
+  EXPECT_TRUE(std::filesystem::exists("out.csv"));
+}
+
+/// The rows of a table under its header, by column.
+std::vector<std::map<std::string, std::string>> rows_of(const std::string &table) {
+  const std::vector<std::string> lines = lines_of(table);
+  std::vector<std::map<std::string, std::string>> rows;
+  if (lines.empty()) return rows;
+  const std::vector<std::string> names = split(lines[0], ',');
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::vector<std::string> fields = split(lines[i], ',');
+    rows.emplace_back();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      rows.back()[names[k]] = k < fields.size() ? fields[k] : "";
+    for (std::size_t k = names.size(); k < fields.size(); ++k)
+      rows.back()[names.back()] += "," + fields[k]; // commas of a reason
+  }
+  return rows;
+}
+
+TEST_F(OnlineBinary, ARowWithoutAnAnswerSaysWhyAndTheOthersAreAnswered) {
+  model.free_modes = 1;                // the last generator takes either sign,
+  model.dual_basis.col(3) << 5, -5, 5; // so that some pressures are negative
+  write_model(model, "model.h5");
+  OnlineSolver solver(model);
+  std::vector<bool> answered;
+  for (const Mu &mu : parse_set(solver.scene().parameters, "random:40:3")) {
+    try {
+      (void)solver.solve(mu);
+      answered.push_back(true);
+    } catch (const Error &) {
+      answered.push_back(false);
+    }
+  }
+  const auto missing = std::count(answered.begin(), answered.end(), false);
+  ASSERT_GT(missing, 0);
+  ASSERT_LT(missing, 40);
+  const Finished run = online("model.h5 --queries random:40:3 --out out.csv");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.out, std::to_string(missing) + " of 40 queries have no answer"))
+      << run.out;
+  const auto rows = rows_of(slurp("out.csv"));
+  ASSERT_EQ(rows.size(), 40U);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("status") == "ok", answered[i]) << i;
+    EXPECT_EQ(rows[i].at("energy").empty(), !answered[i]) << i;
+    EXPECT_FALSE(rows[i].at("radius").empty());
+    if (!answered[i]) {
+      EXPECT_TRUE(contains(rows[i].at("status"), "while solving")) << rows[i].at("status");
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists("out.csv.partial"));
+}
+
+TEST_F(OnlineBinary, ReadsAndWritesStreams) {
+  const Finished run = shell("printf 'radius,center_x,center_y\\n0.2,0,0\\n0.9,0,0\\nx,0,0\\n"
+                             "0.18,0.01,0\\n' | " RBVI_ONLINE " model.h5 --queries - --out -");
+  EXPECT_EQ(run.status, 1);
+  const auto rows = rows_of(run.out); // the last line is that of the failure
+  ASSERT_EQ(rows.size(), 5U) << run.out;
+  EXPECT_EQ(rows[0].at("status"), "ok");
+  EXPECT_TRUE(contains(rows[1].at("status"), "outside")) << rows[1].at("status");
+  EXPECT_TRUE(contains(rows[2].at("status"), "line 4")) << rows[2].at("status");
+  EXPECT_EQ(rows[3].at("status"), "ok");
+  EXPECT_TRUE(contains(run.out, "2 of 4 queries have no answer")) << run.out;
+  EXPECT_EQ(shell("printf 'center_x\\n0\\n' | " RBVI_ONLINE " model.h5 --queries -").status, 2);
+}
+
+TEST_F(OnlineBinary, ALongBatchLosesOnlyTheRowsWithoutAnAnswerAndTakesNoMemory) {
+  constexpr int rows = 100000, each = 1000;
+  {
+    std::ofstream file("mu.csv");
+    file << "radius,center_x,center_y\n";
+    for (int i = 0; i < rows; ++i)
+      file << (i % each == 0 ? 0.9 : 0.16 + 0.08 * i / rows) << ",0.01,0\n";
+  }
+  const Finished run = shell(RBVI_ONLINE " model.h5 --queries - --out out.csv < mu.csv");
+  EXPECT_EQ(run.status, 1);
+  EXPECT_TRUE(contains(run.out, "100 of 100000 queries have no answer")) << run.out;
+  std::ifstream table("out.csv");
+  std::string line;
+  std::getline(table, line);
+  int answered = 0, refused = 0;
+  while (std::getline(table, line))
+    ++(line.ends_with(",ok") ? answered : refused);
+  EXPECT_EQ(answered, rows - rows / each);
+  EXPECT_EQ(refused, rows / each);
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  EXPECT_LE(usage.ru_maxrss, 100000) << "KB, of any command so far";
+}
+
+TEST_F(OnlineBinary, ReadsItsOwnTablesAgain) {
+  model.validation_enriched.outputs = {{"energy", 1e-5, 2e-5, 1e-4, 2e-4, 1e-4, 2e-4},
+                                       {"kkt_residual", 1e-15, 1e-15, 1, 1, 1, 1}};
+  write_model(model, "model.h5");
+  ASSERT_EQ(online("model.h5 --queries random:7:5 --out out.csv").status, 0);
+  const Finished again = online("model.h5 --queries out.csv --out out2.csv");
+  EXPECT_EQ(again.status, 0) << again.out;
+  const auto first = rows_of(slurp("out.csv")), second = rows_of(slurp("out2.csv"));
+  ASSERT_EQ(first.size(), 7U);
+  ASSERT_EQ(second.size(), 7U);
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_EQ(first[i].at("radius"), second[i].at("radius"));
+    EXPECT_EQ(first[i].at("energy"), second[i].at("energy"));
+    EXPECT_EQ(first[i].at("energy_error"), "2.0e-05");
+    EXPECT_FALSE(first[i].contains("kkt_residual_error"));
+  }
+  EXPECT_TRUE(contains(online("model.h5 --mu 0.2,0,0").out, "(error 2.0e-05)"));
 }
 
 TEST_F(OnlineBinary, IsSerial) {

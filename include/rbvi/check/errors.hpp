@@ -15,12 +15,13 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u);
 /// |coordinates - c|^2 + remainder^2, so that one projection serves every sub-model.
 struct Truths {
   std::vector<Mu> mu;
-  Matrix coordinates;     ///< n x P
-  Vector remainder;       ///< P: distance of u to the basis, in V
-  Vector u_norm;          ///< P, in V, of the whole displacement
-  Matrix lambda;          ///< dual dofs x P
-  Vector lambda_norm;     ///< P, in W; with friction of the normal part
-  Vector tangential_norm; ///< P, of the tangential part; empty without friction
+  Matrix coordinates;           ///< n x P
+  Vector remainder;             ///< P: distance of u to the basis, in V
+  Vector u_norm;                ///< P, in V, of the whole displacement
+  Matrix lambda;                ///< dual dofs x P
+  Vector lambda_norm;           ///< P, in W; with friction of the normal part
+  Vector tangential_norm;       ///< P, of the tangential part; empty without friction
+  std::vector<Outputs> outputs; ///< P
 };
 
 /// Collective. `problem`: on the communicator of all ranks.

@@ -1,7 +1,10 @@
 // Parameters, their box D, and sets of parameter values (training, validation, queries).
 #pragma once
 
+#include "rbvi/core/error.hpp"
+
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,12 +59,14 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside = fa
 /// the default value), and checks it. Throws bad_input.
 Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_outside = false);
 
-/// Reads "grid:5,5,5" (box ends included, last parameter fastest; a count of 1 is the middle),
-/// "random:200:seed" or "200" for seed 1 (uniform, the same on every machine), or the name of a CSV
-/// file with a header of parameter names, in any order. Every mu is checked. Throws bad_input,
-/// naming the line.
-std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
-                          bool allow_outside = false);
+/// "radius,center_x": the free ones.
+std::string names_of(const ParameterSpace &space);
+
+/// Position among the free parameters.
+std::optional<std::size_t> find_free(const ParameterSpace &space, const std::string &name);
+
+/// What to throw for a name that is no free parameter.
+Error unknown_parameter(const ParameterSpace &space, const std::string &name);
 
 /// "radius=0.18 center_x=0.02": for messages.
 std::string describe(const ParameterSpace &space, const Mu &mu);

@@ -7,7 +7,7 @@
 // scene serves the offline assembly and the online evaluation of sampled entries.
 #pragma once
 
-#include "rbvi/core/parameters.hpp"
+#include "rbvi/core/parameter_sets.hpp"
 
 #include <array>
 #include <functional>

@@ -9,6 +9,12 @@ namespace rbvi {
 /// "%.4g".
 std::string short_number(double value);
 
+/// The shortest text that reads back as the same number.
+std::string shortest_number(double value);
+
+/// Without blanks at both ends.
+std::string trimmed(const std::string &text);
+
 /// The name with the fewest single-letter edits (Levenshtein); "" if there is none.
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names);
 

@@ -65,11 +65,12 @@ struct ReducedBases {
 void check_support_reduction(const Scene &scene, const ReduceOptions &options);
 
 /// All of the offline stage behind the snapshots. The model is complete on every rank, but for its
-/// settings, validation errors and stage times.
+/// settings, validation errors and stage times, and for the self-check, which rank 0 has.
 struct Reduction {
   AffineOperators affine;
   ReducedBases bases;
   ReducedModel model;
+  int ring = 0;      ///< layers of nodes of a hybrid cone, ReduceOptions::cone.ring or more
   Gcns collocation;  ///< of MultiplierReduction::collocated
   CurveReport curve; ///< of Nitsche's method
 };

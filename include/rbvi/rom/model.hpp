@@ -12,6 +12,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
 #include "rbvi/rom/chebyshev.hpp"
 
@@ -41,14 +42,12 @@ struct AffineTerms {
   int size() const { return static_cast<int>(interpolation.rows()); }
 };
 
-/// Error of one output over the validation set. `scale`: the range of the high-fidelity values
-/// there or, where that is smaller, a hundredth of their largest magnitude (of a pressure, a tenth:
-/// its range alone says little).
+/// Error of one output over the validation set.
 struct OutputError {
-  std::string name;         ///< OutputColumn::name
-  double mean = 0, max = 0; ///< absolute
-  double mean_of_scale = 0, max_of_scale = 0;
-  double mean_of_value = 0, max_of_value = 0; ///< relative to each value; where that is 0, absolute
+  std::string name;                           ///< OutputColumn::name
+  double mean = 0, max = 0;                   ///< absolute
+  double mean_of_range = 0, max_of_range = 0; ///< over the range of the high-fidelity values
+  double mean_of_value = 0, max_of_value = 0; ///< over each value
 };
 
 /// Errors measured by `rbvi verify`, relative, over the validation set; negative: not measured.
@@ -59,14 +58,22 @@ struct ValidationErrors {
   std::vector<OutputError> outputs{};               ///< in the order of output_columns()
 };
 
+/// The largest value of a quantity over some queries, and where.
+struct Worst {
+  double value = 0;
+  Mu at{}; ///< free parameters; empty where there was no query
+};
+
 /// Queries that `rbvi offline` asked of the model that it had just made, random in its box.
 struct SelfCheck {
   int queries = 0; ///< 0: none were asked
   int unanswered = 0;
-  std::string reason = "";            ///< of the first one without an answer
-  double residual = 0, violation = 0; ///< largest kkt_residual, and violation of a law, relative
-  Mu unanswered_at{}, residual_at{}, violation_at{}; ///< free parameters; empty where there is none
-  bool clean() const { return unanswered == 0 && residual <= 1e-10; }
+  Mu unanswered_at{};      ///< the first one without an answer; empty where there is none
+  std::string reason = ""; ///< of that one
+  Worst residual, penetration, friction; ///< kkt_residual; max_penetration; friction_violation over
+                                         ///< peak_pressure
+  /// All were answered, with residuals of round-off.
+  bool clean() const { return unanswered == 0 && residual.value <= 1e-10; }
 };
 
 /// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
@@ -221,6 +228,10 @@ ReducedModel leading(const ReducedModel &model, int n, int r);
 
 /// The errors measured for this model: with supremizers if it has any.
 const ValidationErrors &expected_errors(const ReducedModel &model);
+
+/// The largest absolute error that was measured of each of its outputs; residuals and the like have
+/// none.
+ErrorOfOutput errors_of_outputs(const ReducedModel &model);
 
 /// Row `i` of contact_points or mesh_points as a point.
 Point point_of(const Matrix &points, Index i);

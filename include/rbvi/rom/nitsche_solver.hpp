@@ -41,8 +41,10 @@ public:
 
   /// Stress and pressures along the whole curve.
   CurveFields fields(const Mu &all_parameters, const Vector &u) const;
-  /// All that is measured but the energy; kkt_residual is that of the integrals over the whole
-  /// curve, tested with the reduced basis.
+  /// All that is measured but the energy. Pressures need u to a part in gamma, which few points do
+  /// not give between them: from u, Newton's method goes on over the whole curve, one or two steps,
+  /// and forces, widths and pressures are those of its answer. Throws failure where it does not
+  /// converge.
   void outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
 
 private:
@@ -56,6 +58,8 @@ private:
   };
   Quadratic quadratic_at(const Mu &all_parameters) const;
   Vector predicted(const Mu &all_parameters) const;
+  /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
+  Vector over_whole_curve(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
 
   const ReducedModel &model_;
   const Scene &scene_;
@@ -63,6 +67,7 @@ private:
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
   std::unique_ptr<Interpolated> interpolated_;
+  mutable std::unique_ptr<System> whole_; ///< made by the first outputs of a model with few points
 };
 
 } // namespace rbvi

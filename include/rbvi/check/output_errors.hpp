@@ -1,0 +1,25 @@
+// Errors of what people ask a model for: energies, forces, pressures, widths.
+#pragma once
+
+#include "rbvi/rom/online.hpp"
+
+#include <vector>
+
+namespace rbvi {
+
+/// One answer with all outputs, min_u among them where the model has its fields.
+Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
+                           const ReducedSolution &solution);
+
+/// The outputs of the model at each mu, in or out of its box; nothing is set where it has no
+/// answer. Serial.
+std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set);
+
+/// Errors of every column that `truth` and `reduced` have, but for seconds and iterations, over
+/// those mu where both are set. `reduced` and `truth` go together. The range is that of the true
+/// values, at least a hundredth of their largest magnitude; a value that errors are compared with
+/// is taken to have at least that size too, so that nothing is relative to a number near 0.
+std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
+                                       const std::vector<Outputs> &truth);
+
+} // namespace rbvi

@@ -1,0 +1,17 @@
+// What a new model does not answer, before a user finds out.
+#pragma once
+
+#include "rbvi/rom/online.hpp"
+
+namespace rbvi {
+
+/// Asks `model` at random parameters of its box, the same on every machine, and collects what
+/// SelfCheck holds. Costs so many queries with outputs. Throws bad_input where model and scene do
+/// not fit.
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries = 200);
+
+/// "200 queries, all answered; largest residual 3e-14 (radius=0.8), ...": lines for people; says
+/// what to do where it is not clean.
+void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space);
+
+} // namespace rbvi

@@ -1,0 +1,26 @@
+// What one answer and a table of them share.
+#pragma once
+
+#include "rbvi/rom/online.hpp"
+#include "rbvi/rom/online_tool.hpp"
+
+namespace rbvi {
+
+/// Its `seconds` are those of theta, assembly and solution, the checks and the outputs, and with
+/// `full` of the field. Throws as OnlineSolver::solve.
+Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
+               ReducedSolution &solution);
+
+/// The largest violation of the laws of contact and friction at any node, relative.
+double violation(const Outputs &outputs);
+
+/// A line where answers on a support break the laws: only a reduced law that is not mended does.
+void warn_of_violation(const ReducedModel &model, double violation, std::ostream &out);
+
+/// Answers all queries, row by row, in constant memory, into FILE.partial, which becomes FILE at
+/// the end, or to `out`. A set that can be read twice is read to its end before the first answer;
+/// the rows of a stream say so themselves where they are none. Throws bad_input for a wrong set,
+/// and failure, at the end, where some query has no answer.
+void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out);
+
+} // namespace rbvi

@@ -1,0 +1,68 @@
+#include "rbvi/rom/self_check.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+
+namespace rbvi {
+
+namespace {
+
+void raise(Worst &worst, double value, const Mu &mu) {
+  if (!worst.at.empty() && !(value > worst.value)) return;
+  worst = {value, mu};
+}
+
+std::string at(const Worst &worst, const ParameterSpace &space) {
+  return short_number(worst.value) + " (" + describe(space, worst.at) + ")";
+}
+
+} // namespace
+
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries) {
+  SelfCheck check;
+  check.queries = queries;
+  OnlineSolver solver(model, scene);
+  ParameterReader set(model.parameters, "random:" + std::to_string(queries) + ":17");
+  while (const std::optional<Mu> mu = set.next()) {
+    Outputs outputs;
+    try {
+      outputs = solver.outputs(*mu, solver.solve(*mu));
+    } catch (const Error &error) {
+      if (error.status() == Status::bad_input) throw;
+      if (check.unanswered++ == 0) {
+        check.unanswered_at = *mu;
+        check.reason = error.what();
+      }
+      continue;
+    }
+    raise(check.residual, outputs.kkt_residual.value_or(0), *mu);
+    raise(check.penetration, outputs.max_penetration.value_or(0), *mu);
+    const double peak = outputs.peak_pressure.value_or(0);
+    if (outputs.friction_violation)
+      raise(check.friction, peak > 0 ? *outputs.friction_violation / peak : 0, *mu);
+  }
+  return check;
+}
+
+void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space) {
+  if (check.queries == 0) {
+    out << "not made\n";
+    return;
+  }
+  out << check.queries << " random queries, ";
+  if (check.unanswered == 0)
+    out << "all answered";
+  else
+    out << check.unanswered << " without an answer";
+  if (check.unanswered < check.queries)
+    out << "; largest residual " << at(check.residual, space) << ", penetration "
+        << at(check.penetration, space);
+  if (!check.friction.at.empty())
+    out << ", violation of friction over the peak pressure " << at(check.friction, space);
+  out << '\n';
+  if (check.unanswered > 0) out << "  no answer at " << check.reason << '\n';
+  if (!check.clean())
+    out << "  reduce again with more training parameters (-train), or a smaller box\n";
+}
+
+} // namespace rbvi
