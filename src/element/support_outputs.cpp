@@ -22,9 +22,9 @@ Vector arc_lengths(const std::vector<Point> &points) {
   return s.array() - s[s.size() - 1] / 2;
 }
 
-/// Below its bound by more than round-off.
-bool sticks(double tangential, double bound) {
-  return tangential < (1 - 1e-9) * bound;
+/// Below its bound by more than round-off, and than the law is met to.
+bool sticks(double tangential, double bound, double violation) {
+  return tangential < (1 - 1e-9) * bound - violation;
 }
 
 } // namespace
@@ -80,11 +80,12 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
 
   const Vector shear = state.lambda.tail(count).cwiseAbs();
   const Vector bounds = friction_bounds(state.bound, pressure);
+  const double violation = std::max(0.0, (shear - bounds).maxCoeff());
   for (Index i = 0; i < count; ++i)
-    if (pressure[i] > 0 && sticks(shear[i], bounds[i])) stick += state.weights[i];
+    if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) stick += state.weights[i];
   outputs.tangential_force = state.weights.dot(shear);
   outputs.stick_half_width = stick / 2;
-  outputs.friction_violation = std::max(0.0, (shear - bounds).maxCoeff());
+  outputs.friction_violation = violation;
 }
 
 } // namespace rbvi

@@ -103,22 +103,13 @@ long count_queries(const OnlineArguments &arguments, const ParameterSpace &space
   return count;
 }
 
-/// Which outputs this model has: those of its first training parameter that it answers, or of the
-/// middle of its box.
+/// Which outputs this model has: those of the first of its training parameters, or of some random
+/// ones, that it answers.
 Outputs example(OnlineSolver &solver, const OnlineArguments &arguments) {
-  const ParameterSpace &space = solver.scene().parameters;
-  std::vector<Mu> candidates;
-  for (Index p = 0; p < solver.model().trained_mu.cols(); ++p)
-    candidates.emplace_back(solver.model().trained_mu.col(p).begin(),
-                            solver.model().trained_mu.col(p).end());
-  ParameterReader middle(
-      space, "grid:1" + [&] {
-        std::string more;
-        for (int i = 1; i < space.size(); ++i)
-          more += ",1";
-        return more;
-      }());
-  candidates.push_back(*middle.next());
+  const Matrix &trained = solver.model().trained_mu;
+  std::vector<Mu> candidates = parse_set(solver.scene().parameters, "random:100:1");
+  for (Index p = trained.cols(); p-- > 0;)
+    candidates.insert(candidates.begin(), Mu(trained.col(p).begin(), trained.col(p).end()));
   ReducedSolution solution;
   for (const Mu &mu : candidates) {
     try {

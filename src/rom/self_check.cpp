@@ -61,8 +61,11 @@ void print_self_check(std::ostream &out, const SelfCheck &check, const Parameter
     out << ", violation of friction over the peak pressure " << at(check.friction, space);
   out << '\n';
   if (check.unanswered > 0) out << "  no answer at " << check.reason << '\n';
-  if (!check.clean())
+  if (check.unanswered > 0)
     out << "  reduce again with more training parameters (-train), or a smaller box\n";
+  else if (!check.clean())
+    out << "  residuals above 1e-10: the laws are met to that only; reduce again with smaller "
+           "tolerances, or -multiplier_reduction condensed on a rigid support\n";
 }
 
 } // namespace rbvi

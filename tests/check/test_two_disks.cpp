@@ -229,5 +229,24 @@ TEST(ReducedDisks, WithoutAnyContactThereIsNoModel) {
   }
 }
 
+/// Between nine random radii the edge of contact moves further than a ring of one layer.
+TEST(TwoDisks, AHybridConeWidensUntilEveryRandomQueryIsAnswered) {
+  Reduced r(make_scene("two_disks"), "random:9:1");
+  StageTimes times;
+  const ReduceOptions options = with(ConeType::hybrid, 1e-3, 1e-3);
+  const Reduction made = reduce(r.problem, r.samples, options, times);
+  EXPECT_GT(made.ring, options.cone.ring);
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0) {
+    EXPECT_TRUE(made.model.self_check.clean());
+    EXPECT_EQ(made.model.self_check.queries, 200);
+  }
+  const Sample truth = solve_all(r.problem, {{0.8}}).front();
+  OnlineSolver online(made.model);
+  const Outputs found = online.outputs({0.8}, online.solve({0.8}));
+  EXPECT_NEAR(*found.normal_force, *truth.outputs.normal_force, 1e-2 * *truth.outputs.normal_force);
+}
+
 } // namespace
 } // namespace rbvi

@@ -55,6 +55,11 @@ TEST(SelfCheck, SaysWhatHasNoAnswer) {
   EXPECT_TRUE(contains(text, "not positive definite")) << text;
   EXPECT_TRUE(contains(text, "reduce again")) << text;
   EXPECT_TRUE(contains(printed({}, model), "not made"));
+  SelfCheck rough;
+  rough.queries = 5;
+  rough.residual = {1e-7, model.parameters.size() == 3 ? Mu{0.2, 0, 0} : Mu{}};
+  EXPECT_FALSE(rough.clean());
+  EXPECT_TRUE(contains(printed(rough, model), "residuals above 1e-10"));
 }
 
 } // namespace

@@ -28,7 +28,8 @@ struct SupportState {
 
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
 /// peak_pressure, centre_pressure and, with friction, tangential_force, stick_half_width,
-/// friction_violation (a pressure).
+/// friction_violation (a pressure). A node sticks where it is below its bound by more than
+/// that.
 void support_outputs(const SupportState &state, Outputs &outputs);
 
 } // namespace rbvi

@@ -70,8 +70,8 @@ struct SelfCheck {
   int unanswered = 0;
   Mu unanswered_at{};      ///< the first one without an answer; empty where there is none
   std::string reason = ""; ///< of that one
-  Worst residual, penetration, friction; ///< kkt_residual; max_penetration; friction_violation over
-                                         ///< peak_pressure
+  /// kkt_residual, max_penetration, and friction_violation over peak_pressure.
+  Worst residual{}, penetration{}, friction{};
   /// All were answered, with residuals of round-off.
   bool clean() const { return unanswered == 0 && residual.value <= 1e-10; }
 };
