@@ -1,5 +1,6 @@
 // rbvi: the MPI tool. `rbvi -help` lists commands and options.
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/session.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/finish.hpp"
@@ -34,8 +35,14 @@ int main(int argc, char **argv) {
     std::vector<char *> arguments = invocation.pointers();
     int count = static_cast<int>(arguments.size()) - 1;
     char **values = arguments.data();
+    InterruptWatch watch;
     Session session(count, values);
-    return finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
+    int rank = 0;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    watch.start(rank == 0);
+    const int status = finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
+    watch.stop();
+    return status;
   } catch (const Error &error) { // PETSc does not start with these options
     const int status = finish(MPI_COMM_WORLD, [&] { throw bad_input(error.what()); });
     MPI_Finalize();

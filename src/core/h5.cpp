@@ -79,17 +79,18 @@ std::string seal(const std::string &payload, const std::string &kind, int schema
 void verify_seal(const std::string &bytes, const std::string &name, const std::string &kind,
                  int schema) {
   const std::string start = bytes.substr(0, magic.size());
-  if (start.empty()) throw bad_input(name + " is empty");
+  if (start.empty()) throw DamagedFile(name + " is empty");
   if (start == hdf5_signature)
-    throw bad_input(name + " is an HDF5 file, but not one written by rbvi");
-  if (start != magic.substr(0, start.size())) throw bad_input(name + " is not an rbvi file");
+    throw DamagedFile(name + " is an HDF5 file, but not one written by rbvi");
+  if (start != magic.substr(0, start.size())) throw DamagedFile(name + " is not an rbvi file");
   const auto truncated = [&](const std::string &full) {
-    return bad_input(name + " is truncated: " + std::to_string(bytes.size()) + " of " + full +
-                     " bytes; copy or make it again");
+    return DamagedFile(name + " is truncated: " + std::to_string(bytes.size()) + " of " + full +
+                           " bytes",
+                       "; copy or make it again");
   };
   if (bytes.size() < block_size) throw truncated("at least " + std::to_string(block_size));
   const auto damaged =
-      bad_input(name + " is damaged (its checksum does not match); copy or make " + "it again");
+      DamagedFile(name + " is damaged (its checksum does not match)", "; copy or make it again");
   const bool rest_is_zero =
       bytes.find_first_not_of('\0', header_end) >= std::min(block_size, bytes.size());
   if (get(bytes, header_at) != fnv1a(bytes.data(), header_at) || !rest_is_zero) throw damaged;
@@ -99,23 +100,23 @@ void verify_seal(const std::string &bytes, const std::string &name, const std::s
   if (get(bytes, payload_at) != fnv1a(bytes.data() + block_size, bytes.size() - block_size))
     throw damaged;
   if (bytes.compare(kind_at, kind_size, kind_field(kind)) != 0)
-    throw bad_input(name + " is a " + std::string(bytes.c_str() + kind_at) + " file, not a " +
-                    kind + " file");
+    throw DamagedFile(name + " is a " + std::string(bytes.c_str() + kind_at) + " file, not a " +
+                      kind + " file");
   if (get(bytes, schema_at) != static_cast<std::uint64_t>(schema))
-    throw bad_input(name + " has schema version " + std::to_string(get(bytes, schema_at)) +
-                    "; this build reads version " + std::to_string(schema) + ": make it again");
+    throw OtherVersion(name + " has schema version " + std::to_string(get(bytes, schema_at)) +
+                       "; this build reads version " + std::to_string(schema) + ": make it again");
 }
 
 std::string read_whole(const Path &path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) throw bad_input(path.string() + " does not exist");
   if (std::filesystem::is_directory(path, ignored))
-    throw bad_input(path.string() + " is a directory, not an rbvi file");
+    throw DamagedFile(path.string() + " is a directory, not an rbvi file");
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
   const bool empty = in && in.peek() == EOF && !in.bad();
   if (!empty && !(bytes << in.rdbuf()))
-    throw bad_input(path.string() + " cannot be read: " + std::strerror(errno));
+    throw DamagedFile(path.string() + " cannot be read: " + std::strerror(errno));
   return bytes.str();
 }
 

@@ -1,9 +1,11 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/temporary_files.hpp"
 
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <mutex>
 #include <unistd.h>
 
 namespace rbvi {
@@ -12,8 +14,13 @@ namespace {
 
 using Path = std::filesystem::path;
 
+/// Held from the first byte of a file to its name.
+std::timed_mutex writing;
+
 Error cannot_write(const Path &path) {
-  return failure("cannot write " + path.string() + ": " + std::strerror(errno));
+  const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+  return failure("cannot write " + path.string() + ": " + std::strerror(errno) +
+                 (full ? "; make room and start the same command again" : ""));
 }
 
 /// An open file descriptor; the name is removed unless `keep` was called.
@@ -53,8 +60,7 @@ void write_directly(const Path &path, const std::string &bytes) {
 int open_temporary(const Path &path, Path &name) {
   int descriptor = -1;
   for (int attempt = 0; descriptor < 0; ++attempt) {
-    name = path;
-    name += ".tmp." + std::to_string(::getpid()) + "." + std::to_string(attempt);
+    name = temporary_name(path, attempt);
     descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno != EEXIST) throw cannot_write(path);
   }
@@ -72,6 +78,16 @@ void sync_directory(const Path &path) {
 
 } // namespace
 
+void stop_writing(std::chrono::milliseconds patience) {
+  (void)writing.try_lock_for(patience); // the process ends with it
+}
+
+void make_directory(const Path &path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw failure("cannot make the directory " + path.string() + ": " + error.message());
+}
+
 void write_atomically(const Path &path, const std::string &bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
@@ -82,6 +98,7 @@ void write_atomically(const Path &path, const std::string &bytes) {
   const Path target = exists ? std::filesystem::canonical(path, error) : path;
   if (error && exists) throw failure("cannot write " + path.string() + ": " + error.message());
 
+  const std::lock_guard<std::timed_mutex> whole(writing);
   Path temporary;
   const int descriptor = open_temporary(target, temporary);
   Output out(descriptor, temporary);

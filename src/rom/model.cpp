@@ -210,6 +210,10 @@ void check_model(const ReducedModel &model) {
   require_shape(model.contact_points, contact, dim, "contact/points");
   if (!model.support && !model.nitsche)
     require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
+  const Index free = model.parameters.size();
+  for (const auto &[mu, name] :
+       {std::pair{&model.trained_mu, "training/mu"}, {&model.failed_mu, "training/failed"}})
+    require_shape(*mu, mu->cols() == 0 ? mu->rows() : free, mu->cols(), name);
   check_fields(model, dim);
 }
 

@@ -41,6 +41,8 @@
 //   self_check/{residual,penetration,friction}{,_at}  the largest, and its free parameters
 //   histories/names, histories/values/<name>          convergence histories
 //   stages/{names,seconds}                            wall time of each offline stage
+//   training/{mu,failed}                              free parameters x samples: those that made
+//                                                     it, those without a high-fidelity answer
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 #include "rbvi/rom/model.hpp"
@@ -218,6 +220,8 @@ void write_history(H5Writer &file, const ReducedModel &model) {
     file.write("histories/values/" + names[i], histories[i]);
   file.write("stages/names", stages);
   file.write("stages/seconds", seconds);
+  file.write("training/mu", model.trained_mu);
+  file.write("training/failed", model.failed_mu);
   write_validation(file, "validation/enriched", model.validation_enriched);
   write_validation(file, "validation/decorrelated", model.validation_decorrelated);
   write_self_check(file, model.self_check);
@@ -227,6 +231,8 @@ void read_history(const H5Reader &file, ReducedModel &model) {
   for (const std::string &name : file.strings("histories/names"))
     model.histories[name] = file.doubles("histories/values/" + name);
   model.stage_seconds = zip("stages", file.strings("stages/names"), file.doubles("stages/seconds"));
+  model.trained_mu = file.matrix("training/mu");
+  model.failed_mu = file.matrix("training/failed");
   model.validation_enriched = read_validation(file, "validation/enriched");
   model.validation_decorrelated = read_validation(file, "validation/decorrelated");
   model.self_check = read_self_check(file);

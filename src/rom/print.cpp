@@ -1,6 +1,7 @@
 #include "rbvi/rom/print.hpp"
 
 #include "rbvi/rom/self_check.hpp"
+#include "rbvi/rom/training_samples.hpp"
 
 #include <algorithm>
 #include <iomanip>
@@ -68,6 +69,19 @@ void print_curve(std::ostream &out, const NitscheModel &nitsche) {
   label(out, "terms of a_gamma - a") << nitsche.consistency.size() << '\n';
 }
 
+/// Where the model has no sample, though it was to have one.
+void print_failed(std::ostream &out, const ReducedModel &model) {
+  constexpr std::size_t most = 10;
+  const std::vector<Mu> failed = from_columns(model.failed_mu);
+  if (failed.empty()) return;
+  label(out, "failed samples") << failed.size() << " of "
+                               << failed.size() + static_cast<std::size_t>(model.trained_mu.cols())
+                               << ", without a high-fidelity answer at\n";
+  for (std::size_t k = 0; k < std::min(most, failed.size()); ++k)
+    label(out, "") << describe(model.parameters, failed[k]) << '\n';
+  if (failed.size() > most) label(out, "") << "and " << failed.size() - most << " more\n";
+}
+
 } // namespace
 
 std::string describe_curve(const NitscheModel &nitsche) {
@@ -90,6 +104,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "scene") << model.scene_name << '\n';
   label(out, "options") << joined(model.scene_options) << '\n';
   print_parameters(out, model.parameters);
+  print_failed(out, model);
   label(out, "modes") << model.modes << '\n';
   label(out, "supremizers") << model.supremizers
                             << (model.online_enriched ? " (the space is made online)" : "") << '\n';

@@ -32,10 +32,7 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::seconds};
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
-                    const std::vector<std::string> &names, const std::vector<std::string> &values) {
-  Settings theirs;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    theirs[names[i]] = values[i];
+                    const Settings &theirs) {
   if (theirs == mine) return;
   for (const auto &[name, value] : mine) {
     const auto found = theirs.find(name);
@@ -47,6 +44,42 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
   }
   throw bad_input("the samples in " + path.parent_path().string() +
                   " were made with options that this scene no longer has: use another -out");
+}
+
+/// What `read` returns; its complaints are about a file that write_sample did not write.
+template <class Read> auto contents(Read &&read) {
+  try {
+    return read();
+  } catch (const Error &error) {
+    throw DamagedFile(error.what());
+  }
+}
+
+H5Reader open_sample(const std::filesystem::path &path) {
+  try {
+    return {path, "sample", sample_schema};
+  } catch (const OtherVersion &error) {
+    throw bad_input(std::string(error.what()) + " with another -out");
+  }
+}
+
+Settings settings_in(const H5Reader &file) {
+  const std::vector<std::string> names = file.strings("settings/names");
+  const std::vector<std::string> values = file.strings("settings/values");
+  if (names.size() != values.size()) throw bad_input("settings without values");
+  Settings settings;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    settings[names[i]] = values[i];
+  return settings;
+}
+
+Sample sample_in(const H5Reader &file) {
+  Sample sample{file.doubles("mu"), file.vector("u"), file.vector("lambda"), {}};
+  const std::vector<double> outputs = file.doubles("outputs");
+  if (outputs.size() != stored_outputs.size()) throw bad_input("another number of outputs");
+  for (std::size_t i = 0; i < stored_outputs.size(); ++i)
+    if (!std::isnan(outputs[i])) sample.outputs.*stored_outputs[i] = outputs[i];
+  return sample;
 }
 
 } // namespace
@@ -72,12 +105,11 @@ void write_sample(const std::filesystem::path &path, const Sample &sample,
 }
 
 Sample read_sample(const std::filesystem::path &path, const Settings &settings) {
-  const H5Reader file(path, "sample", sample_schema);
-  check_settings(path, settings, file.strings("settings/names"), file.strings("settings/values"));
-  Sample sample{file.doubles("mu"), file.vector("u"), file.vector("lambda"), {}};
-  const std::vector<double> outputs = file.doubles("outputs");
-  for (std::size_t i = 0; i < stored_outputs.size(); ++i)
-    if (!std::isnan(outputs[i])) sample.outputs.*stored_outputs[i] = outputs[i];
+  const H5Reader file = open_sample(path);
+  check_settings(path, settings, contents([&] { return settings_in(file); }));
+  Sample sample = contents([&] { return sample_in(file); });
+  if (sample_file(path.parent_path(), sample.mu).filename() != path.filename())
+    throw DamagedFile(path.string() + " holds the answer at another parameter than its name says");
   return sample;
 }
 

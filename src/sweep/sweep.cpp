@@ -2,7 +2,9 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/temporary_files.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"
 #include "sample_file.hpp"
 
@@ -66,33 +68,97 @@ std::string each(double seconds) {
 
 /// One sample tells what all of a directory were made with, those of other sets included.
 void check_directory(const fs::path &directory, const Settings &settings) {
-  for (const auto &entry : fs::directory_iterator(directory)) {
+  std::error_code none;
+  for (const auto &entry : fs::directory_iterator(directory, none)) {
     if (entry.path().extension() != ".h5") continue;
-    (void)read_sample(entry.path(), settings);
-    return;
+    try {
+      (void)read_sample(entry.path(), settings);
+      return;
+    } catch (const DamagedFile &) {
+      continue;
+    }
   }
 }
 
-/// The numbers of `set` that have no sample yet, agreed by rank 0 for all.
+/// What there is of a set.
+struct Stock {
+  std::vector<int> missing;      ///< 1 where there is no sample, 0 where there is one
+  std::vector<fs::path> damaged; ///< files in the way of a sample or of its reason
+  std::string damage;            ///< what the first one is
+};
+
+Stock take_stock(const std::vector<Mu> &set, const fs::path &directory, const Settings &settings) {
+  Stock stock{std::vector<int>(set.size(), 1), {}, ""};
+  const auto note = [&](const fs::path &file, const std::string &damage) {
+    if (stock.damaged.empty()) stock.damage = damage;
+    stock.damaged.push_back(file);
+  };
+  check_directory(directory, settings);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const fs::path file = sample_file(directory, set[i]), reason = failure_file(file);
+    if (fs::is_directory(reason)) note(reason, reason.string() + " is a directory");
+    if (!fs::exists(file)) continue;
+    try {
+      (void)read_sample(file, settings);
+      stock.missing[i] = 0;
+    } catch (const DamagedFile &error) {
+      note(file, error.fact);
+    }
+  }
+  return stock;
+}
+
+/// "<file>.damaged", or with a number behind it.
+fs::path name_aside(const fs::path &file) {
+  fs::path name = file.string() + ".damaged";
+  for (int number = 2; fs::exists(fs::symlink_status(name)); ++number)
+    name = file.string() + ".damaged." + std::to_string(number);
+  return name;
+}
+
+/// Renames the damaged files, and says so in one line.
+void set_aside(const Stock &stock) {
+  if (stock.damaged.empty()) return;
+  for (const fs::path &file : stock.damaged) {
+    if (!fs::exists(fs::symlink_status(file))) continue; // twice in the set
+    while_doing("setting the damaged file " + file.string() + " aside",
+                [&] { fs::rename(file, name_aside(file)); });
+  }
+  const std::string more = stock.damaged.size() == 1
+                               ? ""
+                               : ", and " + std::to_string(stock.damaged.size() - 1) + " more";
+  std::fprintf(stderr, "rbvi: warning: %s%s: set aside under the ending .damaged, solved again\n",
+               stock.damage.c_str(), more.c_str());
+}
+
+/// By rank 0: makes the directory ready for new samples.
+void prepare_directory(const fs::path &directory, const Stock &stock) {
+  make_directory(directory);
+  remove_stale_temporaries(directory);
+  set_aside(stock);
+}
+
+/// The numbers of `set` that have no sample yet, agreed by rank 0 for all; the directory is ready
+/// for them. Collective.
 std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
-                                 const fs::path &directory, const Settings &settings) {
-  std::vector<int> missing(set.size(), 1);
+                                 const fs::path &directory, const Settings &settings,
+                                 const std::function<void()> &begin, SweepReport &report) {
+  int rank = 0;
+  MPI_Comm_rank(world, &rank);
+  Stock stock{std::vector<int>(set.size(), 1), {}, ""};
   collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
-    std::error_code error;
-    fs::create_directories(directory, error);
-    if (error)
-      throw failure("cannot make the directory " + directory.string() + ": " + error.message());
-    check_directory(directory, settings);
-    for (std::size_t i = 0; i < set.size(); ++i)
-      missing[i] = !fs::exists(sample_file(directory, set[i]));
+    if (rank == 0) stock = take_stock(set, directory, settings);
   });
-  MPI_Bcast(missing.data(), static_cast<int>(missing.size()), MPI_INT, 0, world);
+  begin();
+  collectively(world, [&] {
+    if (rank == 0) prepare_directory(directory, stock);
+  });
+  report.set_aside = static_cast<int>(stock.damaged.size());
+  MPI_Bcast(&report.set_aside, 1, MPI_INT, 0, world);
+  MPI_Bcast(stock.missing.data(), static_cast<int>(stock.missing.size()), MPI_INT, 0, world);
   std::vector<int> numbers;
   for (std::size_t i = 0; i < set.size(); ++i)
-    if (missing[i] != 0) numbers.push_back(static_cast<int>(i));
+    if (stock.missing[i] != 0) numbers.push_back(static_cast<int>(i));
   return numbers;
 }
 
@@ -103,7 +169,11 @@ void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directo
     for (const Mu &mu : set) {
       const fs::path file = sample_file(directory, mu);
       if (fs::exists(file)) {
-        sweep.samples.push_back(read_sample(file, settings));
+        try {
+          sweep.samples.push_back(read_sample(file, settings));
+        } catch (const DamagedFile &error) { // since the sweep began
+          throw failure(error.what());
+        }
       } else {
         std::ifstream stream(failure_file(file));
         std::string reason;
@@ -111,6 +181,21 @@ void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directo
         sweep.report.failed.emplace_back(mu, reason);
       }
     }
+  });
+}
+
+/// How far an interrupted sweep came, as its files say.
+void tell_when_interrupted(const std::vector<Mu> &set, const fs::path &directory) {
+  std::vector<fs::path> files;
+  for (const Mu &mu : set)
+    files.push_back(sample_file(directory, mu));
+  say_when_interrupted([files = std::move(files)] {
+    std::error_code ignored;
+    const auto done = std::count_if(files.begin(), files.end(), [&](const fs::path &file) {
+      return fs::exists(file, ignored);
+    });
+    return " after " + std::to_string(done) + " of " + std::to_string(files.size()) +
+           " samples: the same command goes on from there";
   });
 }
 
@@ -190,18 +275,16 @@ fs::path sample_file(const fs::path &directory, const Mu &mu) {
 }
 
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                const std::vector<Mu> &set, const fs::path &directory) {
+                const std::vector<Mu> &set, const fs::path &directory,
+                const std::function<void()> &begin) {
   const Settings settings = sample_settings(problem, options);
-  const std::vector<int> missing = missing_samples(world, set, directory, settings);
-  if (missing.size() < set.size()) { // other options are noticed before any work is done
-    Sweep present;
-    collect(world, set, directory, settings, present);
-  }
-
+  Sweep sweep;
+  const std::vector<int> missing =
+      missing_samples(world, set, directory, settings, begin, sweep.report);
+  tell_when_interrupted(set, directory);
   MPI_Barrier(world);
   const double start = MPI_Wtime();
   solve_missing(world, groups, problem, options, set, missing, directory, settings);
-  Sweep sweep;
   sweep.report.seconds = MPI_Wtime() - start;
   collect(world, set, directory, settings, sweep);
   sweep.report.reused = static_cast<int>(set.size() - missing.size());

@@ -3,7 +3,11 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/training_samples.hpp"
 #include "rbvi/tool/commands.hpp"
+#include "rbvi/tool/failures.hpp"
+#include "rbvi/tool/model_case.hpp"
+#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 
 #include <cmath>
@@ -75,16 +79,14 @@ std::string csv(const std::vector<BenchRow> &rows, double best) {
   return table;
 }
 
-std::vector<Sample> samples_of(Problem &problem, const ToolOptions &options,
-                               const std::string &set) {
+Sweep samples_at(Problem &problem, const ToolOptions &options, const std::vector<Mu> &set,
+                 const std::string &name) {
   const Groups alone(PETSC_COMM_SELF, 1);
   HfOptions truth = options.hf;
   truth.method = HfMethod::active_set;
-  Sweep sweep = run_sweep(PETSC_COMM_SELF, alone, problem, truth,
-                          parse_set(options.scene.parameters, set), options.out / "samples");
-  if (!sweep.report.failed.empty())
-    throw failure("a high-fidelity solve failed: " + sweep.report.failed.front().second);
-  return std::move(sweep.samples);
+  Sweep sweep = run_sweep(PETSC_COMM_SELF, alone, problem, truth, set, options.out / "samples");
+  check_failures(options, sweep.report, set.size(), name);
+  return sweep;
 }
 
 /// One core's seconds: the snapshots count by their own solve times, because a resumed sweep does
@@ -131,16 +133,14 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   return rows;
 }
 
-void bench(const ToolOptions &options, int ranks) {
-  const ReducedModel model = read_model(options.out / "model.h5");
-  if (model.scene_options != options.scene.options || model.scene_name != options.scene.name)
-    throw bad_input("the model in " + options.out.string() +
-                    " was made with other options of its scene");
+void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   Problem problem(PETSC_COMM_SELF, options.scene, options.mesh);
-  if (problem.mesh().fingerprint != model.mesh_fingerprint)
-    throw bad_input("the model in " + options.out.string() + " was made on another mesh");
-  const std::vector<Sample> snapshots = samples_of(problem, options, options.train);
-  const std::vector<Sample> truths = samples_of(problem, options, options.valid);
+  check_mesh(problem, model, options);
+  const std::vector<Sample> snapshots =
+      samples_at(problem, options, from_columns(model.trained_mu), "training").samples;
+  const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
+  const Sweep sweep = samples_at(problem, options, validation, "validation");
+  const std::vector<Sample> &truths = sweep.samples;
 
   std::vector<BenchRow> rows = bench_baselines(problem, options, truths);
   const double best = rows.front().median, offline = offline_seconds(model, snapshots);
@@ -157,26 +157,26 @@ void bench(const ToolOptions &options, int ranks) {
        << text("%.2f", offline) << " s offline are won back\n"
        << "(" << snapshots.size() << " snapshots by their solve times, plus the other stages).\n\n";
   const std::string table = head.str() + markdown(rows, best);
-  fs::create_directories(options.out / "bench");
+  sweep_up(options.out);
+  make_directory(options.out / "bench");
   write_atomically(options.out / "bench" / "table.md", table);
   write_atomically(options.out / "bench" / "table.csv", csv(rows, best));
   std::printf("%s\nTables: %s\n", table.c_str(), (options.out / "bench").c_str());
+  report_failures(options, sweep.report, validation.size(), "validation",
+                  "measured over the others");
 }
 
 } // namespace
 
-void command_bench(const ToolOptions &options) {
+void command_bench(const ToolOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   int rank = 0, ranks = 1;
   MPI_Comm_rank(world, &rank);
   MPI_Comm_size(world, &ranks);
-  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
+  const ReducedModel model = model_of_run(world, given.out);
+  const ToolOptions options = adopt_model(given, model);
   collectively(world, [&] {
-    if (rank != 0) return;
-    if (!fs::exists(options.out / "model.h5"))
-      throw bad_input("no model in " + options.out.string() +
-                      ": make it by rbvi offline with the same options first");
-    bench(options, ranks);
+    if (rank == 0) bench(options, model, ranks);
   });
 }
 

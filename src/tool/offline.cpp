@@ -1,10 +1,12 @@
 // rbvi offline: from a case file to a model file.
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/self_check.hpp"
+#include "rbvi/rom/training_samples.hpp"
 #include "rbvi/tool/commands.hpp"
+#include "rbvi/tool/failures.hpp"
+#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/stages.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
@@ -23,6 +25,9 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
       {"mesh_refine", std::to_string(options.mesh.refine)},
       {"pod_tolerance", short_number(options.reduce.pod.tolerance)},
       {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
+  if (!options.mesh.file.empty())
+    settings["mesh_file"] =
+        std::filesystem::absolute(options.mesh.file).lexically_normal().string();
   if (options.scene.nitsche) {
     settings["nitsche_quadrature"] =
         curve_rule_names()[static_cast<std::size_t>(options.reduce.curve.rule)];
@@ -48,18 +53,15 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
   return settings;
 }
 
-void print_failures(const SweepReport &report, const ParameterSpace &space) {
-  for (const auto &[mu, reason] : report.failed)
-    std::printf("  failed at %s: %s\n", describe(space, mu).c_str(), reason.c_str());
-}
-
-/// Collective. The run directory with its case file, so that the other commands need not be told.
-void write_case_file(MPI_Comm world, const ToolOptions &options) {
-  collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank == 0) write_atomically(case_of_run(options.out), options.case_file);
-  });
+/// Where the model has samples, and where it was to have them.
+void name_training(const Sweep &sweep, ReducedModel &model) {
+  std::vector<Mu> trained, failed;
+  for (const Sample &sample : sweep.samples)
+    trained.push_back(sample.mu);
+  for (const auto &[mu, reason] : sweep.report.failed)
+    failed.push_back(mu);
+  model.trained_mu = as_columns(trained, model.parameters.size());
+  model.failed_mu = as_columns(failed, model.parameters.size());
 }
 
 } // namespace
@@ -81,17 +83,16 @@ void command_offline(const ToolOptions &options) {
   {
     const Stage stage("snapshots", times);
     sweep = run_sweep(world, groups, work.group_problem(), options.hf, training,
-                      options.out / "samples");
+                      options.out / "samples", [&] { begin_run(world, options); });
   }
-  if (rank == 0) print_failures(sweep.report, options.scene.parameters);
-  if (sweep.samples.empty()) throw failure("no sample succeeded: see the reasons above");
-  write_case_file(world, options);
+  check_failures(options, sweep.report, training.size(), "training");
 
   Problem &problem = work.world_problem(times);
   Reduction made = reduce(problem, sweep.samples, options.reduce, times);
   ReducedModel &model = made.model;
   model.settings = model_settings(options, sweep.samples.size());
   if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
+  name_training(sweep, model);
   for (const auto &[stage, seconds] : times)
     model.stage_seconds[stage] = seconds;
   {
@@ -102,13 +103,17 @@ void command_offline(const ToolOptions &options) {
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);
     });
   }
-  if (rank != 0) return;
-  const OfflineResult result{sweep.report, made};
-  print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
-  std::ostringstream check;
-  print_self_check(check, model.self_check, model.parameters);
-  std::printf("Self-check: %s", check.str().c_str());
-  std::printf("Model: %s\n", (options.out / "model.h5").c_str());
+  if (rank == 0) {
+    const OfflineResult result{sweep.report, made};
+    print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
+    std::ostringstream check;
+    print_self_check(check, model.self_check, model.parameters);
+    std::printf("Self-check: %sModel: %s\n", check.str().c_str(),
+                (options.out / "model.h5").c_str());
+  }
+  report_failures(options, sweep.report, training.size(), "training",
+                  "the model is made from the others, and answers next to a failed one with a "
+                  "warning");
 }
 
 } // namespace rbvi

@@ -34,6 +34,8 @@ const std::vector<OptionHelp> &tool_options() {
        "Nitsche's method: the nodes' normal displacements are bounded by the gap: none | "
        "nonpenetration"},
       {"sweep_ranks_per_solve", "1", "ranks that share one solve; divides the ranks"},
+      {"sweep_max_failures", "0.1",
+       "share of a set that may fail: where more does, no model is made, nothing measured"},
       {"pod_tolerance", "1e-6", "relative error of the displacement modes (2.11)"},
       {"pod_max_size", "0", "most modes; 0 is no bound"},
       {"cone_type", "hybrid",

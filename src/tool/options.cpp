@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/tool/run_directory.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -122,8 +123,8 @@ void insert_case_file(MPI_Comm comm) {
   const std::vector<std::string> command_line = given_names();
   for (const std::string &name : given_names(raw))
     if (!contains(command_line, name))
-      RBVI_CALL(
-          PetscOptionsSetValue(nullptr, ("-" + name).c_str(), text_of(name, "", raw).c_str()));
+      RBVI_CALL(PetscOptionsSetValue(nullptr, ("-" + name).c_str(),
+                                     beside_case(name, text_of(name, "", raw), file).c_str()));
 }
 
 SceneOptions scene_options_of(const std::string &scene) {
@@ -204,7 +205,7 @@ std::string as_case_file(const std::vector<std::string> &names) {
   for (const std::string &name : names) {
     if (contains(of_command, name)) continue;
     const std::string value = text_of(name), option = "-" + name;
-    text += name + ": " + value + "\n";
+    text += name + ": " + value_in_run(name, value) + "\n";
     // Asking has marked the option as used, which check_solver_options must not see.
     RBVI_CALL(PetscOptionsClearValue(nullptr, option.c_str()));
     RBVI_CALL(PetscOptionsSetValue(nullptr, option.c_str(), value.c_str()));
@@ -313,6 +314,8 @@ ToolOptions read_options(MPI_Comm comm) {
   options.mesh.refine = integer_of("mesh_refine", 0, 6);
   options.train = text_of("train", options.scene.training);
   options.valid = text_of("valid", options.scene.validation);
+  for (const std::string name : {"train", "valid", "nitsche_eim_validation"})
+    if (const std::string set = text_of(name); is_set_file(set)) options.set_files[name] = set;
   options.hf = hf_options();
   if (options.scene.nitsche && contains(names, "hf_method"))
     throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
@@ -334,6 +337,7 @@ ToolOptions read_options(MPI_Comm comm) {
   if (options.scene.support && !contains(names, "cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // a cone of snapshots; hybrid is for one body
   options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
+  options.max_failures = number_of("sweep_max_failures", 0, 1);
   options.out = text_of("out");
   options.mu = text_of("mu");
   options.vtu = text_of("vtu");

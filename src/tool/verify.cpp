@@ -7,6 +7,9 @@
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/commands.hpp"
+#include "rbvi/tool/failures.hpp"
+#include "rbvi/tool/model_case.hpp"
+#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
@@ -295,35 +298,21 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
   write_model(model, options.out / "model.h5");
 }
 
-ReducedModel model_of(const ToolOptions &options, MPI_Comm world) {
-  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
-  ReducedModel model;
-  collectively(world, [&] { model = read_model(options.out / "model.h5"); });
-  if (model.scene_options != options.scene.options || model.scene_name != options.scene.name ||
-      model.parameters.free != options.scene.parameters.free)
-    throw bad_input("the model in " + options.out.string() +
-                    " was made with other options of its scene or other free parameters");
-  return model;
-}
-
 } // namespace
 
-void command_verify(const ToolOptions &options) {
+void command_verify(const ToolOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
-  ReducedModel model = model_of(options, world);
+  ReducedModel model = model_of_run(world, given.out);
+  const ToolOptions options = adopt_model(given, model);
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
-  const std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
+  const std::vector<Mu> training = training_set(model);
   const Groups groups(world, options.ranks_per_solve);
   StageTimes times;
   Workspace work(world, groups, options, times);
-  if (work.group_problem().mesh().fingerprint != model.mesh_fingerprint)
-    throw bad_input("the model in " + options.out.string() + " was made on another mesh");
+  check_mesh(work.group_problem(), model, options);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
                                 options.out / "samples");
-  if (!sweep.report.failed.empty())
-    throw failure("no high-fidelity answer at " +
-                  describe(options.scene.parameters, sweep.report.failed.front().first) + ": " +
-                  sweep.report.failed.front().second);
+  check_failures(options, sweep.report, validation.size(), "validation");
   const std::vector<Sample> &answers = sweep.samples;
   Problem &problem = work.world_problem(times);
   const Truths truths = make_truths(problem, model, answers);
@@ -332,17 +321,20 @@ void command_verify(const ToolOptions &options) {
     int rank = 0;
     MPI_Comm_rank(world, &rank);
     if (rank != 0) return;
-    fs::create_directories(out);
+    sweep_up(options.out);
+    make_directory(out);
     check_errors(model, problem, truths, options, out);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
-  write_mesh_quality(out / "mesh_quality.csv", world, problem, training, validation);
+  write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
   if (options.stability && !model.support && !model.nitsche)
-    check_stability(world, problem, model, training, validation, out);
+    check_stability(world, problem, model, training, truths.mu, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
   if (rank == 0) std::printf("Tables: %s\n", out.c_str());
+  report_failures(options, sweep.report, validation.size(), "validation",
+                  "measured over the others");
 }
 
 } // namespace rbvi

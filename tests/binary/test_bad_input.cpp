@@ -188,20 +188,21 @@ TEST_P(BadInput, Models) {
 
 TEST_P(BadInput, RunsOfOtherOptions) {
   make_run();
-  spill("finer.msh", coarse_gmsh());
+  spill("patch.yaml", "scene: patch\n");
   refuse({{"offline -case case.yaml -out run -load -20", "load = -25, now it is -20"},
           {"offline -case case.yaml -out run -hf_method uzawa",
            "hf_method = active_set, now it is uzawa"},
           {"offline -case case.yaml -out run -mesh_refine 1", "mesh = "},
           {"offline -case case.yaml -out run -center_x 0 -train grid:2,2", "center_x"},
-          {"verify -out run -load -20", "other options"},
-          {"verify -out run -mesh_refine 1", "another mesh"}});
-  const fs::path sample = fs::directory_iterator("run/samples")->path();
-  const std::string good = slurp(sample);
-  spill(sample, good.substr(0, 1000));
-  refuse({{"offline -case case.yaml -out run", sample.filename().string() + " is truncated"}});
-  spill(sample, good.substr(0, good.size() - 9) + "!" + good.substr(good.size() - 8));
-  refuse({{"offline -case case.yaml -out run", sample.filename().string() + " is damaged"}});
+          {"verify -case patch.yaml -out run", "is one of scene membrane_obstacle"},
+          {"bench -case patch.yaml -out run", "is one of scene membrane_obstacle"}});
+  std::string mesh = coarse_gmsh();
+  const std::string centre = "\n1 0 0 0\n";
+  spill("coarse.msh", mesh.replace(mesh.find(centre), centre.size(), "\n1 0.001 0 0\n"));
+  refuse({{"verify -out run", "was made on another mesh"},
+          {"bench -out run", "was made on another mesh"}});
+  fs::remove("coarse.msh");
+  refuse({{"verify -out run", "coarse.msh'"}});
 }
 
 TEST_P(BadInput, NotWritable) {

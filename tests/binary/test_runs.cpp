@@ -182,14 +182,16 @@ TEST_F(Runs, ResumesAfterAKill) {
 }
 
 TEST_F(Runs, AFailingSampleIsNamedAndTheOthersServe) {
-  const std::string arguments = "offline -case case.yaml -radius 0.16,0.6 -out run";
+  const std::string arguments =
+      "offline -case case.yaml -radius 0.16,0.6 -sweep_max_failures 0.5 -out run";
   for (const int ranks : {1, 2}) {
     const Finished run = shell(rbvi(ranks, arguments));
-    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.status, 1) << run.err;
     EXPECT_TRUE(contains(run.out, "failed at radius=0.6 center_x=-0.05 center_y=-0.05: "))
         << run.out;
     EXPECT_TRUE(contains(run.out, "inverts a cell")) << run.out;
     EXPECT_TRUE(contains(run.out, "4 failed")) << run.out;
+    EXPECT_TRUE(fs::exists("run/model.h5"));
   }
   EXPECT_EQ(count_samples("run"), 4U);
   const Finished none = shell(rbvi(2, "offline -case case.yaml -radius 0.6,0.61 -out none"));

@@ -1,5 +1,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/temporary_files.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
 #include "../coarse_mesh.hpp"
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -170,28 +172,130 @@ TEST_F(SweepTest, OneFilePerSampleAndNothingElse) {
   EXPECT_EQ(files, five.size());
 }
 
-TEST_F(SweepTest, DamagedSamplesAreRefusedByName) {
-  (void)sweep(five);
-  const fs::path file = sample_file(samples, five[2]);
-  const std::string good = bytes(file);
-  const auto put = [&](const std::string &content) {
-    alone([&] { std::ofstream(file, std::ios::binary) << content; });
-  };
+/// Every kind of damage: the file is kept under another name, its sample alone is solved again.
+TEST_F(SweepTest, DamagedSamplesAreSetAsideAndSolvedAgain) {
+  const Sweep whole = sweep(five);
+  const fs::path file = sample_file(samples, five[2]), aside = file.string() + ".damaged";
+  const std::string good = bytes(file), neighbour = bytes(sample_file(samples, five[1]));
   std::string flipped = good;
   flipped[flipped.size() / 2] = static_cast<char>(flipped[flipped.size() / 2] ^ 4);
-  const std::pair<std::string, std::string> cases[] = {
-      {good.substr(0, good.size() / 2), "truncated"}, {flipped, "damaged"}, {"", "is empty"}};
-  for (const auto &[content, reason] : cases) {
-    put(content);
-    const Error error = refusal();
-    EXPECT_EQ(error.status(), Status::bad_input) << error.what();
-    EXPECT_TRUE(contains(error.what(), file.filename().string())) << error.what();
-    EXPECT_TRUE(contains(error.what(), reason)) << error.what();
-    EXPECT_FALSE(contains(error.what(), "\n")) << error.what();
-    alone([&] { EXPECT_EQ(bytes(file), content); });
+  for (const std::string &content : {good.substr(0, good.size() / 2), flipped, std::string(),
+                                     std::string("mu = 0.2\n"), neighbour}) {
+    alone([&] {
+      fs::remove(aside);
+      std::ofstream(file, std::ios::binary) << content;
+    });
+    const Sweep mended = sweep(five);
+    EXPECT_EQ(mended.report.set_aside, 1);
+    EXPECT_EQ(mended.report.solved, 1);
+    EXPECT_EQ(mended.report.reused, 4);
+    ASSERT_EQ(mended.samples.size(), 5u);
+    EXPECT_EQ(mended.samples[2].mu, five[2]);
+    EXPECT_LE(relative(mended.samples[2].u, whole.samples[2].u), 1e-10);
+    alone([&] { EXPECT_EQ(bytes(aside), content); });
   }
-  put(good);
   EXPECT_EQ(sweep(five).report.reused, 5);
+  EXPECT_EQ(sweep(five).report.set_aside, 0);
+}
+
+TEST_F(SweepTest, EveryDamagedFileKeepsANameOfItsOwn) {
+  (void)sweep(five);
+  const fs::path file = sample_file(samples, five[2]);
+  for (const std::string content : {"first", "second", "third"}) {
+    alone([&] {
+      fs::remove(file);
+      std::ofstream(file) << content;
+    });
+    EXPECT_EQ(sweep(five).report.set_aside, 1);
+  }
+  alone([&] {
+    EXPECT_EQ(bytes(file.string() + ".damaged"), "first");
+    EXPECT_EQ(bytes(file.string() + ".damaged.2"), "second");
+    EXPECT_EQ(bytes(file.string() + ".damaged.3"), "third");
+  });
+}
+
+TEST_F(SweepTest, DirectoriesInTheWayOfFilesAreSetAside) {
+  const fs::path file = sample_file(samples, five[0]),
+                 reason = sample_file(samples, impossible).replace_extension("failed");
+  alone([&] {
+    fs::create_directories(file / "inside");
+    fs::create_directories(reason / "inside");
+  });
+  const Sweep result = sweep({five[0], impossible});
+  EXPECT_EQ(result.report.set_aside, 2);
+  EXPECT_EQ(result.samples.size(), 1u);
+  EXPECT_EQ(result.report.failed.size(), 1u);
+  alone([&] {
+    EXPECT_TRUE(fs::is_directory(file.string() + ".damaged/inside"));
+    EXPECT_TRUE(fs::is_directory(reason.string() + ".damaged/inside"));
+    EXPECT_TRUE(fs::is_regular_file(reason));
+  });
+}
+
+/// Neither hides what the others were made with.
+TEST_F(SweepTest, ADamagedSampleIsNoSampleOfOtherOptions) {
+  (void)sweep(five);
+  alone([&] {
+    for (int i = 0; i < 4; ++i)
+      std::ofstream(sample_file(samples, five[static_cast<std::size_t>(i)])) << "damaged";
+  });
+  const Error error = refusal(make_scene("membrane_obstacle", {{"load", "-20"}}));
+  EXPECT_TRUE(contains(error.what(), "load = -25, now it is -20")) << error.what();
+  alone([&] { EXPECT_FALSE(fs::exists(sample_file(samples, five[0]).string() + ".damaged")); });
+}
+
+/// An older or newer version of the program made it: no damage, and not to be touched.
+TEST_F(SweepTest, SamplesOfOtherVersionsAreRefused) {
+  (void)sweep({five[0]});
+  const fs::path file = sample_file(samples, five[1]);
+  alone([&] {
+    H5Writer other;
+    other.write("mu", five[1]);
+    other.commit(file, "sample", 999);
+    fs::remove(sample_file(samples, five[0]));
+  });
+  const Error error = refusal();
+  EXPECT_EQ(error.status(), Status::bad_input);
+  EXPECT_TRUE(contains(error.what(), "schema version 999")) << error.what();
+  EXPECT_TRUE(contains(error.what(), "another -out")) << error.what();
+  alone([&] { EXPECT_FALSE(fs::exists(file.string() + ".damaged")); });
+}
+
+TEST_F(SweepTest, TemporaryFilesOfKilledRunsAreRemoved) {
+  (void)sweep(five);
+  const fs::path file = sample_file(samples, five[2]);
+  fs::path stale = temporary_name(file, 0); // of this process, but long before it began
+  const fs::path own = temporary_name(file, 1);
+  alone([&] {
+    std::ofstream(stale) << "half";
+    fs::last_write_time(stale, fs::file_time_type::clock::now() - std::chrono::hours(24 * 365 * 9));
+    std::ofstream(own) << "half";
+  });
+  EXPECT_EQ(sweep(five).report.reused, 5);
+  alone([&] {
+    EXPECT_FALSE(fs::exists(stale));
+    EXPECT_TRUE(fs::exists(own));
+  });
+}
+
+/// What a run writes at its beginning is not written for one that is refused.
+TEST_F(SweepTest, ARunBeginsOnceItsSamplesAreFoundGood) {
+  int begun = 0;
+  const auto run = [&](const Scene &scene) {
+    const Groups groups(PETSC_COMM_WORLD, 1);
+    Problem problem(groups.comm(), scene, {mesh.string(), 0});
+    (void)run_sweep(PETSC_COMM_WORLD, groups, problem, {}, {five[0]}, samples, [&] {
+      ++begun;
+      EXPECT_EQ(fs::exists(sample_file(samples, five[0])), begun > 1);
+      MPI_Barrier(PETSC_COMM_WORLD);
+    });
+  };
+  run(wide_scene());
+  run(wide_scene());
+  EXPECT_EQ(begun, 2);
+  EXPECT_THROW(run(make_scene("membrane_obstacle", {{"load", "-20"}})), Error);
+  EXPECT_EQ(begun, 2);
 }
 
 TEST_F(SweepTest, SamplesOfOtherOptionsAreRefused) {

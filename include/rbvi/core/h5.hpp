@@ -13,6 +13,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/core/error.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -49,9 +50,23 @@ private:
   std::unique_ptr<Impl> impl_;
 };
 
-/// Opens a sealed file. Throws bad_input with one line that tells apart: missing, not an rbvi file,
-/// truncated, damaged (checksum), of another kind, of another schema version; and, when a data set
-/// is read, that it is missing or of another type or shape.
+/// A bad_input: the file is there, but is not what was written under its name.
+struct DamagedFile : Error {
+  /// The message is both together.
+  explicit DamagedFile(const std::string &what_it_is, const std::string &hint = "")
+      : Error(Status::bad_input, what_it_is + hint), fact(what_it_is) {}
+  std::string fact;
+};
+
+/// A bad_input: a whole file of another schema version.
+struct OtherVersion : Error {
+  explicit OtherVersion(const std::string &message) : Error(Status::bad_input, message) {}
+};
+
+/// Opens a sealed file. Throws bad_input with one line that tells apart: missing; as DamagedFile
+/// not readable, not an rbvi file, truncated, damaged (checksum), of another kind; as OtherVersion
+/// of another schema version; and, when a data set is read, that it is missing or of another type
+/// or shape.
 class H5Reader {
 public:
   H5Reader(const std::filesystem::path &path, const std::string &kind, int schema);
@@ -77,6 +92,9 @@ private:
 /// directory; a link is followed, and a device or pipe is written directly. Throws failure; then
 /// no temporary file is left.
 void write_atomically(const std::filesystem::path &path, const std::string &bytes);
+
+/// Makes a directory and those above it, where they are missing. Throws failure.
+void make_directory(const std::filesystem::path &path);
 
 /// FNV-1a, 64 bits: names sample files and seals files. A change of one byte always changes it.
 std::uint64_t fnv1a(const void *bytes, std::size_t size);

@@ -1,13 +1,15 @@
 // Snapshots: high-fidelity solves at many mu, shared among groups of ranks, one file per sample.
 //
 // Each sample is committed by itself (write, fsync, rename), so that an interrupted sweep resumes
-// and recomputes only what is missing. A sample that fails leaves its reason, the others go on.
+// and recomputes only what is missing. A sample that fails leaves its reason, the others go on. A
+// damaged file is set aside and its sample solved again.
 #pragma once
 
 #include "rbvi/par/groups.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -31,6 +33,7 @@ Settings sample_settings(const Problem &problem, const HfOptions &options);
 
 struct SweepReport {
   int reused = 0, solved = 0;
+  int set_aside = 0;                              ///< damaged files, now "<name>.damaged"
   std::vector<std::pair<Mu, std::string>> failed; ///< with their reasons, in order of the set
   double seconds = 0;                             ///< wall time of the sweep
   double seconds_per_solve = 0;                   ///< median over the samples solved now
@@ -46,8 +49,11 @@ std::filesystem::path sample_file(const std::filesystem::path &directory, const 
 
 /// Collective on `world`. `problem` lives on the communicator of this rank's group. Samples of
 /// `directory` that are there already are reused; throws bad_input, naming the setting and both
-/// values, if one was made with other settings.
-Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                const std::vector<Mu> &set, const std::filesystem::path &directory);
+/// values, if one was made with other settings. `begin` is called on every rank once that is known,
+/// before anything is written. What remains there of killed runs is removed.
+Sweep run_sweep(
+    MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
+    const std::vector<Mu> &set, const std::filesystem::path &directory,
+    const std::function<void()> &begin = [] {});
 
 } // namespace rbvi

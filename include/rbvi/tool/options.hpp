@@ -5,6 +5,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,10 @@ struct ToolOptions {
   HfOptions hf;
   ReduceOptions reduce;
   int ranks_per_solve = 1;
+  double max_failures = 0.1; ///< share of a set that may fail
   std::filesystem::path out; ///< run directory; "" where none is given
   std::string case_file;     ///< all options of the run, for its own case file (case_of_run)
+  std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
   bool plan = false;
   bool stability = true; ///< verify: inf-sup constants and bounds too

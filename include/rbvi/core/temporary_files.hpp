@@ -1,0 +1,21 @@
+// Files on their way to their name (see write_atomically): what they are called, what a process
+// that ends early does about them, and how those of processes that were killed go away.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+
+namespace rbvi {
+
+/// "<path>.tmp.<hash of the host's name>.<process>.<attempt>"
+std::filesystem::path temporary_name(const std::filesystem::path &path, int attempt);
+
+/// Removes the temporary files in `directory` whose process no longer runs on this host. Those of
+/// other hosts stay: nobody can tell. Does nothing where there is no such directory.
+void remove_stale_temporaries(const std::filesystem::path &directory);
+
+/// For a process that another of its threads is about to end: lets the file that is being written
+/// come to its name, for at most `patience`, and no other be begun. To be called once.
+void stop_writing(std::chrono::milliseconds patience);
+
+} // namespace rbvi

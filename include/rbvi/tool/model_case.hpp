@@ -1,0 +1,21 @@
+// A finished model in place of a case: verify and bench measure the model that there is.
+#pragma once
+
+#include "rbvi/tool/options.hpp"
+
+namespace rbvi {
+
+/// The model in the run directory. Throws bad_input. Collective.
+ReducedModel model_of_run(MPI_Comm world, const std::filesystem::path &out);
+
+/// Takes scene, options, fixed values, box and mesh of the options from the model. Rank 0 prints
+/// one line that says where they differed. Throws bad_input for a model of another scene.
+ToolOptions adopt_model(ToolOptions options, const ReducedModel &model);
+
+/// Throws bad_input unless the mesh of the problem is the model's.
+void check_mesh(const Problem &problem, const ReducedModel &model, const ToolOptions &options);
+
+/// The training set of the model: with a sample, then without.
+std::vector<Mu> training_set(const ReducedModel &model);
+
+} // namespace rbvi

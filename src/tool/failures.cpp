@@ -1,0 +1,46 @@
+#include "rbvi/tool/failures.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+
+#include <cstdio>
+
+namespace rbvi {
+
+namespace {
+
+/// "74 of 125 training samples failed"
+std::string count_of(const SweepReport &report, std::size_t total, const std::string &set) {
+  return std::to_string(report.failed.size()) + " of " + std::to_string(total) + " " + set +
+         " samples failed";
+}
+
+} // namespace
+
+void check_failures(const ToolOptions &options, const SweepReport &report, std::size_t total,
+                    const std::string &set) {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0)
+    for (const auto &[mu, reason] : report.failed)
+      std::printf("  failed at %s: %s\n", describe(options.scene.parameters, mu).c_str(),
+                  reason.c_str());
+  const auto failed = static_cast<double>(report.failed.size());
+  if (!report.failed.empty() && report.failed.size() == total)
+    throw failure("no sample succeeded: see the reasons above");
+  if (failed > options.max_failures * static_cast<double>(total) + 1e-9)
+    throw failure(count_of(report, total, set) + ", more than -sweep_max_failures " +
+                  short_number(options.max_failures) +
+                  " allows: nothing is made of the others; see the reasons above, and change the "
+                  "box or the options of the solver");
+}
+
+void report_failures(const ToolOptions &options, const SweepReport &report, std::size_t total,
+                     const std::string &set, const std::string &consequence) {
+  if (report.failed.empty()) return;
+  const Mu &mu = report.failed.front().first;
+  throw failure(count_of(report, total, set) + " (the first at " +
+                describe(options.scene.parameters, mu) + "): " + consequence);
+}
+
+} // namespace rbvi

@@ -1,0 +1,139 @@
+#include "rbvi/tool/model_case.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/rom/training_samples.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iomanip>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << std::setprecision(15) << value;
+  return text.str();
+}
+
+/// "[0.16, 0.24]" or "0.2"
+std::string range_of(const ParameterSpace &space, std::size_t i) {
+  const Parameter &p = space.all[i];
+  const bool free =
+      std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
+  return free ? "[" + number(p.lower) + ", " + number(p.upper) + "]" : number(p.value);
+}
+
+bool same_range(const ParameterSpace &one, const ParameterSpace &two, std::size_t i) {
+  const auto free = [&](const ParameterSpace &space) {
+    return std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
+  };
+  const Parameter &p = one.all[i], &q = two.all[i];
+  if (free(one) != free(two)) return false;
+  return free(one) ? p.lower == q.lower && p.upper == q.upper : p.value == q.value;
+}
+
+std::string setting(const ReducedModel &model, const std::string &name) {
+  const auto found = model.settings.find(name);
+  return found == model.settings.end() ? "" : found->second;
+}
+
+/// Whether the case trains at other parameters. A set that cannot be read is not needed.
+bool other_training(const ToolOptions &options, const ReducedModel &model) {
+  if (options.train == setting(model, "training")) return false;
+  try {
+    std::vector<Mu> given = parse_set(options.scene.parameters, options.train),
+                    own = training_set(model);
+    std::sort(given.begin(), given.end());
+    std::sort(own.begin(), own.end());
+    return given != own;
+  } catch (const Error &) {
+    return false;
+  }
+}
+
+/// The mesh of the model, where its file is still there.
+MeshOptions mesh_of(const ReducedModel &model, MeshOptions mesh) {
+  const std::string refine = setting(model, "mesh_refine"), file = setting(model, "mesh_file");
+  std::error_code ignored;
+  if (!refine.empty()) mesh.refine = static_cast<int>(parse_number(refine, "mesh_refine"));
+  if (file.empty() || fs::exists(file, ignored)) mesh.file = file;
+  return mesh;
+}
+
+/// "name VALUE instead of VALUE" for each difference.
+std::vector<std::string> differences(const ToolOptions &given, const ToolOptions &own,
+                                     const ReducedModel &model) {
+  std::vector<std::string> list;
+  const auto differ = [&](const std::string &name, const std::string &mine,
+                          const std::string &theirs) {
+    list.push_back(name + " " + mine + " instead of " + theirs);
+  };
+  const ParameterSpace &mine = own.scene.parameters, &theirs = given.scene.parameters;
+  for (std::size_t i = 0; i < mine.all.size(); ++i)
+    if (!same_range(mine, theirs, i))
+      differ(mine.all[i].name, range_of(mine, i), range_of(theirs, i));
+  for (const auto &[name, value] : own.scene.options)
+    if (given.scene.options.at(name) != value) differ(name, value, given.scene.options.at(name));
+  if (own.mesh.refine != given.mesh.refine)
+    differ("mesh_refine", std::to_string(own.mesh.refine), std::to_string(given.mesh.refine));
+  std::error_code ignored;
+  if (own.mesh.file != given.mesh.file && !fs::equivalent(own.mesh.file, given.mesh.file, ignored))
+    differ("mesh", own.mesh.file.empty() ? "built in" : own.mesh.file,
+           given.mesh.file.empty() ? "built in" : given.mesh.file);
+  if (other_training(given, model)) differ("train", setting(model, "training"), given.train);
+  return list;
+}
+
+} // namespace
+
+ReducedModel model_of_run(MPI_Comm world, const fs::path &out) {
+  if (out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
+  const fs::path file = out / "model.h5";
+  ReducedModel model;
+  collectively(world, [&] {
+    if (!fs::exists(file))
+      throw bad_input(file.string() + " does not exist: make it by rbvi offline first");
+    model = read_model(file);
+  });
+  return model;
+}
+
+ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
+  const ToolOptions given = options;
+  if (model.scene_name != options.scene.name)
+    throw bad_input("the model in " + options.out.string() + " is one of scene " +
+                    model.scene_name + ", the case names " + options.scene.name +
+                    ": leave out -case, or use another -out");
+  options.scene = scene_of(model);
+  options.mesh = mesh_of(model, options.mesh);
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  std::string line;
+  for (const std::string &difference : differences(given, options, model))
+    line += (line.empty() ? "" : ", ") + difference;
+  if (rank == 0 && !line.empty())
+    std::printf("The model is not of this case, and its own values are used: %s\n", line.c_str());
+  return options;
+}
+
+void check_mesh(const Problem &problem, const ReducedModel &model, const ToolOptions &options) {
+  if (problem.mesh().fingerprint == model.mesh_fingerprint) return;
+  const std::string file = setting(model, "mesh_file");
+  throw bad_input("the model in " + options.out.string() + " was made on another mesh" +
+                  (file.empty() ? "" : ", that of " + file + " then: give it by -mesh"));
+}
+
+std::vector<Mu> training_set(const ReducedModel &model) {
+  std::vector<Mu> set = from_columns(model.trained_mu);
+  for (Mu &mu : from_columns(model.failed_mu))
+    set.push_back(std::move(mu));
+  return set;
+}
+
+} // namespace rbvi
