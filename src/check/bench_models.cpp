@@ -38,6 +38,15 @@ void answer_alone(const Mu &mu, OnlineSolver &solver) {
   solver.solve(mu, true);
 }
 
+/// Of every answer, whatever the time of the row includes.
+double output_error(const ReducedModel &model, const std::vector<Sample> &samples) {
+  OnlineSolver solver(model);
+  std::vector<Outputs> answers;
+  for (const Sample &sample : samples)
+    answers.push_back(solver.outputs(sample.mu, solver.solve(sample.mu, true)));
+  return largest_output_error(answers, outputs_of(samples));
+}
+
 void store(const ModelErrors &errors, BenchRow &row) {
   row.u_mean = errors.u.mean();
   row.u_max = errors.u.maxCoeff();
@@ -75,6 +84,7 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     }
     rows.push_back(timed_model(part, "coefficients", truths.mu, answer_alone));
     store(errors, rows.back());
+    rows.back().outputs_max = output_error(part, samples);
   };
   for (const auto &[n, r] : pairs_of(model)) {
     if (knows_enriched_pairs(model)) {
@@ -92,6 +102,7 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     row.u_max = whole.u_max;
     row.lambda_mean = whole.lambda_mean;
     row.lambda_max = whole.lambda_max;
+    row.outputs_max = whole.outputs_max;
     rows.push_back(row);
   };
   with("outputs",

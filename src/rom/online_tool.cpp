@@ -114,10 +114,14 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
   ReducedSolution solution;
   const Outputs outputs = answer(solver, mu, arguments, solution);
+  std::vector<std::filesystem::path> written;
   if (!arguments.vtu.empty())
-    write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu), solver.model(),
-              solver.field(solution), solver.multiplier(solution));
-  if (!arguments.out.empty()) write_table(arguments, solver, {{mu}, {outputs}}, out);
+    written = write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu),
+                        solver.model(), solver.field(solution), solver.multiplier(solution));
+  if (!arguments.out.empty()) {
+    write_table(arguments, solver, {{mu}, {outputs}}, out);
+    written.emplace_back(arguments.out);
+  }
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs);
   warn(solver.model(), violation(outputs), out);
@@ -126,6 +130,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   else
     out << std::left << std::setw(22) << "expected error"
         << "unknown outside the box\n";
+  if (!written.empty()) print_written(out, written);
 }
 
 void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
@@ -150,6 +155,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
       << " ms each, largest kkt_residual " << residual << '\n';
   warn(solver.model(), worst, out);
   print_expected_errors(out, solver.model());
+  print_written(out, {arguments.out});
 }
 
 } // namespace

@@ -3,12 +3,14 @@
 #include "rbvi/core/h5.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/stages.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
 #include <cstdio>
+#include <iostream>
 
 namespace rbvi {
 
@@ -102,7 +104,8 @@ void command_offline(const ToolOptions &options) {
   if (rank != 0) return;
   const OfflineResult result{sweep.report, made};
   print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
-  std::printf("Model: %s\n", (options.out / "model.h5").c_str());
+  print_written(std::cout, {options.out / "model.h5", options.out / "samples.csv",
+                            case_of_run(options.out), options.out / "samples"});
 }
 
 } // namespace rbvi

@@ -5,6 +5,7 @@
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
@@ -15,6 +16,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <sstream>
 
 namespace rbvi {
@@ -296,7 +298,7 @@ void command_verify(const ToolOptions &options) {
     check_stability(world, problem, model, training, validation, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
-  if (rank == 0) std::printf("Tables: %s\n", out.c_str());
+  if (rank == 0) print_written(std::cout, {out, options.out / "model.h5"});
 }
 
 } // namespace rbvi
