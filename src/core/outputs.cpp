@@ -1,9 +1,9 @@
 #include "rbvi/core/outputs.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <iomanip>
 
@@ -15,12 +15,6 @@ std::string ten_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.10g", value);
   return text;
-}
-
-/// The shortest text that reads back as the same number.
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 } // namespace
@@ -82,7 +76,7 @@ void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector
   out << '\n';
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t i = 0; i < mus[r].size(); ++i)
-      out << (i > 0 ? "," : "") << exact(mus[r][i]);
+      out << (i > 0 ? "," : "") << exact_number(mus[r][i]);
     for (const OutputColumn &column : columns) {
       const std::optional<double> value = rows[r].*column.value;
       out << ',' << (value ? ten_digits(*value) : "");

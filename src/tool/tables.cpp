@@ -1,6 +1,7 @@
 #include "rbvi/tool/tables.hpp"
 
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <sstream>
 
@@ -9,13 +10,12 @@ namespace rbvi {
 void write_columns(const std::filesystem::path &path, const std::vector<std::string> &names,
                    const std::vector<std::vector<double>> &columns) {
   std::ostringstream out;
-  out.precision(10);
   for (std::size_t j = 0; j < names.size(); ++j)
     out << (j > 0 ? "," : "") << names[j];
   out << "\n";
   for (std::size_t i = 0; i < columns.front().size(); ++i) {
     for (std::size_t j = 0; j < columns.size(); ++j)
-      out << (j > 0 ? "," : "") << columns[j][i];
+      out << (j > 0 ? "," : "") << exact_number(columns[j][i]);
     out << "\n";
   }
   write_atomically(path, out.str());

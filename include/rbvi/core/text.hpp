@@ -1,4 +1,4 @@
-// Text for messages: short numbers, suggestions for mistyped names.
+// Text for messages and tables: numbers, suggestions for mistyped names.
 #pragma once
 
 #include <string>
@@ -8,6 +8,9 @@ namespace rbvi {
 
 /// "%.4g".
 std::string short_number(double value);
+
+/// The shortest text that reads back as the same number.
+std::string exact_number(double value);
 
 /// The name with the fewest single-letter edits (Levenshtein); "" if there is none.
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names);
