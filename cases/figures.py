@@ -1,201 +1,28 @@
 #!/usr/bin/env python3
-"""Figures of a run: figures.py RUN_DIR writes PNG files into RUN_DIR/figures.
+"""Figures of a run: figures.py RUN_DIR writes PNG and PDF files into RUN_DIR/figures.
 
-Reads RUN_DIR/model.h5 (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify) and RUN_DIR/u.vtu with
-u_contact.vtu beside it (rbvi-online --vtu, or rbvi solve -vtu). What is missing is named and its
-figure left out; the exit status is then 1.
+Reads RUN_DIR/model.h5 (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify), RUN_DIR/u.vtu with
+u_contact.vtu beside it (rbvi-online --vtu, or rbvi solve -vtu) and, if it is there,
+RUN_DIR/bench/table.csv (rbvi bench). What else is missing is named and its figure left out; the exit
+status is then 1. Logarithmic axes end at 1e-16: what is below is drawn there.
 """
 
 import sys
-import xml.etree.ElementTree as xml
-from collections import Counter
 from pathlib import Path
 
 import h5py
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 
-# Okabe and Ito's palette: told apart with every kind of colour vision, and in grey.
-BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
-
-plt.rcParams.update({
-    "font.size": 9, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,
-    "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "lines.linewidth": 1.6,
-    "lines.markersize": 4, "legend.frameon": False, "savefig.dpi": 110,
-})
-
-
-class Missing(Exception):
-    """A file or a quantity that this run does not have; the message says how to make it."""
-
-
-def table(run, name):
-    """Columns of a table of rbvi verify, by name."""
-    path = run / "verify" / name
-    if not path.is_file():
-        raise Missing(f"{path} is missing: run rbvi verify -out {run} first")
-    return np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
-
-
-def history(run, name):
-    """A convergence history of the model, e.g. pod/error."""
-    path = run / "model.h5"
-    if not path.is_file():
-        raise Missing(f"{path} is missing: run rbvi offline -out {run} first")
-    try:
-        with h5py.File(path, "r") as model:
-            return model["histories/values/" + name][()].ravel()
-    except (OSError, KeyError) as error:
-        raise Missing(f"{path} cannot be read: {error}") from None
-
-
-def read_vtu(path):
-    """Points (n x 3), cells (m x nodes per cell) and fields by name of a VTU file in ASCII: one
-    number per node or cell, or three per node."""
-    if not path.is_file():
-        raise Missing(f"{path} is missing: make it with rbvi-online {path.parent}/model.h5 "
-                      f"--mu VALUES --vtu {path.parent}/u.vtu")
-    try:
-        arrays = {a.get("Name"): a for a in xml.parse(path).iter("DataArray")}
-        points = next(iter(xml.parse(path).iter("Points"))).find("DataArray")
-    except (xml.ParseError, StopIteration):
-        raise Missing(f"{path} is not a VTU file in ASCII") from None
-    numbers = {name: np.array(a.text.split(), float) for name, a in arrays.items()}
-    cells = numbers.pop("connectivity").astype(int).reshape(-1, int(numbers.pop("offsets")[0]))
-    if cells.shape[1] == 6:  # a quadratic triangle, drawn as four linear ones
-        cells = cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
-    numbers.pop("types")
-    coordinates = np.array(points.text.split(), float).reshape(-1, 3)
-    fields = {name: v.reshape(-1, 3) if v.size == 3 * len(coordinates) else v
-              for name, v in numbers.items() if name != "points"}
-    return coordinates, cells, fields
-
-
-def outline(points, cells):
-    """Segments (k x 2 x 2) of the boundary of a triangulation: edges of one triangle only."""
-    edges = np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), axis=1)
-    single = [edge for edge, count in Counter(map(tuple, edges)).items() if count == 1]
-    return points[np.array(single)][:, :, :2]
-
-
-def whole_decades(axis):
-    low, high = np.log10(np.maximum(axis.dataLim.intervaly, 1e-300))
-    axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high) * 1.3)
-
-
-def save(figure, directory, name):
-    """Logarithmic axes without limits of their own show whole decades."""
-    directory.mkdir(exist_ok=True)
-    for axis in figure.axes:
-        if axis.get_yscale() == "log" and axis.get_autoscaley_on():
-            whole_decades(axis)
-    figure.savefig(directory / name, bbox_inches="tight")
-    plt.close(figure)
-    print(directory / name)
-
-
-def log_axis(axis, xlabel, ylabel, title):
-    axis.set_yscale("log")
-    axis.set_xlabel(xlabel)
-    axis.set_ylabel(ylabel)
-    axis.set_title(title, loc="left")
-
-
-def draw_membrane(axis, points, cells, u, circle):
-    axis.plot_trisurf(points[:, 0], points[:, 1], u, triangles=cells, cmap="viridis", linewidth=0,
-                      antialiased=False)
-    floor = u.min() - 0.25 * np.ptp(u)
-    for segment in circle:
-        axis.plot(segment[:, 0], segment[:, 1], floor, color=ORANGE, linewidth=1.2)
-    axis.set_zlim(floor, 0)
-    axis.set_box_aspect((1, 1, 0.7), zoom=1.1)
-    axis.view_init(elev=24, azim=-58)
-    axis.set_xlabel("x")
-    axis.set_ylabel("y")
-    axis.set_zlabel("u", labelpad=0)
-    axis.tick_params(labelsize=7, pad=0)
-    axis.set_title("membrane u; below, the edge of the obstacle", loc="left")
-
-
-def draw_pressure(figure, axis, points, cells, pressure, circle):
-    levels = np.linspace(0, max(pressure.max(), 1e-300), 15)
-    filled = axis.tricontourf(points[:, 0], points[:, 1], cells, pressure, levels=levels,
-                              cmap="Blues")
-    for segment in circle:
-        axis.plot(segment[:, 0], segment[:, 1], color=ORANGE, linewidth=1.4)
-    axis.set_aspect("equal")
-    axis.use_sticky_edges = False
-    axis.margins(0.05)
-    axis.grid(False)
-    axis.set_xlabel("x")
-    axis.set_ylabel("y")
-    axis.set_title("pressure on the obstacle", loc="left")
-    figure.colorbar(filled, ax=axis, shrink=0.8, format="%.3g")
-
-
-def draw_bodies(axis, path):
-    """Deformed bodies in 2D."""
-    points, cells, fields = read_vtu(path)
-    moved = points + fields["u"]
-    axis.tripcolor(moved[:, 0], moved[:, 1], cells, np.linalg.norm(fields["u"], axis=1),
-                   shading="gouraud", cmap="Blues")
-    axis.triplot(moved[:, 0], moved[:, 1], cells, color="black", linewidth=0.15)
-    axis.set_aspect("equal")
-    axis.grid(False)
-    axis.set_xlabel("x")
-    axis.set_ylabel("y")
-    axis.set_title("deformed bodies, shade: |u|", loc="left")
-
-
-def draw_pressure_curve(axis, path):
-    """Pressure, and with friction the tangential stress, along the contact curve."""
-    points, edges, fields = read_vtu(path)
-    if len(fields["pressure"]) == len(edges):
-        axis.stairs(fields["pressure"], points[:, 0], color=BLUE)
-    else:
-        axis.plot(points[:, 0], fields["pressure"], color=BLUE)
-    axis.set_xlabel("x")
-    axis.set_ylabel("pressure")
-    if "tangential_stress" in fields:
-        axis.plot(points[:, 0], fields["tangential_stress"], color=GREEN)
-        axis.set_ylabel("pressure; green: tangential stress")
-    gap = axis.twinx()
-    gap.plot(points[:, 0], fields["gap"], color=ORANGE, linewidth=1)
-    gap.set_ylabel("gap", color=ORANGE)
-    gap.grid(False)
-    axis.set_title("pressure and gap on the contact curve", loc="left")
-
-
-def solution(run):
-    """One answer: the membrane and its pressure (Niakh 2022, figure 2.4), or two bodies and the
-    pressure between them (figure 2.10)."""
-    points, cells, fields = read_vtu(run / "u.vtu")
-    if fields["u"].ndim == 2:
-        figure, axes = plt.subplots(1, 2, figsize=(9, 4), constrained_layout=True,
-                                    gridspec_kw={"width_ratios": [1, 1.5]})
-        draw_bodies(axes[0], run / "u.vtu")
-        draw_pressure_curve(axes[1], run / "u_contact.vtu")
-        save(figure, run / "figures", "solution.png")
-        return
-    contact, triangles, pressures = read_vtu(run / "u_contact.vtu")
-    circle = outline(contact, triangles)
-    figure = plt.figure(figsize=(9, 3.6))
-    draw_membrane(figure.add_axes((0, 0.02, 0.47, 0.9), projection="3d"), points, cells, fields["u"], circle)
-    draw_pressure(figure, figure.add_axes((0.58, 0.1, 0.42, 0.8)), contact, triangles,
-                  pressures["pressure"], circle)
-    save(figure, run / "figures", "solution.png")
+from bench_figures import bench
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, free_parameters, history,
+                          log_axis, model_of, plt, save, table, with_unit)
+from solution_figures import label_plane, solution
 
 
 def kind_of(run):
     """What the model reduces: a "pair" of bases, contact with a rigid "support" by multipliers, or
     by "nitsche"."""
-    path = run / "model.h5"
-    if not path.is_file():
-        raise Missing(f"{path} is missing: run rbvi offline -out {run} first")
-    with h5py.File(path, "r") as model:
+    with h5py.File(model_of(run), "r") as model:
         if model["nitsche/edges"].size > 0:
             return "nitsche"
         return "support" if int(np.ravel(model["support/vertices"][()])[0]) > 0 else "pair"
@@ -236,8 +63,8 @@ def support_panels(run):
         panels.append((np.arange(len(tangential)), tangential, "modes", "relative error",
                        "modes of the multipliers"))
     if collocated:
-        panels.append((history(run, "gcns/nodes"), history(run, "gcns/error"), "collocation nodes", "relative error",
-                       "e_GCNS"))
+        panels.append((history(run, "gcns/nodes"), history(run, "gcns/error"), "collocation nodes",
+                       "relative error", "e_GCNS"))
     return panels
 
 
@@ -249,7 +76,7 @@ def pair_panels(run):
     if len(orthogonality) > 0:
         panels.append((size[1:], orthogonality, "dual functions R", "distance to the cone before",
                        "new generator, e_orth"))
-    panels.append((size[1:], condition, "dual functions R", "condition number", "Gram matrix"))
+    panels.append((size[1:], condition, "dual functions R", "condition number (-)", "Gram matrix"))
     return panels
 
 
@@ -268,13 +95,12 @@ def bases(run):
     save(figure, run / "figures", "bases.png")
 
 
-def draw_contact_field(figure, axis, points, cells, values, colours, limits, title):
+def draw_contact_field(figure, axis, points, cells, values, colours, limits, title, label):
     filled = axis.tripcolor(points[:, 0], points[:, 1], cells, values, shading="gouraud",
-                            cmap=colours, vmin=limits[0], vmax=limits[1])
-    axis.set_aspect("equal")
-    axis.grid(False)
+                            cmap=colours, vmin=limits[0], vmax=limits[1], rasterized=True)
+    label_plane(axis)
     axis.set_title(title, loc="left")
-    figure.colorbar(filled, ax=axis, shrink=0.8, format="%.3g")
+    figure.colorbar(filled, ax=axis, shrink=0.8, format="%.3g", label=label)
 
 
 def contact_cells(run):
@@ -283,40 +109,49 @@ def contact_cells(run):
         return model["fields/contact_cells"][()].reshape(-1, 3)
 
 
-def pressure_curve(run, data):
+def worst_parameters(run, data):
+    """"radius = 0.85 m, ..." of a table with one mu."""
+    return ", ".join(f"{name.replace('_', ' ')} {data[name][0]:.4g} {unit}".strip()
+                     for name, unit in free_parameters(run))
+
+
+def pressure_curve(data):
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
-    axes[0].plot(data["x"], data["high_fidelity"], color=GREY, linewidth=3, label="high-fidelity")
-    axes[0].plot(data["x"], data["reduced"], color=BLUE, label="reduced")
-    axes[0].set_title("pressure, worst of the validation set", loc="left")
-    axes[0].legend()
-    axes[1].plot(data["x"], data["reduced"] - data["high_fidelity"], color=ORANGE)
-    axes[1].set_title("its error", loc="left")
+    parts = [("", "pressure", BLUE)]
     if "reduced_tangential" in data.dtype.names:
-        axes[0].plot(data["x"], data["high_fidelity_tangential"], color=GREY, linewidth=3)
-        axes[0].plot(data["x"], data["reduced_tangential"], color=GREEN,
-                     label="reduced, tangential")
-        axes[0].legend()
-        axes[1].plot(data["x"], data["reduced_tangential"] - data["high_fidelity_tangential"],
-                     color=GREEN)
-    for axis in axes:
-        axis.set_xlabel("x")
-    save(figure, run / "figures", "pressure.png")
+        parts.append(("_tangential", "tangential stress", GREEN))
+    for suffix, name, colour in parts:
+        truth, reduced = data["high_fidelity" + suffix], data["reduced" + suffix]
+        axes[0].plot(data["x"], truth, color=GREY, linewidth=3, alpha=0.6,
+                     label=None if suffix else "high-fidelity")
+        axes[0].plot(data["x"], reduced, color=colour, label="reduced " + name)
+        axes[1].plot(data["x"], reduced - truth, color=colour, label=name)
+    axes[0].set_title("worst of the validation set", loc="left")
+    axes[1].set_title("reduced minus high-fidelity", loc="left")
+    for axis, label in zip(axes, ("stress (Pa)", "error (Pa)")):
+        axis.set_xlabel("x, reference domain (m)")
+        axis.set_ylabel(label)
+        axis.legend(loc="upper right")
+    return figure
+
+
+def pressure_field(data, cells):
+    points = np.column_stack([data["x"], data["y"]])
+    error = data["reduced"] - data["high_fidelity"]
+    figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), constrained_layout=True)
+    top, bound = data["high_fidelity"].max(), max(np.abs(error).max(), 1e-16)
+    draw_contact_field(figure, axes[0], points, cells, data["reduced"], "Blues", (0, top),
+                       "reduced, on the reference domain", "pressure (Pa)")
+    draw_contact_field(figure, axes[1], points, cells, error, "RdBu_r", (-bound, bound),
+                       "error, worst of the validation set", "error of the pressure (Pa)")
+    return figure
 
 
 def pressure(run):
     """Pressure and its error at the validation parameter where the error is largest."""
     data, cells = table(run, "worst_pressure.csv"), contact_cells(run)
-    if len(cells) == 0:
-        pressure_curve(run, data)
-        return
-    points = np.column_stack([data["x"], data["y"]])
-    error = data["reduced"] - data["high_fidelity"]
-    figure, axes = plt.subplots(1, 2, figsize=(8, 3.4), constrained_layout=True)
-    top, bound = data["high_fidelity"].max(), np.abs(error).max()
-    draw_contact_field(figure, axes[0], points, cells, data["reduced"], "Blues", (0, top),
-                       "reduced pressure, reference disc")
-    draw_contact_field(figure, axes[1], points, cells, error, "RdBu_r", (-bound, bound),
-                       "its error, worst of the validation set")
+    figure = pressure_field(data, cells) if len(cells) else pressure_curve(data)
+    figure.suptitle(worst_parameters(run, data), fontsize=8, color=GREY)
     save(figure, run / "figures", "pressure.png")
 
 
@@ -348,26 +183,30 @@ def infsup(run):
     if kind_of(run) != "pair":
         return  # verify does not make them
     beta, steps = table(run, "infsup.csv"), table(run, "stability.csv")
-    order = np.argsort(beta["beta_on"])
+    x, xlabel = validation_axis(run, beta)
+    order = np.argsort(beta["beta_on"] if x is None else x)
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
     curves = (("beta_hf", r"$\beta_{HF}$ high-fidelity", GREY, "-"),
               ("beta_on", r"$\beta_{on}$ online-enriched", GREEN, "-"),
               ("beta_off", r"$\beta_{off}$ offline-enriched", BLUE, "--"),
               ("beta_dec", r"$\beta_{dec}$ decorrelated", ORANGE, ":"))
     for column, label, colour, style in curves:
-        axes[0].plot(beta[column][order], style, color=colour, label=label)
-    log_axis(axes[0], "validation parameters, sorted", "inf-sup constant over the span",
+        axes[0].plot(np.arange(len(order)) if x is None else x[order], beta[column][order], style,
+                     color=colour, label=label)
+    log_axis(axes[0], xlabel, "inf-sup constant over the span (-)",
              "stability over the validation set")
     axes[0].legend()
-    axes[1].plot(steps["S"], steps["sigma_max"], color=ORANGE, label=r"largest $\sigma$")
-    axes[1].plot(steps["S"], steps["ratio_min"], color=BLUE,
-                 label=r"smallest $\beta_{off}/\beta_{on}$")
-    axes[1].plot(steps["S"], steps["bound_min"], "--", color=GREEN,
-                 label=r"bound $\sqrt{1-\sigma^2}$")
+    mark = "." if len(steps) < 30 else ""
+    for column, label, colour, style in (
+            ("sigma_max", r"largest $\sigma$", ORANGE, "-"),
+            ("ratio_min", r"smallest $\beta_{off}/\beta_{on}$", BLUE, "-"),
+            ("bound_min", r"bound $\sqrt{1-\sigma^2}$", GREEN, "--")):
+        axes[1].plot(steps["S"], steps[column], style, marker=mark, color=colour, label=label)
     positive = steps["classic_min"] > 0
-    axes[1].plot(steps["S"][positive], steps["classic_min"][positive], ".", color=PURPLE,
+    axes[1].plot(steps["S"][positive], steps["classic_min"][positive], "x", color=PURPLE,
                  label="bound (2.24), where positive")
-    log_axis(axes[1], "supremizers S'", "", "along the supremizers")
+    log_axis(axes[1], "supremizers S'", "sigma, ratios of inf-sup constants (-)",
+             "along the supremizers")
     axes[1].legend()
     save(figure, run / "figures", "infsup.png")
 
@@ -393,8 +232,9 @@ def error_map(run):
         print("error_map.png: left out, no pair has all its answers")
         return
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.6), constrained_layout=True)
-    if kind_of(run) == "nitsche":
-        for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", "normal stress")):
+    if len(np.unique(data["R"])) == 1:
+        dual = "normal stress" if kind_of(run) == "nitsche" else "multiplier"
+        for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", dual)):
             axis.plot(data["N"], data[field + "_mean"], "o-", color=BLUE, label="reduced answers")
             axis.plot(data["N"], data[field + "_floor_mean"], ":", color="black",
                       label="projection on the basis")
@@ -419,35 +259,53 @@ def mesh_quality(run):
                   label=f"{label}, {len(values)} parameters")
     axis.set_ylim(bottom=1)
     axis.set_xlabel("share of the parameters, sorted (%)")
-    axis.set_ylabel("largest aspect ratio")
+    axis.set_ylabel("largest aspect ratio (-)")
     axis.set_title("quality of the mapped mesh", loc="left")
     axis.legend()
     save(figure, run / "figures", "mesh_quality.png")
 
 
+def validation_axis(run, data):
+    """Where each validation parameter is drawn, and the label: the free parameter where there is
+    one; None, for sorted errors, where there are several."""
+    parameters = free_parameters(run)
+    if len(parameters) > 1:
+        return None, "validation parameters, sorted"
+    name, unit = parameters[0]
+    return data[name], with_unit(name.replace("_", " "), unit)
+
+
+def draw_errors(axis, x, values, label, colour, style):
+    """Against x in its order, or sorted; how many are missing is said."""
+    known = np.isfinite(values)
+    label += f", {np.sum(~known)} without an answer" if np.any(~known) else ""
+    if x is None:
+        axis.plot(np.sort(values[known]), style, color=colour, label=label)
+    else:
+        order = np.argsort(x[known])
+        axis.plot(x[known][order], values[known][order], style, marker=".", color=colour,
+                  label=label)
+
+
 def errors(run):
-    """Errors of the reduced answers over the validation set, each curve sorted."""
+    """Errors of the reduced answers over the validation set."""
     data = table(run, "errors.csv")
+    x, xlabel = validation_axis(run, data)
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
-    curves = [("_enriched", "with supremizers", BLUE, "-"),
-              ("_floor", "projection on the basis", "black", ":")]
     kind = kind_of(run)
+    curves = [("_enriched", "with supremizers" if kind == "pair" else "reduced answers", BLUE, "-"),
+              ("_floor", "projection on the basis", "black", ":")]
     if kind == "pair":
         curves.insert(0, ("_decorrelated", "without supremizers", ORANGE, "--"))
-    else:
-        curves[0] = ("_enriched", "reduced answers", BLUE, "-")
     dual = "normal stress" if kind == "nitsche" else "multiplier"
     for axis, field, title in zip(axes, ("u", "lambda"), ("displacement u", dual)):
         for suffix, label, colour, style in curves:
-            values = np.sort(data[field + suffix])
-            missing = np.sum(~np.isfinite(values))
-            label += f", {missing} without an answer" if missing else ""
-            axis.plot(values[np.isfinite(values)], style, color=colour, label=label)
-        log_axis(axis, "validation parameters, sorted", "relative error", title)
+            draw_errors(axis, x, data[field + suffix], label, colour, style)
+        log_axis(axis, xlabel, "relative error", title)
     if "tangential_enriched" in data.dtype.names:
-        axes[1].plot(np.sort(data["tangential_enriched"]), color=GREEN, label="tangential part")
-        axes[1].legend()
-    axes[0].legend()
+        draw_errors(axes[1], x, data["tangential_enriched"], "tangential part", GREEN, "-")
+    for axis in axes:
+        axis.legend()
     save(figure, run / "figures", "errors.png")
 
 
@@ -460,7 +318,7 @@ def main(arguments):
         print(f"figures.py: there is no run directory {run}", file=sys.stderr)
         return 2
     status = 0
-    for draw in (solution, bases, pressure, infsup, error_map, mesh_quality, errors):
+    for draw in (solution, bases, pressure, infsup, error_map, mesh_quality, errors, bench):
         try:
             draw(run)
         except Missing as missing:

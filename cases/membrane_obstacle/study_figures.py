@@ -5,8 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, contact_cells, draw_constants,
-                     draw_contact_field, draw_greedy, history, log_axis, plt, save, table)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, save, table)
+from figures import contact_cells, draw_constants, draw_contact_field, draw_greedy
 
 import numpy as np
 
@@ -152,9 +152,9 @@ def pressures(runs, directory):
         top, bound = data["high_fidelity"].max(), np.abs(error).max()
         for axis, column in zip(row, ("high_fidelity", "reduced")):
             draw_contact_field(figure, axis, points, cells, data[column], "Blues", (0, top),
-                               f"{name}: {column.replace('_', '-')} pressure")
+                               f"{name}: {column.replace('_', '-')}", "pressure (Pa)")
         draw_contact_field(figure, row[2], points, cells, error, "RdBu_r", (-bound, bound),
-                           f"{name}: error")
+                           f"{name}: error", "error of the pressure (Pa)")
     save(figure, directory, "pressure.png")
 
 

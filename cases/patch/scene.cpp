@@ -91,8 +91,8 @@ Scene make_one(const SceneOptions &options) {
                                {"shear", "m", 0, 0.2, 0.02},
                                {"friction_coefficient", "", 0, 1, 0.3}});
   scene.parameters.free = {indentation};
-  scene.nitsche =
-      nitsche_recipe(options, [material](const Mu &, const Point &) { return material; });
+  scene.nitsche = nitsche_recipe(options);
+  scene.material = [material](const Mu &, const Point &) { return material; };
   scene.mesh = {"one_block", {}, {"sides", "top", "contact"}, ""};
   scene.map = [](const Mu &, const Point &x) { return x; };
   scene.fixed = {{"top", {}}};

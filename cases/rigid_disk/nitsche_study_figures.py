@@ -5,9 +5,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, draw_bodies, history, log_axis,
-                     plt, read_vtu, save)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, history, log_axis, plt,
+                          read_grid, save)
 from nitsche_study import EIM_ERRORS, GAMMA0, GENERATORS, LAWS, RADII, RULES, SIZES, error_map
+from solution_figures import draw_bodies
 from study_tools import rows_of, summary
 
 import numpy as np
@@ -22,11 +23,12 @@ class ContactCurve:
     """The stresses along the curve, and what the laws make of them."""
 
     def __init__(self, path, law):
-        points, edges, fields = read_vtu(path)
+        curve = read_grid(path)
+        points, fields = curve.points, curve.of_nodes
         self.x, self.gap = points[:, 0], fields["gap"]
         normal = points[:, :2] / np.linalg.norm(points[:, :2], axis=1)[:, None]
         # gamma is over the length of an edge in the reference domain.
-        gamma = GAMMA0 * MODULUS / (2 * np.sin(np.pi / 8 / len(edges)))
+        gamma = GAMMA0 * MODULUS / (2 * np.sin(np.pi / 8 / len(curve.cells)))
         self.sigma_n = -fields["pressure"]
         p_n = self.sigma_n + gamma * self.gap
         self.contact = np.minimum(p_n, 0)
@@ -50,10 +52,8 @@ def deformed(study, directory):
         angle = np.linspace(0, np.pi, 200)
         bottom = -float(radius) - INITIAL_GAP - 1
         axis.fill(np.cos(angle), bottom + np.sin(angle), color=GREY, alpha=0.4, linewidth=0)
-        draw_bodies(axis, study.out / "solves" / f"none_{radius}.vtu")
-        axis.set_title(f"radius {radius} m; shade: |u|", loc="left")
-        axis.set_xlabel("x (m)")
-        axis.set_ylabel("y (m)")
+        draw_bodies(figure, axis, study.out / "solves" / f"none_{radius}.vtu")
+        axis.set_title(f"radius {radius} m", loc="left")
     axes[0].set_xlim(-1.35, 1.35)
     axes[0].set_ylim(-1.9, 0)
     save(figure, directory, "deformed.png")

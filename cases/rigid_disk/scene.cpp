@@ -111,11 +111,11 @@ Scene make(const SceneOptions &options) {
   const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
   scene.support->normal = normal;
   scene.support->gap = gap_function(options.at("gap"), options.at("gap_from") == "arc", normal);
-  const auto material = [young](const Mu &mu, const Point &centre) {
+  scene.material = [young](const Mu &mu, const Point &centre) {
     const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
     return lame(stiffness * young, mu[poisson_ratio]);
   };
-  scene.nitsche = nitsche_recipe(options, material);
+  scene.nitsche = nitsche_recipe(options);
   const bool nitsche = scene.nitsche.has_value();
   scene.parameters = parameters(scene.support->friction.law, nitsche);
   scene.training = "grid:61";
@@ -131,7 +131,7 @@ Scene make(const SceneOptions &options) {
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
   scene.motion = [](const Mu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
-  scene.a = elasticity("", material, 2);
+  scene.a = elasticity("", scene.material, 2);
   scene.a_parameters = {core_stiffness, poisson_ratio};
   scene.part_stiffness = core_stiffness;
   scene.a_coordinates[core_stiffness] = {[](double x) { return std::log(x); },

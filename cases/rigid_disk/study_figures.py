@@ -5,7 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_vtu, save
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_grid,
+                          save)
 from infsup import constants
 from study_tools import rows_of, stored
 
@@ -24,8 +25,8 @@ MODELS = {  # of the tangential stress
 
 def contact_curve(path):
     """x, pressure and tangential stress."""
-    points, _, fields = read_vtu(path)
-    return points[:, 0], fields["pressure"], fields["tangential_stress"]
+    curve = read_grid(path)
+    return curve.points[:, 0], *(curve.of_nodes[name] for name in ("pressure", "tangential_stress"))
 
 
 def as_published(axis, x, y, text="published"):
@@ -37,14 +38,14 @@ def laws(directory):
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True)
     for radius, colour in zip(RADII, (BLUE, GREEN, ORANGE)):
         x, pressure, stress = contact_curve(directory / f"truth_{radius}_contact.vtu")
-        axes[0].plot(x, pressure, color=colour, label=f"radius {radius}")
+        axes[0].plot(x, pressure, color=colour, label=f"radius {radius} m")
         axes[1].plot(x, stress, color=colour)
         axes[2].plot(x, FRICTION * pressure, color=colour, alpha=0.4, linewidth=3)
         axes[2].plot(x, np.abs(stress), color=colour, linewidth=1)
     for axis, title in zip(axes, (r"$\lambda_n$ (Pa)", r"$\lambda_\tau$ (Pa)",
                                   r"$|\lambda_\tau|$; thick: $\nu_F \lambda_n$ (Pa)")):
         axis.set_title(title, loc="left")
-        axis.set_xlabel("x")
+        axis.set_xlabel("x (m)")
         axis.set_xlim(-SHOWN, SHOWN)
     axes[0].legend(fontsize=8)
     save(figure, directory, "laws.png")
@@ -125,7 +126,7 @@ def nodes(runs, directory):
                          label=label)
         axis.plot(right, np.zeros_like(right), "|", color=GREY)
         axis.plot(right[chosen], np.arange(1, len(chosen) + 1), "o", color=colour)
-        axis.set_xlabel("x of the node, radius 1")
+        axis.set_xlabel("x of the node at radius 1 (m)")
         axis.set_title(f"{name}: {len(chosen)} of {len(right)} pairs", loc="left")
     axes[0].set_ylabel("step at which it is taken")
     axes[1].legend(fontsize=8)
@@ -164,8 +165,8 @@ def tangential(study, runs, directory):
             top.plot(x, stress, style, color=colour, linewidth=1.2, label=name)
             bottom.plot(x, np.maximum(np.abs(stress - truth), 1e-16), style, color=colour,
                         linewidth=1.2)
-        top.set_title(rf"$\lambda_\tau$ (Pa), radius {radius}", loc="left")
-        log_axis(bottom, "x", "", "its error (Pa)")
+        top.set_title(rf"$\lambda_\tau$ (Pa), radius {radius} m", loc="left")
+        log_axis(bottom, "x (m)", "", "its error (Pa)")
         bottom.set_xlim(-SHOWN, SHOWN)
         bottom.set_ylim(1e-14, 10)
     axes[0, 0].legend(fontsize=8)

@@ -5,8 +5,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from figures import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_bodies, draw_constants, draw_greedy,
-                     history, log_axis, plt, read_vtu, save, table)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_grid,
+                          save, step_values, table)
+from figures import draw_constants, draw_greedy
+from solution_figures import draw_bodies
 
 import numpy as np
 
@@ -17,10 +19,10 @@ COLOURS = (BLUE, GREEN, GREY, ORANGE, PURPLE)
 
 def draw_pressures(axis, directory, variant, radii, colours):
     for radius, colour in zip(radii, colours):
-        points, edges, fields = read_vtu(directory / f"{variant}_{radius}_contact.vtu")
-        axis.stairs(fields["pressure"], points[:, 0], color=colour, linewidth=1,
-                    label=f"radius {radius}")
-    axis.set_xlabel("x")
+        curve = read_grid(directory / f"{variant}_{radius}_contact.vtu")
+        step_values(axis, curve, "pressure", color=colour, linewidth=1, label=f"radius {radius} m")
+    axis.set_xlabel("x (m)")
+    axis.set_ylabel("pressure (Pa)")
     axis.legend(fontsize=8)
 
 
@@ -32,21 +34,21 @@ def solution(study, directory):
                        "-vtu", directory / f"{variant}_{radius}.vtu")
     figure, axes = plt.subplots(1, 4, figsize=(15, 4), constrained_layout=True,
                                 gridspec_kw={"width_ratios": [0.9, 1.2, 1.2, 1.2]})
-    draw_bodies(axes[0], directory / "intersection_0.9.vtu")
-    axes[0].set_title("deformed, radius 0.9", loc="left")
+    draw_bodies(figure, axes[0], directory / "intersection_0.9.vtu")
+    axes[0].set_title("deformed, radius 0.9 m", loc="left")
     for variant, axis in (("intersection", axes[1]), ("direct", axes[2])):
         draw_pressures(axis, directory, variant, RADII, COLOURS)
         axis.set_xlim(0, 0.35)
         axis.set_title(f"pressure, {variant}", loc="left")
     peaks = []
     for variant, colour in (("direct", ORANGE), ("intersection", BLUE)):
-        points, _, fields = read_vtu(directory / f"{variant}_1.1_contact.vtu")
-        axes[3].stairs(fields["pressure"], points[:, 0], color=colour, label=variant)
-        peaks.append(fields["pressure"].max())
+        curve = read_grid(directory / f"{variant}_1.1_contact.vtu")
+        step_values(axes[3], curve, "pressure", color=colour, label=variant)
+        peaks.append(curve.of_cells.get("pressure", curve.of_nodes["pressure"]).max())
     axes[3].set_xlim(0, 0.1)
     axes[3].set_ylim(0.93 * min(peaks), 1.01 * max(peaks))
-    axes[3].set_xlabel("x")
-    axes[3].set_title("radius 1.1, enlarged", loc="left")
+    axes[3].set_xlabel("x (m)")
+    axes[3].set_title("radius 1.1 m, enlarged", loc="left")
     axes[3].legend(fontsize=8)
     save(figure, directory, "solution.png")
 
@@ -94,7 +96,7 @@ def constants(runs, directory):
     for axis, pair in zip(axes, PAIRS):
         beta = table(runs["intersection", pair, "loose"], "infsup.csv")
         draw_constants(axis, beta["radius"], beta)
-        log_axis(axis, "radius", "inf-sup constant", f"(N, R) = {pair}, loose tolerance")
+        log_axis(axis, "radius (m)", "inf-sup constant (-)", f"(N, R) = {pair}, loose tolerance")
     axes[2].legend(fontsize=8)
     save(figure, directory, "infsup.png")
 

@@ -2,6 +2,7 @@
 
 #include "rbvi/check/errors.hpp"
 #include "rbvi/check/interpolation.hpp"
+#include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -81,6 +82,14 @@ std::vector<Index> support(const Vector &lambda) {
   return active;
 }
 
+/// sum += weight * outputs, quantities alone.
+void add_outputs(double weight, const Outputs &outputs, Outputs &sum) {
+  for (const OutputColumn &column : output_columns())
+    if (const std::optional<double> value = outputs.*column.value;
+        value && column.kind == OutputKind::quantity)
+      sum.*column.value = (sum.*column.value).value_or(0) + weight * *value;
+}
+
 std::vector<Mu> parameters_of(const std::vector<Sample> &samples) {
   std::vector<Mu> set;
   for (const Sample &sample : samples)
@@ -102,6 +111,13 @@ std::vector<double> seconds_each(const std::vector<Mu> &set,
   return seconds;
 }
 
+std::vector<Outputs> outputs_of(const std::vector<Sample> &samples) {
+  std::vector<Outputs> result;
+  for (const Sample &sample : samples)
+    result.push_back(sample.outputs);
+  return result;
+}
+
 double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) throw failure("no query was measured");
   std::sort(values.begin(), values.end());
@@ -116,15 +132,19 @@ BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vec
   std::vector<Mu> set = parameters_of(truths);
   set.resize(std::min(count, set.size()));
   std::vector<HfSolution> answers;
+  std::vector<Outputs> outputs;
   const std::vector<double> seconds = seconds_each(set, [&](const Mu &mu) {
     if (cold) solver.forget();
     answers.push_back(solver.solve(mu));
   });
-  for (std::size_t p = 0; p < answers.size(); ++p)
+  for (std::size_t p = 0; p < answers.size(); ++p) {
     errors.add(answers[p].u, answers[p].lambda, truths[p]);
+    outputs.push_back(answers[p].outputs);
+  }
   BenchRow row =
       timed_row(solver_name(problem, options, cold), "assembly, field, outputs", seconds);
   errors.store(row);
+  row.outputs_max = largest_output_error(outputs, outputs_of(truths));
   return row;
 }
 
@@ -167,7 +187,7 @@ BenchRow bench_vi(Problem &lumped, const std::vector<Mu> &set) {
   std::vector<Sample> truths;
   for (const Mu &mu : set) {
     HfSolution truth = active_set.solve(mu);
-    truths.push_back({mu, std::move(truth.u), std::move(truth.lambda), {}});
+    truths.push_back({mu, std::move(truth.u), std::move(truth.lambda), truth.outputs});
   }
   return bench_solver(lumped, options, truths, truths.size(), true);
 }
@@ -188,11 +208,15 @@ BenchRow bench_interpolation(Problem &problem, const std::vector<Sample> &snapsh
     answers.push_back(std::move(answer));
   });
   Errors errors(problem);
-  for (std::size_t p = 0; p < answers.size(); ++p)
+  for (std::size_t p = 0; p < answers.size(); ++p) {
     errors.add(answers[p].u, answers[p].lambda, truths[p]);
+    for (const auto &[number, weight] : interpolation_weights(grid, training, space, set[p]))
+      add_outputs(weight, snapshots[number].outputs, answers[p].outputs);
+  }
   BenchRow row = timed_row(grid.ticks.empty() ? "nearest snapshot" : "multilinear interpolation",
                            "field; constraints not enforced", seconds);
   errors.store(row);
+  row.outputs_max = largest_output_error(outputs_of(answers), outputs_of(truths));
   for (const Sample &snapshot : snapshots)
     row.offline += snapshot.outputs.seconds.value_or(0);
   return row;

@@ -1,6 +1,7 @@
 // The rows of reduced models: several pairs (N, R), enriched and not.
 #include "rbvi/check/bench.hpp"
 #include "rbvi/check/errors.hpp"
+#include "rbvi/check/output_errors.hpp"
 
 #include <algorithm>
 
@@ -75,6 +76,8 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     }
     rows.push_back(timed_model(part, "coefficients", truths.mu, answer_alone));
     store(errors, rows.back());
+    rows.back().outputs_max =
+        largest_output_error(reduced_outputs(part, truths.mu), outputs_of(samples));
   };
   for (const auto &[n, r] : pairs_of(model)) {
     if (knows_enriched_pairs(model)) {
@@ -92,6 +95,7 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     row.u_max = whole.u_max;
     row.lambda_mean = whole.lambda_mean;
     row.lambda_max = whole.lambda_max;
+    row.outputs_max = whole.outputs_max;
     rows.push_back(row);
   };
   with("outputs",

@@ -181,11 +181,13 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
   std::vector<double> seconds;
   for (Index p = 0; p < count; ++p) {
     const Vector coordinates = truths.coordinates.col(p);
-    const Vector inside = embedding.size() > 0 ? Vector(embedding.transpose() * coordinates)
-                                               : Vector(coordinates.head(k));
-    const double outside = coordinates.squaredNorm() - inside.squaredNorm();
+    Vector outside = coordinates;
+    if (embedding.size() > 0)
+      outside -= embedding * (embedding.transpose() * coordinates);
+    else
+      outside.head(k).setZero();
     const double remainder = truths.remainder[p] * truths.remainder[p];
-    errors.u_floor[p] = std::sqrt(std::max(0.0, outside) + remainder) / truths.u_norm[p];
+    errors.u_floor[p] = std::sqrt(outside.squaredNorm() + remainder) / truths.u_norm[p];
     errors.u[p] = errors.lambda[p] = std::numeric_limits<double>::infinity();
     if (rest > 0) errors.tangential[p] = errors.u[p];
     const auto start = Clock::now();

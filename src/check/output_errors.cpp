@@ -14,17 +14,18 @@ using Member = std::optional<double> Outputs::*;
 /// Absolute and relative errors of one column.
 OutputError error_of(const OutputColumn &column, const std::vector<Outputs> &reduced,
                      const std::vector<Outputs> &truth) {
-  std::vector<double> values, errors;
+  std::vector<double> all, values, errors;
   for (std::size_t p = 0; p < truth.size(); ++p) {
-    if (!(truth[p].*column.value) || !(reduced[p].*column.value)) continue;
-    values.push_back(*(truth[p].*column.value));
+    if (!(truth[p].*column.value)) continue;
+    all.push_back(*(truth[p].*column.value));
+    if (p >= reduced.size() || !(reduced[p].*column.value)) continue;
+    values.push_back(all.back());
     errors.push_back(std::abs(*(reduced[p].*column.value) - values.back()));
   }
-  OutputError result{column.name};
-  if (values.empty()) return result;
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto [low, high] = std::minmax_element(all.begin(), all.end());
   const double least = 1e-2 * std::max(std::abs(*low), std::abs(*high));
   const double range = std::max(*high - *low, least);
+  OutputError result{column.name};
   const auto count = static_cast<double>(values.size());
   for (std::size_t p = 0; p < values.size(); ++p) {
     const double size = std::max(std::abs(values[p]), least);
@@ -71,7 +72,7 @@ std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vecto
 
 std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
                                        const std::vector<Outputs> &truth) {
-  if (reduced.size() != truth.size())
+  if (reduced.size() > truth.size())
     throw failure("outputs of " + std::to_string(reduced.size()) + " reduced answers and " +
                   std::to_string(truth.size()) + " high-fidelity ones");
   std::vector<OutputError> errors;
@@ -80,6 +81,15 @@ std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
         has(truth, column.value) && has(reduced, column.value))
       errors.push_back(error_of(column, reduced, truth));
   return errors;
+}
+
+double largest_output_error(const std::vector<Outputs> &reduced,
+                            const std::vector<Outputs> &truth) {
+  double worst = -1;
+  for (const OutputError &error : output_errors(reduced, truth))
+    if (output_column(error.name).kind == OutputKind::quantity)
+      worst = std::max(worst, error.max_of_range);
+  return worst;
 }
 
 } // namespace rbvi

@@ -143,6 +143,14 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
   }
 }
 
+const OutputColumn &output_column(const std::string &name) {
+  const std::vector<OutputColumn> &columns = output_columns();
+  const auto found = std::find_if(columns.begin(), columns.end(),
+                                  [&](const OutputColumn &column) { return name == column.name; });
+  if (found == columns.end()) throw bad_input("there is no output '" + name + "'");
+  return *found;
+}
+
 bool is_table_column(const std::string &name) {
   static const std::vector<std::string> others{"status",
                                                "training",

@@ -66,13 +66,11 @@ std::vector<SceneOption> nitsche_options() {
            {}}};
 }
 
-std::optional<NitscheRecipe>
-nitsche_recipe(const SceneOptions &options,
-               const std::function<Lame(const Mu &, const Point &)> &material) {
+std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options) {
   const double gamma0 = number_in(options, "nitsche_gamma0");
   if (!(gamma0 > 0)) throw bad_input("option nitsche_gamma0 must be positive");
   if (options.at("formulation") == "mixed") return std::nullopt;
-  return NitscheRecipe{gamma0, material};
+  return NitscheRecipe{gamma0};
 }
 
 double number_in(const SceneOptions &options, const std::string &name) {

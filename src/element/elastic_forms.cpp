@@ -72,16 +72,6 @@ Form elasticity_of(const std::string &region, const Material &material, int degr
           }};
 }
 
-Point centre(const Cell &cell) {
-  Point sum{};
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      sum[c] += cell.reference[i][c];
-  for (double &coordinate : sum)
-    coordinate /= cell.dim + 1;
-  return sum;
-}
-
 } // namespace
 
 Lame lame(double young, double poisson) {
@@ -99,7 +89,8 @@ Form elasticity(const std::string &region, const Lame &material, int degree) {
 Form elasticity(const std::string &region,
                 const std::function<Lame(const Mu &, const Point &)> &material, int degree) {
   return elasticity_of(
-      region, [material](const Mu &mu, const Cell &cell) { return material(mu, centre(cell)); },
+      region,
+      [material](const Mu &mu, const Cell &cell) { return material(mu, reference_centre(cell)); },
       degree);
 }
 

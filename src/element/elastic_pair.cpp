@@ -17,7 +17,9 @@ void set_elastic_pair(const SceneOptions &options, Scene &scene) {
   scene.dim = 2;
   scene.components = 2;
   scene.pair = PairRecipe{"slave", "master", pair_discretisation(options)};
-  scene.a = elasticity("", lame(number_in(options, "young"), number_in(options, "poisson_ratio")));
+  const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
+  scene.material = [material](const Mu &, const Point &) { return material; };
+  scene.a = elasticity("", material);
   scene.a_parameters = std::vector<int>{};
   scene.v_product = h1_product(1, 2);
 }

@@ -38,6 +38,16 @@ Simplex simplex(int dim, const std::array<Point, 4> &vertices) {
   return result;
 }
 
+Point reference_centre(const Cell &cell) {
+  Point sum{};
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] += cell.reference[i][c];
+  for (double &coordinate : sum)
+    coordinate /= cell.dim + 1;
+  return sum;
+}
+
 void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell) {
   const double volume = simplex(cell.dim, cell.mapped).volume;
   if (!(volume > 1e-12 * std::pow(longest_edge(cell.dim, cell.mapped), cell.dim)))

@@ -44,14 +44,6 @@ void add_square(FaceBlock &block, double factor, const Row &row) {
   if (factor != 0) block.noalias() += factor * row * row.transpose();
 }
 
-Point centre_of(const Cell &cell) {
-  Point centre{};
-  for (std::size_t v = 0; v < 3; ++v)
-    for (std::size_t c = 0; c < 2; ++c)
-      centre[c] += cell.reference[v][c] / 3;
-  return centre;
-}
-
 /// The terms tested with every dof of the layer: those at `pressures`, and what they change to
 /// first order with the pressures `moved`.
 Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Matrix &pressures,
@@ -84,7 +76,7 @@ double edge_length(const std::array<Point, 4> &vertices, int edge) {
 } // namespace
 
 CurveCellAtMu curve_cell_at(const Scene &scene, const Mu &all_parameters, const CurveCell &beside) {
-  CurveCellAtMu result{beside.cell, scene.nitsche->material(all_parameters, centre_of(beside.cell)),
+  CurveCellAtMu result{beside.cell, scene.material(all_parameters, reference_centre(beside.cell)),
                        0};
   for (std::size_t v = 0; v < 3; ++v)
     result.cell.mapped[v] = scene.map(all_parameters, beside.cell.reference[v]);

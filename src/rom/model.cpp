@@ -262,9 +262,7 @@ const ValidationErrors &expected_errors(const ReducedModel &model) {
 ErrorOfOutput errors_of_outputs(const ReducedModel &model) {
   ErrorOfOutput errors;
   for (const OutputError &error : expected_errors(model).outputs)
-    for (const OutputColumn &column : output_columns())
-      if (error.name == column.name && column.kind != OutputKind::check)
-        errors[error.name] = error.max;
+    if (output_column(error.name).kind != OutputKind::check) errors[error.name] = error.max;
   return errors;
 }
 

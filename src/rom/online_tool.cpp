@@ -85,15 +85,17 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
   ReducedSolution solution;
   const Outputs outputs = answer(solver, mu, arguments, solution);
+  std::vector<std::filesystem::path> written;
   if (!arguments.vtu.empty())
-    write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu), solver.model(),
-              solver.field(solution), solver.multiplier(solution));
+    written = write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu),
+                        solver.model(), solver.field(solution), solver.multiplier(solution));
   const bool inside = in_box(solver.scene().parameters, mu);
   const ErrorOfOutput errors = inside ? errors_of_outputs(solver.model()) : ErrorOfOutput{};
   if (!arguments.out.empty()) {
     std::ostringstream table;
     OutputTable(table, solver.scene().parameters, outputs, errors, true).add(mu, outputs);
     write_atomically(arguments.out, table.str());
+    written.emplace_back(arguments.out);
   }
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs, errors);
@@ -103,6 +105,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   else
     out << std::left << std::setw(22) << "expected error"
         << "unknown outside the box\n";
+  if (!written.empty()) print_written(out, written);
 }
 
 } // namespace

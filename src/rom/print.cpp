@@ -137,4 +137,10 @@ void print_model(std::ostream &out, const ReducedModel &model) {
     label(out, "  decorrelated") << validation(model.validation_decorrelated) << '\n';
 }
 
+void print_written(std::ostream &out, const std::vector<std::filesystem::path> &paths) {
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    out << (i == 0 ? "wrote " : ", ") << paths[i].string();
+  out << '\n';
+}
+
 } // namespace rbvi

@@ -2,27 +2,102 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
-#include "rbvi/element/lagrange.hpp"
 
+#include <bit>
 #include <charconv>
+#include <cstdint>
+#include <span>
+#include <type_traits>
 
 namespace rbvi {
 
 namespace {
 
-template <class Number> void append(std::string &text, Number value, char separator) {
+constexpr Index most_ascii_nodes = 2000;
+
+template <class Number> const char *vtk_type() {
+  if constexpr (std::is_same_v<Number, double>) return "Float64";
+  if constexpr (std::is_same_v<Number, std::int32_t>) return "Int32";
+  if constexpr (std::is_same_v<Number, std::int64_t>) return "Int64";
+  return "UInt8";
+}
+
+template <class Number> void append_number(std::string &text, Number value, char separator) {
   char digits[32];
-  text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  char *const end = digits + sizeof digits;
+  if constexpr (sizeof(Number) == 1)
+    text.append(digits, std::to_chars(digits, end, static_cast<int>(value)).ptr);
+  else
+    text.append(digits, std::to_chars(digits, end, value).ptr);
   text += separator;
 }
 
-void open_array(std::string &text, const std::string &type, const std::string &name,
-                Index components) {
-  text += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-          std::to_string(components) + "\" format=\"ascii\">\n";
+template <class Number> void append_bytes(std::string &bytes, std::span<const Number> values) {
+  bytes.append(reinterpret_cast<const char *>(values.data()), values.size_bytes());
 }
 
-int vtk_cell_type(int per_cell) {
+/// XML and, behind it, the blocks of raw numbers that it points into.
+class Writer {
+public:
+  explicit Writer(VtuFormat format) : format_(format) {}
+
+  void line(const std::string &xml) { xml_ += xml + "\n"; }
+
+  template <class Number>
+  void array(const std::string &name, std::span<const Number> values, std::size_t components) {
+    open(vtk_type<Number>(), name, "NumberOfComponents", components);
+    if (format_ == VtuFormat::appended) {
+      line(" format=\"appended\" offset=\"" + std::to_string(raw_.size()) + "\"/>");
+      const std::uint64_t bytes = values.size_bytes();
+      append_bytes(raw_, std::span(&bytes, 1));
+      append_bytes(raw_, values);
+      return;
+    }
+    line(" format=\"ascii\">");
+    for (std::size_t i = 0; i < values.size(); ++i)
+      append_number(xml_, values[i], (i + 1) % components == 0 ? '\n' : ' ');
+    line("</DataArray>");
+  }
+
+  /// Field data, always in ASCII.
+  void numbers(const Field &field) {
+    open("Float64", field.name, "NumberOfTuples", static_cast<std::size_t>(field.values.size()));
+    line(" format=\"ascii\">");
+    for (const double value : field.values)
+      append_number(xml_, value, '\n');
+    line("</DataArray>");
+  }
+  /// Each text as the codes of its characters and a zero, as VTK has it.
+  void texts(const std::string &name, const std::vector<std::string> &values) {
+    open("String", name, "NumberOfTuples", values.size());
+    line(" format=\"ascii\">");
+    for (const std::string &value : values) {
+      for (const char letter : value)
+        append_number(xml_, static_cast<unsigned char>(letter), ' ');
+      line("0");
+    }
+    line("</DataArray>");
+  }
+
+  std::string finished() const {
+    std::string all = xml_;
+    if (format_ == VtuFormat::appended)
+      all += "<AppendedData encoding=\"raw\">\n_" + raw_ + "\n</AppendedData>\n";
+    return all + "</VTKFile>\n";
+  }
+
+private:
+  void open(const std::string &type, const std::string &name, const std::string &counted,
+            std::size_t count) {
+    xml_ += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" " + counted + "=\"" +
+            std::to_string(count) + "\"";
+  }
+
+  VtuFormat format_;
+  std::string xml_, raw_;
+};
+
+std::uint8_t vtk_cell_type(int per_cell) {
   if (per_cell == 2) return 3;
   if (per_cell == 3) return 5;
   if (per_cell == 4) return 10;
@@ -31,172 +106,83 @@ int vtk_cell_type(int per_cell) {
   throw failure("no VTU cell type has " + std::to_string(per_cell) + " nodes");
 }
 
-void append_cells(std::string &text, const std::vector<int> &cells, int per_cell) {
-  const std::size_t count = cells.size() / static_cast<std::size_t>(per_cell);
-  const int type = vtk_cell_type(per_cell);
-  text += "<Cells>\n";
-  open_array(text, "Int32", "connectivity", 1);
-  for (const int node : cells)
-    append(text, node, '\n');
-  text += "</DataArray>\n";
-  open_array(text, "Int32", "offsets", 1);
+void write_points(Writer &out, const Matrix &points) {
+  std::vector<double> coordinates;
+  coordinates.reserve(3 * static_cast<std::size_t>(points.rows()));
+  for (Index i = 0; i < points.rows(); ++i) {
+    const Point point = point_of(points, i);
+    coordinates.insert(coordinates.end(), point.begin(), point.end());
+  }
+  out.line("<Points>");
+  out.array("points", std::span<const double>(coordinates), 3);
+  out.line("</Points>");
+}
+
+void write_cells(Writer &out, const Grid &grid, std::size_t count) {
+  const auto per_cell = static_cast<std::size_t>(grid.per_cell);
+  const std::vector<std::int32_t> nodes(grid.cells.begin(), grid.cells.end());
+  std::vector<std::int64_t> ends;
   for (std::size_t i = 1; i <= count; ++i)
-    append(text, i * static_cast<std::size_t>(per_cell), '\n');
-  text += "</DataArray>\n";
-  open_array(text, "UInt8", "types", 1);
-  for (std::size_t i = 0; i < count; ++i)
-    append(text, type, '\n');
-  text += "</DataArray>\n</Cells>\n";
+    ends.push_back(static_cast<std::int64_t>(i * per_cell));
+  const std::vector<std::uint8_t> types(count, vtk_cell_type(grid.per_cell));
+  out.line("<Cells>");
+  out.array("connectivity", std::span<const std::int32_t>(nodes), 1);
+  out.array("offsets", std::span<const std::int64_t>(ends), 1);
+  out.array("types", std::span<const std::uint8_t>(types), 1);
+  out.line("</Cells>");
 }
 
-void append_field(std::string &text, const Field &field, Index count) {
-  if (count == 0 || field.values.size() == 0 || field.values.size() % count != 0)
-    throw failure("field " + field.name + " has " + std::to_string(field.values.size()) +
-                  " values for " + std::to_string(count) + " nodes or cells");
-  const Index components = field.values.size() / count;
-  open_array(text, "Float64", field.name, components);
-  for (Index i = 0; i < field.values.size(); ++i)
-    append(text, field.values[i], (i + 1) % components == 0 ? '\n' : ' ');
-  text += "</DataArray>\n";
-}
-
-void append_fields(std::string &text, const std::string &where, const std::vector<Field> &fields,
-                   Index count) {
-  text += "<" + where + ">\n";
-  for (const Field &field : fields)
-    append_field(text, field, count);
-  text += "</" + where + ">\n";
-}
-
-Matrix mapped(const Scene &scene, const Mu &all, const Matrix &points) {
-  Matrix result(points.rows(), points.cols());
-  for (Index i = 0; i < points.rows(); ++i) {
-    const Point image = scene.map(all, point_of(points, i));
-    for (Index k = 0; k < points.cols(); ++k)
-      result(i, k) = image[static_cast<std::size_t>(k)];
+void write_fields(Writer &out, const std::string &where, const std::vector<Field> &fields,
+                  Index count) {
+  out.line("<" + where + ">");
+  for (const Field &field : fields) {
+    if (count == 0 || field.values.size() == 0 || field.values.size() % count != 0)
+      throw failure("field " + field.name + " has " + std::to_string(field.values.size()) +
+                    " values for " + std::to_string(count) + " nodes or cells");
+    const std::span values(field.values.data(), static_cast<std::size_t>(field.values.size()));
+    out.array(field.name, std::span<const double>(values),
+              static_cast<std::size_t>(field.values.size() / count));
   }
-  return result;
+  out.line("</" + where + ">");
 }
 
-/// motion + u at the mesh nodes; vectors with three components, as ParaView warps by.
-Vector displacement(const Scene &scene, const Mu &all, const Matrix &points, const Vector &u) {
-  const Index components = scene.components;
-  if (components == 1) return u;
-  Vector result = Vector::Zero(3 * points.rows());
-  for (Index i = 0; i < points.rows(); ++i) {
-    const Point motion = scene.motion ? scene.motion(all, point_of(points, i)) : Point{};
-    for (Index c = 0; c < components; ++c)
-      result[3 * i + c] = motion[static_cast<std::size_t>(c)] + u[components * i + c];
-  }
-  return result;
-}
-
-void write_region(const std::filesystem::path &path, const Scene &scene, const Mu &all,
-                  const ReducedModel &model, const Vector &u, const Vector &lambda) {
-  const Matrix points = mapped(scene, all, model.contact_points);
-  Vector gap(points.rows());
-  for (Index i = 0; i < gap.size(); ++i)
-    gap[i] = u[model.contact_nodes[static_cast<std::size_t>(i)]] -
-             scene.obstacle(all, point_of(points, i));
-  write_vtu(path, points, model.contact_cells, scene.dim + 1, {{"pressure", lambda}, {"gap", gap}});
-}
-
-void write_curve(const std::filesystem::path &path, const Scene &scene, const Mu &all,
-                 const ReducedModel &model, const Vector &displacements, const Vector &u,
-                 const Vector &lambda) {
-  std::vector<Point> curves;
-  Vector vertical(model.contact_points.rows());
-  for (Index i = 0; i < vertical.size(); ++i) {
-    const int node = model.contact_nodes[static_cast<std::size_t>(i)];
-    curves.push_back(point_of(model.contact_points, i));
-    vertical[i] = u[node * scene.components + scene.components - 1];
-  }
-  const PairOperators pair = couple_at(scene, all, curves, model.slave_nodes);
-  const auto count = static_cast<Index>(pair.paired.size());
-  if (count < 2) { // nothing of the slave curve faces the master curve
-    std::filesystem::remove(path);
-    return;
-  }
-  const Vector gap = pair.nodal_gap - pair.nodal_b * vertical;
-  const bool constant = scene.pair->discretisation.multiplier == MultiplierSpace::macro_edges;
-  Vector moved(3 * count), pressure(constant ? count - 1 : count);
-  std::vector<int> edges;
-  for (Index k = 0; k < count; ++k) {
-    const Index node = pair.paired[static_cast<std::size_t>(k)];
-    moved.segment(3 * k, 3) =
-        displacements.segment(3 * model.contact_nodes[static_cast<std::size_t>(node)], 3);
-    if (k + 1 < count) edges.insert(edges.end(), {static_cast<int>(k), static_cast<int>(k) + 1});
-    if (k < pressure.size())
-      pressure[k] = lambda[constant ? macro_edge_of(node, model.slave_nodes) : node];
-  }
-  const Matrix points = mapped(scene, all, model.contact_points(pair.paired, Eigen::all));
-  std::vector<Field> nodal{{"u", moved}, {"gap", gap}}, per_edge;
-  (constant ? per_edge : nodal).push_back({"pressure", pressure});
-  write_vtu(path, points, edges, 2, nodal, per_edge);
-}
-
-void write_support(const std::filesystem::path &path, const Scene &scene, const Mu &all,
-                   const ReducedModel &model, const Vector &displacements, const Vector &u,
-                   const Vector &lambda) {
-  const Index count = model.contact_points.rows();
-  Vector local(count * scene.components), moved(3 * count);
-  std::vector<int> edges;
-  for (Index k = 0; k < count; ++k) {
-    const Index node = model.contact_nodes[static_cast<std::size_t>(k)];
-    local.segment(k * scene.components, scene.components) =
-        u.segment(node * scene.components, scene.components);
-    moved.segment(3 * k, 3) = displacements.segment(3 * node, 3);
-    if (k + 1 < count) edges.insert(edges.end(), {static_cast<int>(k), static_cast<int>(k) + 1});
-  }
-  std::vector<Field> nodal{{"u", moved},
-                           {"gap", normal_gap(scene, all, model.contact_points, local)},
-                           {"pressure", lambda.head(count)}};
-  if (lambda.size() > count) nodal.push_back({"tangential_stress", lambda.tail(count)});
-  write_vtu(path, mapped(scene, all, model.contact_points), edges, 2, nodal);
+void write_field_data(Writer &out, const Grid &grid) {
+  std::vector<std::string> units{"points: m"};
+  for (const auto *fields : {&grid.of_nodes, &grid.of_cells, &grid.of_all})
+    for (const Field &field : *fields)
+      units.push_back(field.name + ": " + (field.unit.empty() ? "-" : field.unit));
+  out.line("<FieldData>");
+  if (!grid.scene.empty()) out.texts("scene", {grid.scene});
+  out.texts("units", units);
+  for (const Field &field : grid.of_all)
+    out.numbers(field);
+  out.line("</FieldData>");
 }
 
 } // namespace
 
-void write_vtu(const std::filesystem::path &path, const Matrix &points,
-               const std::vector<int> &cells, int per_cell, const std::vector<Field> &nodal,
-               const std::vector<Field> &per_cell_fields) {
-  const Index nodes = points.rows();
-  std::string text = "<?xml version=\"1.0\"?>\n"
-                     "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\">\n<UnstructuredGrid>\n"
-                     "<Piece NumberOfPoints=\"" +
-                     std::to_string(nodes) + "\" NumberOfCells=\"" +
-                     std::to_string(cells.size() / static_cast<std::size_t>(per_cell)) +
-                     "\">\n<Points>\n";
-  open_array(text, "Float64", "points", 3);
-  for (Index i = 0; i < nodes; ++i) {
-    const Point point = point_of(points, i);
-    append(text, point[0], ' ');
-    append(text, point[1], ' ');
-    append(text, point[2], '\n');
-  }
-  text += "</DataArray>\n</Points>\n";
-  append_cells(text, cells, per_cell);
-  append_fields(text, "PointData", nodal, nodes);
-  append_fields(text, "CellData", per_cell_fields, static_cast<Index>(cells.size()) / per_cell);
-  text += "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-  write_atomically(path, text);
+VtuFormat vtu_format(const Grid &grid) {
+  return grid.points.rows() > most_ascii_nodes ? VtuFormat::appended : VtuFormat::ascii;
 }
 
-std::filesystem::path contact_file(const std::filesystem::path &path) {
-  return path.parent_path() / (path.stem().string() + "_contact" + path.extension().string());
-}
-
-void write_vtu(const std::filesystem::path &path, const Scene &scene, const Mu &all,
-               const ReducedModel &model, const Vector &u, const Vector &lambda) {
-  const Vector moved = displacement(scene, all, model.mesh_points, u);
-  write_vtu(path, mapped(scene, all, model.mesh_points), model.mesh_cells,
-            nodes_per_cell(scene.dim, scene.degree), {{"u", moved}});
-  if (scene.support)
-    write_support(contact_file(path), scene, all, model, moved, u, lambda);
-  else if (model.two_bodies())
-    write_curve(contact_file(path), scene, all, model, moved, u, lambda);
-  else
-    write_region(contact_file(path), scene, all, model, u, lambda);
+void write_vtu(const std::filesystem::path &path, const Grid &grid, VtuFormat format) {
+  const std::size_t cells = grid.cells.size() / static_cast<std::size_t>(grid.per_cell);
+  const bool little = std::endian::native == std::endian::little;
+  Writer out(format);
+  out.line("<?xml version=\"1.0\"?>");
+  out.line("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" +
+           std::string(little ? "LittleEndian" : "BigEndian") + "\" header_type=\"UInt64\">");
+  out.line("<UnstructuredGrid>");
+  write_field_data(out, grid);
+  out.line("<Piece NumberOfPoints=\"" + std::to_string(grid.points.rows()) + "\" NumberOfCells=\"" +
+           std::to_string(cells) + "\">");
+  write_points(out, grid.points);
+  write_cells(out, grid, cells);
+  write_fields(out, "PointData", grid.of_nodes, grid.points.rows());
+  write_fields(out, "CellData", grid.of_cells, static_cast<Index>(cells));
+  out.line("</Piece>");
+  out.line("</UnstructuredGrid>");
+  write_atomically(path, out.finished());
 }
 
 } // namespace rbvi

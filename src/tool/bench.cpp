@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/rom/training_samples.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <sstream>
 
 namespace rbvi {
@@ -37,9 +39,9 @@ std::string threshold(const BenchRow &row, double best) {
   return text("%.0f", std::ceil(row.offline / (best - row.median)));
 }
 
-const std::vector<std::string> header{"method",     "includes", "queries",     "median_ms",
-                                      "p95_ms",     "u_mean",   "u_max",       "lambda_mean",
-                                      "lambda_max", "speed_up", "benefit_from"};
+const std::vector<std::string> header{"method",     "includes", "queries",      "median_ms",
+                                      "p95_ms",     "u_mean",   "u_max",        "lambda_mean",
+                                      "lambda_max", "speed_up", "benefit_from", "outputs_max"};
 
 std::vector<std::string> cells(const BenchRow &row, double best) {
   const bool answers = row.u_mean >= 0;
@@ -53,7 +55,8 @@ std::vector<std::string> cells(const BenchRow &row, double best) {
           error_text(row.lambda_mean),
           error_text(row.lambda_max),
           answers ? text("%.3g", best / row.median) : "",
-          threshold(row, best)};
+          threshold(row, best),
+          error_text(row.outputs_max)};
 }
 
 std::string joined(const std::vector<std::string> &parts, const std::string &begin,
@@ -153,6 +156,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
        << truths.size() << " validation parameters, timed on 1 of " << ranks << " ranks.\n"
        << "Errors are relative to the first row (vi: on the lumped scene), u in V, lambda in W; "
           "reduced (N+S, R).\n"
+       << "outputs_max: energy, forces and pressures, relative to the range of each.\n"
        << "speed_up: against the first row; benefit_from: queries from which "
        << text("%.2f", offline) << " s offline are won back\n"
        << "(" << snapshots.size() << " snapshots by their solve times, plus the other stages).\n\n";
@@ -161,7 +165,9 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   make_directory(options.out / "bench");
   write_atomically(options.out / "bench" / "table.md", table);
   write_atomically(options.out / "bench" / "table.csv", csv(rows, best));
-  std::printf("%s\nTables: %s\n", table.c_str(), (options.out / "bench").c_str());
+  std::printf("%s\n", table.c_str());
+  print_written(std::cout,
+                {options.out / "bench" / "table.md", options.out / "bench" / "table.csv"});
   report_failures(options, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }

@@ -2,6 +2,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/rom/self_check.hpp"
 #include "rbvi/rom/training_samples.hpp"
 #include "rbvi/tool/commands.hpp"
@@ -12,7 +13,7 @@
 #include "rbvi/tool/workspace.hpp"
 
 #include <cstdio>
-#include <sstream>
+#include <iostream>
 
 namespace rbvi {
 
@@ -106,10 +107,10 @@ void command_offline(const ToolOptions &options) {
   if (rank == 0) {
     const OfflineResult result{sweep.report, made};
     print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
-    std::ostringstream check;
-    print_self_check(check, model.self_check, model.parameters);
-    std::printf("Self-check: %sModel: %s\n", check.str().c_str(),
-                (options.out / "model.h5").c_str());
+    std::cout << "Self-check: ";
+    print_self_check(std::cout, model.self_check, model.parameters);
+    print_written(std::cout, {options.out / "model.h5", options.out / "samples.csv",
+                              case_of_run(options.out), options.out / "samples"});
   }
   report_failures(options, sweep.report, training.size(), "training",
                   "the model is made from the others, and answers next to a failed one with a "

@@ -31,10 +31,13 @@ void command_solve(const ToolOptions &options) {
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
     std::printf("stopped: %s\n", solution.reason.c_str());
-    if (!options.csv.empty())
+    if (!options.csv.empty()) {
       write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});
+      print_written(std::cout, {options.csv});
+    }
     if (!options.vtu.empty())
-      write_vtu(options.vtu, options.scene, expand(space, mu), mesh, solution.u, solution.lambda);
+      print_written(std::cout, write_vtu(options.vtu, options.scene, expand(space, mu), mesh,
+                                         solution.u, solution.lambda));
   });
 }
 

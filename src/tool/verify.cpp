@@ -6,6 +6,7 @@
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/print.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/model_case.hpp"
@@ -19,6 +20,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <sstream>
 
 namespace rbvi {
@@ -230,11 +232,9 @@ void write_output_errors(const fs::path &path, const std::vector<OutputError> &e
   text << std::setprecision(4)
        << "output,kind,mean,max,mean_of_range,max_of_range,mean_of_value,max_of_value\n";
   for (const OutputError &e : errors)
-    for (const OutputColumn &column : output_columns())
-      if (e.name == column.name)
-        text << e.name << ',' << kind_name(column.kind) << ',' << e.mean << ',' << e.max << ','
-             << e.mean_of_range << ',' << e.max_of_range << ',' << e.mean_of_value << ','
-             << e.max_of_value << '\n';
+    text << e.name << ',' << kind_name(output_column(e.name).kind) << ',' << e.mean << ',' << e.max
+         << ',' << e.mean_of_range << ',' << e.max_of_range << ',' << e.mean_of_value << ','
+         << e.max_of_value << '\n';
   write_atomically(path, text.str());
 }
 
@@ -242,10 +242,9 @@ void write_output_errors(const fs::path &path, const std::vector<OutputError> &e
 void print_output_errors(const std::vector<OutputError> &errors) {
   std::printf("Errors of the outputs: largest, over the range, over the value\n");
   for (const OutputError &e : errors)
-    for (const OutputColumn &column : output_columns())
-      if (e.name == column.name && column.kind != OutputKind::check)
-        std::printf("  %-20s %9.1e %9.1e %9.1e\n", column.name, e.max, e.max_of_range,
-                    e.max_of_value);
+    if (output_column(e.name).kind != OutputKind::check)
+      std::printf("  %-20s %9.1e %9.1e %9.1e\n", e.name.c_str(), e.max, e.max_of_range,
+                  e.max_of_value);
 }
 
 /// The reduced outputs at the validation mu, and their errors.
@@ -332,7 +331,7 @@ void command_verify(const ToolOptions &given) {
     check_stability(world, problem, model, training, truths.mu, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
-  if (rank == 0) std::printf("Tables: %s\n", out.c_str());
+  if (rank == 0) print_written(std::cout, {out, options.out / "model.h5"});
   report_failures(options, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }

@@ -31,11 +31,14 @@ TEST_F(Nitsche, IsReducedVerifiedAndAsked) {
     EXPECT_NEAR(value_of(online, name), truth, 1e-2 * truth) << name;
   }
   for (const char *file : {"run/u_contact.vtu", "full_contact.vtu"})
-    expect_fields(file, {"pressure", "tangential_stress", "gap", "u"});
+    expect_fields(file, {"pressure", "tangential_stress", "gap", "u", "mu_radius"});
+  expect_fields("full.vtu",
+                {"u", "von_mises", "sigma_xx", "sigma_yy", "sigma_xy", "sigma_zz", "body"});
   const std::string drawn = output_of(RBVI_FIGURES " run");
-  for (const char *figure :
+  for (const std::string figure :
        {"solution", "bases", "pressure", "error_map", "mesh_quality", "errors"})
-    EXPECT_TRUE(contains(drawn, figure + std::string(".png"))) << drawn;
+    for (const std::string kind : {".png", ".pdf"})
+      EXPECT_TRUE(contains(drawn, figure + kind)) << drawn;
   const std::string inspect = output_of(rbvi_online("run/model.h5"));
   EXPECT_TRUE(contains(inspect, "of 160 Gauss points")) << inspect;
 }

@@ -61,9 +61,8 @@ Vector nodal(const Scene &scene, const Mu &mu, const Strip &s, const Field &fiel
 Scene half_disk(int degree) {
   Scene scene = hertz(degree);
   scene.motion = [](const Mu &, const Point &) { return Point{0.02, -0.1, 0}; };
-  scene.nitsche = NitscheRecipe{0.3, [](const Mu &, const Point &x) {
-                                  return Lame{9 + 3 * x[0], 4};
-                                }};
+  scene.nitsche = NitscheRecipe{0.3};
+  scene.material = [](const Mu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; };
   return scene;
 }
 
@@ -293,7 +292,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   const Mu mu{1.1};
   const Lame material{9, 4};
   Scene scene = half_disk(degree);
-  scene.nitsche = NitscheRecipe{0.3, [=](const Mu &, const Point &) { return material; }};
+  scene.material = [=](const Mu &, const Point &) { return material; };
   const Curve curve = arc(7, 0.5);
   const Strip s = strip(degree, curve, side);
   Eigen::Matrix2d m;
@@ -327,9 +326,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
 /// Where the material jumps.
 TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
   Scene scene = half_disk(2);
-  scene.nitsche = NitscheRecipe{0.3, [](const Mu &, const Point &x) {
-                                  return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
-                                }};
+  scene.material = [](const Mu &, const Point &x) { return x[0] < 0 ? Lame{9, 4} : Lame{18, 8}; };
   const Strip s = strip(2, line(2, -0.5, 0.5, -1));
   scene.support->normal = [](const Mu &, const Point &) { return Point{0, -1, 0}; };
   const Mu mu{1};

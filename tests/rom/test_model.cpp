@@ -315,10 +315,11 @@ TEST_F(ModelFile, VtuHoldsTheMappedFieldAndContact) {
   const Mu mu{0.18, 0.02};
   const ReducedSolution solution = solver.solve(mu);
   const auto write = [&](const std::filesystem::path &file) {
-    write_vtu(file, solver.scene(), expand(model.parameters, mu), model, solver.field(solution),
-              solver.multiplier(solution));
+    return write_vtu(file, solver.scene(), expand(model.parameters, mu), model,
+                     solver.field(solution), solver.multiplier(solution));
   };
-  write(directory / "u.vtu");
+  const std::vector<std::filesystem::path> files = write(directory / "u.vtu");
+  EXPECT_EQ(files, (std::vector{directory / "u.vtu", directory / "u_contact.vtu"}));
   const std::string field = slurp(directory / "u.vtu");
   const std::vector<double> points = data_array(field, "points"), u = data_array(field, "u");
   ASSERT_EQ(points.size(), 15U);
@@ -332,6 +333,10 @@ TEST_F(ModelFile, VtuHoldsTheMappedFieldAndContact) {
   EXPECT_EQ(data_array(field, "connectivity").size(), 12U);
   EXPECT_EQ(data_array(field, "offsets"), (std::vector<double>{3, 6, 9, 12}));
   EXPECT_EQ(data_array(field, "types"), (std::vector<double>{5, 5, 5, 5}));
+  EXPECT_EQ(data_array(field, "mu_radius"), std::vector<double>{0.18});
+  EXPECT_EQ(data_array(field, "mu_center_x"), std::vector<double>{0.01});
+  EXPECT_EQ(data_array(field, "body"), (std::vector<double>(4, 1)));
+  EXPECT_EQ(field.find("von_mises"), std::string::npos) << "a membrane has no stresses";
   const std::string contact = slurp(directory / "u_contact.vtu");
   const Vector pressure = solver.multiplier(solution);
   EXPECT_EQ(data_array(contact, "pressure"),

@@ -155,7 +155,10 @@ TEST_F(OnlineBinary, ExtrapolatesOnlyWhenAsked) {
 }
 
 TEST_F(OnlineBinary, WritesVtu) {
-  EXPECT_EQ(online("model.h5 --mu 0.2,0,0 --vtu u.vtu").status, 0);
+  const Finished run = online("model.h5 --mu 0.2,0,0 --vtu u.vtu --out u.csv");
+  EXPECT_EQ(run.status, 0);
+  EXPECT_TRUE(contains(run.out, "\nwrote u.vtu, u_contact.vtu, u.csv\n")) << run.out;
+  EXPECT_FALSE(contains(online("model.h5 --mu 0.2,0,0").out, "wrote"));
   EXPECT_TRUE(contains(slurp("u.vtu"), "Name=\"u\""));
   EXPECT_TRUE(contains(slurp("u_contact.vtu"), "Name=\"pressure\""));
 }

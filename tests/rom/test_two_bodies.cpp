@@ -344,6 +344,20 @@ void expect_curve(const Written &file, const ReducedModel &model, const Scene &s
   }
 }
 
+/// In the file of the bodies: the upper one, whose curve is the slave, is the first.
+TEST_F(PairVtu, NumbersTheBodiesAndHasTheirStresses) {
+  const ReducedModel model = synthetic::random_pair_model({}, 11, p0);
+  const std::string cells = section(write(model, p0, {0.8}).bodies, "CellData");
+  const std::vector<double> body = data_array(cells, "body");
+  ASSERT_EQ(3 * body.size(), model.mesh_cells.size());
+  for (std::size_t k = 0; k < body.size(); ++k) {
+    const bool upper = model.mesh_points(model.mesh_cells[3 * k], 1) > 0;
+    EXPECT_EQ(body[k], upper ? 1 : 2);
+  }
+  for (const char *name : {"von_mises", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy"})
+    EXPECT_EQ(data_array(cells, name).size(), body.size()) << name;
+}
+
 TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
   const ReducedModel model = synthetic::random_pair_model({}, 12, p0);
   const Written file = write(model, p0, {0.8});
@@ -352,7 +366,20 @@ TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
   ASSERT_EQ(pressure.size(), file.paired.size() - 1);
   for (std::size_t k = 0; k < pressure.size(); ++k)
     EXPECT_EQ(pressure[k], file.lambda[std::min<Index>(file.paired[k] / 2, 4)]);
-  EXPECT_EQ(section(file.contact, "PointData").find("pressure"), std::string::npos);
+
+  const std::vector<double> nodal = data_array(section(file.contact, "PointData"), "pressure"),
+                            points = data_array(file.contact, "points");
+  ASSERT_EQ(nodal.size(), file.paired.size());
+  EXPECT_EQ(nodal.front(), pressure.front());
+  EXPECT_EQ(nodal.back(), pressure.back());
+  const auto length = [&](std::size_t k) {
+    return std::hypot(points[3 * k + 3] - points[3 * k], points[3 * k + 4] - points[3 * k + 1]);
+  };
+  for (std::size_t k = 1; k < pressure.size(); ++k)
+    EXPECT_NEAR(nodal[k],
+                (length(k - 1) * pressure[k - 1] + length(k) * pressure[k]) /
+                    (length(k - 1) + length(k)),
+                1e-13);
 }
 
 TEST_F(PairVtu, LinearPressureIsDrawnPerNode) {

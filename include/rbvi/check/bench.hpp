@@ -12,14 +12,18 @@
 namespace rbvi {
 
 /// One row: seconds per query, and relative errors (u in V, lambda in W) against the active_set
-/// solutions. Negative errors: not applicable.
+/// solutions, `outputs` the largest of any output, see largest_output_error(). Negative
+/// errors: not applicable.
 struct BenchRow {
   std::string method, includes;
   int queries = 0;
   double median = 0, slow = 0; ///< seconds; `slow`: 95 % of the queries are faster
-  double u_mean = -1, u_max = -1, lambda_mean = -1, lambda_max = -1;
+  double u_mean = -1, u_max = -1, lambda_mean = -1, lambda_max = -1, outputs_max = -1;
   double offline = 0; ///< seconds before the first query
 };
+
+/// The outputs of samples.
+std::vector<Outputs> outputs_of(const std::vector<Sample> &samples);
 
 /// Seconds of `answer` for each mu.
 std::vector<double> seconds_each(const std::vector<Mu> &set,

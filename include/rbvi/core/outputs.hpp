@@ -53,6 +53,9 @@ struct OutputColumn {
 /// All columns in the order of every table.
 const std::vector<OutputColumn> &output_columns();
 
+/// The one of this name. Throws bad_input if there is none.
+const OutputColumn &output_column(const std::string &name);
+
 /// Measured errors of outputs by column name, absolute.
 using ErrorOfOutput = std::map<std::string, double>;
 

@@ -132,7 +132,6 @@ struct Lame {
 /// and takes more steps.
 struct NitscheRecipe {
   double gamma0;
-  std::function<Lame(const Mu &, const Point &)> material; ///< at the centre of a reference cell
 };
 
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
@@ -172,7 +171,11 @@ struct Scene {
   std::string contact_region; ///< multipliers live on the vertices of this closed region
   std::optional<PairRecipe> pair;
   std::optional<SupportRecipe> support;
-  std::optional<NitscheRecipe> nitsche; ///< with a support
+  std::optional<NitscheRecipe> nitsche; ///< with a support and a material
+
+  /// Of an elastic body at the centre of a reference cell, constant on the cell; in 2D plane
+  /// strain. Empty: not elastic (a membrane), then there are no stresses.
+  std::function<Lame(const Mu &, const Point &centre)> material;
 
   Form a;
   /// Parameters (indices into parameters.all) that a depends on; unset: all.
@@ -207,9 +210,7 @@ PairDiscretisation pair_discretisation(const SceneOptions &options);
 /// The options `formulation` and `nitsche_gamma0` of scenes with a support, and what they say:
 /// nothing for the mixed formulation. Throws bad_input for a gamma0 that is not positive.
 std::vector<SceneOption> nitsche_options();
-std::optional<NitscheRecipe>
-nitsche_recipe(const SceneOptions &options,
-               const std::function<Lame(const Mu &, const Point &)> &material);
+std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options);
 
 /// The number in an option.
 double number_in(const SceneOptions &options, const std::string &name);

@@ -1,4 +1,4 @@
-// Text for messages: short numbers, suggestions for mistyped names.
+// Text for messages and tables: numbers, suggestions for mistyped names.
 #pragma once
 
 #include <string>

@@ -9,8 +9,8 @@ namespace rbvi {
 /// The options multiplier, integration, young and poisson_ratio, then the scene's own.
 std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own = {});
 
-/// Sets dimension, components, a, v_product and the pair as these options say. a does not depend on
-/// the parameters: right where h(mu) moves each body by a similarity.
+/// Sets dimension, components, material, a, v_product and the pair as these options say. a does not
+/// depend on the parameters: right where h(mu) moves each body by a similarity.
 void set_elastic_pair(const SceneOptions &options, Scene &scene);
 
 } // namespace rbvi

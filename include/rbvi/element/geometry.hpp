@@ -15,6 +15,9 @@ struct Simplex {
 /// From dim + 1 vertices, dim = 2 or 3.
 Simplex simplex(int dim, const std::array<Point, 4> &vertices);
 
+/// Mean of the reference vertices.
+Point reference_centre(const Cell &cell);
+
 /// Throws failure, naming mu, if the mapped simplex is inverted or degenerate (volume <= 1e-12
 /// times its longest edge to the power dim).
 void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell);

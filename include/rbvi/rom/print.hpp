@@ -3,8 +3,10 @@
 
 #include "rbvi/rom/model.hpp"
 
+#include <filesystem>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace rbvi {
 
@@ -16,5 +18,8 @@ void print_expected_errors(std::ostream &out, const ReducedModel &model);
 
 /// How a model of Nitsche's method integrates over the contact curve: "78 of 1264 Gauss points".
 std::string describe_curve(const NitscheModel &nitsche);
+
+/// "wrote run/x/u.vtu, run/x/u_contact.vtu": files or directories, one line.
+void print_written(std::ostream &out, const std::vector<std::filesystem::path> &paths);
 
 } // namespace rbvi

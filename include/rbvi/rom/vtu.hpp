@@ -1,4 +1,4 @@
-// Nodal fields on simplices as VTU files (VTK XML, ASCII with every digit), for ParaView.
+// Fields on simplices as VTU files (VTK XML), for ParaView.
 #pragma once
 
 #include "rbvi/rom/online.hpp"
@@ -9,28 +9,46 @@
 
 namespace rbvi {
 
-/// Values per node or per cell, the components of one side by side.
+/// Values per node or per cell, the components of one side by side; or of the whole grid.
 struct Field {
   std::string name;
   Vector values;
+  std::string unit = ""; ///< "": without dimension
 };
 
-/// `points`: nodes x dim (2 or 3); `cells`: `per_cell` node numbers each (2 lines, 3 triangles,
-/// 4 tetrahedra, 6 and 10 quadratic ones). Written atomically. Throws failure: sizes that do not
-/// fit, directory not writable.
-void write_vtu(const std::filesystem::path &path, const Matrix &points,
-               const std::vector<int> &cells, int per_cell, const std::vector<Field> &nodal,
-               const std::vector<Field> &per_cell_fields = {});
+struct Grid {
+  Matrix points;          ///< nodes x dim (2 or 3), m
+  std::vector<int> cells; ///< `per_cell` node numbers each
+  int per_cell = 3;       ///< 2 lines, 3 triangles, 4 tetrahedra, 6 and 10 quadratic ones
+  std::vector<Field> of_nodes, of_cells, of_all;
+  std::string scene = ""; ///< its name
+};
+
+enum class VtuFormat {
+  ascii,   ///< every digit, for eyes and small scripts
+  appended ///< raw numbers behind the XML, headers of 64 bits: a third of the size
+};
+
+/// ASCII up to 2000 nodes.
+VtuFormat vtu_format(const Grid &grid);
+
+/// `of_all`, the scene and the units of all fields become field data. Written atomically. Throws
+/// failure: sizes that do not fit, directory not writable.
+void write_vtu(const std::filesystem::path &path, const Grid &grid, VtuFormat format);
 
 /// "u.vtu" -> "u_contact.vtu".
 std::filesystem::path contact_file(const std::filesystem::path &path);
 
 /// One solution, full or reduced: `u` at all dofs (the motion of the scene is added), `lambda` at
 /// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields, contact points, nodes and
-/// cells alone are read). The displacement goes to `path`; to contact_file(path) pressure and gap:
-/// in the contact region, or along the edges of the slave curve that have a partner, with its
-/// displacement. Throws failure if the model was read without its fields.
-void write_vtu(const std::filesystem::path &path, const Scene &scene, const Mu &all_parameters,
-               const ReducedModel &model, const Vector &u, const Vector &lambda);
+/// cells alone are read). The displacement goes to `path`, with the number of the body on each cell
+/// and, of elastic bodies, the stresses at its centre; to contact_file(path) pressure and gap: in
+/// the contact region, or along the edges of the slave curve that have a partner, with its
+/// displacement. A pressure that is constant on edges is also given at the nodes, as the mean of
+/// the edges beside them weighted by length. Field data: "mu_NAME" of every parameter. Returns the
+/// files written. Throws failure if the model was read without its fields.
+std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,
+                                             const Mu &all_parameters, const ReducedModel &model,
+                                             const Vector &u, const Vector &lambda);
 
 } // namespace rbvi

@@ -9,7 +9,8 @@
 
 namespace rbvi {
 
-/// Columns of equal length under a header, as CSV, atomically. Throws failure.
+/// Columns of equal length under a header, as CSV, every digit: errors are
+/// differences of these. Atomically. Throws failure.
 void write_columns(const std::filesystem::path &path, const std::vector<std::string> &names,
                    const std::vector<std::vector<double>> &columns);
 

@@ -1,0 +1,199 @@
+"""What all figures share: their style, reading a run and VTU files, saving as PNG and PDF."""
+
+import csv
+import xml.etree.ElementTree as xml
+from typing import NamedTuple
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+# Okabe and Ito's palette: told apart with every kind of colour vision, and in grey.
+BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#666666"
+
+FLOOR = 1e-16  # round-off: logarithmic axes go no lower
+
+plt.rcParams.update({
+    "font.size": 9, "axes.titlesize": 10, "axes.spines.top": False, "axes.spines.right": False,
+    "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6, "lines.linewidth": 1.6,
+    "lines.markersize": 4, "legend.frameon": False, "legend.fontsize": 8, "savefig.dpi": 150,
+    "pdf.fonttype": 42,
+})
+
+
+class Missing(Exception):
+    """A file or a quantity that this run does not have; the message says how to make it."""
+
+
+def model_of(run):
+    path = run / "model.h5"
+    if not path.is_file():
+        raise Missing(f"{path} is missing: run rbvi offline -out {run} first")
+    return path
+
+
+def table(run, name):
+    """Columns of a table of rbvi verify, by name."""
+    path = run / "verify" / name
+    if not path.is_file():
+        raise Missing(f"{path} is missing: run rbvi verify -out {run} first")
+    return np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True))
+
+
+def text_rows(path):
+    """Rows of a CSV file by the names in its header, as text."""
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def history(run, name):
+    """A convergence history of the model, e.g. pod/error."""
+    path = model_of(run)
+    try:
+        with h5py.File(path, "r") as model:
+            return model["histories/values/" + name][()].ravel()
+    except (OSError, KeyError) as error:
+        raise Missing(f"{path} cannot be read: {error}") from None
+
+
+def free_parameters(run):
+    """Names and units of the free parameters of the model; "" is without dimension."""
+    with h5py.File(model_of(run), "r") as model:
+        names, units = ([text.decode() if isinstance(text, bytes) else str(text)
+                         for text in model["parameters/" + what][()]] for what in ("names", "units"))
+        return [(names[i], units[i]) for i in np.ravel(model["parameters/free"][()]).astype(int)]
+
+
+def with_unit(name, unit):
+    return f"{name} ({unit or '-'})"
+
+
+class Grid(NamedTuple):
+    """A VTU file. Fields by name: one number each, or rows of three."""
+    points: np.ndarray  # n x 3
+    cells: np.ndarray   # m x nodes per cell; a quadratic triangle as four linear ones
+    edges: np.ndarray   # k x 2: of the elements, those of quadratic ones in halves
+    of_nodes: dict
+    of_cells: dict
+    of_all: dict        # field data: "mu_radius", ...
+    units: dict         # of all fields by name, "-" without dimension
+
+
+def array_reader(data, path):
+    """The XML of a VTU file in ASCII or with raw appended data, and a function from its arrays to
+    numbers or, of type String, texts."""
+    head, mark, raw = data.partition(b'<AppendedData encoding="raw">')
+    root = xml.fromstring(head + b"</VTKFile>" if mark else data)
+    if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":
+        raise Missing(f"{path} is not a VTU file of an unstructured grid")
+    order = ">" if root.get("byte_order") == "BigEndian" else "<"
+    raw = raw[raw.find(b"_") + 1:]
+    types = {"Float64": "f8", "Int32": "i4", "Int64": "i8", "UInt8": "u1"}
+
+    def numbers(array):
+        if array.get("type") == "String":
+            return bytes(map(int, array.text.split())).decode().rstrip("\0").split("\0")
+        kind = np.dtype(order + types[array.get("type")])
+        if array.get("format") == "appended":
+            offset = int(array.get("offset"))
+            size = int(np.frombuffer(raw, order + "u8", 1, offset)[0])
+            return np.frombuffer(raw, kind, size // kind.itemsize, offset + 8)
+        return np.array((array.text or "").split(), kind)
+
+    return root, numbers
+
+
+def unique_edges(cells, per_cell):
+    """Each edge once; of quadratic triangles (0, 3), (3, 1), ..."""
+    sides = {2: [[0, 1]], 3: [[0, 1], [1, 2], [2, 0]],
+             6: [[0, 3], [3, 1], [1, 4], [4, 2], [2, 5], [5, 0]]}[per_cell]
+    return np.unique(np.sort(cells[:, sides].reshape(-1, 2), axis=1), axis=0)
+
+
+def read_grid(path):
+    """A VTU file of rbvi as a Grid."""
+    if not path.is_file():
+        raise Missing(f"{path} is missing: make it with rbvi-online {path.parent}/model.h5 "
+                      f"--mu VALUES --vtu {path.parent}/u.vtu")
+    try:
+        root, numbers = array_reader(path.read_bytes(), path)
+        section = {name: {array.get("Name"): numbers(array)
+                          for array in next(root.iter(name)).findall("DataArray")}
+                   for name in ("FieldData", "Points", "Cells", "PointData", "CellData")}
+    except (xml.ParseError, StopIteration, KeyError, ValueError) as error:
+        raise Missing(f"{path} is not a VTU file that rbvi wrote: {error}") from None
+    points = section["Points"]["points"].reshape(-1, 3)
+    per_cell = int(section["Cells"]["offsets"][0])
+    cells = section["Cells"]["connectivity"].astype(int).reshape(-1, per_cell)
+    edges = unique_edges(cells, per_cell)
+    repeats = 1
+    if per_cell == 6:
+        cells = cells[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]].reshape(-1, 3)
+        repeats = 4
+    of_nodes = {name: values.reshape(-1, 3) if values.size == 3 * len(points) else values
+                for name, values in section["PointData"].items()}
+    of_cells = {name: np.repeat(values, repeats) for name, values in section["CellData"].items()}
+    of_all = section["FieldData"]
+    units = dict(line.split(": ") for line in of_all.pop("units"))
+    return Grid(points, cells, edges, of_nodes, of_cells, of_all, units)
+
+
+def step_values(axis, grid, name, **style):
+    """A field along a contact curve: by steps where it is constant on the edges."""
+    if name in grid.of_cells:
+        return axis.stairs(grid.of_cells[name], grid.points[:, 0], **style)
+    return axis.plot(grid.points[:, 0], grid.of_nodes[name], **style)[0]
+
+
+def clip_at_floor(axis):
+    """Zeros and round-off of a logarithmic axis are drawn at the floor, and a line says so."""
+    clipped = False
+    for line in axis.lines:
+        values = np.asarray(line.get_ydata(), float)
+        low = values < FLOOR
+        if np.any(low):
+            line.set_ydata(np.where(low, FLOOR, values))
+            clipped = True
+    if clipped:
+        axis.text(0.01, 0.01, f"values below {FLOOR:.0e} drawn there", fontsize=7, color=GREY,
+                  transform=axis.transAxes)
+        axis.relim()
+        axis.autoscale_view(scalex=False)
+
+
+def whole_decades(axis):
+    """At least two."""
+    low, high = axis.dataLim.intervaly
+    if not (np.isfinite(low) and np.isfinite(high)):
+        return
+    low, high = np.floor(np.log10(max(low, FLOOR))), np.ceil(np.log10(max(high, FLOOR)))
+    if high < low + 2:
+        low, high = max(low - 1, np.log10(FLOOR)), high + 1
+    axis.set_ylim(10 ** low / 1.5, 10 ** high * 1.5)
+
+
+def save(figure, directory, name):
+    """Writes directory/name, a PNG file, and the same as PDF. Logarithmic axes without limits of
+    their own show whole decades."""
+    directory.mkdir(exist_ok=True)
+    for axis in figure.axes:
+        if axis.get_yscale() == "log":
+            chosen = not axis.get_autoscaley_on()
+            clip_at_floor(axis)
+            if not chosen:
+                whole_decades(axis)
+    path = directory / name
+    figure.savefig(path, bbox_inches="tight")
+    figure.savefig(path.with_suffix(".pdf"), bbox_inches="tight", metadata={"CreationDate": None})
+    plt.close(figure)
+    print(f"wrote {path}, {path.with_suffix('.pdf')}")
+
+
+def log_axis(axis, xlabel, ylabel, title):
+    axis.set_yscale("log")
+    axis.set_xlabel(xlabel)
+    axis.set_ylabel(ylabel)
+    axis.set_title(title, loc="left")

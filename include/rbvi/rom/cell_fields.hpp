@@ -1,0 +1,29 @@
+// What a solution is on each cell: the stress at its centre, the body that it belongs to.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/core/scene.hpp"
+
+#include <vector>
+
+namespace rbvi {
+
+/// Names of the components of a stress tensor that a plane (dim 2: plane strain) or solid body has,
+/// in the order of the columns of centre_stresses().
+std::vector<std::string> stress_components(int dim);
+
+/// Cauchy stress (Pa) at the centre of each cell: cells x stress_components(scene.dim). `points`:
+/// nodes x dim, reference coordinates; `cells`: nodes_per_cell(dim, degree) node numbers each;
+/// `displacement`: three components per node. Needs scene.material. Throws failure for a cell that
+/// the map inverts.
+Matrix centre_stresses(const Scene &scene, const Mu &all_parameters, const Matrix &points,
+                       const std::vector<int> &cells, const Vector &displacement);
+
+/// sqrt(3/2 s : s), s the deviator, of each row of centre_stresses().
+Vector von_mises(const Matrix &stresses);
+
+/// The connected part of the mesh that each cell belongs to, numbered from 1: first the part of
+/// `first_node`, the others by their first cells.
+Vector body_numbers(const std::vector<int> &cells, int per_cell, Index nodes, int first_node);
+
+} // namespace rbvi
