@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/rom/print.hpp"
+#include "rbvi/rom/training_samples.hpp"
 
 #include <unistd.h>
 
@@ -53,7 +54,7 @@ private:
 
 /// What is said at the end.
 struct Tally {
-  long rows = 0, unanswered = 0;
+  long rows = 0, unanswered = 0, near_failed = 0;
   double seconds = 0, residual = 0, violation = 0;
   std::string reason; ///< of the first row without an answer
   void add_failure(const std::string &why) {
@@ -142,6 +143,7 @@ void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &argum
     const Outputs outputs = answer(solver, mu, arguments, solution);
     table.add(mu, outputs, in_box(solver.scene().parameters, mu));
     ++tally.rows;
+    if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
     tally.seconds += outputs.seconds.value_or(0);
     tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
     tally.violation = std::max(tally.violation, violation(outputs));
@@ -159,7 +161,6 @@ void report(const OnlineArguments &arguments, const OnlineSolver &solver, const 
     out << ", " << 1e3 * tally.seconds / static_cast<double>(answered)
         << " ms each, largest kkt_residual " << tally.residual;
   out << '\n';
-  warn_of_violation(solver.model(), tally.violation, out);
   print_expected_errors(out, solver.model());
 }
 
@@ -177,6 +178,13 @@ void warn_of_violation(const ReducedModel &model, double violation, std::ostream
   out << "warning: the laws of contact and friction are violated by " << violation
       << " of the largest pressure at some node: reduce again with -multiplier_exact yes, which "
          "mends such answers\n";
+}
+
+void warn_of_failed_samples(long answers, std::ostream &out) {
+  if (answers == 0) return;
+  out << "warning: " << answers << (answers == 1 ? " answer lies" : " answers lie")
+      << " nearest to a training parameter that has no high-fidelity answer: nothing there was "
+         "checked\n";
 }
 
 void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
@@ -199,6 +207,9 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   }
   file.finish();
   if (to_file) report(arguments, solver, tally, out);
+  std::ostream &warnings = to_file ? out : std::cerr;
+  warn_of_violation(solver.model(), tally.violation, warnings);
+  warn_of_failed_samples(tally.near_failed, warnings);
   if (tally.unanswered > 0)
     throw failure(
         std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +

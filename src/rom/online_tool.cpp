@@ -4,6 +4,7 @@
 #include "rbvi/core/h5.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/rom/print.hpp"
+#include "rbvi/rom/training_samples.hpp"
 #include "rbvi/rom/vtu.hpp"
 
 #include <algorithm>
@@ -100,6 +101,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   out << describe(solver.scene().parameters, mu) << '\n';
   print_outputs(out, outputs, errors);
   warn_of_violation(solver.model(), violation(outputs), out);
+  warn_of_failed_samples(nearest_sample_failed(solver.model(), mu) ? 1 : 0, out);
   if (inside)
     print_expected_errors(out, solver.model());
   else

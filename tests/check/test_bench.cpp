@@ -1,4 +1,5 @@
 #include "rbvi/check/bench.hpp"
+#include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <gtest/gtest.h>

@@ -251,6 +251,19 @@ TEST_F(OnlineBinary, ARowWithoutAnAnswerSaysWhyAndTheOthersAreAnswered) {
   EXPECT_FALSE(std::filesystem::exists("out.csv.partial"));
 }
 
+TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
+  model.trained_mu.resize(3, 1);
+  model.trained_mu << 0.23, 0, 0;
+  model.failed_mu.resize(3, 1);
+  model.failed_mu << 0.17, 0, 0;
+  write_model(model, "model.h5");
+  const std::string warning = "1 answer lies nearest to a training parameter that has no";
+  EXPECT_TRUE(contains(online("model.h5 --mu 0.18,0,0").out, warning));
+  EXPECT_FALSE(contains(online("model.h5 --mu 0.22,0,0").out, "warning"));
+  std::ofstream("mu.csv") << "radius,center_x,center_y\n0.18,0,0\n0.22,0,0\n";
+  EXPECT_TRUE(contains(online("model.h5 --queries mu.csv --out out.csv").out, warning));
+}
+
 TEST_F(OnlineBinary, ReadsAndWritesStreams) {
   const Finished run = shell("printf 'radius,center_x,center_y\\n0.2,0,0\\n0.9,0,0\\nx,0,0\\n"
                              "0.18,0.01,0\\n' | " RBVI_ONLINE " model.h5 --queries - --out -");
