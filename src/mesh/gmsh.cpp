@@ -149,8 +149,11 @@ void check_names(const GmshFile &file, const Elements &cells, const Elements &fa
   if (!boundaries.empty())
     missing += (missing.empty() ? "" : " and no ") + ("physical boundary " + quoted(boundaries)) +
                " of facets";
+  const bool grouped = std::any_of(file.groups.begin(), file.groups.end(),
+                                   [](const std::vector<int> &own) { return !own.empty(); });
   throw bad_input("has no " + missing + " (it has: cells in " + groups_in(file, scene.dim, cells) +
                   "; facets in " + groups_in(file, scene.dim - 1, facets) +
+                  (grouped ? "" : "; version 2.2 has no groups where Mesh.SaveAll = 1") +
                   "); rbvi -help -scene " + scene.name + " lists what it needs");
 }
 

@@ -54,7 +54,7 @@ std::vector<std::pair<std::string, std::string>> other_contracts(const Scene &sc
 void print_mesh_contract(const Scene &scene) {
   std::printf(
       "  A mesh of your own (-mesh FILE: Gmsh 2.2, 4.0 or 4.1, order 1, in metres), its parts\n"
-      "  by physical name, their vertices in place to 1e-6 of the extent:\n%s",
+      "  by physical name, vertices in place to 1e-6 of the extent, edges along the rims:\n%s",
       contract(scene).c_str());
   for (const auto &[choice, other] : other_contracts(scene))
     std::printf("  With %s:\n%s", choice.c_str(), other.c_str());

@@ -255,6 +255,15 @@ TEST_P(Encodings, MissingNamesAreListedAtOnceWithThoseThatExist) {
                               "'two sides', 'wall'");
 }
 
+TEST_P(Encodings, AFileWithoutGroupsIsRefused) {
+  GmshDrawing drawing = membrane();
+  for (GmshEntity &entity : drawing.entities)
+    entity.groups.clear();
+  const TemporaryFile file(written(drawing, GetParam()));
+  expect_refused(file.name(), "no physical region 'obstacle' of cells and no physical boundary");
+  expect_refused(file.name(), "cells in none; facets in none");
+}
+
 TEST_P(Encodings, PointsOutOfThePlaneOrNotANumberAreRefused) {
   GmshDrawing drawing = membrane();
   drawing.points[17][2] = 0.01;

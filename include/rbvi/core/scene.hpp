@@ -164,7 +164,7 @@ struct Scene {
   /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
   /// empty: zero.
   std::function<Point(const Mu &, const Point &)> motion;
-  /// Mesh and data are symmetric about x = 0, and so are the solutions.
+  /// The data are symmetric about x = 0, and so are the solutions on a mesh that is.
   bool symmetric = false;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
   double mirror_images = 1;
