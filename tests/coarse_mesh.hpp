@@ -61,8 +61,9 @@ inline CoarseMesh make_coarse_mesh() {
   return mesh;
 }
 
-/// As Gmsh 2.2 text with physical regions "obstacle", "rest" and boundary `boundary`.
-inline std::string coarse_gmsh(const std::string &boundary = "boundary") {
+/// As Gmsh 2.2 text with physical regions "obstacle", "rest" and boundary `boundary`, in units of
+/// 1 / scale metres.
+inline std::string coarse_gmsh(const std::string &boundary = "boundary", double scale = 1) {
   const CoarseMesh mesh = make_coarse_mesh();
   std::ostringstream out;
   out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"" << boundary
@@ -70,7 +71,7 @@ inline std::string coarse_gmsh(const std::string &boundary = "boundary") {
       << mesh.points.size() << "\n"
       << std::setprecision(17);
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
-    out << i + 1 << " " << mesh.points[i][0] << " " << mesh.points[i][1] << " 0\n";
+    out << i + 1 << " " << scale * mesh.points[i][0] << " " << scale * mesh.points[i][1] << " 0\n";
   out << "$EndNodes\n$Elements\n"
       << mesh.boundary.size() + mesh.disc.size() + mesh.rest.size() << "\n";
   int element = 0;

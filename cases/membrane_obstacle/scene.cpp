@@ -7,10 +7,12 @@
 // gives the contact of the published basis sizes.
 #include "scene.hpp"
 
+#include "rbvi/core/places.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace rbvi {
 
@@ -52,6 +54,17 @@ double obstacle(const Mu &mu, const Point &x) {
   return -1.25 * (dx * dx + dy * dy) / (mu[0] * mu[0]);
 }
 
+MeshRecipe mesh() {
+  const Place square = box({-0.5, -0.5, 0}, {0.5, 0.5, 0});
+  const double disc = std::numbers::pi * reference_radius * reference_radius;
+  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, ""};
+  recipe.facts = {{"", "the square of side 1 m about the origin", square, 1},
+                  {"obstacle", "the disk of radius 0.2 m about the origin",
+                   disk({0, 0, 0}, reference_radius), disc},
+                  {"boundary", "all four sides of the square", rim(square), 4}};
+  return recipe;
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   scene.dim = 2;
@@ -61,7 +74,7 @@ Scene make(const SceneOptions &options) {
                                {"center_y", "m", -0.05, 0.05, 0}});
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
-  scene.mesh = {"square_with_disc", {"obstacle"}, {"boundary"}, ""};
+  scene.mesh = mesh();
   scene.map = options.at("disc_map") == "graded" ? graded : similarity;
   scene.snap = [](const Point &x) -> Point {
     const double scale = reference_radius / std::hypot(x[0], x[1]);

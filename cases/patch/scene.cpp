@@ -11,6 +11,7 @@
 #include "scene.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/elastic_pair.hpp"
 #include "rbvi/element/lagrange.hpp"
@@ -25,16 +26,54 @@ namespace {
 
 constexpr double apart = 0.25; ///< of each reference block from the contact line y = 0
 constexpr double height = 0.5;
+constexpr double on_side = 1e-6; ///< of the sides: how far a vertex of a mesh file may lie beside
 
 /// Of all parameters of one body.
 enum Of { indentation, shear, friction };
+
+/// From (0, y) to (1, y).
+Place level(double y) {
+  return segment({0, y, 0}, {1, y, 0});
+}
+
+/// The sides x = 0 and x = 1 from y = low on.
+Place two_sides(double low) {
+  return nearest(
+      {segment({0, low, 0}, {0, low + height, 0}), segment({1, low, 0}, {1, low + height, 0})});
+}
+
+MeshRecipe mesh_of_two() {
+  const double high = apart + height;
+  const Place upper = box({0, apart, 0}, {1, high, 0}), lower = box({0, -high, 0}, {1, -apart, 0});
+  MeshRecipe recipe{
+      "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}, ""};
+  recipe.facts = {{"", "two blocks, 1 m wide and 0.5 m high", nearest({upper, lower}), 1},
+                  {"upper", "the block [0, 1] x [0.25, 0.75]", upper, 0.5},
+                  {"lower", "the block [0, 1] x [-0.75, -0.25]", lower, 0.5},
+                  {"sides", "the sides x = 0 and x = 1 of both blocks",
+                   nearest({two_sides(apart), two_sides(-high)}), 2},
+                  {"top", "the side y = 0.75 of the upper block", level(high), 1},
+                  {"bottom", "the side y = -0.75 of the lower block", level(-high), 1},
+                  {"slave", "the side y = 0.25 of the upper block", level(apart), 1},
+                  {"master", "the side y = -0.25 of the lower block", level(-apart), 1}};
+  return recipe;
+}
+
+MeshRecipe mesh_of_one() {
+  MeshRecipe recipe{"one_block", {}, {"sides", "top", "contact"}, ""};
+  recipe.facts = {
+      {"", "the block [0, 1] x [0, 0.5], in metres", box({0, 0, 0}, {1, height, 0}), 0.5},
+      {"sides", "the sides x = 0 and x = 1", two_sides(0), 1},
+      {"top", "the side y = 0.5", level(height), 1},
+      {"contact", "the side y = 0", level(0), 1}};
+  return recipe;
+}
 
 Scene make_two(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05}});
-  scene.mesh = {
-      "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}, ""};
+  scene.mesh = mesh_of_two();
   scene.map = [](const Mu &, const Point &x) -> Point {
     return {x[0], x[1] - (x[1] > 0 ? apart : -apart), 0};
   };
@@ -63,9 +102,12 @@ Form side_load(const Lame &material, bool frictionless, int degree) {
               const auto i = static_cast<std::size_t>(simplex_edges[e][0]);
               const auto j = static_cast<std::size_t>(simplex_edges[e][1]);
               const Point &a = cell.mapped[i], &b = cell.mapped[j];
-              if (a[0] != b[0] || (a[0] != 0 && a[0] != 1)) continue;
+              const double side = std::round(a[0]);
+              if ((side != 0 && side != 1) || std::abs(a[0] - side) > on_side ||
+                  std::abs(b[0] - side) > on_side)
+                continue;
               const double share =
-                  (a[0] == 0 ? -1 : 1) * std::abs(a[1] - b[1]) / (degree == 2 ? 6 : 2);
+                  (side == 0 ? -1 : 1) * std::abs(a[1] - b[1]) / (degree == 2 ? 6 : 2);
               for (std::size_t c = 0; c < 2; ++c) {
                 values[2 * i + c] += share * t[c];
                 values[2 * j + c] += share * t[c];
@@ -93,7 +135,7 @@ Scene make_one(const SceneOptions &options) {
   scene.parameters.free = {indentation};
   scene.nitsche = nitsche_recipe(options);
   scene.material = [material](const Mu &, const Point &) { return material; };
-  scene.mesh = {"one_block", {}, {"sides", "top", "contact"}, ""};
+  scene.mesh = mesh_of_one();
   scene.map = [](const Mu &, const Point &x) { return x; };
   scene.fixed = {{"top", {}}};
   scene.motion = [](const Mu &mu, const Point &) -> Point {

@@ -12,10 +12,12 @@
 #include "scene.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace rbvi {
 
@@ -100,6 +102,22 @@ ParameterSpace parameters(FrictionLaw law, bool nitsche) {
   return space;
 }
 
+MeshRecipe mesh(int edges) {
+  constexpr double pi = std::numbers::pi, down = -pi / 2;
+  const Point centre{0, 0, 0};
+  MeshRecipe recipe{"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+  recipe.facts = {{"", "the half y <= 0 of the disk of radius 1 m about the origin",
+                   common_part(disk(centre, 1), box({-1, -1, 0}, {1, 0, 0})), pi / 2},
+                  {"core", "the half disk of radius 0.6 m about the origin", disk(centre, core_radius),
+                   pi / 2 * core_radius * core_radius},
+                  {"top", "the flat side y = 0", segment({-1, 0, 0}, {1, 0, 0}), 2},
+                  {"contact", "the arc of radius 1 m within 22.5 degrees of (0, -1)",
+                   arc(centre, 1, down, pi / 8), pi / 4, "arc"},
+                  {"arc", "the whole half circle of radius 1 m, 'contact' included",
+                   arc(centre, 1, down, pi / 2), pi}};
+  return recipe;
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   const auto edges = static_cast<int>(number_in(options, "arc_edges"));
@@ -120,11 +138,7 @@ Scene make(const SceneOptions &options) {
   scene.parameters = parameters(scene.support->friction.law, nitsche);
   scene.training = "grid:61";
   scene.validation = "random:30:1";
-  scene.mesh = {"half_disc",
-                {"core"},
-                {"top", "contact", "arc"},
-                "arc",
-                edges == 0 && nitsche ? nitsche_edges : edges};
+  scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges);
   scene.map = [](const Mu &mu, const Point &x) -> Point {
     return {mu[radius] * x[0], mu[radius] * x[1], 0};
   };

@@ -11,9 +11,11 @@
 // plane stiffness as it is, so that a does not depend on mu.
 #include "scene.hpp"
 
+#include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_pair.hpp"
 
 #include <cmath>
+#include <numbers>
 
 namespace rbvi {
 
@@ -34,16 +36,54 @@ Point on_circle(const Point &x) {
   return {scale * x[0], height + scale * (x[1] - height), 0};
 }
 
+/// Facts of one body: `up` is 1 for the upper one, -1 for the lower one.
+std::vector<MeshFact> body_facts(double up) {
+  constexpr double quarter = std::numbers::pi / 4;
+  const bool upper = up > 0;
+  const std::string region = upper ? "upper" : "lower", height = upper ? "1.5" : "-1.5";
+  const std::string disk_name = "the disk of radius 1 m about (0, " + height + ")";
+  const Point middle{0, up * centre, 0};
+  const Place square =
+      upper ? box({0, centre - 1, 0}, {1, centre, 0}) : box({0, -centre, 0}, {1, 1 - centre, 0});
+  return {
+      {region,
+       "the quarter x >= 0, y " + std::string(upper ? "<= " : ">= ") + height + " of " + disk_name,
+       common_part(disk(middle, 1), square), quarter},
+      {upper ? "top" : "bottom", "the flat side y = " + height + ", 0 <= x <= 1",
+       segment(middle, {1, up * centre, 0}), 1},
+      {upper ? "slave" : "master",
+       "the arc of '" + region + "' from the axis to 45 degrees beside it",
+       arc(middle, 1, -up * 1.5 * quarter, quarter / 2), quarter, "arc"}};
+}
+
+MeshRecipe mesh() {
+  constexpr double quarter = std::numbers::pi / 4;
+  const Point up{0, centre, 0}, down{0, -centre, 0};
+  MeshRecipe recipe{"two_quarter_discs",
+                    {"upper", "lower"},
+                    {"axis", "top", "bottom", "slave", "master", "arc"},
+                    "arc"};
+  std::vector<MeshFact> &facts = recipe.facts = body_facts(1);
+  for (MeshFact &fact : body_facts(-1))
+    facts.push_back(std::move(fact));
+  const Place bodies = nearest({facts[0].distance, facts[3].distance});
+  facts.insert(facts.begin(), {"", "two quarter disks, 1 m apart", bodies, 2 * quarter});
+  facts.push_back({"axis", "the sides x = 0 of both bodies",
+                   nearest({segment(up, {0, centre - 1, 0}), segment(down, {0, 1 - centre, 0})}),
+                   2});
+  facts.push_back({"arc", "the round sides of both bodies, 'slave' and 'master' included",
+                   nearest({arc(up, 1, -quarter, quarter), arc(down, 1, quarter, quarter)}),
+                   4 * quarter});
+  return recipe;
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
   scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1}});
   scene.training = "grid:81";
   scene.validation = "random:30:1";
-  scene.mesh = {"two_quarter_discs",
-                {"upper", "lower"},
-                {"axis", "top", "bottom", "slave", "master", "arc"},
-                "arc"};
+  scene.mesh = mesh();
   const double gap = number_in(options, "initial_gap");
   const double indentation = number_in(options, "indentation");
   scene.map = [gap](const Mu &mu, const Point &x) { return placed(gap, mu[0], x); };

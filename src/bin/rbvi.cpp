@@ -15,7 +15,7 @@ void run(const std::string &command, const std::string &file) {
   if (command == "list" || command == "help" || command == "inspect") {
     if (rank != 0) return;
     if (command == "list") command_list();
-    if (command == "help") print_help();
+    if (command == "help") print_help(file);
     if (command == "inspect") command_inspect(file);
     return;
   }

@@ -1,126 +1,223 @@
+#include "gmsh_file.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/mesh/serial.hpp"
 
-#include "rbvi/core/error.hpp"
-
-#include <petscdmplex.h>
-
-#include <fstream>
-#include <memory>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <set>
 
 namespace rbvi {
 
 namespace {
 
-/// From the two first lines of the file. Throws bad_input.
-bool is_binary(const std::string &file) {
-  std::ifstream in(file);
-  if (!in) throw bad_input("cannot open mesh file '" + file + "'");
-  std::string line;
-  double version = 0;
-  int type = -1;
-  in >> line >> version >> type;
-  if (!in || line != "$MeshFormat" || type < 0 || type > 1)
-    throw bad_input("'" + file + "' is not a Gmsh mesh: it does not begin with $MeshFormat");
-  return type == 1;
+std::string quoted(const std::vector<std::string> &names) {
+  std::string text;
+  for (const std::string &name : names)
+    text += (text.empty() ? "'" : ", '") + name + "'";
+  return text;
 }
 
-struct DestroyOptions {
-  void operator()(PetscOptions options) const { (void)PetscOptionsDestroy(&options); }
+/// Elements of one dimension, each once and with all of its groups, in the order of the file.
+struct Elements {
+  std::vector<std::array<std::size_t, 4>> nodes; ///< numbers in the file
+  std::vector<std::set<int>> groups;
 };
 
-/// Labels by physical name; what the user's options say of Gmsh files does not reach the reader.
-Handle<DM> open_gmsh(const std::string &file, bool binary) {
-  PetscOptions raw = nullptr;
-  RBVI_CALL(PetscOptionsCreate(&raw));
-  const std::unique_ptr<std::remove_pointer_t<PetscOptions>, DestroyOptions> options(raw);
-  RBVI_CALL(PetscOptionsSetValue(raw, "-dm_plex_gmsh_use_regions", "1"));
-  RBVI_CALL(PetscOptionsSetValue(raw, "-dm_plex_gmsh_periodic", "0"));
-
-  Handle<PetscViewer> viewer;
-  RBVI_CALL(PetscViewerCreate(PETSC_COMM_SELF, viewer.put()));
-  RBVI_CALL(PetscObjectSetOptions(reinterpret_cast<PetscObject>(viewer.get()), raw));
-  RBVI_CALL(PetscViewerSetType(viewer.get(), binary ? PETSCVIEWERBINARY : PETSCVIEWERASCII));
-  RBVI_CALL(PetscViewerFileSetMode(viewer.get(), FILE_MODE_READ));
-  RBVI_CALL(PetscViewerFileSetName(viewer.get(), file.c_str()));
-  Handle<DM> dm;
-  RBVI_CALL(DMPlexCreateGmsh(PETSC_COMM_SELF, viewer.get(), PETSC_TRUE, dm.put()));
-  return dm;
-}
-
-/// Elements of higher order have coordinates elsewhere than at the vertices.
-bool is_straight(DM dm) {
-  PetscSection section = nullptr;
-  PetscInt dim = 0, begin = 0, end = 0, size = 0;
-  RBVI_CALL(DMGetCoordinateDim(dm, &dim));
-  RBVI_CALL(DMPlexGetDepthStratum(dm, 0, &begin, &end));
-  RBVI_CALL(DMGetCoordinateSection(dm, &section));
-  RBVI_CALL(PetscSectionGetStorageSize(section, &size));
-  PetscInt at_vertices = 0;
-  for (PetscInt vertex = begin; vertex < end; ++vertex) {
-    PetscInt count = 0;
-    RBVI_CALL(PetscSectionGetDof(section, vertex, &count));
-    at_vertices += count;
+Elements elements_of(const GmshFile &file, int dim) {
+  std::vector<const GmshElement *> own;
+  for (const GmshElement &element : file.elements)
+    if (element.dim == dim) own.push_back(&element);
+  std::vector<std::array<std::size_t, 4>> sorted;
+  for (const GmshElement *element : own) {
+    sorted.push_back(element->nodes);
+    std::sort(sorted.back().begin(), sorted.back().end(), std::greater<>());
   }
-  return at_vertices == dim * (end - begin) && at_vertices == size;
+  std::vector<std::size_t> order(own.size()), first(own.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t i, std::size_t j) { return sorted[i] < sorted[j]; });
+  for (std::size_t k = 0; k < order.size(); ++k)
+    first[order[k]] =
+        k > 0 && sorted[order[k]] == sorted[order[k - 1]] ? first[order[k - 1]] : order[k];
+
+  Elements result;
+  std::vector<std::size_t> position(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (first[i] == i) {
+      position[i] = result.nodes.size();
+      result.nodes.push_back(own[i]->nodes);
+      result.groups.emplace_back();
+    }
+    const std::vector<int> &groups = file.groups[static_cast<std::size_t>(own[i]->groups)];
+    result.groups[position[first[i]]].insert(groups.begin(), groups.end());
+  }
+  return result;
 }
 
-void check_cells(DM dm, const std::string &file, const Scene &scene) {
-  PetscInt dim = 0, begin = 0, end = 0;
-  RBVI_CALL(DMGetDimension(dm, &dim));
-  RBVI_CALL(DMPlexGetHeightStratum(dm, 0, &begin, &end));
-  if (end == begin) throw bad_input("mesh file '" + file + "' holds no cells");
+/// Numbers of the groups with a name.
+std::set<int> groups_named(const GmshFile &file, int dim, const std::string &name) {
+  std::set<int> numbers;
+  for (const auto &[key, own] : file.names)
+    if (key.first == dim && own == name) numbers.insert(key.second);
+  return numbers;
+}
+
+/// The elements in a group of that name.
+std::vector<std::size_t> members(const GmshFile &file, const Elements &elements, int dim,
+                                 const std::string &name) {
+  const std::set<int> wanted = groups_named(file, dim, name);
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < elements.groups.size(); ++i)
+    if (std::any_of(elements.groups[i].begin(), elements.groups[i].end(),
+                    [&](int group) { return wanted.contains(group); }))
+      found.push_back(i);
+  return found;
+}
+
+/// "'a', 'b', group 7 without a name": what cells and facets belong to.
+std::string groups_in(const GmshFile &file, int dim, const Elements &elements) {
+  std::set<int> numbers;
+  for (const std::set<int> &own : elements.groups)
+    numbers.insert(own.begin(), own.end());
+  std::string text;
+  for (const int number : numbers) {
+    const auto name = file.names.find({dim, number});
+    text += (text.empty() ? "" : ", ") +
+            (name == file.names.end() ? "group " + std::to_string(number) + " without a name"
+                                      : "'" + name->second + "'");
+  }
+  return text.empty() ? "none" : text;
+}
+
+/// The vertices of the cells, and where each node of the file is among them.
+class Vertices {
+public:
+  Vertices(const GmshFile &file, const Elements &cells, int dim) : nodes_(file.nodes) {
+    std::vector<bool> used(nodes_.size(), false);
+    for (const auto &cell : cells.nodes)
+      for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+        used[position(cell[i])] = true;
+    int count = 0;
+    for (const bool one : used)
+      index_.push_back(one ? count++ : -1);
+  }
+  /// -1 for a node of no cell. Throws bad_input for a number that no node has.
+  int operator[](std::size_t number) const { return index_[position(number)]; }
+  std::vector<Point> points() const {
+    std::vector<Point> result;
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+      if (index_[i] >= 0) result.push_back(nodes_[i].point);
+    return result;
+  }
+
+private:
+  std::size_t position(std::size_t number) const {
+    const auto node =
+        std::lower_bound(nodes_.begin(), nodes_.end(), number,
+                         [](const GmshNode &n, std::size_t wanted) { return n.number < wanted; });
+    if (node == nodes_.end() || node->number != number)
+      throw bad_input("has no node " + std::to_string(number) + ", but an element names it");
+    return static_cast<std::size_t>(node - nodes_.begin());
+  }
+  const std::vector<GmshNode> &nodes_;
+  std::vector<int> index_;
+};
+
+void check_dimension(const GmshFile &file, const Scene &scene) {
+  int dim = 0;
+  for (const GmshElement &element : file.elements)
+    dim = std::max(dim, element.dim);
+  if (dim == 0) throw bad_input("holds no cells");
   if (dim != scene.dim)
-    throw bad_input("mesh file '" + file + "' is of dimension " + std::to_string(dim) + ": scene " +
-                    scene.name + " needs " + std::to_string(scene.dim));
-  const DMPolytopeType wanted = dim == 2 ? DM_POLYTOPE_TRIANGLE : DM_POLYTOPE_TETRAHEDRON;
-  for (PetscInt cell = begin; cell < end; ++cell) {
-    DMPolytopeType type = DM_POLYTOPE_UNKNOWN;
-    RBVI_CALL(DMPlexGetCellType(dm, cell, &type));
-    if (type != wanted)
-      throw bad_input("mesh file '" + file + "' has cells that are not " +
-                      (dim == 2 ? "triangles" : "tetrahedra") + ": mesh without recombination");
-  }
-  if (!is_straight(dm))
-    throw bad_input("mesh file '" + file +
-                    "' has elements of order 2 or more: write it with Mesh.ElementOrder = 1");
+    throw bad_input("is of dimension " + std::to_string(dim) + ": scene " + scene.name + " needs " +
+                    std::to_string(scene.dim));
 }
 
-/// "(it has: a, b)".
-std::string names_in(DM dm) {
-  std::string names;
-  PetscInt count = 0;
-  RBVI_CALL(DMGetNumLabels(dm, &count));
-  for (PetscInt i = 0; i < count; ++i) {
-    const char *name = nullptr;
-    RBVI_CALL(DMGetLabelName(dm, i, &name));
-    const std::string text(name);
-    if (text != "depth" && text != "celltype" && !text.ends_with(" Sets"))
-      names += (names.empty() ? "" : ", ") + text;
+void check_names(const GmshFile &file, const Elements &cells, const Elements &facets,
+                 const Scene &scene) {
+  std::vector<std::string> regions, boundaries;
+  for (const std::string &name : scene.mesh.regions)
+    if (members(file, cells, scene.dim, name).empty()) regions.push_back(name);
+  for (const std::string &name : scene.mesh.boundaries)
+    if (members(file, facets, scene.dim - 1, name).empty()) boundaries.push_back(name);
+  if (regions.empty() && boundaries.empty()) return;
+  std::string missing;
+  if (!regions.empty()) missing = "physical region " + quoted(regions) + " of cells";
+  if (!boundaries.empty())
+    missing += (missing.empty() ? "" : " and no ") + ("physical boundary " + quoted(boundaries)) +
+               " of facets";
+  const bool grouped = std::any_of(file.groups.begin(), file.groups.end(),
+                                   [](const std::vector<int> &own) { return !own.empty(); });
+  throw bad_input("has no " + missing + " (it has: cells in " + groups_in(file, scene.dim, cells) +
+                  "; facets in " + groups_in(file, scene.dim - 1, facets) +
+                  (grouped ? "" : "; version 2.2 has no groups where Mesh.SaveAll = 1") +
+                  "); rbvi -help -scene " + scene.name + " lists what it needs");
+}
+
+/// A mesh of the plane lies in z = 0, but for round-off.
+void flatten(std::vector<Point> &points) {
+  double extent = 0;
+  for (const Point &x : points)
+    extent = std::max({extent, std::abs(x[0]), std::abs(x[1])});
+  for (Point &x : points) {
+    if (!(std::abs(x[2]) <= 1e-9 * extent))
+      throw bad_input("has the vertex (" + short_number(x[0]) + ", " + short_number(x[1]) + ", " +
+                      short_number(x[2]) + "): scenes in two dimensions lie in z = 0");
+    x[2] = 0;
   }
-  return "(it has: " + (names.empty() ? "none" : names) + ")";
+}
+
+SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
+  check_dimension(file, scene);
+  const int dim = scene.dim;
+  const Elements cells = elements_of(file, dim), facets = elements_of(file, dim - 1);
+  check_names(file, cells, facets, scene);
+  const Vertices vertices(file, cells, dim);
+  SerialMesh mesh;
+  mesh.dim = dim;
+  mesh.points = vertices.points();
+  if (dim == 2) flatten(mesh.points);
+  for (const auto &nodes : cells.nodes) {
+    std::array<int, 4> cell{-1, -1, -1, -1};
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+      cell[i] = vertices[nodes[i]];
+    mesh.cells.push_back(cell);
+  }
+  orient_cells(dim, mesh.points, mesh.cells);
+  for (const std::string &name : scene.mesh.regions)
+    for (const std::size_t cell : members(file, cells, dim, name))
+      mesh.region[name].push_back(static_cast<int>(cell));
+  for (const std::string &name : scene.mesh.boundaries)
+    for (const std::size_t member : members(file, facets, dim - 1, name)) {
+      std::array<int, 3> facet{-1, -1, -1};
+      for (std::size_t i = 0; i < static_cast<std::size_t>(dim); ++i) {
+        const std::size_t number = facets.nodes[member][i];
+        facet[i] = vertices[number];
+        if (facet[i] < 0)
+          throw bad_input("has '" + name + "' on node " + std::to_string(number) +
+                          ", which is in no cell: mesh every surface, and put it in a physical "
+                          "group (or set Mesh.SaveAll = 1)");
+      }
+      std::sort(facet.begin(), facet.end(), std::greater<>());
+      mesh.boundary[name].push_back(facet);
+    }
+  for (auto &[name, own] : mesh.boundary)
+    std::sort(own.begin(), own.end());
+  return mesh;
 }
 
 } // namespace
 
 SerialMesh read_gmsh(const std::string &file, const Scene &scene) {
-  const bool binary = is_binary(file);
-  Handle<DM> dm;
+  const GmshFile content = read_gmsh_file(file);
   try {
-    dm = open_gmsh(file, binary);
+    return mesh_of(content, scene);
   } catch (const Error &error) {
-    throw bad_input("mesh file '" + file + "' cannot be read: " + error.what());
+    throw bad_input("mesh file '" + file + "' " + error.what());
   }
-  check_cells(dm.get(), file, scene);
-  SerialMesh mesh = from_plex(dm.get(), scene.mesh);
-  for (const std::string &name : scene.mesh.regions)
-    if (!mesh.region.contains(name))
-      throw bad_input("mesh file '" + file + "' has no physical region '" + name + "' of cells " +
-                      names_in(dm.get()));
-  for (const std::string &name : scene.mesh.boundaries)
-    if (!mesh.boundary.contains(name))
-      throw bad_input("mesh file '" + file + "' has no physical boundary '" + name +
-                      "' of facets " + names_in(dm.get()));
-  return mesh;
 }
 
 } // namespace rbvi

@@ -50,6 +50,16 @@ constexpr std::array generators{
               true},
     Generator{"one_block", [](const MeshRecipe &) { return one_block(); }}};
 
+/// Throws bad_input if a built-in mesh lacks a name of the scene's recipe.
+void check_labels(const SerialMesh &mesh, const Scene &scene) {
+  const std::string lacks =
+      "the mesh generator '" + scene.mesh.generator + "' that scene " + scene.name + " asks for ";
+  for (const std::string &name : scene.mesh.regions)
+    if (!mesh.region.contains(name)) throw bad_input(lacks + "makes no region '" + name + "'");
+  for (const std::string &name : scene.mesh.boundaries)
+    if (!mesh.boundary.contains(name)) throw bad_input(lacks + "makes no boundary '" + name + "'");
+}
+
 /// Throws bad_input if this build does not have the scene's generator, or not with its edges.
 SerialMesh generated_mesh(const Scene &scene) {
   std::string names;
@@ -60,7 +70,9 @@ SerialMesh generated_mesh(const Scene &scene) {
       throw bad_input("scene " + scene.name + " asks for " + std::to_string(scene.mesh.edges) +
                       " contact edges: the number of the mesh generator '" + scene.mesh.generator +
                       "' is fixed");
-    return generator.make(scene.mesh);
+    SerialMesh mesh = generator.make(scene.mesh);
+    check_labels(mesh, scene);
+    return mesh;
   }
   throw bad_input("scene " + scene.name + " asks for the mesh generator '" + scene.mesh.generator +
                   "': this build has " + names);
@@ -72,10 +84,13 @@ SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options) {
   const std::string source =
       options.file.empty() ? "the built-in mesh" : "mesh file '" + options.file + "'";
   check_mesh(mesh, source);
+  check_facts(mesh, scene, source);
   for (int level = 1; level <= options.refine; ++level) {
     mesh = refined(mesh);
     snap_curves(mesh, scene);
-    check_mesh(mesh, source + ", refined " + std::to_string(level) + " times");
+    const std::string finer = source + ", refined " + std::to_string(level) + " times";
+    check_mesh(mesh, finer);
+    check_places(mesh, scene, finer);
   }
   return mesh;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <tuple>
 
 namespace rbvi {
@@ -58,6 +59,24 @@ void check_volumes(const SerialMesh &mesh, const std::string &source) {
   }
 }
 
+/// `facets`: those of all cells, by increasing vertices.
+void check_boundaries(const SerialMesh &mesh, const std::vector<OrientedFacet> &facets,
+                      const std::string &source) {
+  for (const auto &[name, own] : mesh.boundary)
+    for (auto facet : own) {
+      std::sort(facet.begin(), facet.end(), std::greater<>()); // the rest, -1, stays last
+      std::reverse(facet.begin(), facet.begin() + mesh.dim);
+      const auto found = std::lower_bound(
+          facets.begin(), facets.end(), facet,
+          [](const OrientedFacet &f, const auto &vertices) { return f.sorted < vertices; });
+      if (found != facets.end() && found->sorted == facet) continue;
+      const Point &x = mesh.points[at(facet[0])];
+      throw bad_input(source + ": a facet of '" + name + "' at (" + std::to_string(x[0]) + ", " +
+                      std::to_string(x[1]) +
+                      ") is on no cell: the cells beside it must have its nodes");
+    }
+}
+
 /// Bytes of plain values, one after the other.
 template <class T> void append(std::string &bytes, const T &value) {
   bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
@@ -78,15 +97,15 @@ std::vector<bool> interface_of(const SerialMesh &mesh, const std::string &region
   return inside;
 }
 
-double extent(const SerialMesh &mesh) {
+} // namespace
+
+double extent_of(const SerialMesh &mesh) {
   double largest = 0;
   for (const Point &x : mesh.points)
     for (const double coordinate : x)
       largest = std::max(largest, std::abs(coordinate));
   return largest;
 }
-
-} // namespace
 
 void check_mesh(const SerialMesh &mesh, const std::string &source) {
   check_volumes(mesh, source);
@@ -103,6 +122,7 @@ void check_mesh(const SerialMesh &mesh, const std::string &source) {
     throw bad_input(source + ": cells " + std::to_string(twice->cell) + " and " +
                     std::to_string((twice + 1)->cell) +
                     " lie on the same side of their common facet: one of them is inverted");
+  check_boundaries(mesh, facets, source);
 }
 
 void snap_curves(SerialMesh &mesh, const Scene &scene) {
@@ -119,11 +139,11 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
 std::string fingerprint_of(const SerialMesh &mesh) {
   std::string bytes;
   append(bytes, mesh.dim);
-  const double scale = 0x1p24 / extent(mesh);
+  const double scale = 0x1p24 / extent_of(mesh);
   for (const Point &x : mesh.points)
     for (const double coordinate : x)
       append(bytes, std::llround(coordinate * scale));
-  append(bytes, std::llround(std::log2(extent(mesh)) * 0x1p24));
+  append(bytes, std::llround(std::log2(extent_of(mesh)) * 0x1p24));
   for (const auto &cell : mesh.cells)
     append(bytes, cell);
   for (const auto &[name, cells] : mesh.region) {

@@ -34,6 +34,10 @@ void describe_curve(const ContactLayer &layer, const ReducedModel &model, Nitsch
 
 constexpr double round_off = 1e-10; ///< of an answer: where the modes leave less, enough
 
+/// Most that the two halves of a symmetric curve add to an answer differently, relative: more is a
+/// mesh without the symmetry.
+constexpr double mirrored = 1e-7;
+
 /// Abscissa of each Gauss point of the curve.
 Vector abscissae(const std::vector<CurveCell> &cells) {
   Vector x(4 * static_cast<Index>(cells.size()));
@@ -53,25 +57,29 @@ class AllPoints {
 public:
   AllPoints(const ReducedModel &model, const Scene &scene, const std::vector<CurveCell> &cells,
             const std::vector<Sample> &samples)
-      : model_(model), solver_(model_, scene), scene_(scene), samples_(samples) {
+      : model_(model), solver_(model_, scene), scene_(scene), samples_(samples),
+        symmetric_(scene.symmetric) {
     const auto count = static_cast<Index>(samples.size());
     answers_.resize(model.primal_size(), count);
     std::vector<char> met(4 * cells.size(), 0); // some answer has contact or friction there
+    const Vector x = abscissae(cells);
+    const Vector sign = (x.array() < 0).select(Vector::Constant(x.size(), -1.0), 1.0);
     for (Index p = 0; p < count; ++p) {
       answers_.col(p) = solve(p);
       const Matrix residuals = solver_.point_residuals();
       for (Index q = 0; q < residuals.cols(); ++q)
         if (!residuals.col(q).isZero(0)) met[static_cast<std::size_t>(q)] = 1;
+      const Vector skew = Eigen::PartialPivLU<Matrix>(solver_.tangent()).solve(residuals * sign);
+      symmetric_ = symmetric_ && skew.norm() <= mirrored * answers_.col(p).norm();
     }
-    const Vector x = abscissae(cells);
     for (Index q = 0; q < x.size(); ++q)
-      if ((!scene.symmetric || x[q] < 0) && met[static_cast<std::size_t>(q)] != 0)
+      if ((!symmetric_ || x[q] < 0) && met[static_cast<std::size_t>(q)] != 0)
         points_.push_back(static_cast<int>(q));
   }
   const Matrix &answers() const { return answers_; } ///< n x P
   /// Those that matter; on a symmetric curve the points of one half stand for both.
   const std::vector<int> &points() const { return points_; }
-  double share() const { return scene_.symmetric ? 2 : 1; }
+  double share() const { return symmetric_ ? 2 : 1; }
   /// What each of them adds to answer p to first order: tangent^-1 residual, relative to |u|.
   Matrix effects(Index p) {
     const double size = std::max(solve(p).norm(), 1e-300);
@@ -87,6 +95,7 @@ private:
   ReducedNitsche solver_;
   const Scene &scene_;
   const std::vector<Sample> &samples_;
+  bool symmetric_; ///< scene and mesh, hence each answer: both halves of the curve add the same
   Matrix answers_;
   std::vector<int> points_;
 };

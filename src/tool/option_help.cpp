@@ -77,26 +77,44 @@ const std::vector<OptionHelp> &tool_options() {
   return options;
 }
 
-void print_help() {
+namespace {
+
+/// Options, parameters and the mesh of one scene.
+void print_scene(const SceneEntry &entry) {
+  const Scene scene = make_scene(entry.name);
+  std::printf("\nScene %s: %s\n", entry.name.c_str(), entry.summary.c_str());
+  for (const SceneOption &option : entry.options)
+    std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
+                option.default_value.c_str());
+  for (const Parameter &p : scene.parameters.all)
+    std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
+                p.lower, p.upper, p.unit.c_str());
+  print_mesh_contract(scene);
+}
+
+} // namespace
+
+void print_help(const std::string &scene) {
+  if (!scene.empty()) {
+    (void)make_scene(scene);
+    for (const SceneEntry &entry : scene_catalogue())
+      if (entry.name == scene) print_scene(entry);
+    return;
+  }
   std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n"
               "  offline   snapshots, bases, interpolation, reduced model into -out\n"
               "  verify    reduced against high-fidelity over the validation set\n"
               "  solve     one high-fidelity solve at -mu\n"
               "  bench     run time against error\n"
               "  list      the scenes of this build\n"
-              "  inspect FILE   what a model file holds\n\nOptions [default]:\n");
+              "  inspect FILE   what a model file holds\n"
+              "  -help -scene NAME   options, parameters and mesh of one scene\n\n"
+              "Options [default]:\n");
   for (const OptionHelp &option : tool_options())
     std::printf("  -%-24s %s%s\n", option.name.c_str(), option.help.c_str(),
                 option.default_value.empty() ? "" : (" [" + option.default_value + "]").c_str());
-  for (const SceneEntry &scene : scene_catalogue()) {
-    std::printf("\nScene %s: %s\n", scene.name.c_str(), scene.summary.c_str());
-    for (const SceneOption &option : scene.options)
-      std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
-                  option.default_value.c_str());
-    for (const Parameter &p : make_scene(scene.name).parameters.all)
-      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
-                  p.lower, p.upper, p.unit.c_str());
-  }
+  for (const SceneEntry &entry : scene_catalogue())
+    print_scene(entry);
   std::printf(
       "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
       "(Riesz representers), -nitsche_snes_*, -nitsche_ksp_*, -nitsche_pc_*, -log_view, ...\n"

@@ -151,10 +151,25 @@ TEST_P(BadInput, Meshes) {
   spill("edge.msh", coarse_gmsh("edge"));
   spill("half.msh", coarse_gmsh().substr(0, 4000));
   spill("text.msh", "not a mesh\n");
+  spill("millimetres.msh", coarse_gmsh("boundary", 1000));
+  std::string torn = coarse_gmsh(); // node 1, the centre, is no longer that of its first cell
+  const std::string nodes = "$Nodes\n181\n", cell = " 2 2 2 1 1 2 3\n";
+  torn.replace(torn.find(nodes), nodes.size(), "$Nodes\n182\n182 0 0 0\n");
+  torn.replace(torn.find(cell), cell.size(), " 2 2 2 1 182 2 3\n");
+  spill("torn.msh", torn);
+  std::string half = coarse_gmsh(); // an edge of the boundary is in no group
+  const std::string edge = "\n1 1 2 1 1 ";
+  half.replace(half.find(edge), edge.size(), "\n1 1 2 9 1 ");
+  spill("part.msh", half);
   refuse({{"offline -case case.yaml -mesh no.msh -out run", "no.msh"},
           {"offline -case case.yaml -mesh text.msh -out run", "not a Gmsh mesh"},
           {"offline -case case.yaml -mesh half.msh -out run", "half.msh"},
-          {"offline -case case.yaml -mesh edge.msh -out run", "no physical boundary 'boundary'"}});
+          {"offline -case case.yaml -mesh edge.msh -out run", "no physical boundary 'boundary'"},
+          {"offline -case case.yaml -mesh millimetres.msh -out run",
+           "mesh file 'millimetres.msh' is not the square of side 1 m about the origin"},
+          {"offline -case case.yaml -mesh torn.msh -out run", "without common nodes"},
+          {"offline -case case.yaml -mesh part.msh -out run",
+           "'boundary' of mesh file 'part.msh' is not all four sides of the square"}});
 }
 
 TEST_P(BadInput, Models) {

@@ -85,6 +85,7 @@ std::string disc_mesh(int rings) {
 
 Scene radial_scene() {
   Scene scene = make_scene("membrane_obstacle");
+  scene.mesh.facts.clear(); // a disc in place of the square
   scene.map = [](const Mu &, const Point &x) { return x; };
   scene.obstacle = [](const Mu &, const Point &x) {
     return -curvature * (x[0] * x[0] + x[1] * x[1]);

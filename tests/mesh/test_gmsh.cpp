@@ -1,135 +1,87 @@
+#include "gmsh_writer.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/geometry.hpp"
-#include "rbvi/mesh/serial.hpp"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iomanip>
-#include <sstream>
+#include "temporary_file.hpp"
+#include "triangles.hpp"
 
 namespace rbvi {
 namespace {
 
-/// Collective. A file that the first rank writes before anyone reads, and removes after.
-class TemporaryFile {
-public:
-  explicit TemporaryFile(const std::string &content) {
-    MPI_Comm_rank(PETSC_COMM_WORLD, &rank_);
-    int process = static_cast<int>(getpid());
-    MPI_Bcast(&process, 1, MPI_INT, 0, PETSC_COMM_WORLD);
-    path_ = std::filesystem::temp_directory_path() / ("rbvi_" + std::to_string(process) + ".msh");
-    if (rank_ == 0) std::ofstream(path_, std::ios::binary) << content;
-    MPI_Barrier(PETSC_COMM_WORLD);
+/// The built-in mesh as Gmsh would draw it, numbers clashing: the circle is curve 5 and in no
+/// group, group 5 of the curves is "boundary", group 5 of the surfaces "all"; entities are in two
+/// groups.
+GmshDrawing membrane(const std::string &boundary = "boundary") {
+  const SerialMesh mesh = square_with_disc();
+  GmshDrawing drawing;
+  drawing.points = mesh.points;
+  drawing.names = {{{1, 5}, boundary}, {{1, 1}, "two sides"}, {{2, 1}, "obstacle"},
+                   {{2, 2}, "rest"},   {{2, 5}, "all"},       {{1, 2}, "obstacle"}};
+  for (const int side : {1, 2, 3, 4})
+    drawing.entities.push_back(
+        {1, side, side < 3 ? std::vector{1, 5} : std::vector{side == 3 ? 5 : -5}, {}});
+  for (const auto &edge : mesh.boundary.at("boundary")) {
+    const Point &x = mesh.points[at(edge[0])], &y = mesh.points[at(edge[1])];
+    const double middle_x = (x[0] + y[0]) / 2, middle_y = (x[1] + y[1]) / 2;
+    const std::size_t side = middle_y < -0.49 ? 0 : middle_x > 0.49 ? 1 : middle_y > 0.49 ? 2 : 3;
+    drawing.entities[side].elements.push_back({edge[0], edge[1]});
   }
-  TemporaryFile(const TemporaryFile &) = delete;
-  TemporaryFile &operator=(const TemporaryFile &) = delete;
-  ~TemporaryFile() {
-    MPI_Barrier(PETSC_COMM_WORLD);
-    std::error_code ignored;
-    if (rank_ == 0) std::filesystem::remove(path_, ignored);
+  const std::size_t disc = mesh.region.at("obstacle").size();
+  GmshEntity circle{1, 5, {}, {}}, inside{2, 2, {1, -5}, {}}, rest{2, 1, {-2, 5}, {}};
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    const auto &cell = mesh.cells[c];
+    (c < disc ? inside : rest).elements.push_back({cell[0], cell[1], cell[2]});
+    const auto on_circle = [&](int v) {
+      return std::abs(std::hypot(mesh.points[at(v)][0], mesh.points[at(v)][1]) - 0.2) < 1e-12;
+    };
+    for (std::size_t i = 0; c < disc && i < 3; ++i)
+      if (on_circle(cell[i]) && on_circle(cell[(i + 1) % 3]))
+        circle.elements.push_back({cell[i], cell[(i + 1) % 3]});
   }
-  std::string name() const { return path_.string(); }
+  for (GmshEntity &entity : std::vector{circle, inside, rest})
+    drawing.entities.push_back(std::move(entity));
+  return drawing;
+}
 
-private:
-  std::filesystem::path path_;
-  int rank_ = 0;
+class Encodings : public testing::TestWithParam<GmshEncoding> {
+protected:
+  const Scene scene = make_scene("membrane_obstacle");
 };
+INSTANTIATE_TEST_SUITE_P(Gmsh, Encodings, testing::ValuesIn(gmsh_encodings),
+                         [](const testing::TestParamInfo<GmshEncoding> &encoding) {
+                           std::string name = "v" + encoding.param.version;
+                           std::replace(name.begin(), name.end(), '.', '_');
+                           return name + (encoding.param.binary ? "_binary" : "_text");
+                         });
 
-/// Gmsh 2.2 text of a 2D mesh with regions "obstacle", "rest" and boundary `boundary`; node
-/// numbers have gaps, and the last node belongs to no cell.
-std::string as_text(const SerialMesh &mesh, const std::string &boundary = "boundary") {
-  std::ostringstream out;
-  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 7 \"" << boundary
-      << "\"\n2 3 \"obstacle\"\n2 4 \"rest\"\n$EndPhysicalNames\n$Nodes\n"
-      << mesh.points.size() + 1 << "\n"
-      << std::setprecision(17);
-  for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    out << 2 * v + 5 << " " << mesh.points[v][0] << " " << mesh.points[v][1] << " 0\n";
-  out << 2 * mesh.points.size() + 5 << " 9 9 0\n$EndNodes\n$Elements\n";
-  const auto &edges = mesh.boundary.at("boundary");
-  out << edges.size() + mesh.cells.size() << "\n";
-  std::size_t element = 0;
-  for (const auto &edge : edges)
-    out << ++element << " 1 2 7 1 " << 2 * edge[0] + 5 << " " << 2 * edge[1] + 5 << "\n";
-  const auto &disc = mesh.region.at("obstacle");
-  for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c) {
-    const auto &cell = mesh.cells[static_cast<std::size_t>(c)];
-    out << ++element << " 2 2 " << (std::binary_search(disc.begin(), disc.end(), c) ? 3 : 4)
-        << " 1 " << 2 * cell[0] + 5 << " " << 2 * cell[1] + 5 << " " << 2 * cell[2] + 5 << "\n";
-  }
-  out << "$EndElements\n";
-  return out.str();
-}
-
-template <class T> void put(std::string &bytes, T value) {
-  bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
-}
-
-/// The same in binary.
-std::string as_binary(const SerialMesh &mesh) {
-  std::string bytes = "$MeshFormat\n2.2 1 8\n";
-  put(bytes, 1);
-  bytes += "\n$EndMeshFormat\n$PhysicalNames\n2\n1 7 \"boundary\"\n2 3 \"obstacle\"\n"
-           "$EndPhysicalNames\n$Nodes\n" +
-           std::to_string(mesh.points.size()) + "\n";
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    put(bytes, static_cast<int>(v) + 1);
-    for (const double coordinate : mesh.points[v])
-      put(bytes, coordinate);
-  }
-  const auto &edges = mesh.boundary.at("boundary");
-  bytes += "\n$EndNodes\n$Elements\n" + std::to_string(edges.size() + mesh.cells.size()) + "\n";
-  int element = 0;
-  for (const int value : {1, static_cast<int>(edges.size()), 2})
-    put(bytes, value);
-  for (const auto &edge : edges)
-    for (const int value : {++element, 7, 1, edge[0] + 1, edge[1] + 1})
-      put(bytes, value);
-  for (const int value : {2, static_cast<int>(mesh.cells.size()), 2})
-    put(bytes, value);
-  const auto &disc = mesh.region.at("obstacle");
-  for (int c = 0; c < static_cast<int>(mesh.cells.size()); ++c) {
-    const auto &cell = mesh.cells[static_cast<std::size_t>(c)];
-    const int tag = std::binary_search(disc.begin(), disc.end(), c) ? 3 : 4;
-    for (const int value : {++element, tag, 1, cell[0] + 1, cell[1] + 1, cell[2] + 1})
-      put(bytes, value);
-  }
-  return bytes + "\n$EndElements\n";
-}
-
-void expect_square_with_disc(const std::string &content) {
-  const TemporaryFile file(content);
-  const Scene scene = make_scene("membrane_obstacle");
-  const SerialMesh built = square_with_disc();
-  const SerialMesh read = read_gmsh(file.name(), scene);
+TEST_P(Encodings, TheBuiltInMeshComesBack) {
+  const TemporaryFile file(written(membrane(), GetParam()));
+  const SerialMesh built = square_with_disc(), read = read_gmsh(file.name(), scene);
   EXPECT_NO_THROW(check_mesh(read, "file"));
+  EXPECT_NO_THROW(check_facts(read, scene, "file"));
   EXPECT_EQ(read.points, built.points);
-  EXPECT_EQ(read.cells.size(), built.cells.size());
+  EXPECT_EQ(read.cells, built.cells);
+  EXPECT_EQ(read.region.at("obstacle"), built.region.at("obstacle"));
+  EXPECT_EQ(read.boundary.size(), 1u);
+  std::set<std::set<int>> edges, wanted;
+  for (const auto &edge : read.boundary.at("boundary"))
+    edges.insert({edge[0], edge[1]});
+  for (const auto &edge : built.boundary.at("boundary"))
+    wanted.insert({edge[0], edge[1]});
   EXPECT_EQ(read.boundary.at("boundary").size(), 200u);
-  ASSERT_EQ(read.region.at("obstacle"), built.region.at("obstacle"));
-  for (const int c : read.region.at("obstacle"))
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int v = read.cells[static_cast<std::size_t>(c)][i];
-      const Point &x = read.points[static_cast<std::size_t>(v)];
-      EXPECT_LE(std::hypot(x[0], x[1]), 0.2 * (1 + 1e-14));
-    }
+  EXPECT_EQ(edges, wanted);
 }
 
-TEST(Gmsh, RoundTripOfTheBuiltInMeshAsText) {
-  expect_square_with_disc(as_text(square_with_disc()));
+TEST_P(Encodings, AllHaveOneFingerprint) {
+  std::string first;
+  {
+    const TemporaryFile file(written(membrane(), gmsh_encodings.front()));
+    first = fingerprint_of(read_gmsh(file.name(), scene));
+  }
+  const TemporaryFile file(written(membrane(), GetParam()));
+  EXPECT_EQ(fingerprint_of(read_gmsh(file.name(), scene)), first);
 }
 
-TEST(Gmsh, RoundTripOfTheBuiltInMeshInBinary) {
-  expect_square_with_disc(as_binary(square_with_disc()));
-}
-
-TEST(Gmsh, AFileServesAsTheBuiltInMeshDoes) {
-  const TemporaryFile file(as_text(square_with_disc()));
-  const Scene scene = make_scene("membrane_obstacle");
+TEST_P(Encodings, AFileServesAsTheBuiltInMeshDoes) {
+  const TemporaryFile file(written(membrane(), GetParam()));
   const Mesh read = make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 1});
   const Mesh built = make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
   EXPECT_EQ(read.total_vertices, built.total_vertices);
@@ -284,22 +236,87 @@ TEST(GmshErrors, MissingFileAndForeignFiles) {
   }
 }
 
-TEST(GmshErrors, TruncatedFiles) {
-  const std::string text = as_text(square_with_disc()), binary = as_binary(square_with_disc());
-  for (const double fraction : {0.001, 0.2, 0.5, 0.9}) {
-    for (const std::string &whole : {text, binary}) {
-      const auto length = static_cast<std::size_t>(fraction * static_cast<double>(whole.size()));
-      const TemporaryFile file(whole.substr(0, length));
-      expect_refused(file.name(), "cannot be read");
-    }
+TEST_P(Encodings, TruncatedFilesAreRefused) {
+  const std::string whole = written(membrane(), GetParam());
+  for (const double fraction : {0.001, 0.2, 0.5, 0.9, 0.9999}) {
+    const auto length = static_cast<std::size_t>(fraction * static_cast<double>(whole.size()));
+    const TemporaryFile file(whole.substr(0, length));
+    expect_refused(file.name(), "cannot be read");
   }
 }
 
-TEST(GmshErrors, MissingNamesAreListedWithThoseThatExist) {
-  const TemporaryFile file(as_text(square_with_disc(), "wall"));
-  expect_refused(file.name(), "no physical boundary 'boundary'");
-  expect_refused(file.name(), "it has: ");
-  expect_refused(file.name(), "wall");
+TEST_P(Encodings, MissingNamesAreListedAtOnceWithThoseThatExist) {
+  GmshDrawing drawing = membrane("wall");
+  drawing.names.erase({2, 1});
+  const TemporaryFile file(written(drawing, GetParam()));
+  expect_refused(file.name(), "no physical region 'obstacle' of cells and no physical boundary "
+                              "'boundary' of facets");
+  expect_refused(file.name(), "it has: cells in group 1 without a name, 'rest', 'all'; facets in "
+                              "'two sides', 'wall'");
+}
+
+TEST_P(Encodings, AFileWithoutGroupsIsRefused) {
+  GmshDrawing drawing = membrane();
+  for (GmshEntity &entity : drawing.entities)
+    entity.groups.clear();
+  const TemporaryFile file(written(drawing, GetParam()));
+  expect_refused(file.name(), "no physical region 'obstacle' of cells and no physical boundary");
+  expect_refused(file.name(), "cells in none; facets in none");
+}
+
+TEST_P(Encodings, PointsOutOfThePlaneOrNotANumberAreRefused) {
+  GmshDrawing drawing = membrane();
+  drawing.points[17][2] = 0.01;
+  {
+    const TemporaryFile file(written(drawing, GetParam()));
+    expect_refused(file.name(), "z = 0");
+  }
+  drawing.points[17] = {std::nan(""), 0, 0};
+  const TemporaryFile file(written(drawing, GetParam()));
+  expect_refused(file.name(), "node 39 is not finite");
+}
+
+TEST_P(Encodings, AnElementOfANodeThatIsNotThereIsRefused) {
+  GmshDrawing drawing = membrane();
+  drawing.entities.back().elements.front().front() = 100000;
+  const TemporaryFile file(written(drawing, GetParam()));
+  expect_refused(file.name(), "has no node 200005");
+}
+
+TEST_P(Encodings, AnUngroupedSurfaceIsNotPassedOver) {
+  GmshDrawing drawing = membrane();
+  drawing.entities.pop_back(); // Gmsh does not write it then
+  const TemporaryFile file(written(drawing, GetParam()));
+  expect_refused(file.name(), "'boundary' on node");
+  expect_refused(file.name(), "put it in a physical group");
+}
+
+TEST(GmshErrors, OtherVersionsByteOrdersPartitionsAndCountsThatAreWrong) {
+  const std::string two = written(membrane(), {"2.2", false}),
+                    four = written(membrane(), {"4.1", false}),
+                    binary = written(membrane(), {"4.1", true});
+  const auto changed = [](std::string text, const std::string &from, const std::string &to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const std::string partitioned = grid_with({"2 4 2 1 1 2 1 2 4"});
+  const std::pair<std::string, std::string> files[] = {
+      {changed(two, "2.2 0", "2.0 0"), "version 2"},
+      {changed(four, "4.1 0", "4.2 0"), "version 4.2"},
+      {changed(four, "0 8", "0 4"), "4 bytes"},
+      {changed(binary, std::string("1 8\n\1\0\0\0", 8), std::string("1 8\n\0\0\0\1", 8)),
+       "byte order"},
+      {changed(four, "$Entities", "$PartitionedEntities"), "partitioned"},
+      {partitioned, "partitioned"},
+      {changed(two, "$Nodes\n3574", "$Nodes\n3573"), "$Nodes goes on"},
+      {changed(two, "$Nodes\n3574", "$Nodes\n3575"), "'$EndNodes' in $Nodes is not the number"},
+      {changed(four, "$EndElements", "$EndNodes"), "$Elements goes on"},
+      {two + "$Nodes\n0\n$EndNodes\n", "two sections $Nodes"},
+      {changed(two, "\n7 ", "\n5 "), "two nodes 5"},
+      {two + "end", "is not a section"}};
+  for (const auto &[content, hint] : files) {
+    const TemporaryFile file(content);
+    expect_refused(file.name(), hint);
+  }
 }
 
 TEST(GmshErrors, WrongDimensionWrongCellsOrderTwo) {

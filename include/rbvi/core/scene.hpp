@@ -47,14 +47,15 @@ struct SceneOption {
   Range valid{};                    ///< of a number
 };
 
-/// One thing that a mesh must be like to be the scene's, whoever made it.
+/// What a part of the mesh must be for the mesh to be the scene's, whoever made it.
 struct MeshFact {
   std::string part; ///< a region or a boundary of the recipe; "": the whole mesh
-  std::string says; ///< what the part does: "lies on the circle of radius 1 about the origin"
-  /// Distance of a vertex of the part from where it may lie, >= 0; empty: anywhere.
+  std::string is;   ///< completes "the part is ...": "the circle of radius 1 about the origin"
+  /// How far a point is from the part, >= 0; of the mesh and of a region the negative depth inside.
   std::function<double(const Point &)> distance{};
-  double size = 0;         ///< length, area or volume of the part; 0: any
-  std::string within = ""; ///< a boundary that holds all facets of the part
+  /// Length, area or volume; polygons with their vertices on a circle lack up to a tenth. 0: any.
+  double size = 0;
+  std::string within = ""; ///< a boundary that holds all facets of this one
 };
 
 /// Names the built-in mesh generator; `region` and `boundary` are the labels it sets.
@@ -66,7 +67,7 @@ struct MeshRecipe {
   std::string curved = "";
   /// Edges of the contact boundary where the generator lets them be chosen; 0: its default.
   int edges = 0;
-  std::vector<MeshFact> facts{}; ///< what a mesh must fulfil beside the names above
+  std::vector<MeshFact> facts{}; ///< what a mesh must be beside the names above
 };
 
 /// A boundary on which some components of the displacement are imposed.
@@ -162,7 +163,7 @@ struct Scene {
   /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
   /// empty: zero.
   std::function<Point(const Mu &, const Point &)> motion;
-  /// Mesh and data are symmetric about x = 0, and so are the solutions.
+  /// The data are symmetric about x = 0, and so are the solutions on a mesh that is.
   bool symmetric = false;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
   double mirror_images = 1;

@@ -92,9 +92,10 @@ SerialMesh one_block();
 
 /// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the
 /// cell graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws
-/// bad_input: file missing or not a Gmsh mesh, a region or boundary of the scene's recipe not in
-/// it, the wrong dimension, cells other than triangles or tetrahedra, elements of order 2, an
-/// inverted or degenerate cell, fewer cells than ranks, refine < 0.
+/// bad_input: file missing or not a Gmsh mesh that is read, regions or boundaries of the scene's
+/// recipe not in it, the wrong dimension, cells other than triangles or tetrahedra, elements of
+/// order 2, an inverted or degenerate cell, something else than the facts of the recipe say (see
+/// check_facts), fewer cells than ranks, refine < 0.
 Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options);
 
 } // namespace rbvi

@@ -7,8 +7,9 @@
 namespace rbvi {
 
 /// Reads a Gmsh file (2.2, 4.0, 4.1; text or binary) with the regions and boundaries of the
-/// scene's recipe. Vertices and cells keep the order of the file, vertices of no cell are left out;
-/// cells are turned to be positively oriented. Throws bad_input (see make_mesh).
+/// scene's recipe: the same mesh from each of them. Vertices and cells come by increasing number in
+/// the file, nodes of no cell are left out; cells are turned to be positively oriented. Throws
+/// bad_input (see make_mesh).
 SerialMesh read_gmsh(const std::string &file, const Scene &scene);
 
 /// Every simplex split by DMPlex into 2^dim; regions and boundaries are inherited.
@@ -19,8 +20,23 @@ SerialMesh refined(const SerialMesh &mesh);
 void snap_curves(SerialMesh &mesh, const Scene &scene);
 
 /// Throws bad_input, naming `source`: a degenerate or inverted cell (volume <= 1e-12 times its
-/// longest edge to the power dim), or two cells on the same side of their common facet.
+/// longest edge to the power dim), two cells on the same side of their common facet, or a facet of
+/// a boundary that is on no cell.
 void check_mesh(const SerialMesh &mesh, const std::string &source);
+
+/// Throws bad_input, naming `source` and the part, where a vertex of a part is farther than 1e-6 of
+/// the extent from the place that the facts of the scene's recipe name.
+void check_places(const SerialMesh &mesh, const Scene &scene, const std::string &source);
+
+/// The same, and further that the parts are whole. Regions hold every cell in their place, whose
+/// rim the mesh fits; boundaries exactly the facets of the surface along theirs; together they are
+/// the surface, where the recipe says so; sizes are right; no facets lie on top of others without
+/// common nodes, unless they are the two curves of a pair. For a mesh that is not refined: a rim
+/// that Scene::snap does not know is fitted by the file alone.
+void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &source);
+
+/// Largest coordinate, without its sign.
+double extent_of(const SerialMesh &mesh);
 
 /// Hash of points (to 6e-8 of the mesh's extent: the last digits depend on the processor), cells,
 /// regions and boundaries: 16 hex digits.

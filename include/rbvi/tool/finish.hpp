@@ -10,7 +10,7 @@
 
 namespace rbvi {
 
-/// The command line: command, its file (inspect), and what PETSc is to see.
+/// The command line: command, its file (inspect) or scene (help), and what PETSc is to see.
 struct Invocation {
   std::string command, file;
   mutable std::vector<std::string> arguments; ///< program name and options, dashes normalised

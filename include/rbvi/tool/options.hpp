@@ -58,7 +58,11 @@ const std::vector<std::string> &solver_prefixes();
 /// solve where the objects alone cannot tell.
 void check_solver_options(Problem &problem, const HfOptions &options);
 
-/// Prints the usage, the options above and those of the scenes.
-void print_help();
+/// Prints the usage, the options above and those of the scenes; or, where one is named, options,
+/// parameters and mesh of that scene alone. Throws bad_input for an unknown scene.
+void print_help(const std::string &scene);
+
+/// Prints the names and facts that a mesh file for the scene must have.
+void print_mesh_contract(const Scene &scene);
 
 } // namespace rbvi
