@@ -1,13 +1,12 @@
 #include "rbvi/tool/model_case.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/training_samples.hpp"
 
 #include <algorithm>
 #include <cstdio>
-#include <iomanip>
-#include <sstream>
 
 namespace rbvi {
 
@@ -15,18 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string number(double value) {
-  std::ostringstream text;
-  text << std::setprecision(15) << value;
-  return text.str();
-}
-
 /// "[0.16, 0.24]" or "0.2"
 std::string range_of(const ParameterSpace &space, std::size_t i) {
   const Parameter &p = space.all[i];
   const bool free =
       std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
-  return free ? "[" + number(p.lower) + ", " + number(p.upper) + "]" : number(p.value);
+  if (!free) return shortest_number(p.value);
+  return std::string("[")
+             .append(shortest_number(p.lower))
+             .append(", ")
+             .append(shortest_number(p.upper)) +
+         "]";
 }
 
 bool same_range(const ParameterSpace &one, const ParameterSpace &two, std::size_t i) {
