@@ -248,9 +248,9 @@ void check_surface(const Subject &s, const MeshFact &whole) {
 }
 
 /// One vertex for all outer ones at the same place.
-class Places {
+class CommonVertices {
 public:
-  explicit Places(const Subject &s) : subject_(s) {}
+  explicit CommonVertices(const Subject &s) : subject_(s) {}
   int of(int vertex) {
     const Point &x = subject_.mesh.points[at(vertex)];
     std::array<long long, 3> box{};
@@ -281,13 +281,13 @@ void check_glued(const Subject &s) {
       for (const Facet &facet : facets_of(s, name))
         apart.push_back(facet);
   std::sort(apart.begin(), apart.end());
-  Places places(s);
+  CommonVertices common(s);
   std::vector<std::pair<Facet, Facet>> placed; // by place, by vertex
   for (const Facet &facet : s.outer) {
     if (std::binary_search(apart.begin(), apart.end(), facet)) continue;
     Facet place{-1, -1, -1};
     for (int i = 0; i < s.mesh.dim; ++i)
-      place[at(i)] = places.of(facet[at(i)]);
+      place[at(i)] = common.of(facet[at(i)]);
     placed.emplace_back(sorted(place), facet);
   }
   std::sort(placed.begin(), placed.end());
@@ -301,7 +301,20 @@ void check_glued(const Subject &s) {
                     " for one: glue the parts together (Coherence; in Gmsh)");
 }
 
-/// Messages name the whole mesh first: a wrong unit shows in every part.
+/// Throws bad_input for a scene that speaks of a part its recipe does not name.
+void check_recipe(const Scene &scene) {
+  std::vector<std::string> known = scene.mesh.regions, used;
+  known.insert(known.end(), scene.mesh.boundaries.begin(), scene.mesh.boundaries.end());
+  known.emplace_back("");
+  for (const MeshFact &fact : scene.mesh.facts)
+    used.insert(used.end(), {fact.part, fact.within});
+  if (scene.pair) used.insert(used.end(), {scene.pair->slave, scene.pair->master});
+  for (const std::string &name : used)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw bad_input("scene " + scene.name + " speaks of '" + name +
+                      "', which is no region or boundary of its mesh");
+}
+
 Subject subject_of(const SerialMesh &mesh, const Scene &scene, const std::string &source) {
   return {mesh, scene, source, 1e-6 * extent_of(mesh), {}};
 }
@@ -315,7 +328,8 @@ void check_places(const SerialMesh &mesh, const Scene &scene, const std::string 
 }
 
 void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &source) {
-  check_places(mesh, scene, source);
+  check_recipe(scene);
+  check_places(mesh, scene, source); // names the whole mesh first: a wrong unit shows in each part
   Subject s = subject_of(mesh, scene, source);
   s.outer = outer_facets(mesh);
   check_glued(s);

@@ -1,14 +1,18 @@
 // Nitsche's method from snapshots to answers: all points of the curve, few of them, or interpolated
 // operators; every law, every parameter.
+#include "../mesh/gmsh_writer.hpp"
 #include "reduced.hpp"
 
 #include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <numbers>
 
 namespace rbvi {
 namespace {
@@ -246,6 +250,40 @@ TEST(NitscheReduced, NoContactAnywhereIsAFailureThatSaysSo) {
   scene.parameters.all[1].value = 0.0005; // indentation, below the gap
   ReducedAlone r(scene, "grid:3");
   EXPECT_THROW(r.reduce(with(CurveRule::empirical)), Error);
+}
+
+/// The half disk with the nodes of its arc turned to one side, as a file of each rank's own.
+std::string one_sided_mesh() {
+  SerialMesh mesh = half_disc(40);
+  for (Point &x : mesh.points) {
+    const double r = std::hypot(x[0], x[1]), angle = std::atan2(x[0], -x[1]),
+                 part = angle / (std::numbers::pi / 8);
+    if (r <= 0.6 || std::abs(part) >= 1) continue;
+    const double turned = angle + 0.01 * (r - 0.6) / 0.4 * (1 - part * part);
+    x = {r * std::sin(turned), -r * std::cos(turned), 0};
+  }
+  const std::string file = testing::TempDir() + "rbvi_one_sided_" + std::to_string(getpid());
+  std::ofstream(file, std::ios::binary) << written(drawing_of(mesh), {"4.1", true});
+  return file;
+}
+
+/// One half of the points must not stand for both.
+TEST(NitscheMeshes, AMeshThatIsNotSymmetricKeepsThePointsOfBothSides) {
+  const std::string file = one_sided_mesh();
+  Problem problem(PETSC_COMM_SELF, disk("coulomb"), {file, 0});
+  std::filesystem::remove(file);
+  const auto samples = solve_all(problem, parse_set(problem.scene().parameters, "grid:5"));
+  ReduceOptions options = with(CurveRule::empirical);
+  options.curve.tolerance = 1e-7;
+  StageTimes times;
+  const ReducedModel few = rbvi::reduce(problem, samples, options, times).model;
+  options.curve.rule = CurveRule::full;
+  const ReducedModel all = rbvi::reduce(problem, samples, options, times).model;
+  OnlineSolver of_few(few), of_all(all);
+  for (const Sample &sample : samples) {
+    const Vector u = of_all.solve(sample.mu).u;
+    EXPECT_LE((of_few.solve(sample.mu).u - u).norm(), 1e-7 * u.norm());
+  }
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 // Writes meshes as Gmsh does, in versions 2.2, 4.0 and 4.1, as text and in binary.
 #pragma once
 
-#include "rbvi/core/scene.hpp"
+#include "rbvi/mesh/mesh.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -223,6 +223,40 @@ inline std::string GmshWriter::write(const GmshDrawing &drawing) {
     elements_four(drawing);
   }
   return out_.str();
+}
+
+/// A mesh of triangles: one group per name, one entity per list of groups that elements share.
+inline GmshDrawing drawing_of(const SerialMesh &mesh) {
+  GmshDrawing drawing;
+  drawing.points = mesh.points;
+  std::map<std::pair<int, int>, std::vector<int>> facets; // vertices -> groups
+  std::vector<std::vector<int>> cells(mesh.cells.size());
+  int group = 0;
+  for (const auto &[name, own] : mesh.boundary) {
+    drawing.names[{1, ++group}] = name;
+    for (const auto &facet : own)
+      facets[{facet[0], facet[1]}].push_back(group);
+  }
+  group = 0;
+  for (const auto &[name, own] : mesh.region) {
+    drawing.names[{2, ++group}] = name;
+    for (const int cell : own)
+      cells[static_cast<std::size_t>(cell)].push_back(group);
+  }
+  const auto add = [&](int dim, const std::vector<int> &groups, std::vector<int> element) {
+    int number = 1;
+    for (GmshEntity &entity : drawing.entities) {
+      if (entity.dim != dim) continue;
+      ++number;
+      if (entity.groups == groups) return entity.elements.push_back(std::move(element));
+    }
+    drawing.entities.push_back({dim, number, groups, {std::move(element)}});
+  };
+  for (const auto &[facet, groups] : facets)
+    add(1, groups, {facet.first, facet.second});
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    add(2, cells[c], {mesh.cells[c][0], mesh.cells[c][1], mesh.cells[c][2]});
+  return drawing;
 }
 
 inline std::string written(const GmshDrawing &drawing, const GmshEncoding &encoding) {

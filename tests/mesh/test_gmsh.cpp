@@ -80,6 +80,21 @@ TEST_P(Encodings, AllHaveOneFingerprint) {
   EXPECT_EQ(fingerprint_of(read_gmsh(file.name(), scene)), first);
 }
 
+TEST(Gmsh, LinesMayEndAsOnWindows) {
+  const std::string text = written(membrane(), {"4.1", false});
+  std::string windows;
+  for (const char c : text)
+    windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  const Scene scene = make_scene("membrane_obstacle");
+  std::string print;
+  {
+    const TemporaryFile file(text);
+    print = fingerprint_of(read_gmsh(file.name(), scene));
+  }
+  const TemporaryFile file(windows);
+  EXPECT_EQ(fingerprint_of(read_gmsh(file.name(), scene)), print);
+}
+
 TEST_P(Encodings, AFileServesAsTheBuiltInMeshDoes) {
   const TemporaryFile file(written(membrane(), GetParam()));
   const Mesh read = make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 1});

@@ -338,6 +338,13 @@ TEST(MeshFacts, SizesAreTold) {
                  {"'top' of my mesh is not a long side: its length is 1, not 2"});
 }
 
+TEST(MeshFacts, APartThatTheRecipeDoesNotNameIsRefused) {
+  Scene scene = make_scene(block.name, block.options);
+  scene.mesh.facts.front().within = "wall";
+  expect_refused([&] { check_facts(one_block(), scene, "my mesh"); },
+                 {"scene patch speaks of 'wall', which is no region or boundary"});
+}
+
 TEST(MeshFacts, AfterARefinementCurvesAreStillInPlace) {
   Scene scene = make_scene("rigid_disk");
   scene.snap = [](const Point &x) { return x; };
@@ -362,42 +369,19 @@ TEST(MeshFacts, ABuiltInMeshWithoutANameOfTheSceneIsRefused) {
                  {"makes no boundary 'wall'"});
 }
 
-/// A file of the half disk: the mesh that is built in, changed.
 TEST(MeshFacts, FilesAreCheckedOnEveryRank) {
-  const Scene scene = make_scene("rigid_disk");
-  for (const double factor : {1.0, 0.8}) {
-    SerialMesh mesh = built(scene);
-    scaled(factor)(mesh);
-    GmshDrawing drawing;
-    drawing.points = mesh.points;
-    drawing.names = {{{2, 1}, "core"}, {{1, 1}, "top"}, {{1, 2}, "contact"}, {{1, 3}, "arc"}};
-    drawing.entities = {
-        {1, 1, {1}, {}}, {1, 2, {2, 3}, {}}, {1, 3, {3}, {}}, {2, 1, {1}, {}}, {2, 2, {}, {}}};
-    const auto add = [&](std::size_t entity, const auto &facet) {
-      drawing.entities[entity].elements.push_back({facet[0], facet[1]});
-    };
-    for (const auto &facet : mesh.boundary.at("top"))
-      add(0, facet);
-    for (const auto &facet : mesh.boundary.at("arc")) {
-      const auto &contact = mesh.boundary.at("contact");
-      add(std::find(contact.begin(), contact.end(), facet) != contact.end() ? 1 : 2, facet);
+  for (const SceneCase &c : scenes)
+    for (const double factor : {1.0, 0.8}) {
+      const Scene scene = make_scene(c.name, c.options);
+      SerialMesh mesh = built(scene);
+      scaled(factor)(mesh);
+      const TemporaryFile file(written(drawing_of(mesh), {"4.1", true}));
+      const auto make = [&] { (void)make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 0}); };
+      if (factor == 1)
+        EXPECT_NO_THROW(make()) << c.name;
+      else
+        expect_refused(make, {"mesh file '" + file.name() + "' is not ", " m away from it"});
     }
-    std::vector<bool> core(mesh.cells.size(), false);
-    for (const int cell : mesh.region.at("core"))
-      core[at(cell)] = true;
-    for (std::size_t c = 0; c < core.size(); ++c)
-      drawing.entities[core[c] ? 3 : 4].elements.push_back(
-          {mesh.cells[c][0], mesh.cells[c][1], mesh.cells[c][2]});
-    const TemporaryFile file(written(drawing, {"4.1", true}));
-    if (factor == 1)
-      EXPECT_NO_THROW((void)make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 0}));
-    else
-      expect_refused(
-          [&] {
-            (void)make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 0});
-          },
-          {"'contact' of mesh file '" + file.name() + "'"});
-  }
 }
 
 } // namespace
