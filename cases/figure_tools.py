@@ -144,7 +144,7 @@ def read_grid(path):
 def step_values(axis, grid, name, **style):
     """A field along a contact curve: by steps where it is constant on the edges."""
     if name in grid.of_cells:
-        return axis.stairs(grid.of_cells[name], grid.points[:, 0], **style)
+        return axis.stairs(grid.of_cells[name], grid.points[:, 0], baseline=None, **style)
     return axis.plot(grid.points[:, 0], grid.of_nodes[name], **style)[0]
 
 

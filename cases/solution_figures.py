@@ -109,37 +109,40 @@ def contact_zone(curve):
     return (low + high) / 2, (high - low).max() / 2
 
 
-def support_line(grid, curve):
-    """The rigid support below the one body: its deformed contact curve, moved along the normal by
-    the gap that is left."""
+def support_line(grid, curve, reach):
+    """The rigid support of the one body, within `reach` of the middle of the contact: the deformed
+    contact curve, moved along the normal by the gap that is left."""
     tangent = np.gradient(curve.points[:, :2], axis=0)
     normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     inwards = grid.points[:, :2].mean(axis=0) - curve.points[:, :2].mean(axis=0)
     normal *= -np.sign(normal.mean(axis=0) @ inwards)
-    return (curve.points + curve.of_nodes["u"])[:, :2] + curve.of_nodes["gap"][:, None] * normal
+    line = (curve.points + curve.of_nodes["u"])[:, :2] + curve.of_nodes["gap"][:, None] * normal
+    return line[np.linalg.norm(line - contact_zone(curve)[0], axis=1) < reach]
 
 
 def draw_zoom(figure, axis, whole, grid, curve):
     """Von Mises stress where the bodies meet; the frame of the picture in `whole`."""
     centre, half = contact_zone(curve)
-    width, height = 2 * half, 1.6 * half
+    one_body = grid.of_cells["body"].max() == 1
+    low, high = centre - (2 * half, (0.5 if one_body else 1.6) * half), centre + (2 * half, 1.8 * half)
     positions, filled = draw_field(figure, axis, grid, grid.of_cells["von_mises"],
                                    with_unit("von Mises stress", "Pa"))
-    middles = np.abs(positions[grid.cells].mean(axis=1) - centre)
-    inside = (middles[:, 0] < width) & (middles[:, 1] < height)
+    margin = 0.02 * np.ptp(positions, axis=0).max()
+    low = np.maximum(low, positions.min(axis=0) - 3 * margin)
+    high = np.minimum(high, positions.max(axis=0) + margin)
+    middles = positions[grid.cells].mean(axis=1)
+    inside = np.all((low < middles) & (middles < high), axis=1)
     filled.set_clim(0, grid.of_cells["von_mises"][inside].max())
-    draw_mesh(axis, positions, grid, 2 * width)
-    if grid.of_cells["body"].max() == 1:
-        line = support_line(grid, curve)
-        axis.plot(line[:, 0], line[:, 1], color=ORANGE, linewidth=1.4, label="rigid support")
+    draw_mesh(axis, positions, grid, 4 * half)
+    if one_body:
+        line = support_line(grid, curve, 1.25 * half)
+        axis.plot(line[:, 0], line[:, 1], color=ORANGE, linewidth=1.6, label="rigid support")
         axis.legend(loc="lower right")
-    low, high = centre - (width, height), centre + (width, height)
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
     axis.set_title("where they meet", loc="left")
-    whole.add_patch(Rectangle(low, 2 * width, 2 * height, fill=False, edgecolor=ORANGE,
-                              linewidth=1))
+    whole.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor=ORANGE, linewidth=1))
 
 
 def draw_pressure_curve(axis, curve):
@@ -156,7 +159,7 @@ def draw_pressure_curve(axis, curve):
                       label="gap")
     gap.set_ylabel("gap (m)", color=ORANGE)
     gap.grid(False)
-    axis.legend(handles=lines, loc="upper right")
+    axis.legend(handles=lines, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
     axis.set_title("on the contact curve", loc="left")
 
 

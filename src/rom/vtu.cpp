@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -149,8 +150,10 @@ void write_fields(Writer &out, const std::string &where, const std::vector<Field
 void write_field_data(Writer &out, const Grid &grid) {
   std::vector<std::string> units{"points: m"};
   for (const auto *fields : {&grid.of_nodes, &grid.of_cells, &grid.of_all})
-    for (const Field &field : *fields)
-      units.push_back(field.name + ": " + (field.unit.empty() ? "-" : field.unit));
+    for (const Field &field : *fields) {
+      const std::string line = field.name + ": " + (field.unit.empty() ? "-" : field.unit);
+      if (std::find(units.begin(), units.end(), line) == units.end()) units.push_back(line);
+    }
   out.line("<FieldData>");
   if (!grid.scene.empty()) out.texts("scene", {grid.scene});
   out.texts("units", units);
