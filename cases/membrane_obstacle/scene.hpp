@@ -8,4 +8,8 @@ namespace rbvi {
 /// Catalogue entry: name, options, maker.
 SceneEntry membrane_obstacle();
 
+/// Throws bad_input unless the disc of radius all[0] about (all[1], all[2]) is far enough from the
+/// edge of the square for the ring around it not to fold.
+void check_disc_in_square(const Mu &all);
+
 } // namespace rbvi

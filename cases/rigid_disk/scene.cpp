@@ -12,6 +12,7 @@
 #include "scene.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
@@ -23,6 +24,8 @@ namespace {
 
 constexpr double initial_gap = 0.001, core_radius = 0.6;
 constexpr int nitsche_edges = 316; // 2.5 mm, the mesh of the published study
+/// Indentation over the radius: from there on contact reaches the ends of the arc.
+constexpr double deepest = 0.13;
 
 /// Of all parameters.
 enum Of { radius, indentation, friction, core_stiffness, poisson_ratio };
@@ -89,22 +92,31 @@ Friction friction_of(const SceneOptions &options) {
   return result;
 }
 
-ParameterSpace parameters(FrictionLaw law, bool nitsche) {
-  ParameterSpace space = all_free({{"radius", "m", 0.7, 1.3, 1},
-                                   {"indentation", "m", 0.01, 0.09, 0.09},
-                                   {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2},
-                                   {"core_stiffness", "", 0.2, 5, 1},
-                                   {"poisson_ratio", "", 0.2, 0.45, 0.35}});
-  if (law == FrictionLaw::tresca) space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1};
+ParameterSpace parameters(FrictionLaw law, bool nitsche, double young) {
+  ParameterSpace space =
+      all_free({{"radius", "m", 0.7, 1.3, 1, {0.1, 10}},
+                {"indentation", "m", 0.01, 0.09, 0.09, {0, 1.3}},
+                {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2, friction_range},
+                {"core_stiffness", "", 0.2, 5, 1, {1e-3, 1e3}},
+                {"poisson_ratio", "", 0.2, 0.45, 0.35, poisson_range}});
+  if (law == FrictionLaw::tresca)
+    space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1, {0, 1e4 * young}};
   space.free = {radius};
   return space;
 }
 
+int arc_edges(const SceneOptions &options) {
+  const double edges = number_in(options, "arc_edges");
+  if (edges != 0 && (edges < 8 || std::fmod(edges, 2) != 0))
+    throw bad_input("option arc_edges is " + options.at("arc_edges") +
+                    ": it must be even and at least 8, or 0");
+  return static_cast<int>(edges);
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
-  const auto edges = static_cast<int>(number_in(options, "arc_edges"));
+  const int edges = arc_edges(options);
   const double young = number_in(options, "young");
-  (void)lame(young, 0.35); // refuses a modulus that is not positive
   scene.components = 2;
   scene.degree = 2;
   scene.support = SupportRecipe{"contact", {}, {}, friction_of(options)};
@@ -117,7 +129,7 @@ Scene make(const SceneOptions &options) {
   };
   scene.nitsche = nitsche_recipe(options, material);
   const bool nitsche = scene.nitsche.has_value();
-  scene.parameters = parameters(scene.support->friction.law, nitsche);
+  scene.parameters = parameters(scene.support->friction.law, nitsche, young);
   scene.training = "grid:61";
   scene.validation = "random:30:1";
   scene.mesh = {"half_disc",
@@ -145,6 +157,13 @@ Scene make(const SceneOptions &options) {
 
 } // namespace
 
+void check_indentation(const Mu &all) {
+  if (all[indentation] > deepest * all[radius] * (1 + 1e-12))
+    throw bad_input("an indentation of " + short_number(all[indentation]) + " is above " +
+                    short_number(deepest) + " of the radius " + short_number(all[radius]) +
+                    ": contact would reach the ends of the arc");
+}
+
 SceneEntry rigid_disk() {
   std::vector<SceneOption> options{
       {"friction", "coulomb", "law of friction", {"none", "tresca", "coulomb"}},
@@ -167,8 +186,9 @@ SceneEntry rigid_disk() {
       {"arc_edges",
        "0",
        "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316",
-       {}},
-      {"young", "15", "Young's modulus in Pa", {}}};
+       {},
+       {0, 10000}},
+      {"young", "15", "Young's modulus in Pa", {}, young_range}};
   for (SceneOption &option : nitsche_options())
     options.push_back(std::move(option));
   return {"rigid_disk", "Hertz contact of an elastic half-disk with a rigid disk, with friction",

@@ -8,4 +8,8 @@ namespace rbvi {
 /// Catalogue entry: name, options, maker.
 SceneEntry rigid_disk();
 
+/// Throws bad_input unless the indentation all[1] is small enough beside the radius all[0] for
+/// contact to stay on the arc.
+void check_indentation(const Mu &all);
+
 } // namespace rbvi

@@ -278,6 +278,9 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside) {
     if (!allow_outside && !in_bounds(p, mu[i]))
       throw bad_input(p.name + " = " + shortest(mu[i]) + " is outside [" + shortest(p.lower) +
                       ", " + shortest(p.upper) + "]");
+    if (!(mu[i] >= p.valid.lower && mu[i] <= p.valid.upper))
+      throw bad_input(p.name + " = " + shortest(mu[i]) + " is outside its range of validity [" +
+                      shortest(p.valid.lower) + ", " + shortest(p.valid.upper) + "]");
   }
 }
 

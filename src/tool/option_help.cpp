@@ -1,4 +1,6 @@
 // The options of rbvi, for -help.
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/tool/options.hpp"
 
 #include <cstdio>
@@ -75,6 +77,14 @@ const std::vector<OptionHelp> &tool_options() {
   return options;
 }
 
+namespace {
+
+std::string validity(const SceneOption &option) {
+  return option.choices.empty() ? ", valid in " + describe(option.valid) : "";
+}
+
+} // namespace
+
 void print_help() {
   std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n"
               "  offline   snapshots, bases, interpolation, reduced model into -out\n"
@@ -89,12 +99,16 @@ void print_help() {
   for (const SceneEntry &scene : scene_catalogue()) {
     std::printf("\nScene %s: %s\n", scene.name.c_str(), scene.summary.c_str());
     for (const SceneOption &option : scene.options)
-      std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
-                  option.default_value.c_str());
+      std::printf("  -%-24s %s [%s]%s\n", option.name.c_str(), option.help.c_str(),
+                  option.default_value.c_str(), validity(option).c_str());
     for (const Parameter &p : make_scene(scene.name).parameters.all)
-      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
-                  p.lower, p.upper, p.unit.c_str());
+      std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g]%s, valid in %s\n",
+                  p.name.c_str(), p.lower, p.upper, (p.unit.empty() ? "" : " " + p.unit).c_str(),
+                  describe(p.valid).c_str());
   }
+  std::printf("\nOutputs (columns of tables):\n");
+  for (const OutputColumn &column : output_columns())
+    std::printf("  %-25s %s\n", column.name, column.says);
   std::printf(
       "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
       "(Riesz representers), -nitsche_snes_*, -nitsche_ksp_*, -nitsche_pc_*, -log_view, ...\n"

@@ -9,7 +9,8 @@ namespace rbvi {
 /// "%.4g".
 std::string short_number(double value);
 
-/// The name with the fewest single-letter edits (Levenshtein); "" if there is none.
+/// The shortest name that begins with what was given; else the one with the fewest single-letter
+/// edits (Levenshtein); "" if there is none.
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names);
 
 } // namespace rbvi
