@@ -181,7 +181,7 @@ struct Overwriting : testing::Test {
 
 TEST_F(Overwriting, AnInputIsFoundHoweverItIsSpelt) {
   const std::vector<NamedFile> inputs{{"the file of queries", "mu.csv"}, {"the model", "no.h5"}};
-  for (const std::string name :
+  for (const std::string &name :
        {std::string("mu.csv"), std::string("./mu.csv"), std::string("sub/../mu.csv"),
         (directory / "mu.csv").string(), std::string("link.csv"), std::string("hard.csv")})
     EXPECT_TRUE(refuses("--out " + name + " would overwrite the file of queries", [&] {
