@@ -7,7 +7,9 @@
 // gives the contact of the published basis sizes.
 #include "scene.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
 #include <algorithm>
@@ -20,6 +22,11 @@ namespace {
 
 constexpr double reference_radius = 0.2;
 constexpr double transition = 0.3; ///< width of the ring over which the map turns into the identity
+
+// Along its radii the ring is stretched by 1 + phi' (r - 0.2 + c . e) > 0, with |phi'| <= 1.5 /
+// 0.3: r + |c| < 0.4. This leaves a tenth of each cell.
+constexpr double farthest = 0.38;
+constexpr Range radii{0.02, farthest}, centres{0.02 - farthest, farthest - 0.02};
 
 /// Outside the disc: carry the circle's motion to zero at distance `transition`.
 Point map_outside(const Mu &mu, const Point &x, double rho) {
@@ -65,13 +72,25 @@ MeshRecipe mesh() {
   return recipe;
 }
 
+/// Throws bad_input unless the disc of radius all[0] about (all[1], all[2]) is far enough from the
+/// edge of the square for the ring around it not to fold.
+void check_disc_in_square(const Mu &all) {
+  const double reach = all[0] + std::hypot(all[1], all[2]);
+  if (reach > farthest + 1e-12)
+    throw bad_input("the disc reaches " + short_number(reach) +
+                    " from the middle of the square, beyond " + short_number(farthest) +
+                    ", and folds the mesh around it: make the radius or the centre's distance "
+                    "smaller");
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   scene.dim = 2;
   scene.components = 1;
-  scene.parameters = all_free({{"radius", "m", 0.16, 0.24, 0.2},
-                               {"center_x", "m", -0.05, 0.05, 0},
-                               {"center_y", "m", -0.05, 0.05, 0}});
+  scene.parameters = all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
+                               {"center_x", "m", -0.05, 0.05, 0, centres},
+                               {"center_y", "m", -0.05, 0.05, 0, centres}});
+  scene.check_parameters = check_disc_in_square;
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
   scene.mesh = mesh();
@@ -99,7 +118,7 @@ Scene make(const SceneOptions &options) {
 SceneEntry membrane_obstacle() {
   return {"membrane_obstacle",
           "elastic membrane pushed onto a disc-shaped obstacle of free radius and centre",
-          {{"load", "-25", "load per unit area", {}},
+          {{"load", "-25", "load per unit area", {}, {-1e6, 1e6}},
            {"disc_map", "similarity", "how the reference disc is mapped", {"similarity", "graded"}},
            {"lumped", "no", "vertex quadrature in b and g", {"no", "yes"}}},
           make};

@@ -27,6 +27,7 @@ namespace {
 constexpr double apart = 0.25; ///< of each reference block from the contact line y = 0
 constexpr double height = 0.5;
 constexpr double on_side = 1e-6; ///< of the sides: how far a vertex of a mesh file may lie beside
+constexpr double largest_strain = 0.25;
 
 /// Of all parameters of one body.
 enum Of { indentation, shear, friction };
@@ -72,7 +73,7 @@ MeshRecipe mesh_of_one() {
 Scene make_two(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
-  scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05}});
+  scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain}}});
   scene.mesh = mesh_of_two();
   scene.map = [](const Mu &, const Point &x) -> Point {
     return {x[0], x[1] - (x[1] > 0 ? apart : -apart), 0};
@@ -129,9 +130,9 @@ Scene make_one(const SceneOptions &options) {
   scene.support->gap = [](const Mu &, const Point &) { return 0.0; };
   scene.support->friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
   scene.support->friction.value = [](const Mu &mu) { return mu[friction]; };
-  scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05},
-                               {"shear", "m", 0, 0.2, 0.02},
-                               {"friction_coefficient", "", 0, 1, 0.3}});
+  scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain * height}},
+                               {"shear", "m", 0, 0.2, 0.02, {-height / 2, height / 2}},
+                               {"friction_coefficient", "", 0, 1, 0.3, friction_range}});
   scene.parameters.free = {indentation};
   scene.nitsche = nitsche_recipe(options);
   scene.material = [material](const Mu &, const Point &) { return material; };

@@ -13,6 +13,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
@@ -25,6 +26,8 @@ namespace {
 
 constexpr double initial_gap = 0.001, core_radius = 0.6;
 constexpr int nitsche_edges = 316; // 2.5 mm, the mesh of the published study
+/// Indentation over the radius: from there on contact reaches the ends of the arc.
+constexpr double deepest = 0.13;
 
 /// Of all parameters.
 enum Of { radius, indentation, friction, core_stiffness, poisson_ratio };
@@ -91,13 +94,15 @@ Friction friction_of(const SceneOptions &options) {
   return result;
 }
 
-ParameterSpace parameters(FrictionLaw law, bool nitsche) {
-  ParameterSpace space = all_free({{"radius", "m", 0.7, 1.3, 1},
-                                   {"indentation", "m", 0.01, 0.09, 0.09},
-                                   {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2},
-                                   {"core_stiffness", "", 0.2, 5, 1},
-                                   {"poisson_ratio", "", 0.2, 0.45, 0.35}});
-  if (law == FrictionLaw::tresca) space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1};
+ParameterSpace parameters(FrictionLaw law, bool nitsche, double young) {
+  ParameterSpace space =
+      all_free({{"radius", "m", 0.7, 1.3, 1, {0.1, 10}},
+                {"indentation", "m", 0.01, 0.09, 0.09, {0, 1.3}},
+                {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2, friction_range},
+                {"core_stiffness", "", 0.2, 5, 1, {1e-3, 1e3}},
+                {"poisson_ratio", "", 0.2, 0.45, 0.35, poisson_range}});
+  if (law == FrictionLaw::tresca)
+    space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1, {0, 1e4 * young}};
   space.free = {radius};
   return space;
 }
@@ -108,8 +113,8 @@ MeshRecipe mesh(int edges) {
   MeshRecipe recipe{"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
   recipe.facts = {{"", "the half y <= 0 of the disk of radius 1 m about the origin",
                    common_part(disk(centre, 1), box({-1, -1, 0}, {1, 0, 0})), pi / 2},
-                  {"core", "the half disk of radius 0.6 m about the origin", disk(centre, core_radius),
-                   pi / 2 * core_radius * core_radius},
+                  {"core", "the half disk of radius 0.6 m about the origin",
+                   disk(centre, core_radius), pi / 2 * core_radius * core_radius},
                   {"top", "the flat side y = 0", segment({-1, 0, 0}, {1, 0, 0}), 2},
                   {"contact", "the arc of radius 1 m within 22.5 degrees of (0, -1)",
                    arc(centre, 1, down, pi / 8), pi / 4, "arc"},
@@ -118,11 +123,27 @@ MeshRecipe mesh(int edges) {
   return recipe;
 }
 
+int arc_edges(const SceneOptions &options) {
+  const double edges = number_in(options, "arc_edges");
+  if (edges != 0 && (edges < 8 || std::fmod(edges, 2) != 0))
+    throw bad_input("option arc_edges is " + options.at("arc_edges") +
+                    ": it must be even and at least 8, or 0");
+  return static_cast<int>(edges);
+}
+
+/// Throws bad_input unless the indentation all[1] is small enough beside the radius all[0] for
+/// contact to stay on the arc.
+void check_indentation(const Mu &all) {
+  if (all[indentation] > deepest * all[radius] * (1 + 1e-12))
+    throw bad_input("an indentation of " + short_number(all[indentation]) + " is above " +
+                    short_number(deepest) + " of the radius " + short_number(all[radius]) +
+                    ": contact would reach the ends of the arc");
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
-  const auto edges = static_cast<int>(number_in(options, "arc_edges"));
+  const int edges = arc_edges(options);
   const double young = number_in(options, "young");
-  (void)lame(young, 0.35); // refuses a modulus that is not positive
   scene.components = 2;
   scene.degree = 2;
   scene.support = SupportRecipe{"contact", {}, {}, friction_of(options)};
@@ -135,7 +156,8 @@ Scene make(const SceneOptions &options) {
   };
   scene.nitsche = nitsche_recipe(options);
   const bool nitsche = scene.nitsche.has_value();
-  scene.parameters = parameters(scene.support->friction.law, nitsche);
+  scene.parameters = parameters(scene.support->friction.law, nitsche, young);
+  scene.check_parameters = check_indentation;
   scene.training = "grid:61";
   scene.validation = "random:30:1";
   scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges);
@@ -181,8 +203,9 @@ SceneEntry rigid_disk() {
       {"arc_edges",
        "0",
        "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316",
-       {}},
-      {"young", "15", "Young's modulus in Pa", {}}};
+       {},
+       {0, 10000}},
+      {"young", "15", "Young's modulus in Pa", {}, young_range}};
   for (SceneOption &option : nitsche_options())
     options.push_back(std::move(option));
   return {"rigid_disk", "Hertz contact of an elastic half-disk with a rigid disk, with friction",

@@ -14,6 +14,7 @@
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_pair.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,7 +22,8 @@ namespace rbvi {
 
 namespace {
 
-constexpr double centre = 1.5; ///< of the upper reference disk, height
+constexpr double centre = 1.5;  ///< of the upper reference disk, height
+constexpr double deepest = 0.2; ///< indentation over a radius: deformations stay small
 
 /// The upper disk is shifted until it is the initial gap above the origin, the lower one shrinks or
 /// grows from its highest point, the origin.
@@ -80,12 +82,13 @@ MeshRecipe mesh() {
 Scene make(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
-  scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1}});
   scene.training = "grid:81";
   scene.validation = "random:30:1";
   scene.mesh = mesh();
   const double gap = number_in(options, "initial_gap");
   const double indentation = number_in(options, "indentation");
+  const Range radii{std::max(0.1, indentation / deepest), 10};
+  scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1, radii}});
   scene.map = [gap](const Mu &mu, const Point &x) { return placed(gap, mu[0], x); };
   scene.snap = on_circle;
   scene.fixed = {{"axis", {0}}, {"top", {}}, {"bottom", {}}};
@@ -101,8 +104,12 @@ Scene make(const SceneOptions &options) {
 SceneEntry two_disks() {
   return {"two_disks", "Hertz contact of two elastic half-disks, the lower one of free radius",
           elastic_pair_options(
-              {{"indentation", "0.09", "displacement of each flat side towards the other disk", {}},
-               {"initial_gap", "0.001", "between the undeformed disks", {}}}),
+              {{"indentation",
+                "0.09",
+                "displacement of each flat side towards the other disk",
+                {},
+                {0, deepest}},
+               {"initial_gap", "0.001", "between the undeformed disks", {}, {-deepest, 1}}}),
           make};
 }
 

@@ -144,6 +144,10 @@ void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside) {
     if (!allow_outside && !in_bounds(p, mu[i]))
       throw bad_input(p.name + " = " + shortest_number(mu[i]) + " is outside [" +
                       shortest_number(p.lower) + ", " + shortest_number(p.upper) + "]");
+    if (!(mu[i] >= p.valid.lower && mu[i] <= p.valid.upper))
+      throw bad_input(p.name + " = " + shortest_number(mu[i]) +
+                      " is outside its range of validity [" + shortest_number(p.valid.lower) +
+                      ", " + shortest_number(p.valid.upper) + "]");
   }
 }
 

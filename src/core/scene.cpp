@@ -5,6 +5,7 @@
 #include "../../cases/rigid_disk/scene.hpp"
 #include "../../cases/two_disks/scene.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
 
 #include <algorithm>
 
@@ -21,7 +22,8 @@ std::string joined(const std::vector<std::string> &names) {
 
 void check_option(const SceneOption &option, const std::string &value) {
   if (option.choices.empty()) {
-    (void)parse_number(value, "option " + option.name);
+    check_range(option.valid, parse_number(value, "option " + option.name),
+                "option " + option.name);
   } else if (std::find(option.choices.begin(), option.choices.end(), value) ==
              option.choices.end()) {
     throw bad_input("option " + option.name + " is '" + value + "': use one of " +
@@ -63,12 +65,12 @@ std::vector<SceneOption> nitsche_options() {
           {"nitsche_gamma0",
            "11.54",
            "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge",
-           {}}};
+           {},
+           {0.1, 2000}}};
 }
 
 std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options) {
   const double gamma0 = number_in(options, "nitsche_gamma0");
-  if (!(gamma0 > 0)) throw bad_input("option nitsche_gamma0 must be positive");
   if (options.at("formulation") == "mixed") return std::nullopt;
   return NitscheRecipe{gamma0};
 }

@@ -44,6 +44,12 @@ std::string trimmed(const std::string &text) {
 }
 
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names) {
+  std::string completion;
+  for (const std::string &name : names)
+    if (given.size() > 1 && name.starts_with(given) &&
+        (completion.empty() || name.size() < completion.size()))
+      completion = name;
+  if (!completion.empty()) return completion;
   const auto nearest =
       std::min_element(names.begin(), names.end(), [&](const std::string &a, const std::string &b) {
         return edits(given, a) < edits(given, b);

@@ -7,8 +7,8 @@ namespace rbvi {
 
 std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own) {
   std::vector<SceneOption> options = pair_options();
-  options.push_back({"young", "15", "Young's modulus", {}});
-  options.push_back({"poisson_ratio", "0.35", "Poisson's ratio", {}});
+  options.push_back({"young", "15", "Young's modulus", {}, young_range});
+  options.push_back({"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range});
   options.insert(options.end(), own.begin(), own.end());
   return options;
 }

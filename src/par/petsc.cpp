@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <string>
 #include <string_view>
 
@@ -57,18 +58,34 @@ void throw_petsc_error(PetscErrorCode code, const char *call) {
 
 ErrorRecorder::ErrorRecorder() {
   recorded[0] = '\0';
+  RBVI_CALL(PetscMallocGetDebug(&checked_memory_, nullptr, nullptr));
   RBVI_CALL(PetscPushErrorHandler(record, nullptr));
   ++recorders;
 }
 
 ErrorRecorder::~ErrorRecorder() {
-  (void)PetscPopErrorHandler();
+  // Where -malloc_debug has put another allocator in place, as PETSc started, that one cannot free
+  // what this one made: it stays.
+  PetscBool checked = PETSC_FALSE;
+  (void)PetscMallocGetDebug(&checked, nullptr, nullptr);
+  if (checked == checked_memory_) (void)PetscPopErrorHandler();
   --recorders;
 }
+
+namespace {
+
+/// PETSc's handler of signals would take a reader that has seen enough (rbvi list | head -1) for a
+/// crash.
+void end_quietly_without_reader() {
+  (void)std::signal(SIGPIPE, SIG_DFL);
+}
+
+} // namespace
 
 Session::Session(int &argc, char **&argv, const char *help) {
   recorder_.emplace();
   RBVI_CALL(SlepcInitialize(&argc, &argv, nullptr, help));
+  end_quietly_without_reader();
 }
 
 Session::~Session() {

@@ -1,6 +1,7 @@
 #include "rbvi/rom/model.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
@@ -280,7 +281,10 @@ Scene scene_of(const ReducedModel &model) {
                   model.parameters.all.begin(), model.parameters.all.end(), same))
     throw bad_input("the parameters of the model are not those of scene " + model.scene_name +
                     " in this build");
-  scene.parameters = model.parameters;
+  const ParameterSpace of_scene = std::exchange(scene.parameters, model.parameters);
+  for (std::size_t i = 0; i < of_scene.all.size(); ++i)
+    scene.parameters.all[i].valid = of_scene.all[i].valid;
+  check_box(scene);
   return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "rbvi/rom/online.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/packed.hpp"
 
@@ -244,7 +245,7 @@ ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
 }
 
 ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
-  check_mu(scene_.parameters, mu, extrapolate);
+  check_query(scene_, mu, extrapolate);
   return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu),
                      [&] { return solve_at(expand(scene_.parameters, mu)); });
 }

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/overwrite.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/training_samples.hpp"
@@ -142,6 +143,19 @@ OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments
   return result;
 }
 
+namespace {
+
+/// No file that is read is written.
+void check_files(const OnlineArguments &arguments) {
+  const std::vector<NamedFile> inputs{{"the file of queries", arguments.queries},
+                                      {"the model", arguments.model}};
+  if (arguments.out != "-") check_overwriting({"--out", arguments.out}, inputs);
+  check_overwriting({"--vtu", arguments.vtu}, inputs);
+  check_overwriting({"--vtu", arguments.vtu}, {{"--out", arguments.out}});
+}
+
+} // namespace
+
 void run_online(const OnlineArguments &arguments, std::ostream &out) {
   if (arguments.help) {
     out << usage;
@@ -151,6 +165,7 @@ void run_online(const OnlineArguments &arguments, std::ostream &out) {
     out << "rbvi-online " RBVI_VERSION "\n";
     return;
   }
+  check_files(arguments);
   const bool fields = arguments.full || !arguments.vtu.empty();
   ReducedModel model = read_model(arguments.model, fields);
   if (arguments.decorrelated) model = leading(model, model.modes, model.generators);

@@ -229,6 +229,7 @@ SNESConvergedReason NitscheSystem::judge(PetscInt step, double r) {
   const double before = relative;
   relative = scale > 0 ? r / scale : 0;
   if (relative <= tolerance) return SNES_CONVERGED_FNORM_RELATIVE;
+  if (r <= small_residual) return SNES_CONVERGED_FNORM_ABS;
   if (step == 0 || relative < best) {
     best = relative;
     best_step = step;
@@ -297,8 +298,10 @@ void NitscheSystem::make_snes(const Operators &op) {
     if (given == PETSC_FALSE) RBVI_CALL(PetscOptionsSetValue(nullptr, name.c_str(), "1e-14"));
   }
   set_callbacks();
-  RBVI_CALL(SNESSetTolerances(snes.get(), 0, 0, 0, 100, 100000));
+  RBVI_CALL(SNESSetTolerances(snes.get(), small_residual, accuracy, 0, 100, 100000));
   set_linear_solver();
+  RBVI_CALL(
+      SNESGetTolerances(snes.get(), &small_residual, &accuracy, nullptr, nullptr, nullptr));
   const bool extended = std::string(type).starts_with("vi");
   if (!extended || frames) return;
   const Handle<Vec> lower = like(op.f);

@@ -10,7 +10,6 @@
 namespace rbvi {
 
 struct NitscheSystem {
-  static constexpr double accuracy = 1e-12; ///< of the residual, relative
   static constexpr double round_off = 1e-9; ///< below it the residual may stagnate
 
   NitscheSystem(const NitscheSolver &solver, const Problem &problem, const NitscheOptions &options);
@@ -22,6 +21,8 @@ struct NitscheSystem {
   Handle<SNES> snes;
   Handle<Mat> a_gamma, tangent;
   Handle<Vec> au, ay, force; ///< scratch
+  double accuracy = 1e-12;   ///< of the residual, relative to its terms: -nitsche_snes_rtol
+  double small_residual = 0; ///< its norm, below which it is accurate, too: -nitsche_snes_atol
   double linear_tolerance = 1e-2;
 
   // At mu; with local frames in their unknowns.
@@ -31,7 +32,7 @@ struct NitscheSystem {
   Vector bounds; ///< of friction
 
   // While SNES works.
-  double tolerance = accuracy;
+  double tolerance = 1e-12;
   double scale = 0, relative = 1; ///< of the last residual: its terms' norms, its part of them
   double smallest_scale = 0;      ///< where the answer is zero all its terms are round-off
   double best = 1;                ///< the smallest part so far, and its step

@@ -77,6 +77,9 @@ void command_offline(const ToolOptions &options) {
   if (rank == 0) print_stages(offline_stages(options, training.size(), groups.count()), {});
   if (options.plan) return;
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
+  check_outputs(world, options,
+                {{"the reduced model", options.out / "model.h5"},
+                 {"the table", options.out / "samples.csv"}});
 
   StageTimes times;
   Sweep sweep;

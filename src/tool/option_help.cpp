@@ -1,4 +1,6 @@
 // The options of rbvi, for -help.
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/tool/options.hpp"
 
 #include <cstdio>
@@ -79,16 +81,21 @@ const std::vector<OptionHelp> &tool_options() {
 
 namespace {
 
+std::string validity(const SceneOption &option) {
+  return option.choices.empty() ? ", valid in " + describe(option.valid) : "";
+}
+
 /// Options, parameters and the mesh of one scene.
 void print_scene(const SceneEntry &entry) {
   const Scene scene = make_scene(entry.name);
   std::printf("\nScene %s: %s\n", entry.name.c_str(), entry.summary.c_str());
   for (const SceneOption &option : entry.options)
-    std::printf("  -%-24s %s [%s]\n", option.name.c_str(), option.help.c_str(),
-                option.default_value.c_str());
+    std::printf("  -%-24s %s [%s]%s\n", option.name.c_str(), option.help.c_str(),
+                option.default_value.c_str(), validity(option).c_str());
   for (const Parameter &p : scene.parameters.all)
-    std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g] %s\n", p.name.c_str(),
-                p.lower, p.upper, p.unit.c_str());
+    std::printf("  -%-24s parameter: bounds a,b or a fixed value [%g,%g]%s, valid in %s\n",
+                p.name.c_str(), p.lower, p.upper, (p.unit.empty() ? "" : " " + p.unit).c_str(),
+                describe(p.valid).c_str());
   print_mesh_contract(scene);
 }
 
@@ -115,6 +122,9 @@ void print_help(const std::string &scene) {
                 option.default_value.empty() ? "" : (" [" + option.default_value + "]").c_str());
   for (const SceneEntry &entry : scene_catalogue())
     print_scene(entry);
+  std::printf("\nOutputs (columns of tables):\n");
+  for (const OutputColumn &column : output_columns())
+    std::printf("  %-25s %s\n", column.name, column.says);
   std::printf(
       "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
       "(Riesz representers), -nitsche_snes_*, -nitsche_ksp_*, -nitsche_pc_*, -log_view, ...\n"

@@ -17,6 +17,9 @@ void command_solve(const ToolOptions &options) {
   if (options.mu.empty()) throw bad_input("no parameter is given: use -mu 0.18,0.02,-0.01");
   const ParameterSpace &space = options.scene.parameters;
   const Mu mu = parse_mu(space, options.mu);
+  std::vector<NamedFile> outputs{{"-csv", options.csv}, {"-vtu", options.vtu}};
+  if (!options.vtu.empty()) outputs.push_back({"-vtu", contact_file(options.vtu)});
+  check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh);
   check_solver_options(problem, options.hf);
   HighFidelity solver(problem, options.hf);

@@ -3,27 +3,88 @@
 #include "rbvi/solve/replicated.hpp"
 #include "rbvi/tool/options.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
 
-/// Options under our prefixes that no PETSc object has asked for, as " -a -b".
-std::string unused_options() {
+/// An option of PETSc's that one of our solvers would read and not follow.
+struct Ineffective {
+  const char *name;
+  const char *instead;
+};
+constexpr const char *by_residual =
+    "Newton's method ends by its residual, relative to its terms: use -nitsche_snes_rtol";
+constexpr const char *by_iterations =
+    "a factorisation is kept while conjugate gradients need few iterations: use -nitsche_ksp_rtol "
+    "or -nitsche_ksp_max_it";
+constexpr Ineffective ineffective[] = {{"nitsche_snes_stol", by_residual},
+                                       {"nitsche_snes_divergence_tolerance", by_residual},
+                                       {"nitsche_snes_convergence_test", by_residual},
+                                       {"nitsche_snes_lag_preconditioner", by_iterations},
+                                       {"nitsche_ksp_reuse_preconditioner", by_iterations}};
+
+/// Options under our prefixes that no PETSc object has asked for.
+std::vector<std::string> unused_options() {
   PetscInt count = 0;
   char **names = nullptr, **values = nullptr;
   RBVI_CALL(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  std::string unused;
+  std::vector<std::string> unused;
   for (PetscInt i = 0; i < count; ++i)
     for (const std::string &prefix : solver_prefixes())
-      if (std::string(names[i]).starts_with(prefix)) unused += " -" + std::string(names[i]);
+      if (std::string(names[i]).starts_with(prefix)) unused.emplace_back(names[i]);
   RBVI_CALL(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return unused;
 }
 
+/// Throws bad_input for options of a solver that this run does not have, or that have no effect.
+void check_solver_of(const std::string &name, const Scene &scene, const HfOptions &options) {
+  for (const Ineffective &option : ineffective)
+    if (name.starts_with(option.name))
+      throw bad_input("-" + name + " has no effect: " + option.instead);
+  if (name.starts_with("nitsche_") && !scene.nitsche)
+    throw bad_input("-" + name + " is for Nitsche's method: set -formulation nitsche");
+  if (name.starts_with("hf_") && scene.nitsche)
+    throw bad_input("-" + name + " is for the mixed formulation: Nitsche's method has -nitsche_" +
+                    name.substr(3));
+  if (name.starts_with("vi_") && (scene.nitsche || options.method != HfMethod::vi))
+    throw bad_input("-" + name + " is for -hf_method vi");
+}
+
+/// Whether one application of a preconditioner solves the system.
+bool solves(const std::string &pc_type) {
+  static const std::vector<std::string> types{PCLU,        PCCHOLESKY, PCSVD,      PCQR,
+                                              PCREDUNDANT, PCKSP,      PCTELESCOPE};
+  return std::find(types.begin(), types.end(), pc_type) != types.end();
+}
+
+/// Throws bad_input where a solver without iterations has tolerances, or is none.
+void check_direct(KSP ksp, const std::string &prefix, const std::vector<std::string> &names) {
+  PetscBool direct = PETSC_FALSE;
+  RBVI_CALL(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(ksp), KSPPREONLY, &direct));
+  if (direct == PETSC_FALSE) return;
+  for (const char *of_iterations : {"rtol", "atol", "divtol", "max_it"})
+    for (const std::string &name : names)
+      if (name == prefix + "ksp_" + of_iterations)
+        throw bad_input("-" + name + " has no effect on a direct solver: add -" + prefix +
+                        "ksp_type cg, or leave it out");
+  PC pc = nullptr;
+  PCType type = nullptr;
+  RBVI_CALL(KSPGetPC(ksp, &pc));
+  RBVI_CALL(PCGetType(pc, &type));
+  if (type != nullptr && !solves(type))
+    throw bad_input("-" + prefix + "pc_type " + type + " is no solver by itself: add -" + prefix +
+                    "ksp_type cg");
+}
+
 /// The solvers of a run as they are made, for their questions to the options alone.
-void make_solvers(MPI_Comm comm) {
-  (void)make_direct_solver(comm, "hf_");
-  (void)make_direct_solver(PETSC_COMM_SELF, "v_");
+void make_solvers(MPI_Comm comm, const std::vector<std::string> &names, const HfOptions &options) {
+  const Handle<KSP> stiffness = make_direct_solver(comm, "hf_");
+  check_direct(stiffness.get(), "hf_", names);
+  const Handle<KSP> product = make_direct_solver(PETSC_COMM_SELF, "v_");
+  check_direct(product.get(), "v_", names);
+  if (options.method != HfMethod::vi) return;
   Handle<SNES> snes;
   KSP ksp = nullptr;
   PC pc = nullptr;
@@ -31,9 +92,11 @@ void make_solvers(MPI_Comm comm) {
   RBVI_CALL(SNESSetOptionsPrefix(snes.get(), "vi_"));
   RBVI_CALL(SNESSetType(snes.get(), SNESVINEWTONRSLS));
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
+  RBVI_CALL(KSPSetType(ksp, KSPPREONLY));
   RBVI_CALL(KSPGetPC(ksp, &pc));
   RBVI_CALL(PCSetType(pc, PCLU));
   RBVI_CALL(SNESSetFromOptions(snes.get()));
+  check_direct(ksp, "vi_", names);
 }
 
 /// What the solvers ask for only when they work (options of factorisations, of inner solvers).
@@ -51,20 +114,27 @@ void try_solvers(Problem &problem, const HfOptions &options) {
 
 const std::vector<std::string> &solver_prefixes() {
   static const std::vector<std::string> prefixes{
-      "hf_", "vi_", "v_", "nitsche_snes_", "nitsche_ksp_", "nitsche_pc_", "nitsche_mat_"};
+      "hf_ksp_", "hf_pc_",        "hf_mat_",      "vi_",         "v_ksp_",      "v_pc_",
+      "v_mat_",  "nitsche_snes_", "nitsche_ksp_", "nitsche_pc_", "nitsche_mat_"};
   return prefixes;
 }
 
 void check_solver_options(Problem &problem, const HfOptions &options) {
-  if (unused_options().empty()) return;
+  const std::vector<std::string> names = unused_options();
+  if (names.empty()) return;
+  for (const std::string &name : names)
+    check_solver_of(name, problem.scene(), options);
   std::string reason;
   try {
-    make_solvers(problem.comm());
+    make_solvers(problem.comm(), names, options);
     if (!unused_options().empty()) try_solvers(problem, options);
   } catch (const Error &error) {
+    if (error.status() == Status::bad_input) throw;
     reason = std::string(" (") + error.what() + ")";
   }
-  const std::string unused = unused_options();
+  std::string unused;
+  for (const std::string &name : unused_options())
+    unused += " -" + name;
   if (!unused.empty())
     throw bad_input("no solver of this run asks for the option" + unused + reason);
   if (!reason.empty()) throw bad_input("the options of the solvers do not work" + reason);

@@ -60,20 +60,97 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml -trian grid:2,2,2 -out run", "nearest one is -train"},
        {"offline -case case.yaml --pod_tolernace 1e-3 -out run", "nearest one is -pod_tolerance"},
        {"offline -case case.yaml -pod_tolerance small -out run", "'small': not a number"},
-       {"offline -case case.yaml -pod_tolerance -1 -out run", "use a number from 0 to 1"},
+       {"offline -case case.yaml -pod_tolerance -1 -out run", "use a number from 0 to 0.5"},
+       {"offline -case case.yaml -pod_tolerance 1 -out run", "use a number from 0 to 0.5"},
+       {"offline -case case.yaml -pod_tol 1e-3 -out run", "nearest one is -pod_tolerance"},
        {"offline -case case.yaml -cone_type cone -out run",
         "use one of cpg, mcpg, angle_greedy, nmf, nodal, hybrid"},
        {"offline -case case.yaml -disc_map round -out run", "use one of similarity, graded"},
        {"offline -case case.yaml -load heavy -out run", "'heavy': not a number"},
        {"offline -case case.yaml -plan maybe -out run", "use yes or no"},
-       {"offline -case case.yaml -log_veiw -out run", "unknown option -log_veiw"},
+       {"offline -case case.yaml -log_veiw -out run", "the nearest one is -log_view"},
        {"offline -case case.yaml -sweep_ranks_per_solve 3 -out run", "a number that divides the"},
        {"offline -case case.yaml -train grid:2,2 -out run", "2 counts for 3"},
        {"offline -case case.yaml -radius 0.24,0.16 -out run", "the lower bound comes first"},
+       {"offline -case case.yaml -radius 0.2,0.2 -out run", "both bounds are the same"},
        {"offline -case case.yaml -radius 0.2 -out run", "3 counts for 2 free parameters"},
        {"offline -case case.yaml -radius 0.2 -parameters radius -out run", "fixed by -radius 0.2"},
        {"offline -case case.yaml -options_file no -out run", "options file no"},
        {"offline -case case.yaml", "use -out"}});
+}
+
+/// Boxes, values and options of scenes where these make no sense, before a directory is made.
+TEST_P(BadInput, RangesOfValidity) {
+  spill("disk.yaml", "scene: rigid_disk\narc_edges: 40\ntrain: grid:3\n");
+  spill("patch.yaml", "scene: patch\ntrain: grid:3\n");
+  const std::string membrane = "offline -case case.yaml -out run ";
+  const std::string disk = "offline -case disk.yaml -out run ";
+  refuse({{membrane + "-radius -1,1", "lower bound, is -1: its range of validity is [0.02, 0.38]"},
+          {membrane + "-radius 0.16,1e300", "upper bound, is 1e+300: its range of validity"},
+          {membrane + "-radius 5 -train grid:2,2", "option -radius is 5: its range of validity"},
+          {membrane + "-radius nan,0.2", "not finite"},
+          {membrane + "-radius 0.16,inf", "not finite"},
+          {membrane + "-center_x 0.3,0.35", "folds the mesh"},
+          {membrane + "-load 1e300", "option load is 1e+300: its range of validity"},
+          {disk + "-indentation 5", "option -indentation is 5: its range of validity"},
+          {disk + "-indentation 0.05,1", "contact would reach the ends of the arc"},
+          {disk + "-poisson_ratio 0.7", "range of validity is [-0.99, 0.499]"},
+          {disk + "-poisson_ratio 0.2,0.5", "range of validity is [-0.99, 0.499]"},
+          {disk + "-friction_coefficient -0.3", "range of validity is [0, 5]"},
+          {disk + "-friction tresca -friction_threshold -1,1", "range of validity is [0, 150000]"},
+          {disk + "-core_stiffness 0,1", "range of validity is [0.001, 1000]"},
+          {disk + "-young -1", "option young is -1: its range of validity"},
+          {disk + "-plan -indentation 5", "option -indentation is 5: its range of validity"},
+          {"offline -case patch.yaml -indentation 5 -out run", "range of validity is [0, 0.25]"},
+          {"solve -case case.yaml -radius -1,1 -mu 0.5,0,0 -csv x.csv", "range of validity"},
+          {"verify -case case.yaml -radius -1,1 -out run", "range of validity"}});
+}
+
+TEST_P(BadInput, OptionsWithoutAValue) {
+  refuse({{"offline -case case.yaml -out run -mesh", "option -mesh has no value"},
+          {"offline -case case.yaml -radius -out run", "option -radius has no value"},
+          {"offline -case case.yaml -out run -train", "option -train has no value"},
+          {"solve -case case.yaml -mu 0.2,0,0 -csv", "option -csv has no value"}});
+}
+
+TEST_P(BadInput, OptionsOfPetscWithoutAPrefix) {
+  const std::string offline = "offline -case case.yaml -out run ";
+  refuse(
+      {{offline + "-ksp_rtol 1e-3", "-hf_ksp_rtol, -v_ksp_rtol, -vi_ksp_rtol, -nitsche_ksp_rtol"},
+       {offline + "-pc_type lu", "need the prefix of a solver: -hf_pc_type"},
+       {offline + "-mat_mumps_icntl_14 50", "prefix of a solver: -hf_mat_mumps_icntl_14"},
+       {offline + "-snes_rtol 1e-3", "prefix of a solver: -vi_snes_rtol, -nitsche_snes_rtol"},
+       {offline + "-eps_nev 3", "no object of rbvi takes PETSc's options -eps_*"}});
+}
+
+TEST_P(BadInput, OptionsOfSolversWithoutEffect) {
+  const std::string offline = "offline -case case.yaml -out run ";
+  refuse({{offline + "-hf_ksp_rtol 1e-3", "no effect on a direct solver: add -hf_ksp_type cg"},
+          {offline + "-v_ksp_max_it 3", "no effect on a direct solver: add -v_ksp_type cg"},
+          {offline + "-hf_pc_type jacobi", "no solver by itself: add -hf_ksp_type cg"},
+          {offline + "-v_pc_type none", "no solver by itself: add -v_ksp_type cg"},
+          {offline + "-vi_snes_rtol 1e-3", "is for -hf_method vi"},
+          {offline + "-lumped yes -hf_method vi -vi_ksp_rtol 1e-3", "add -vi_ksp_type cg"},
+          {offline + "-nitsche_snes_rtol 1e-3", "set -formulation nitsche"}});
+}
+
+/// What a command reads it does not write, however the file is spelt.
+TEST_P(BadInput, OverwritingInputs) {
+  spill("mu.csv", "radius,center_x,center_y\n0.2,0,0\n");
+  fs::create_symlink("mu.csv", "link.csv");
+  fs::create_directory("sub");
+  spill("sub/case.yaml", slurp("case.yaml"));
+  const std::string solve = "solve -case case.yaml -mu 0.2,0,0 ";
+  refuse(
+      {{solve + "-csv case.yaml", "-csv case.yaml would overwrite the case file"},
+       {solve + "-csv ./sub/../case.yaml", "would overwrite the case file"},
+       {solve + "-vtu coarse.msh", "would overwrite the file of -mesh"},
+       {solve + "-train mu.csv -csv link.csv", "would overwrite the file of -train"},
+       {solve + "-valid mu.csv -vtu mu.csv", "would overwrite the file of -valid"},
+       {solve + "-csv x.vtu -vtu x.vtu", "would overwrite -csv"},
+       {solve + "-csv x_contact.vtu -vtu x.vtu", "would overwrite -csv"},
+       {"offline -case sub/case.yaml -mesh coarse.msh -out sub", "would overwrite the case file"},
+       {"offline -case case.yaml -out .", "would overwrite the case file"}});
 }
 
 TEST_P(BadInput, OptionsOfBases) {
@@ -131,20 +208,30 @@ TEST_P(BadInput, CaseFiles) {
   spill("bytes.yaml", std::string("\0\1\377\376scene", 9));
   spill("empty.yaml", "");
   spill("key.yaml", "scene: membrane_obstacle\ntrian: grid:2,2,2\n");
-  spill("nested.yaml", "scene: membrane_obstacle\npod: {tolernace: 1}\n");
+  spill("nested.yaml", "scene: membrane_obstacle\npod: {tolerance: 1}\n");
+  spill("twice.yaml", "scene: membrane_obstacle\nload: -25\nload: -20\n");
+  spill("another.yaml", "scene: membrane_obstacle\ncase: case.yaml\n");
+  spill("range.yaml", "scene: membrane_obstacle\nradius: [-1, 1]\n");
+  spill("none.yaml", "scene: membrane_obstacle\nmesh:\n");
   fs::create_directory("directory.yaml");
   refuse({{"offline -out run", "no case is named"},
           {"offline -case no.yaml -out run", "no.yaml cannot be read"},
           {"offline -case directory.yaml -out run", "directory.yaml is a directory"},
-          {"offline -case text.yaml -out run", "text.yaml is malformed"},
-          {"offline -case brackets.yaml -out run", "brackets.yaml is malformed"},
-          {"offline -case tab.yaml -out run", "tab.yaml is malformed"},
-          {"offline -case list.yaml -out run", "list.yaml is malformed"},
-          {"offline -case alias.yaml -out run", "alias.yaml is malformed"},
-          {"offline -case bytes.yaml -out run", ""},
+          {"offline -case text.yaml -out run", "text.yaml is malformed at line 1"},
+          {"offline -case brackets.yaml -out run", "brackets.yaml is malformed at line 3"},
+          {"offline -case tab.yaml -out run", "tab.yaml is malformed at line 2"},
+          {"offline -case list.yaml -out run", "list.yaml is malformed at line 1"},
+          {"offline -case alias.yaml -out run", "alias.yaml is malformed at line 1"},
+          {"offline -case bytes.yaml -out run", "bytes.yaml is malformed at line 1"},
           {"offline -case empty.yaml -out run", "no scene is named"},
-          {"offline -case key.yaml -out run", "unknown option -trian"},
-          {"offline -case nested.yaml -out run", "unknown option -pod_tolernace"}});
+          {"offline -case key.yaml -out run", "unknown option -trian (line 2 of key.yaml)"},
+          {"offline -case nested.yaml -out run", "line 2: options are not nested"},
+          {"offline -case nested.yaml -out run", "write 'pod_tolerance: value'"},
+          {"offline -case twice.yaml -out run", "line 3: load is given again, after line 2"},
+          {"offline -case another.yaml -out run", "a case file cannot name another"},
+          {"offline -case range.yaml -out run", "its range of validity is [0.02, 0.38]"},
+          {"offline -case none.yaml -out run", "option -mesh (line 2 of none.yaml) has no value"},
+          {"offline -case /dev/zero -out run", "larger than 1 MB"}});
 }
 
 TEST_P(BadInput, Meshes) {

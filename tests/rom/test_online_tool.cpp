@@ -178,6 +178,9 @@ TEST_F(OnlineBinary, RefusesBadInputWhole) {
   EXPECT_TRUE(refused("model.h5 --mu nan,0,0 --vtu u.vtu", "not finite"));
   EXPECT_TRUE(refused("model.h5 --mu 0.2,0", "2 values for 3"));
   EXPECT_TRUE(refused("model.h5 --queries no.csv --out out.csv", "cannot read 'no.csv'"));
+  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --out ./model.h5", "would overwrite the model"));
+  std::ofstream("mu.csv") << "radius,center_x,center_y\n0.2,0,0\n";
+  EXPECT_TRUE(refused("model.h5 --queries mu.csv --out ./mu.csv", "the file of queries"));
   std::ofstream("mu.csv") << "radius,center_x,center_y\n0.2,0,0\n0.2,0,0.1\n0.2,0,0\n";
   EXPECT_TRUE(refused("model.h5 --queries mu.csv --out out.csv", "line 3 of mu.csv"));
 }

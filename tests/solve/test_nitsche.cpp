@@ -200,6 +200,21 @@ TEST(NitscheDisk, OtherSolversFindTheSame) {
   }
 }
 
+/// The tolerance of the residual is that of SNES: tighter ones take more steps.
+TEST(NitscheDisk, ItsAccuracyIsThatOfSnes) {
+  const Scene scene = small_disk("coulomb");
+  const HfSolution usual = solve(scene, with_radius(0.9));
+  EXPECT_LE(*usual.outputs.kkt_residual, 1e-12);
+  {
+    const PetscOption loose("-nitsche_snes_rtol", "1e-3");
+    const HfSolution rough = solve(scene, with_radius(0.9));
+    EXPECT_LE(*rough.outputs.kkt_residual, 1e-3);
+    EXPECT_LT(rough.iterations, usual.iterations);
+  }
+  const PetscOption huge("-nitsche_snes_atol", "1e300");
+  EXPECT_EQ(solve(small_disk("none"), with_radius(0.9)).iterations, 0);
+}
+
 /// The loop over frozen bounds and the one where they follow every step.
 TEST(NitscheDisk, BoundsThatFollowEveryStepEndInTheSame) {
   NitscheOptions single;

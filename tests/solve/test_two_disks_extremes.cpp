@@ -65,9 +65,11 @@ TEST(DisksFullyPressed, EveryMultiplierWithAPartnerIsActive) {
   for (const std::string multiplier : {"p0", "p1"})
     for (const double radius : {0.7, 1.0, 1.3}) {
       SCOPED_TRACE(multiplier + " " + std::to_string(radius));
-      Problem problem(PETSC_COMM_SELF,
-                      make_scene("two_disks", {{"indentation", "1"}, {"multiplier", multiplier}}),
-                      {});
+      Scene scene = make_scene("two_disks", {{"multiplier", multiplier}});
+      scene.motion = [](const Mu &, const Point &x) -> Point {
+        return {0, x[1] > 0 ? -1.0 : 1.0, 0};
+      };
+      Problem problem(PETSC_COMM_SELF, scene, {});
       const HfSolution s = HighFidelity(problem, {}).solve({radius});
       expect_finite(s);
       EXPECT_LE(s.kkt.largest(), 1e-10);

@@ -149,6 +149,9 @@ struct Scene {
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
   SceneOptions options;
   ParameterSpace parameters;
+  /// Throws bad_input where values of all parameters that are valid one by one make no sense
+  /// together; empty: they always do.
+  std::function<void(const Mu &)> check_parameters;
   std::string training = "", validation = ""; ///< default sets, as parse_set reads them
   MeshRecipe mesh;
 

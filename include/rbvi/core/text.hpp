@@ -15,7 +15,8 @@ std::string shortest_number(double value);
 /// Without blanks at both ends.
 std::string trimmed(const std::string &text);
 
-/// The name with the fewest single-letter edits (Levenshtein); "" if there is none.
+/// The shortest name that begins with what was given; else the one with the fewest single-letter
+/// edits (Levenshtein); "" if there is none.
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names);
 
 } // namespace rbvi

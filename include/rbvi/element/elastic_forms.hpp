@@ -6,6 +6,12 @@
 
 namespace rbvi {
 
+/// Of Young's modulus, as wide as round-off allows; of Poisson's ratio, up to where elements of
+/// degree 1 begin to lock.
+constexpr Range young_range{1e-6, 1e15}, poisson_range{-0.99, 0.499};
+/// Of a coefficient of friction: above, solutions need not be unique.
+constexpr Range friction_range{0, 5};
+
 /// lambda = E nu / ((1 + nu) (1 - 2 nu)), shear = E / (2 (1 + nu)). `young` is E (a pressure),
 /// `poisson` is nu. Throws bad_input unless E > 0 and -1 < nu < 1/2.
 Lame lame(double young, double poisson);

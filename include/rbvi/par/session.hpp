@@ -16,10 +16,14 @@ public:
   ~ErrorRecorder();
   ErrorRecorder(const ErrorRecorder &) = delete;
   ErrorRecorder &operator=(const ErrorRecorder &) = delete;
+
+private:
+  PetscBool checked_memory_ = PETSC_FALSE; ///< PETSc's allocator in the constructor
 };
 
 /// Initialises MPI, PETSc and SLEPc and installs an ErrorRecorder; finalises them at the end of its
-/// life, when no Handle may be left. Collective on the world. Throws failure.
+/// life, when no Handle may be left. A closed standard output ends the process without a word
+/// (SIGPIPE), as it does other filters. Collective on the world. Throws failure.
 class Session {
 public:
   Session(int &argc, char **&argv, const char *help = nullptr);

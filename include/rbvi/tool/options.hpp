@@ -2,6 +2,7 @@
 // checked before any work starts.
 #pragma once
 
+#include "rbvi/core/overwrite.hpp"
 #include "rbvi/mor/reduce.hpp"
 
 #include <filesystem>
@@ -18,9 +19,10 @@ struct ToolOptions {
   HfOptions hf;
   ReduceOptions reduce;
   int ranks_per_solve = 1;
-  double max_failures = 0.1; ///< share of a set that may fail
-  std::filesystem::path out; ///< run directory; "" where none is given
-  std::string case_file;     ///< all options of the run, for its own case file (case_of_run)
+  double max_failures = 0.1;       ///< share of a set that may fail
+  std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
+  std::filesystem::path out;       ///< run directory; "" where none is given
+  std::string case_file;           ///< all options of the run, for its own case file (case_of_run)
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
   bool plan = false;
@@ -49,6 +51,11 @@ ToolOptions read_options(MPI_Comm comm);
 
 /// The case file that a run leaves in its directory, read where no other is named.
 std::filesystem::path case_of_run(const std::filesystem::path &out);
+
+/// Collective. Throws bad_input if one of the files that a command will write is one that its
+/// options name as input, or another of them, or if the run's case file would replace the user's.
+void check_outputs(MPI_Comm comm, const ToolOptions &options,
+                   const std::vector<NamedFile> &outputs);
 
 /// How the options of PETSc objects of ours begin.
 const std::vector<std::string> &solver_prefixes();

@@ -1,0 +1,26 @@
+// Ranges of validity: where a scene makes sense, beside the box that a reduced model is made for.
+#pragma once
+
+#include "rbvi/core/scene.hpp"
+
+namespace rbvi {
+
+/// "[0.02, 0.38]"; of an infinite end "at least 0", "at most 1"; "any number".
+std::string describe(const Range &range);
+
+/// Throws bad_input unless `value` is in the range; `what` begins the message: "option -young".
+void check_range(const Range &range, double value, const std::string &what);
+
+/// Throws bad_input where parameters that are valid one by one make no sense together.
+/// `all`: the values of all parameters.
+void check_together(const Scene &scene, const Mu &all);
+
+/// Throws bad_input unless mu (the free parameters) is in the box, or with `allow_outside` in the
+/// range of validity.
+void check_query(const Scene &scene, const Mu &mu, bool allow_outside);
+
+/// Throws bad_input if the box of a free parameter, the value of a fixed one, or a corner of the box
+/// leaves the range of validity.
+void check_box(const Scene &scene);
+
+} // namespace rbvi

@@ -1,0 +1,63 @@
+#include "rbvi/core/validity.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+bool inside(const Range &range, double value) {
+  return value >= range.lower && value <= range.upper;
+}
+
+} // namespace
+
+std::string describe(const Range &range) {
+  const bool below = std::isfinite(range.lower), above = std::isfinite(range.upper);
+  const std::string lower = shortest_number(range.lower), upper = shortest_number(range.upper);
+  if (below && above) return std::string("[").append(lower).append(", ").append(upper).append("]");
+  if (below) return std::string("at least ").append(lower);
+  if (above) return std::string("at most ").append(upper);
+  return "any number";
+}
+
+void check_range(const Range &range, double value, const std::string &what) {
+  if (!inside(range, value))
+    throw bad_input(what + " is " + shortest_number(value) + ": its range of validity is " +
+                    describe(range));
+}
+
+void check_together(const Scene &scene, const Mu &all) {
+  if (scene.check_parameters) scene.check_parameters(all);
+}
+
+void check_query(const Scene &scene, const Mu &mu, bool allow_outside) {
+  check_mu(scene.parameters, mu, allow_outside);
+  if (allow_outside) check_together(scene, expand(scene.parameters, mu));
+}
+
+void check_box(const Scene &scene) {
+  const ParameterSpace &space = scene.parameters;
+  for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
+    const Parameter &p = space.all[static_cast<std::size_t>(i)];
+    const bool is_free = std::find(space.free.begin(), space.free.end(), i) != space.free.end();
+    if (!is_free) check_range(p.valid, p.value, "parameter " + p.name);
+    if (is_free && !(inside(p.valid, p.lower) && inside(p.valid, p.upper) && p.lower < p.upper))
+      throw bad_input("parameter " + p.name + " is freed in [" + shortest_number(p.lower) + ", " +
+                      shortest_number(p.upper) + "]: its range of validity is " +
+                      describe(p.valid));
+  }
+  for (unsigned corner = 0; corner < 1U << space.free.size(); ++corner) {
+    Mu mu;
+    for (int i = 0; i < space.size(); ++i)
+      mu.push_back((corner >> i & 1U) != 0 ? space.at(i).upper : space.at(i).lower);
+    while_doing("checking the corner " + describe(space, mu) + " of the box",
+                [&] { check_together(scene, expand(space, mu)); });
+  }
+}
+
+} // namespace rbvi
