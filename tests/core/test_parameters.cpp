@@ -1,4 +1,5 @@
-#include "rbvi/core/error.hpp"
+#include "refuses.hpp"
+
 #include "rbvi/core/parameter_sets.hpp"
 
 #include <cmath>
@@ -17,20 +18,6 @@ ParameterSpace space() {
 
 ParameterSpace only_x() {
   return free_only(space(), "x");
-}
-
-/// Whether `work` throws bad_input with one line that contains `part`.
-template <class Work> testing::AssertionResult refuses(const std::string &part, Work &&work) {
-  try {
-    work();
-  } catch (const Error &error) {
-    const std::string message = error.what();
-    const bool ok = error.status() == Status::bad_input &&
-                    message.find(part) != std::string::npos &&
-                    message.find('\n') == std::string::npos;
-    return (ok ? testing::AssertionSuccess() : testing::AssertionFailure()) << message;
-  }
-  return testing::AssertionFailure() << "accepted";
 }
 
 TEST(ParseNumber, WholeFiniteText) {

@@ -1,5 +1,6 @@
 // Ranges of validity of every scene's parameters and options, alone and together.
-#include "rbvi/core/error.hpp"
+#include "refuses.hpp"
+
 #include "rbvi/core/overwrite.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
@@ -11,20 +12,6 @@
 
 namespace rbvi {
 namespace {
-
-/// Whether `work` throws bad_input with one line that contains `part`.
-template <class Work> testing::AssertionResult refuses(const std::string &part, Work &&work) {
-  try {
-    work();
-  } catch (const Error &error) {
-    const std::string message = error.what();
-    const bool ok = error.status() == Status::bad_input &&
-                    message.find(part) != std::string::npos &&
-                    message.find('\n') == std::string::npos;
-    return (ok ? testing::AssertionSuccess() : testing::AssertionFailure()) << message;
-  }
-  return testing::AssertionFailure() << "accepted";
-}
 
 /// Every choice of every option, the others by default.
 std::vector<Scene> all_scenes() {
