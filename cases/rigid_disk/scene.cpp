@@ -108,8 +108,8 @@ MeshRecipe mesh(int edges) {
   MeshRecipe recipe{"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
   recipe.facts = {{"", "the half y <= 0 of the disk of radius 1 m about the origin",
                    common_part(disk(centre, 1), box({-1, -1, 0}, {1, 0, 0})), pi / 2},
-                  {"core", "the half disk of radius 0.6 m about the origin", disk(centre, core_radius),
-                   pi / 2 * core_radius * core_radius},
+                  {"core", "the half disk of radius 0.6 m about the origin",
+                   disk(centre, core_radius), pi / 2 * core_radius * core_radius},
                   {"top", "the flat side y = 0", segment({-1, 0, 0}, {1, 0, 0}), 2},
                   {"contact", "the arc of radius 1 m within 22.5 degrees of (0, -1)",
                    arc(centre, 1, down, pi / 8), pi / 4, "arc"},
