@@ -92,6 +92,7 @@ def bench(run):
     for axis, title in zip(axes, ("displacement u", "multipliers and outputs")):
         log_axis(axis, "median time of a query (ms)", "largest relative error", title)
         axis.set_xscale("log")
+        axis.margins(x=0.15)
     handles.update({line.get_label(): line for line in axes[1].lines
                     if line.get_label().startswith("Pareto")})
     figure.legend(handles=handles.values(), labels=handles.keys(), loc="upper center",

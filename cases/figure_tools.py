@@ -124,7 +124,8 @@ def read_grid(path):
                           for array in next(root.iter(name)).findall("DataArray")}
                    for name in ("FieldData", "Points", "Cells", "PointData", "CellData")}
     except (xml.ParseError, StopIteration, KeyError, ValueError) as error:
-        raise Missing(f"{path} is not a VTU file that rbvi wrote: {error}") from None
+        reason = str(error) or "a part is missing"
+        raise Missing(f"{path} is not a VTU file that rbvi wrote: {reason}") from None
     points = section["Points"]["points"].reshape(-1, 3)
     per_cell = int(section["Cells"]["offsets"][0])
     cells = section["Cells"]["connectivity"].astype(int).reshape(-1, per_cell)

@@ -47,7 +47,7 @@ def draw_membrane(figure, axis, grid, circle):
     axis.set_ylabel("y (m)")
     axis.set_zlabel("u (m)", labelpad=0)
     axis.tick_params(labelsize=7, pad=0)
-    axis.set_title("membrane; below, the edge of the obstacle", loc="left")
+    axis.set_title("membrane, and below it the obstacle", loc="left")
     figure.colorbar(surface, ax=axis, shrink=0.6, pad=0.1, label="u (m)")
 
 
@@ -129,7 +129,7 @@ def draw_zoom(figure, axis, whole, grid, curve):
     positions, filled = draw_field(figure, axis, grid, grid.of_cells["von_mises"],
                                    with_unit("von Mises stress", "Pa"))
     margin = 0.02 * np.ptp(positions, axis=0).max()
-    low = np.maximum(low, positions.min(axis=0) - 3 * margin)
+    low = np.maximum(low, positions.min(axis=0) - (margin, 3 * margin))
     high = np.minimum(high, positions.max(axis=0) + margin)
     middles = positions[grid.cells].mean(axis=1)
     inside = np.all((low < middles) & (middles < high), axis=1)
@@ -157,6 +157,8 @@ def draw_pressure_curve(axis, curve):
     gap.spines["right"].set_visible(True)
     lines += gap.plot(curve.points[:, 0], curve.of_nodes["gap"], color=ORANGE, linewidth=1,
                       label="gap")
+    if np.abs(curve.of_nodes["gap"]).max() < 1e-12:  # round-off: drawn as the zero that it is
+        gap.set_ylim(-1e-9, 1e-9)
     gap.set_ylabel("gap (m)", color=ORANGE)
     gap.grid(False)
     axis.legend(handles=lines, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3)
@@ -188,5 +190,5 @@ def solution(run):
     grid = read_grid(run / "u.vtu")
     draw = body_solution if grid.of_nodes["u"].ndim == 2 else membrane_solution
     figure = draw(run, grid)
-    figure.suptitle(parameters_of(grid), fontsize=8, color=GREY)
+    figure.suptitle(parameters_of(grid), fontsize=8, color=GREY, y=1.04)
     save(figure, run / "figures", "solution.png")

@@ -370,8 +370,8 @@ TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
   const std::vector<double> nodal = data_array(section(file.contact, "PointData"), "pressure"),
                             points = data_array(file.contact, "points");
   ASSERT_EQ(nodal.size(), file.paired.size());
-  EXPECT_EQ(nodal.front(), pressure.front());
-  EXPECT_EQ(nodal.back(), pressure.back());
+  EXPECT_DOUBLE_EQ(nodal.front(), pressure.front());
+  EXPECT_DOUBLE_EQ(nodal.back(), pressure.back());
   const auto length = [&](std::size_t k) {
     return std::hypot(points[3 * k + 3] - points[3 * k], points[3 * k + 4] - points[3 * k + 1]);
   };
