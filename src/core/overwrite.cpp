@@ -10,9 +10,9 @@ namespace {
 bool same_file(const std::filesystem::path &a, const std::filesystem::path &b) {
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error)) return true;
-  const auto first = std::filesystem::weakly_canonical(a, error);
+  const auto first = std::filesystem::weakly_canonical(std::filesystem::absolute(a), error);
   if (error) return false;
-  const auto second = std::filesystem::weakly_canonical(b, error);
+  const auto second = std::filesystem::weakly_canonical(std::filesystem::absolute(b), error);
   return !error && first == second;
 }
 

@@ -59,6 +59,27 @@ ReducedModel full_model() {
   return model;
 }
 
+/// Ranges of validity are the scene's: no file changes them, and none may leave them.
+TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
+  const auto refusal = [&](double lower, double upper) -> std::string {
+    ReducedModel model = full_model();
+    model.parameters.all[0].lower = lower;
+    model.parameters.all[0].upper = upper;
+    model.parameters.all[0].valid = {};
+    write_model(model, path);
+    try {
+      EXPECT_EQ(scene_of(read_model(path)).parameters.all[0].valid.upper, 0.38);
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), Status::bad_input);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(0.16, 0.24), "");
+  for (const auto &[lower, upper] : {std::pair(-1.0, 0.2), {0.16, 1e300}, {0.24, 0.16}})
+    EXPECT_NE(refusal(lower, upper).find("range of validity is [0.02, 0.38]"), std::string::npos);
+}
+
 TEST_F(ModelFile, ReturnsTheModel) {
   const ReducedModel model = full_model();
   write_model(model, path);

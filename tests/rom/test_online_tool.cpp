@@ -152,6 +152,8 @@ TEST_F(OnlineBinary, ExtrapolatesOnlyWhenAsked) {
   const Finished run = online("model.h5 --mu 0.25,0,0 --extrapolate");
   EXPECT_EQ(run.status, 0);
   EXPECT_TRUE(contains(run.out, "unknown outside the box")) << run.out;
+  EXPECT_TRUE(refused("model.h5 --mu 5,0,0 --extrapolate", "range of validity [0.02, 0.38]"));
+  EXPECT_TRUE(refused("model.h5 --mu 0.3,0.2,0 --extrapolate", "folds the mesh"));
 }
 
 TEST_F(OnlineBinary, WritesVtu) {
