@@ -7,6 +7,8 @@
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/packed.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -35,18 +37,25 @@ ChosenPoints points_of(const NitscheModel &nitsche) {
   return chosen;
 }
 
-/// All points of the curve; where the scene is symmetric those of one half, which count twice.
-ChosenPoints whole_curve(const std::vector<CurveCell> &cells, bool symmetric) {
+double abscissa(const CurveCell &cell) {
+  const auto [i, j] = simplex_edges[static_cast<std::size_t>(cell.edge)];
+  return (cell.cell.reference[static_cast<std::size_t>(i)][0] +
+          cell.cell.reference[static_cast<std::size_t>(j)][0]) /
+         2;
+}
+
+/// All points of the curve. Where scene and mesh are symmetric, so that the points of the model lie
+/// on one half, which stands for both: those of that half, which count twice.
+ChosenPoints whole_curve(const Scene &scene, const NitscheModel &nitsche,
+                         const std::vector<CurveCell> &cells) {
+  const bool half = nitsche.rule == CurveRule::empirical &&
+                    std::all_of(nitsche.points.begin(), nitsche.points.end(), [&](int point) {
+                      return abscissa(cells[static_cast<std::size_t>(point / 4)]) < 0;
+                    });
   ChosenPoints chosen;
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
-    double middle = 0;
-    for (const int end : ends)
-      middle += cells[k].cell.reference[static_cast<std::size_t>(end)][0] / 2;
-    if (symmetric && middle > 0) continue;
-    for (int q = 0; q < 4; ++q)
-      chosen.emplace_back(4 * static_cast<int>(k) + q, symmetric ? 2.0 : 1.0);
-  }
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    for (int q = 0; q < 4 && !(half && abscissa(cells[k]) > 0); ++q)
+      chosen.emplace_back(4 * static_cast<int>(k) + q, half ? 2.0 : 1.0);
   return chosen;
 }
 
@@ -127,7 +136,7 @@ Vector ReducedNitsche::over_whole_curve(const Mu &all_parameters, const Vector &
                                         Outputs &outputs) const {
   if (model_.nitsche->rule == CurveRule::full) return u;
   if (!whole_)
-    whole_ = std::make_unique<System>(model_, cells_, whole_curve(cells_, scene_.symmetric));
+    whole_ = std::make_unique<System>(model_, cells_, whole_curve(scene_, *model_.nitsche, cells_));
   whole_->law = nitsche_law(scene_.support->friction, all_parameters);
   whole_->quadratic = quadratic_at(all_parameters);
   whole_->set_points(scene_, all_parameters, cells_);

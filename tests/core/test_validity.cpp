@@ -134,7 +134,7 @@ TEST(Validity, OptionsOfScenesThatMakeNoSense) {
 }
 
 TEST(Describe, Ranges) {
-  EXPECT_EQ(describe(Range{-0.5, 1e6}), "[-0.5, 1000000]");
+  EXPECT_EQ(describe(Range{-0.5, 1e6}), "[-0.5, 1e+06]");
   EXPECT_EQ(describe(Range{0, HUGE_VAL}), "at least 0");
   EXPECT_EQ(describe(Range{-HUGE_VAL, 1}), "at most 1");
   EXPECT_EQ(describe(Range{}), "any number");

@@ -60,9 +60,10 @@ TEST(TrainingSamples, WithoutFailuresNoneIsNear) {
 TEST(TrainingSamples, TheModelFileKeepsThem) {
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("rbvi_training_" + std::to_string(::getpid()) + ".h5");
-  ReducedModel model = wide_model();
-  model.trained_mu = as_columns({{0.3, 0.05}, {1.1, 0}}, 2);
-  model.failed_mu = as_columns({{0.5, 0}}, 2);
+  ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
+  model.parameters = free_only(model.parameters, "radius,center_y");
+  model.trained_mu = as_columns({{0.18, 0.05}, {0.24, 0}}, 2);
+  model.failed_mu = as_columns({{0.2, 0}}, 2);
   write_model(model, path);
   const ReducedModel back = read_model(path, false);
   std::filesystem::remove(path);
