@@ -3,7 +3,6 @@
 #include "layer_interpolation.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/nonnegative_qp.hpp"
-#include "rbvi/element/quadrature.hpp"
 #include "rbvi/rom/nitsche_solver.hpp"
 
 #include <Eigen/LU>
@@ -38,20 +37,6 @@ constexpr double round_off = 1e-10; ///< of an answer: where the modes leave les
 /// mesh without the symmetry.
 constexpr double mirrored = 1e-7;
 
-/// Abscissa of each Gauss point of the curve.
-Vector abscissae(const std::vector<CurveCell> &cells) {
-  Vector x(4 * static_cast<Index>(cells.size()));
-  Index next = 0;
-  for (const CurveCell &cell : cells) {
-    const auto [i, j] = simplex_edges[static_cast<std::size_t>(cell.edge)];
-    const double a = cell.cell.reference[static_cast<std::size_t>(i)][0],
-                 b = cell.cell.reference[static_cast<std::size_t>(j)][0];
-    for (const EdgePoint &point : edge_quadrature)
-      x[next++] = (1 - point.s) * a + point.s * b;
-  }
-  return x;
-}
-
 /// The model with all points: its answers, and what each point adds to them.
 class AllPoints {
 public:
@@ -62,7 +47,7 @@ public:
     const auto count = static_cast<Index>(samples.size());
     answers_.resize(model.primal_size(), count);
     std::vector<char> met(4 * cells.size(), 0); // some answer has contact or friction there
-    const Vector x = abscissae(cells);
+    const Vector x = point_abscissae(cells);
     const Vector sign = (x.array() < 0).select(Vector::Constant(x.size(), -1.0), 1.0);
     for (Index p = 0; p < count; ++p) {
       answers_.col(p) = solve(p);

@@ -1,5 +1,8 @@
 #include "rbvi/rom/layer_terms.hpp"
 
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/quadrature.hpp"
+
 #include <algorithm>
 
 namespace rbvi {
@@ -15,6 +18,19 @@ std::vector<CurveCell> curve_cells(const NitscheModel &model) {
     cells[k].cell.mapped = cells[k].cell.reference;
   }
   return cells;
+}
+
+Vector point_abscissae(const std::vector<CurveCell> &cells) {
+  Vector x(4 * static_cast<Index>(cells.size()));
+  Index next = 0;
+  for (const CurveCell &cell : cells) {
+    const auto [i, j] = simplex_edges[static_cast<std::size_t>(cell.edge)];
+    const double a = cell.cell.reference[static_cast<std::size_t>(i)][0],
+                 b = cell.cell.reference[static_cast<std::size_t>(j)][0];
+    for (const EdgePoint &point : edge_quadrature)
+      x[next++] = (1 - point.s) * a + point.s * b;
+  }
+  return x;
 }
 
 SampledLayer::SampledLayer(const LayerTerms &terms, const std::vector<CurveCell> &cells)

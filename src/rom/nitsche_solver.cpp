@@ -2,7 +2,6 @@
 
 #include "nitsche_interpolated.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/lagrange.hpp"
 #include "rbvi/rom/local_fit.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/packed.hpp"
@@ -37,25 +36,17 @@ ChosenPoints points_of(const NitscheModel &nitsche) {
   return chosen;
 }
 
-double abscissa(const CurveCell &cell) {
-  const auto [i, j] = simplex_edges[static_cast<std::size_t>(cell.edge)];
-  return (cell.cell.reference[static_cast<std::size_t>(i)][0] +
-          cell.cell.reference[static_cast<std::size_t>(j)][0]) /
-         2;
-}
-
 /// All points of the curve. Where scene and mesh are symmetric, so that the points of the model lie
 /// on one half, which stands for both: those of that half, which count twice.
 ChosenPoints whole_curve(const Scene &scene, const NitscheModel &nitsche,
                          const std::vector<CurveCell> &cells) {
-  const bool half = nitsche.rule == CurveRule::empirical &&
-                    std::all_of(nitsche.points.begin(), nitsche.points.end(), [&](int point) {
-                      return abscissa(cells[static_cast<std::size_t>(point / 4)]) < 0;
-                    });
+  const Vector x = point_abscissae(cells);
+  const bool half = scene.symmetric && nitsche.rule == CurveRule::empirical &&
+                    std::all_of(nitsche.points.begin(), nitsche.points.end(),
+                                [&](int point) { return x[point] < 0; });
   ChosenPoints chosen;
-  for (std::size_t k = 0; k < cells.size(); ++k)
-    for (int q = 0; q < 4 && !(half && abscissa(cells[k]) > 0); ++q)
-      chosen.emplace_back(4 * static_cast<int>(k) + q, half ? 2.0 : 1.0);
+  for (Index point = 0; point < x.size(); ++point)
+    if (!half || x[point] < 0) chosen.emplace_back(static_cast<int>(point), half ? 2.0 : 1.0);
   return chosen;
 }
 
