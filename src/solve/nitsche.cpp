@@ -11,6 +11,7 @@ namespace rbvi {
 
 namespace {
 
+constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
 constexpr double resting = 0.9;          ///< of the last change: from there on it is round-off
 constexpr double vanishing = 1e-9;       ///< of the start: below it terms count as zero
 constexpr int most_outer_iterations = 60;
@@ -60,7 +61,7 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
 void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
   NitscheSystem &system = *system_;
   const Handle<Vec> before = like(u);
-  const double accuracy = system.accuracy; // of the residual, and of u under new bounds
+  const double accuracy = system.accuracy;
   system.tolerance = nested ? std::max(1e-3, accuracy) : accuracy;
   double last_change = 1;
   for (;;) {
@@ -72,7 +73,9 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     RBVI_CALL(VecAXPY(before.get(), -1, u));
     const double size = norm(u), change = size > 0 ? norm(before.get()) / size : 0;
     const bool rests = change <= NitscheSystem::round_off && change > resting * last_change;
-    if ((change <= accuracy || rests) && system.tolerance <= accuracy) return;
+    // The first bounds are those of the start, not of u.
+    const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);
+    if (settled && system.tolerance <= accuracy) return;
     last_change = change;
     system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
     if (result.outer_iterations == most_outer_iterations)
