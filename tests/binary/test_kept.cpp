@@ -237,12 +237,15 @@ TEST_F(Kept, TemporaryFilesOfKilledRunsAreSweptUp) {
   const pid_t dead = fork();
   if (dead == 0) _exit(0);
   waitpid(dead, nullptr, 0);
-  const std::string own = "." + std::to_string(getpid()) + ".";
+  const auto dotted = [](pid_t process) {
+    return std::string(".") + std::to_string(process) + ".";
+  };
+  const std::string own = dotted(getpid());
   const std::vector<std::string> names{"run/model.h5", "run/samples/a.h5", "run/verify/errors.csv"};
   const auto leave = [&] {
     for (const std::string &name : names) {
       std::string left = temporary_name(name, 0).string();
-      spill(left.replace(left.rfind(own), own.size(), "." + std::to_string(dead) + "."), "half");
+      spill(left.replace(left.rfind(own), own.size(), dotted(dead)), "half");
     }
   };
   for (const std::string command : {"offline", "verify"}) {
