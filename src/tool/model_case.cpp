@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/training_samples.hpp"
 
@@ -19,12 +20,7 @@ std::string range_of(const ParameterSpace &space, std::size_t i) {
   const Parameter &p = space.all[i];
   const bool free =
       std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
-  if (!free) return shortest_number(p.value);
-  return std::string("[")
-             .append(shortest_number(p.lower))
-             .append(", ")
-             .append(shortest_number(p.upper)) +
-         "]";
+  return free ? describe(Range{p.lower, p.upper}) : shortest_number(p.value);
 }
 
 bool same_range(const ParameterSpace &one, const ParameterSpace &two, std::size_t i) {
@@ -44,9 +40,11 @@ std::string setting(const ReducedModel &model, const std::string &name) {
 /// Whether the case trains at other parameters. A set that cannot be read is not needed.
 bool other_training(const ToolOptions &options, const ReducedModel &model) {
   if (options.train == setting(model, "training")) return false;
+  std::vector<Mu> own = from_columns(model.trained_mu);
+  for (Mu &mu : from_columns(model.failed_mu))
+    own.push_back(std::move(mu));
   try {
-    std::vector<Mu> given = parse_set(options.scene.parameters, options.train),
-                    own = training_set(model);
+    std::vector<Mu> given = parse_set(options.scene.parameters, options.train);
     std::sort(given.begin(), given.end());
     std::sort(own.begin(), own.end());
     return given != own;
@@ -125,13 +123,6 @@ void check_mesh(const Problem &problem, const ReducedModel &model, const ToolOpt
   const std::string file = setting(model, "mesh_file");
   throw bad_input("the model in " + options.out.string() + " was made on another mesh" +
                   (file.empty() ? "" : ", that of " + file + " then: give it by -mesh"));
-}
-
-std::vector<Mu> training_set(const ReducedModel &model) {
-  std::vector<Mu> set = from_columns(model.trained_mu);
-  for (Mu &mu : from_columns(model.failed_mu))
-    set.push_back(std::move(mu));
-  return set;
 }
 
 } // namespace rbvi

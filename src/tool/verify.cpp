@@ -7,6 +7,7 @@
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/print.hpp"
+#include "rbvi/rom/training_samples.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/model_case.hpp"
@@ -304,7 +305,7 @@ void command_verify(const ToolOptions &given) {
   ReducedModel model = model_of_run(world, given.out);
   const ToolOptions options = adopt_model(given, model);
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
-  const std::vector<Mu> training = training_set(model);
+  const std::vector<Mu> training = from_columns(model.trained_mu);
   const Groups groups(world, options.ranks_per_solve);
   StageTimes times;
   Workspace work(world, groups, options, times);

@@ -24,11 +24,15 @@ struct TemporaryFiles : testing::Test {
   }
 };
 
+std::string dotted(pid_t process) {
+  return std::string(".") + std::to_string(process) + ".";
+}
+
 /// As another process calls its file.
 std::string name_of(pid_t process) {
   std::string name = temporary_name("a.h5", 3).string();
-  const std::string own = "." + std::to_string(::getpid()) + ".";
-  return name.replace(name.rfind(own), own.size(), "." + std::to_string(process) + ".");
+  const std::string own = dotted(::getpid());
+  return name.replace(name.rfind(own), own.size(), dotted(process));
 }
 
 pid_t ended_process() {

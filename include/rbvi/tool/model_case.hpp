@@ -15,7 +15,4 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model);
 /// Throws bad_input unless the mesh of the problem is the model's.
 void check_mesh(const Problem &problem, const ReducedModel &model, const ToolOptions &options);
 
-/// The training set of the model: with a sample, then without.
-std::vector<Mu> training_set(const ReducedModel &model);
-
 } // namespace rbvi
