@@ -21,8 +21,8 @@ namespace {
 constexpr double reference_radius = 0.2;
 constexpr double transition = 0.3; ///< width of the ring over which the map turns into the identity
 
-// Along its radii the ring is stretched by 1 + phi' (r - 0.2 + c . e) > 0, with |phi'| <= 1.5 / 0.3:
-// r + |c| < 0.4. This leaves a tenth of each cell.
+// Along its radii the ring is stretched by 1 + phi' (r - 0.2 + c . e) > 0, with |phi'| <= 1.5 /
+// 0.3: r + |c| < 0.4. This leaves a tenth of each cell.
 constexpr double farthest = 0.38;
 constexpr Range radii{0.02, farthest}, centres{0.02 - farthest, farthest - 0.02};
 

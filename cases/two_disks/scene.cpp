@@ -20,7 +20,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr double centre = 1.5; ///< of the upper reference disk, height
+constexpr double centre = 1.5;  ///< of the upper reference disk, height
 constexpr double deepest = 0.2; ///< indentation over a radius: deformations stay small
 
 /// The upper disk is shifted until it is the initial gap above the origin, the lower one shrinks or
@@ -64,7 +64,11 @@ Scene make(const SceneOptions &options) {
 SceneEntry two_disks() {
   return {"two_disks", "Hertz contact of two elastic half-disks, the lower one of free radius",
           elastic_pair_options(
-              {{"indentation", "0.09", "displacement of each flat side towards the other disk", {}, {0, deepest}},
+              {{"indentation",
+                "0.09",
+                "displacement of each flat side towards the other disk",
+                {},
+                {0, deepest}},
                {"initial_gap", "0.001", "between the undeformed disks", {}, {-deepest, 1}}}),
           make};
 }

@@ -20,7 +20,7 @@ struct ToolOptions {
   int ranks_per_solve = 1;
   std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
   std::filesystem::path out;       ///< run directory; "" where none is given
-  std::string case_file;     ///< all options of the run, for its own case file (case_of_run)
+  std::string case_file;           ///< all options of the run, for its own case file (case_of_run)
   std::string mu, vtu, csv;
   bool plan = false;
   bool stability = true; ///< verify: inf-sup constants and bounds too
