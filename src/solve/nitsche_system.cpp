@@ -300,8 +300,7 @@ void NitscheSystem::make_snes(const Operators &op) {
   set_callbacks();
   RBVI_CALL(SNESSetTolerances(snes.get(), small_residual, accuracy, 0, 100, 100000));
   set_linear_solver();
-  RBVI_CALL(
-      SNESGetTolerances(snes.get(), &small_residual, &accuracy, nullptr, nullptr, nullptr));
+  RBVI_CALL(SNESGetTolerances(snes.get(), &small_residual, &accuracy, nullptr, nullptr, nullptr));
   const bool extended = std::string(type).starts_with("vi");
   if (!extended || frames) return;
   const Handle<Vec> lower = like(op.f);

@@ -19,8 +19,8 @@ void check_together(const Scene &scene, const Mu &all);
 /// range of validity.
 void check_query(const Scene &scene, const Mu &mu, bool allow_outside);
 
-/// Throws bad_input if the box of a free parameter, the value of a fixed one, or a corner of the box
-/// leaves the range of validity.
+/// Throws bad_input if the box of a free parameter, the value of a fixed one, or a corner of the
+/// box leaves the range of validity.
 void check_box(const Scene &scene);
 
 } // namespace rbvi

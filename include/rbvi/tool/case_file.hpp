@@ -26,8 +26,8 @@ std::vector<CaseEntry> parse_case_file(const std::string &text, const std::strin
 /// "name: value" and a line end, the value quoted where YAML would take it for something else.
 std::string case_line(const std::string &name, const std::string &value);
 
-/// Collective. Rank 0 alone reads the file; every rank gets its text. Throws bad_input on every rank
-/// if there is no such file, it cannot be read or is no text of at most 1 MB.
+/// Collective. Rank 0 alone reads the file; every rank gets its text. Throws bad_input on every
+/// rank if there is no such file, it cannot be read or is no text of at most 1 MB.
 std::string read_case_text(MPI_Comm comm, const std::filesystem::path &file);
 
 } // namespace rbvi
