@@ -78,8 +78,8 @@ void sync_directory(const Path &path) {
 
 } // namespace
 
-void stop_writing(std::chrono::milliseconds patience) {
-  (void)writing.try_lock_for(patience); // the process ends with it
+bool stop_writing(std::chrono::milliseconds patience) {
+  return writing.try_lock_for(patience); // the process ends with it
 }
 
 void make_directory(const Path &path) {

@@ -52,8 +52,10 @@ void wait_for_signal(bool speaks) {
     count = ::read(from_handler, &signal, 1);
   while (count < 0 && errno == EINTR);
   if (count != 1) return;
-  stop_writing(std::chrono::milliseconds(500));
+  // mpirun kills after a second: the line does not wait for a slow disk.
+  const bool quiet = stop_writing(std::chrono::milliseconds(100));
   if (speaks) say("rbvi: interrupted" + progress());
+  if (!quiet) (void)stop_writing(std::chrono::milliseconds(500));
   _exit(128 + signal);
 }
 

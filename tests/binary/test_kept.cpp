@@ -221,14 +221,20 @@ TEST_F(Kept, ASignalEndsInOneLineAndNothingIsLost) {
     EXPECT_TRUE(contains(run.err, "rbvi: interrupted after ")) << run.err;
     EXPECT_TRUE(contains(run.err, " of 216 samples: the same command goes on from there"));
     EXPECT_FALSE(contains(run.err, "PETSC ERROR")) << run.err;
+    // The file in the making when the line is printed is still finished.
+    const std::string words = "interrupted after ";
+    const std::size_t at = run.err.find(words);
+    ASSERT_NE(at, std::string::npos);
+    const auto said = static_cast<std::size_t>(std::stoi(run.err.substr(at + words.size())));
+    EXPECT_GE(present, said);
     if (c.ranks == 1) {
-      EXPECT_TRUE(contains(run.err, "after " + std::to_string(present) + " of")) << run.err;
+      EXPECT_LE(present, said + 1);
     }
-    EXPECT_TRUE(files_in("stopped/samples", ".tmp.").empty());
     if (c.signal != SIGTERM || c.to_rank) continue;
     const Finished resumed = shell(rbvi(c.ranks, "offline -out stopped"));
     EXPECT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_TRUE(contains(resumed.out, "; " + std::to_string(present) + " reused")) << resumed.out;
+    EXPECT_TRUE(files_in("stopped/samples", ".tmp.").empty());
   }
 }
 

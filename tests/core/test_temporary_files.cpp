@@ -80,7 +80,9 @@ TEST_F(TemporaryFiles, OtherNamesStay) {
 TEST_F(TemporaryFiles, AProcessThatStopsWritingBeginsNoFile) {
   const pid_t child = ::fork();
   if (child == 0) {
-    std::thread([] { stop_writing(std::chrono::milliseconds(100)); }).join();
+    std::thread([] {
+      if (!stop_writing(std::chrono::milliseconds(100))) ::_exit(2);
+    }).join();
     write_atomically(directory / "late", "x"); // waits for ever
     ::_exit(1);
   }

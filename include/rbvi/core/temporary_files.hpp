@@ -15,7 +15,8 @@ std::filesystem::path temporary_name(const std::filesystem::path &path, int atte
 void remove_stale_temporaries(const std::filesystem::path &directory);
 
 /// For a process that another of its threads is about to end: lets the file that is being written
-/// come to its name, for at most `patience`, and no other be begun. To be called once.
-void stop_writing(std::chrono::milliseconds patience);
+/// come to its name, for at most `patience`, and no other be begun. False if time ran out: then it
+/// may be called again.
+bool stop_writing(std::chrono::milliseconds patience);
 
 } // namespace rbvi
