@@ -27,7 +27,7 @@ rbvi-online MODEL --queries SET          one row per parameter of a CSV file, gr
   --vtu FILE       with --mu: the field, and the contact region in FILE_contact
   --full           reconstruct the field: adds min_u
   --decorrelated   without the supremizers
-  --extrapolate    allow parameters outside the box of the model
+  --extrapolate    allow parameters outside the box of the model, where the scene makes sense
   --help, --version
 Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).
 )";
@@ -150,8 +150,12 @@ void check_files(const OnlineArguments &arguments) {
   const std::vector<NamedFile> inputs{{"the file of queries", arguments.queries},
                                       {"the model", arguments.model}};
   if (arguments.out != "-") check_overwriting({"--out", arguments.out}, inputs);
-  check_overwriting({"--vtu", arguments.vtu}, inputs);
-  check_overwriting({"--vtu", arguments.vtu}, {{"--out", arguments.out}});
+  if (arguments.vtu.empty()) return;
+  for (const std::filesystem::path &vtu :
+       {std::filesystem::path(arguments.vtu), contact_file(arguments.vtu)}) {
+    check_overwriting({"--vtu", vtu}, inputs);
+    check_overwriting({"--vtu", vtu}, {{"--out", arguments.out}});
+  }
 }
 
 } // namespace
