@@ -239,40 +239,62 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
   result.model.histories["gcns/violation"] = nodes.violation;
 }
 
-/// Collective. The self-check into the model of rank 0; whether it is clean, on every rank.
-bool check_answers(const Problem &problem, ReducedModel &model, StageTimes &times) {
+/// Collective. The self-check into the model of rank 0. On every rank: how many of its queries went
+/// wrong, 0 where it is clean.
+int check_answers(const Problem &problem, ReducedModel &model, StageTimes &times) {
   const Stage stage("self-check", times);
-  int clean = 0, rank = 0;
+  int wrong = 0, rank = 0;
   MPI_Comm_rank(problem.comm(), &rank);
   collectively(problem.comm(), [&] {
     if (rank != 0) return;
     model.self_check = self_check(model, problem.scene());
-    clean = model.self_check.clean() ? 1 : 0;
+    wrong = model.self_check.clean() ? 0 : std::max(1, model.self_check.unanswered);
   });
-  MPI_Bcast(&clean, 1, MPI_INT, 0, problem.comm());
-  return clean != 0;
+  MPI_Bcast(&wrong, 1, MPI_INT, 0, problem.comm());
+  return wrong;
+}
+
+struct CheckedPair {
+  ReducedBases bases;
+  ReducedModel model;
+  int ring, wrong;
+};
+
+CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
+                         const ReduceOptions &options, const AffineOperators &affine,
+                         StageTimes &times) {
+  CheckedPair pair{build_bases(problem, samples, options, affine.b.size() == 1, times),
+                   {},
+                   options.cone.ring,
+                   0};
+  {
+    const Stage stage("projection", times);
+    pair.model = project(problem, samples, affine, pair.bases);
+  }
+  pair.wrong = check_answers(problem, pair.model, times);
+  return pair;
 }
 
 /// A pair whose answers are checked. The zones of a hybrid cone are those of the training samples:
 /// where contact opens or closes between them, its layers of nodes are doubled until every query is
-/// answered, or until that changes nothing.
+/// answered, or until all nodes are in the zones; the narrowest ring that answers most is kept.
+/// Options that bound the size of the cone bound its ring as well.
 void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
                  Reduction &result, StageTimes &times) {
   constexpr int widest = 64;
-  Index before = -1;
-  for (;; options.cone.ring = std::max(1, 2 * options.cone.ring)) {
-    result.ring = options.cone.ring;
-    result.bases = build_bases(problem, samples, options, result.affine.b.size() == 1, times);
-    {
-      const Stage stage("projection", times);
-      result.model = project(problem, samples, result.affine, result.bases);
-    }
-    const bool clean = check_answers(problem, result.model, times);
-    const Index hats = result.bases.cone.basis.generators.cols();
-    if (clean || options.cone.type != ConeType::hybrid || hats == before || result.ring >= widest)
-      return;
-    before = hats;
+  const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0;
+  CheckedPair best = checked_pair(problem, samples, options, result.affine, times);
+  Index hats = best.bases.cone.basis.generators.cols();
+  while (widens && best.wrong > 0 && options.cone.ring < widest) {
+    options.cone.ring = std::max(1, 2 * options.cone.ring);
+    CheckedPair wider = checked_pair(problem, samples, options, result.affine, times);
+    if (wider.bases.cone.basis.generators.cols() == hats) break;
+    hats = wider.bases.cone.basis.generators.cols();
+    if (wider.wrong < best.wrong) best = std::move(wider);
   }
+  result.bases = std::move(best.bases);
+  result.model = std::move(best.model);
+  result.ring = best.ring;
 }
 
 } // namespace

@@ -25,7 +25,7 @@ struct Runs : InDirectory {
     while (std::getline(lines, line)) {
       const std::vector<std::string> entries = split(line, ',');
       for (std::size_t i = 0; i < names.size(); ++i)
-        if (names[i] != "seconds" && names[i] != "kkt_residual")
+        if (names[i] != "seconds" && names[i] != "kkt_residual" && names[i] != "status")
           values.push_back(parse_number(entries[i], names[i]));
     }
     EXPECT_GE(values.size(), 6U * 8U);
@@ -287,18 +287,17 @@ TEST_F(Runs, IterativeSolversOfPetscGiveTheSame) {
     EXPECT_NEAR(value_of(output_of(rbvi(1, solve + options)), "energy"), energy, 1e-9) << options;
 }
 
-/// A reader that has seen enough ends the command without a word.
+/// A reader that has seen enough ends the command without a word. (Under mpirun the reader is
+/// mpirun's, whose own words at that are not ours.)
 TEST_F(Runs, AClosedStandardOutputEndsQuietly) {
   const std::string closed = " | (exec <&-; sleep 1); exit ${PIPESTATUS[0]}'";
-  for (const int ranks : {1, 2})
-    for (const char *command : {"-help", "list", "solve -case case.yaml -mu 0.2,0,0"}) {
-      const Finished run = shell("bash -c '" + rbvi(ranks, command) + closed);
-      EXPECT_TRUE(run.status == 0 || run.status == 141) << command << " " << run.status;
-      EXPECT_EQ(run.err, "") << command;
-    }
-  const Finished online = shell("bash -c '" + rbvi_online("--help") + closed);
-  EXPECT_TRUE(online.status == 0 || online.status == 141) << online.status;
-  EXPECT_EQ(online.err, "");
+  for (const std::string &command :
+       {rbvi(1, "-help"), rbvi(1, "list"), rbvi(1, "solve -case case.yaml -mu 0.2,0,0"),
+        rbvi_online("--help")}) {
+    const Finished run = shell("bash -c '" + command + closed);
+    EXPECT_TRUE(run.status == 0 || run.status == 141) << command << " " << run.status;
+    EXPECT_EQ(run.err, "") << command;
+  }
 }
 
 /// One rank fails while the others wait for it: one line, its status, and no hang.
