@@ -204,7 +204,8 @@ SceneEntry rigid_disk() {
        "0",
        "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316",
        {},
-       {0, 10000}},
+       {0, 10000},
+       true},
       {"young", "15", "Young's modulus in Pa", {}, young_range}};
   for (SceneOption &option : nitsche_options())
     options.push_back(std::move(option));

@@ -18,10 +18,6 @@ const NitscheModel &checked(const ReducedModel &model, const Scene &scene) {
   return *model.nitsche;
 }
 
-} // namespace
-
-namespace {
-
 using ChosenPoints = std::vector<std::pair<int, double>>;
 
 /// The points that the model integrates at; none where it interpolates.

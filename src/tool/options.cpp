@@ -168,6 +168,17 @@ HfOptions hf_options() {
   return options;
 }
 
+/// Throws bad_input for a mesh file beside an option of the built-in mesh.
+void check_mesh_options(const std::string &scene) {
+  if (text_of("mesh").empty()) return;
+  for (const SceneEntry &entry : scene_catalogue())
+    for (const SceneOption &option : entry.options)
+      if (entry.name == scene && option.built_in_mesh && is_given(option.name))
+        throw bad_input("-" + option.name +
+                        " is of the built-in mesh and has no effect on that of -mesh: leave out "
+                        "one of the two");
+}
+
 } // namespace
 
 bool is_option(const std::string &word) {
@@ -201,6 +212,7 @@ ToolOptions read_options(MPI_Comm comm) {
   options.case_file = as_case_file(names);
   adapt_parameters(options.scene.parameters);
   check_box(options.scene);
+  check_mesh_options(scene);
   options.mesh.file = text_of("mesh");
   options.mesh.refine = integer_of("mesh_refine", 0, 6);
   options.train = text_of("train", options.scene.training);

@@ -60,6 +60,7 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
   expect_all_refused(
       {{offline + "-friction slippery", "use one of none, tresca, coulomb"},
        {offline + "-arc_edges 7", "must be even and at least 8"},
+       {offline + "-mesh disk.msh", "-arc_edges is of the built-in mesh"},
        {offline + "-multiplier_reduction best", "condensed"},
        {offline + "-multiplier_reduction joint -friction none", "the scene has no friction"},
        {offline + "-multiplier_reduction cones -cone_type hybrid",

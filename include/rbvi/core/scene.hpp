@@ -45,6 +45,7 @@ struct SceneOption {
   std::string name, default_value, help;
   std::vector<std::string> choices; ///< empty: a number
   Range valid{};                    ///< of a number
+  bool built_in_mesh = false;       ///< without meaning for a mesh from a file
 };
 
 /// What a part of the mesh must be for the mesh to be the scene's, whoever made it.
