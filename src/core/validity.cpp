@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace rbvi {
 
@@ -14,11 +16,18 @@ bool inside(const Range &range, double value) {
   return value >= range.lower && value <= range.upper;
 }
 
+/// Without the round-off of a bound that was computed.
+std::string bound(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.12g", value);
+  return shortest_number(std::strtod(text, nullptr));
+}
+
 } // namespace
 
 std::string describe(const Range &range) {
   const bool below = std::isfinite(range.lower), above = std::isfinite(range.upper);
-  const std::string lower = shortest_number(range.lower), upper = shortest_number(range.upper);
+  const std::string lower = bound(range.lower), upper = bound(range.upper);
   if (below && above) return std::string("[").append(lower).append(", ").append(upper).append("]");
   if (below) return std::string("at least ").append(lower);
   if (above) return std::string("at most ").append(upper);

@@ -278,11 +278,13 @@ CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
 /// A pair whose answers are checked. The zones of a hybrid cone are those of the training samples:
 /// where contact opens or closes between them, its layers of nodes are doubled until every query is
 /// answered, or until all nodes are in the zones; the narrowest ring that answers most is kept.
-/// Options that bound the size of the cone bound its ring as well.
+/// A bound of the size of the cone bounds its ring as well; without supremizers its ring is not why
+/// queries have no answer.
 void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
                  Reduction &result, StageTimes &times) {
   constexpr int widest = 64;
-  const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0;
+  const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0 &&
+                      options.enrichment != Enrichment::decorrelated;
   CheckedPair best = checked_pair(problem, samples, options, result.affine, times);
   Index hats = best.bases.cone.basis.generators.cols();
   while (widens && best.wrong > 0 && options.cone.ring < widest) {

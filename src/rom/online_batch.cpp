@@ -156,12 +156,13 @@ void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &argum
 void report(const OnlineArguments &arguments, const OnlineSolver &solver, const Tally &tally,
             std::ostream &out) {
   const long answered = tally.rows - tally.unanswered;
-  out << answered << " answers in " << arguments.out;
+  out << answered << (answered == 1 ? " answer" : " answers");
   if (answered > 0)
     out << ", " << 1e3 * tally.seconds / static_cast<double>(answered)
         << " ms each, largest kkt_residual " << tally.residual;
   out << '\n';
   print_expected_errors(out, solver.model());
+  print_written(out, {arguments.out});
 }
 
 } // namespace

@@ -12,7 +12,7 @@ const std::vector<OptionHelp> &tool_options() {
       {"case", "",
        "case file (YAML, one 'option: value' per line); the command line beats it. Without it: "
        "that of -out"},
-      {"scene", "", "name of the scene (rbvi list)"},
+      {"scene", "", "name of the scene (rbvi list); with its defaults no case file is needed"},
       {"out", "", "run directory"},
       {"parameters", "", "names of the free parameters; the others keep their value"},
       {"train", "", "training set: grid:5,5,5 | random:COUNT:SEED | file.csv"},
@@ -45,7 +45,8 @@ const std::vector<OptionHelp> &tool_options() {
       {"cone_tolerance", "1e-4", "relative error of the cone (2.34); not used by nodal"},
       {"cone_max_size", "0", "most generators; 0 is no bound"},
       {"cone_feasibility", "0", "mcpg: tolerated negative part, as a fraction of the maximum"},
-      {"cone_ring", "1", "nodal, hybrid: layers of nodes around moving contact; hybrid takes more (README)"},
+      {"cone_ring", "1",
+       "nodal, hybrid: layers of nodes around moving contact; hybrid takes more (README)"},
       {"pga_enrichment", "offline", "supremizers: decorrelated (none) | online | offline"},
       {"pga_product", "v", "they are taken in the V product or in energy: v | energy"},
       {"reference_mu", "",

@@ -17,12 +17,14 @@ namespace {
 /// Largest relative error that a reduced model may be asked for: above, it says nothing.
 constexpr double rough = 0.5;
 
-/// -case, or the options that a run directory was made with.
+/// -case, or the options that a run directory was made with, or none for the defaults of -scene.
 std::string case_file_name() {
   const std::string file = text_of("case"), out = text_of("out");
   if (!file.empty()) return file;
   if (!out.empty() && std::filesystem::exists(case_of_run(out))) return case_of_run(out);
-  throw bad_input("no case is named: use -case cases/<scene>/case.yaml");
+  if (!text_of("scene").empty()) return "";
+  throw bad_input(
+      "no case is named: use -case cases/<scene>/case.yaml, or -scene NAME (rbvi list)");
 }
 
 /// Puts the case file below the command line. Returns where its options stand.
@@ -30,6 +32,7 @@ Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_l
   std::string file;
   collectively(comm, [&] { file = case_file_name(); });
   Origin origin;
+  if (file.empty()) return origin;
   for (const CaseEntry &entry : parse_case_file(read_case_text(comm, file), file)) {
     if (entry.name == "case")
       throw bad_input("a case file cannot name another: line " + std::to_string(entry.line) +

@@ -59,7 +59,10 @@ inline std::string line_with(const std::string &text, const std::string &start) 
 /// "name value" among the lines of a report.
 inline double value_of(const std::string &text, const std::string &name) {
   const std::string line = line_with(text, name + " ");
-  return line.empty() ? 0 : parse_number(line.substr(line.find_last_of(' ') + 1), name);
+  std::istringstream words(line);
+  std::string first, value;
+  words >> first >> value; // an error may stand behind
+  return line.empty() ? 0 : parse_number(value, name);
 }
 
 /// `name` tells apart commands that run at the same time. A command that hangs ends after a minute

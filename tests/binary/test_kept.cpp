@@ -13,14 +13,15 @@
 namespace rbvi {
 namespace {
 
-/// `good` parameters of the membrane, then `bad` ones at which the map inverts a cell.
+/// `good` parameters of the membrane, then `bad` ones, at which the solver of Kept::wide needs more
+/// iterations than it has: 3900 or more, and 3200 or less at the good ones.
 std::string set_with(int good, int bad) {
   std::ostringstream text;
   text << "radius,center_x,center_y\n";
   for (int i = 0; i < good; ++i)
-    text << 0.16 + 0.008 * i << "," << 0.05 * (i % 3 - 1) << "," << 0.05 * (i % 2) << "\n";
+    text << 0.24 + 0.006 * i << "," << 0.05 * (i % 3 - 1) << "," << 0.05 * (i % 2) << "\n";
   for (int i = 0; i < bad; ++i)
-    text << 0.6 - 0.01 * i << ",-0.05,-0.05\n";
+    text << 0.14 - 0.02 * i << ",-0.05,-0.05\n";
   return text.str();
 }
 
@@ -32,7 +33,8 @@ std::vector<fs::path> files_in(const std::string &directory, const std::string &
 }
 
 struct Kept : InDirectory {
-  const std::string wide = "offline -case case.yaml -radius 0.16,0.6 -train mu.csv ";
+  const std::string wide = "offline -case case.yaml -radius 0.1,0.3 -train mu.csv -hf_method uzawa "
+                           "-uzawa_tolerance 1e-8 -uzawa_max_iterations 3500 ";
 
   /// One line on standard error and status 1.
   void expect_failure(const Finished &run, const std::string &line) const {
@@ -48,11 +50,11 @@ TEST_F(Kept, AFailedSampleIsNamedByTheModelAndTheStatus) {
     fs::remove("run/model.h5");
     const Finished run = shell(rbvi(ranks, wide + "-out run"));
     expect_failure(run, "1 of 11 training samples failed");
-    EXPECT_EQ(lines_with(run.out, "  failed at radius=0.6 center_x=-0.05"), 1) << run.out;
-    EXPECT_TRUE(contains(run.out, "inverts a cell")) << run.out;
+    EXPECT_EQ(lines_with(run.out, "  failed at radius=0.14 center_x=-0.05"), 1) << run.out;
+    EXPECT_TRUE(contains(run.out, "no convergence in -uzawa_max_iterations")) << run.out;
     const std::string model = output_of(rbvi(1, "inspect run/model.h5"));
     EXPECT_TRUE(contains(line_with(model, "failed samples"), "1 of 11")) << model;
-    EXPECT_TRUE(contains(model, "radius=0.6 center_x=-0.05 center_y=-0.05")) << model;
+    EXPECT_TRUE(contains(model, "radius=0.14 center_x=-0.05 center_y=-0.05")) << model;
   }
   expect_failure(shell(rbvi(1, wide + "-out strict -sweep_max_failures 0.05")),
                  "1 of 11 training samples failed, more than -sweep_max_failures 0.05");
@@ -80,7 +82,7 @@ TEST_F(Kept, FailedValidationSamplesLeaveTheOthersMeasured) {
     const Finished run = shell(rbvi(ranks, "verify -out run"));
     expect_failure(run, "1 of 11 validation samples failed");
     EXPECT_EQ(lines_with(run.out, "Relative errors over 10 validation mu"), 1) << run.out;
-    EXPECT_EQ(lines_with(run.out, "Tables: run/verify"), 1) << run.out;
+    EXPECT_EQ(lines_with(run.out, "wrote run/verify, run/model.h5"), 1) << run.out;
     EXPECT_EQ(lines_with(slurp("run/verify/errors.csv"), ""), 11);
   }
   EXPECT_TRUE(contains(shell(rbvi_online("run/model.h5")).out, "over 10 parameters"));
@@ -99,10 +101,10 @@ TEST_F(Kept, VerifyUsesTheModelsBoxAndOptions) {
   EXPECT_FALSE(contains(plain, "own values")) << plain;
   const std::string errors = slurp("run/verify/errors.csv");
   const std::string out =
-      output_of(rbvi(1, "verify -case case.yaml -out run -radius 0.2,0.4 -center_x 0.01 -load -20 "
+      output_of(rbvi(1, "verify -case case.yaml -out run -radius 0.2,0.3 -center_x 0.01 -load -20 "
                         "-mesh_refine 1 -train grid:2,3"));
   const std::string line = line_with(out, "The model is not of this case");
-  for (const char *part : {"radius [0.16, 0.24] instead of [0.2, 0.4]",
+  for (const char *part : {"radius [0.16, 0.24] instead of [0.2, 0.3]",
                            "center_x [-0.05, 0.05] instead of 0.01", "load -25 instead of -20",
                            "mesh_refine 0 instead of 1", "train grid:2,2,2 instead of grid:2,3"})
     EXPECT_TRUE(contains(line, part)) << part << "\n" << line;
@@ -110,7 +112,7 @@ TEST_F(Kept, VerifyUsesTheModelsBoxAndOptions) {
   EXPECT_EQ(slurp("run/verify/errors.csv"), errors);
   // A validation point outside the model's box is not extrapolated to.
   spill("wide.csv", "radius,center_x,center_y\n0.3,0,0\n");
-  const Finished outside = shell(rbvi(2, "verify -out run -radius 0.2,0.4 -valid wide.csv"));
+  const Finished outside = shell(rbvi(2, "verify -out run -radius 0.2,0.3 -valid wide.csv"));
   EXPECT_EQ(outside.status, 2);
   EXPECT_TRUE(contains(outside.err, "radius = 0.3 is outside [0.16, 0.24]")) << outside.err;
 }

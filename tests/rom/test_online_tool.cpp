@@ -122,7 +122,8 @@ TEST_F(OnlineBinary, AnswersMany) {
   std::ofstream("mu.csv") << "center_x,radius,center_y\n0.02,0.18,-0.01\n0,0.2,0\n";
   const Finished run = online("model.h5 --queries mu.csv --out out.csv");
   EXPECT_EQ(run.status, 0) << run.out;
-  EXPECT_TRUE(contains(run.out, "2 answers in out.csv")) << run.out;
+  EXPECT_TRUE(contains(run.out, "2 answers, ")) << run.out;
+  EXPECT_TRUE(contains(run.out, "\nwrote out.csv\n")) << run.out;
   EXPECT_TRUE(contains(run.out, "kkt_residual"));
   EXPECT_TRUE(contains(run.out, "expected error"));
   const std::vector<std::string> lines = lines_of(slurp("out.csv"));
