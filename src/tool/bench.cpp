@@ -85,9 +85,8 @@ std::string csv(const std::vector<BenchRow> &rows, double best) {
 Sweep samples_at(Problem &problem, const ToolOptions &options, const std::vector<Mu> &set,
                  const std::string &name) {
   const Groups alone(PETSC_COMM_SELF, 1);
-  HfOptions truth = options.hf;
-  truth.method = HfMethod::active_set;
-  Sweep sweep = run_sweep(PETSC_COMM_SELF, alone, problem, truth, set, options.out / "samples");
+  Sweep sweep =
+      run_sweep(PETSC_COMM_SELF, alone, problem, options.hf, set, options.out / "samples");
   check_failures(options, sweep.report, set.size(), name);
   return sweep;
 }
@@ -154,7 +153,8 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   std::ostringstream head;
   head << "Scene " << model.scene_name << ", " << problem.mesh().total_vertices << " nodes, "
        << truths.size() << " validation parameters, timed on 1 of " << ranks << " ranks.\n"
-       << "Errors are relative to the first row (vi: on the lumped scene), u in V, lambda in W; "
+       << "Errors are relative to the samples of the run (vi: of the lumped scene), u in V, lambda "
+          "in W; "
           "reduced (N+S, R).\n"
        << "outputs_max: energy, forces and pressures, relative to the range of each.\n"
        << "speed_up: against the first row; benefit_from: queries from which "

@@ -206,7 +206,7 @@ struct Interruption {
 
 TEST_F(Kept, ASignalEndsInOneLineAndNothingIsLost) {
   // Long enough for mpirun to hand the signal on.
-  const std::string sweep = "offline -case case.yaml -mesh_refine 1 -train grid:6,6,6 "
+  const std::string sweep = "offline -case case.yaml -mesh_refine 2 -train grid:6,6,6 "
                             "-pod_tolerance 1e-3 -cone_type mcpg -cone_tolerance 1e-1 -out stopped";
   for (const Interruption &c :
        {Interruption{1, SIGINT, false, 128 + SIGINT},
