@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Every column of every scene and formulation against baseline.csv beside this file.
+
+    baseline.py BIN            compares; BIN is the folder of the programs
+    baseline.py BIN --write    writes baseline.csv anew, after a change that is meant to change answers
+
+baseline.csv has ten digits: the high-fidelity answers at a few parameters on the default mesh, and
+those of a reduced model with a small training set. A number is the same if it differs by one in its
+tenth digit, or by 1e-10 of the largest of its column, residuals by 1e-9; iterations by one (round-off
+may decide about the last). Seconds are left out.
+"""
+
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from every_scene import every_scene
+
+TABLE = Path(__file__).resolve().parent / "baseline.csv"
+COLUMNS = ["formulation", "model", "mu", "output", "value"]
+ROUND_OFF = ("kkt_residual", "friction_violation")
+
+
+def call(*command):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
+
+
+def rows_of(formulation, model, mu, path):
+    with open(path, encoding="utf-8", newline="") as file:
+        for at, row in zip(mu, csv.DictReader(file), strict=True):
+            for output, value in list(row.items())[len(at.split(",")):]:
+                if output not in ("seconds", "status") and value:
+                    yield (formulation.name, model, at, output), float(value)
+
+
+def answers(formulation, binaries, work):
+    """(formulation, model, mu, output) -> value."""
+    found, case, mu = {}, ["-case", formulation.case, *formulation.scene], formulation.mu
+    table = work / f"{formulation.name}.csv"
+    for at in mu if not formulation.reduction else []:
+        call(binaries / "rbvi", "solve", *case, "-mu", at, "-csv", table)
+        found.update(rows_of(formulation, "full", [at], table))
+    if formulation.few is None:
+        return found
+    run = work / formulation.name
+    call(binaries / "rbvi", "offline", *case, *formulation.reduction, *formulation.few, "-out", run)
+    queries = work / f"{formulation.name}.mu.csv"
+    names = Path(run / "samples.csv").read_text(encoding="utf-8").split("\n")[0].split(",")
+    queries.write_text("\n".join([",".join(names[:len(mu[0].split(","))]), *mu]), encoding="utf-8")
+    call(binaries / "rbvi-online", run / "model.h5", "--queries", queries, "--out", table)
+    found.update(rows_of(formulation, "reduced", mu, table))
+    return found
+
+
+def all_answers(binaries):
+    found = {}
+    with tempfile.TemporaryDirectory() as work, ThreadPoolExecutor(2) as pool:
+        for part in pool.map(lambda one: answers(one, binaries, Path(work)), every_scene()):
+            found.update(part)
+    return found
+
+
+def differs(output, value, expected, scale):
+    if output == "iterations":
+        return abs(value - expected) > 1
+    round_off = 1e-9 if output in ROUND_OFF else 1e-10 * scale
+    return abs(value - expected) > max(1.1e-9 * abs(expected), round_off)
+
+
+def compare(found):
+    with open(TABLE, encoding="utf-8", newline="") as file:
+        expected = {(r["formulation"], r["model"], r["mu"], r["output"]): float(r["value"])
+                    for r in csv.DictReader(file)}
+    scale = {}
+    for (formulation, _, _, output), value in expected.items():
+        key = formulation, output
+        scale[key] = max(scale.get(key, 0), abs(value))
+    wrong = [f"{' '.join(key)} is {'only here' if key in found else 'missing'}"
+             for key in sorted(found.keys() ^ expected.keys())]
+    for key in sorted(found.keys() & expected.keys()):
+        if differs(key[3], found[key], expected[key], scale[key[0], key[3]]):
+            wrong.append(f"{' '.join(key)} is {found[key]:.10g}, was {expected[key]:.10g}")
+    print("\n".join([*wrong, f"{len(expected)} numbers, {len(wrong)} differ"]))
+    return 1 if wrong or not expected else 0
+
+
+def main():
+    arguments = sys.argv[1:]
+    if not arguments or arguments[1:] not in ([], ["--write"]):
+        sys.exit(__doc__)
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    found = all_answers(Path(arguments[0]))
+    if len(arguments) == 1:
+        return compare(found)
+    with open(TABLE, "w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(COLUMNS)
+        table.writerows([*key, f"{value:.10g}"] for key, value in found.items())
+    print(f"wrote {TABLE}: {len(found)} numbers")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

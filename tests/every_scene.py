@@ -1,0 +1,64 @@
+"""Every scene and formulation of rbvi, for tests and benchmarks that cover them all."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+CASES = Path(__file__).resolve().parents[1] / "cases"
+
+
+@dataclass
+class Formulation:
+    name: str
+    case: Path
+    scene: list  # options of the scene: what high-fidelity answers depend on
+    few: list | None  # options that make a small training set; None: it is not reduced
+    mu: list  # parameters inside the box
+    reduction: list = field(default_factory=list)  # options of the reduced model
+
+
+def membranes():
+    mu = ["0.2,0,0", "0.17,0.03,-0.02", "0.23,-0.04,0.01"]
+    for name, case, scene in (("membrane", "case", []),
+                              ("membrane_graded", "case", ["-disc_map", "graded"]),
+                              ("membrane_lumped", "case", ["-lumped", "yes"]),
+                              ("membrane_published", "published", [])):
+        yield Formulation(name, CASES / f"membrane_obstacle/{case}.yaml", scene,
+                          ["-train", "grid:3,3,3"], mu)
+
+
+def two_disks():
+    mu, few = ["0.83", "1", "1.17"], ["-train", "grid:41"]
+    for name, case, scene in (("two_disks", "case", []), ("two_disks_published", "published", []),
+                              ("two_disks_p1_direct", "case",
+                               ["-multiplier", "p1", "-integration", "direct"])):
+        yield Formulation(name, CASES / f"two_disks/{case}.yaml", scene, few, mu)
+
+
+def rigid_disks():
+    case, mu, few = CASES / "rigid_disk/case.yaml", ["0.83", "1", "1.17"], ["-train", "grid:9"]
+    for law in ("none", "tresca", "coulomb"):
+        friction = ["-friction", law]
+        yield Formulation(f"disk_{law}", case, friction, few, mu)
+        for rule in ("empirical", "full", "interpolated"):
+            yield Formulation(f"nitsche_{law}_{rule}", case, ["-formulation", "nitsche", *friction],
+                              few, mu,
+                              [] if rule == "empirical" else ["-nitsche_quadrature", rule])
+    for kind in ("collocated", "cones", "joint"):
+        yield Formulation(f"disk_{kind}", case, [], ["-train", "grid:31"], mu,
+                          ["-multiplier_reduction", kind])
+    yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)
+    yield Formulation("disk_stiffness", case,
+                      ["-parameters", "radius,core_stiffness,poisson_ratio"],
+                      ["-train", "grid:3,3,3"], ["1,1,0.3", "0.9,0.5,0.25", "1.1,2,0.35"])
+
+
+def patches():
+    case, mu, few = CASES / "patch/case.yaml", ["0.02", "0.05"], []
+    yield Formulation("patch_two", case, [], few, mu)
+    yield Formulation("patch_one", case, ["-bodies", "one"], None, mu)
+    yield Formulation("patch_nitsche", case,
+                      ["-formulation", "nitsche", "-bodies", "one", "-degree", "2"], few, mu)
+
+
+def every_scene():
+    return [*membranes(), *two_disks(), *rigid_disks(), *patches()]
