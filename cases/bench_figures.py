@@ -61,8 +61,10 @@ def name_rows(axis, rows, time, error):
         together = any(abs(t - at) < 0.4 and abs(e - high) < 0.5 for at, high in named)
         if not np.isfinite(e) or together or words in ("interpolation", "snapshot"):
             continue
+        right_is_taken = any(0 < at - t < 0.9 and abs(e - high) < 0.5 for at, high in named)
         named.append((t, e))
-        axis.annotate(words, (10 ** t, 10 ** e), xytext=(6, 3), textcoords="offset points",
+        axis.annotate(words, (10 ** t, 10 ** e), xytext=(-6 if right_is_taken else 6, 3),
+                      ha="right" if right_is_taken else "left", textcoords="offset points",
                       fontsize=6.5, color=GREY)
 
 

@@ -12,8 +12,12 @@ void raise(Worst &worst, double value, const Mu &mu) {
   worst = {value, mu};
 }
 
+/// The parameter to the digits that people read.
 std::string at(const Worst &worst, const ParameterSpace &space) {
-  return short_number(worst.value) + " (" + describe(space, worst.at) + ")";
+  Mu mu = worst.at;
+  for (double &value : mu)
+    value = parse_number(short_number(value), "parameter");
+  return short_number(worst.value) + " (" + describe(space, mu) + ")";
 }
 
 } // namespace
