@@ -14,6 +14,7 @@ class Formulation:
     few: list | None  # options that make a small training set; None: it is not reduced
     mu: list  # parameters inside the box
     reduction: list = field(default_factory=list)  # options of the reduced model
+    training: list = field(default_factory=list)  # where the training set of the scene does not fit
 
 
 def membranes():
@@ -49,7 +50,8 @@ def rigid_disks():
     yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)
     yield Formulation("disk_stiffness", case,
                       ["-parameters", "radius,core_stiffness,poisson_ratio"],
-                      ["-train", "grid:3,3,3"], ["1,1,0.3", "0.9,0.5,0.25", "1.1,2,0.35"])
+                      ["-train", "grid:3,3,3"], ["1,1,0.3", "0.9,0.5,0.25", "1.1,2,0.35"],
+                      training=["-train", "grid:5,5,5"])
 
 
 def patches():
