@@ -44,6 +44,13 @@ Vector slip_directions(const Matrix &tangential) {
 
 } // namespace
 
+Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis) {
+  Matrix functions(nodal.rows(), basis.normal.cols() + basis.tangential.cols());
+  functions << nodal.leftCols(basis.normal.rows()) * basis.normal,
+      nodal.rightCols(basis.tangential.rows()) * basis.tangential;
+  return functions;
+}
+
 DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, double tolerance) {
   const Matrix factor = product_factor(product);
   const Matrix coordinates = factor * snapshots;

@@ -15,14 +15,6 @@ std::vector<FrictionBound> bounds_at(const Scene &scene, const std::vector<Mu> &
   return bounds;
 }
 
-/// The functions of the multipliers at all dual dofs.
-Matrix dual_functions(const Matrix &nodal, const MultiplierBasis &basis) {
-  const Index nodes = nodal.cols() / 2;
-  Matrix functions(nodal.rows(), basis.normal.cols() + basis.tangential.cols());
-  functions << nodal.leftCols(nodes) * basis.normal, nodal.rightCols(nodes) * basis.tangential;
-  return functions;
-}
-
 } // namespace
 
 void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
@@ -77,7 +69,7 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   if (affine.b.size() == 1) training.resize(1);
   const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
   add_supremizers(problem, training, reference, options,
-                  dual_functions(nodal, bases.multipliers.basis), bases, times);
+                  multiplier_functions(nodal, bases.multipliers.basis), bases, times);
   return bases;
 }
 

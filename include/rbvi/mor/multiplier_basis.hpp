@@ -27,6 +27,10 @@ struct MultiplierBases {
   std::vector<double> tangential;    ///< error of POD with 0, 1, ... modes, as (3.60c)
 };
 
+/// The functions of `basis` at all dual dofs, those of lambda_n first: dual dofs x (R + S).
+/// `nodal`: the nodal dual basis, whose coefficients they are.
+Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis);
+
 /// Modes of snapshots, orthonormal in `product`: as few as hold the tolerance.
 struct DenseModes {
   Matrix columns;

@@ -35,6 +35,7 @@ struct ReduceOptions {
   PodOptions pod;
   ConeOptions cone;
   PgaOptions pga;
+  bool infsup_tolerance = false; ///< the tolerance of pga is infsup_tolerance() of the training set
   EimOptions eim;
   CondensedOptions condensed;    ///< contact with a rigid support
   MultiplierOptions multipliers; ///< of it
@@ -58,6 +59,7 @@ struct ReducedBases {
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
   bool online_enriched = false;
+  double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
 
 /// Contact with a rigid support: throws bad_input for a scene with a load, and for reductions of
