@@ -335,7 +335,8 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
     result.model = project(problem, samples, result.affine, result.bases);
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
   }
-  if (result.bases.reduction == MultiplierReduction::collocated)
+  if (result.bases.multipliers.basis.tangential.size() > 0 &&
+      result.bases.reduction == MultiplierReduction::collocated)
     add_collocation(problem, samples, options.gcns, result, times);
   check_answers(problem, result.model, times);
   return result;

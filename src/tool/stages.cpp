@@ -153,6 +153,8 @@ std::string multiplier_row(const ToolOptions &options, const OfflineResult *resu
     return name + ": " + count(static_cast<int>(basis.normal.cols()), "mode") + ", " +
            count(static_cast<int>(basis.nodes.size()), "node");
   const bool cones = options.reduce.multipliers.reduction == MultiplierReduction::cones;
+  if (basis.tangential.size() == 0)
+    return name + ": R = " + count(static_cast<int>(basis.normal.cols()), "generator");
   return name + ": R = " + count(static_cast<int>(basis.normal.cols()), "generator") + ", " +
          (cones ? "M = " : "S = ") +
          count(static_cast<int>(basis.tangential.cols()), cones ? "generator" : "mode");
@@ -185,14 +187,15 @@ void add_support_rows(const ToolOptions &options, const OfflineResult *result,
   if (reduction == MultiplierReduction::collocated) {
     add_tolerance_row(options, result, rows);
     rows.push_back(pga_row(options, result));
+  }
+  const bool friction = options.scene.support->friction.law != FrictionLaw::none;
+  if (reduction == MultiplierReduction::collocated && friction)
     rows.push_back({"collocation nodes",
                     result == nullptr
                         ? "greedy (Algorithm 3), reduced problems solved exactly"
                         : count(static_cast<int>(result->made.collocation.nodes.size()), "node") +
                               ": " + result->made.collocation.reason});
-  }
-  if (options.scene.support->friction.law == FrictionLaw::none)
-    rows.push_back({"tangential multipliers", "the scene has no friction", true});
+  if (!friction) rows.push_back({"tangential multipliers", "the scene has no friction", true});
 }
 
 /// Nitsche's method: how the integrals over the curve are reduced.

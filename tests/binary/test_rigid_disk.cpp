@@ -81,6 +81,7 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
        {offline + "-mesh disk.msh", "-arc_edges is of the built-in mesh"},
        {offline + "-multiplier_reduction best", "condensed"},
        {offline + "-multiplier_reduction joint -friction none", "the scene has no friction"},
+       {offline + "-multiplier_reduction cones -friction none", "use -multiplier_reduction"},
        {offline + "-multiplier_reduction cones -cone_type hybrid",
         "-cone_type hybrid has functions of either sign"},
        {offline + "-hf_method vi", "use active_set or uzawa"},

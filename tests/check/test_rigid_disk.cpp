@@ -290,6 +290,115 @@ TEST(SupportStability, TheRatioInNormsOfTheMappedDomainIsThatOfAnotherCode) {
   EXPECT_GT(ratios[1], ratios[0]);
 }
 
+/// A cone of lambda_n and supremizers, no modes of lambda_tau and no collocation nodes: the limit
+/// of the coefficient of friction going to zero.
+TEST(MultiplierReductions, CollocatedWithoutFriction) {
+  Reduced r(disk("radius", {{"friction", "none"}}), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = published();
+  const Worst reduced = errors_of(r, options, unseen);
+  EXPECT_LE(reduced.u, 1e-2);
+  EXPECT_LE(reduced.lambda, 5e-2);
+  EXPECT_EQ(r.model.support->basis.tangential.size(), 0);
+  EXPECT_TRUE(r.model.support->basis.nodes.empty());
+  const StabilityCheck check = make_stability_check(r.problem, r.model);
+  for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, r.mus(), true))
+    EXPECT_GE(c.off, c.hf * (1 - 1e-9)) << "the greedy's tolerance is that of (2.23)";
+
+  options.multipliers.exact = true;
+  options.cone.tolerance = 1e-6;
+  EXPECT_LE(errors_of(r, options, unseen).lambda, 1e-5) << "mended on the condensed operator";
+
+  Scene scene = disk("radius");
+  scene.parameters.all[2].value = 1e-9;
+  Reduced slippery(scene, "grid:21");
+  slippery.reduce(published());
+  r.reduce(published());
+  const Matrix &cone = r.model.support->basis.normal;
+  ASSERT_EQ(slippery.model.support->basis.normal.cols(), cone.cols());
+  EXPECT_LE((slippery.model.support->basis.normal - cone).norm(), 1e-5 * cone.norm());
+  OnlineSolver a(r.model), b(slippery.model);
+  for (const Sample &truth : unseen) {
+    const double force = *a.outputs(truth.mu, a.solve(truth.mu)).normal_force;
+    EXPECT_NEAR(*b.outputs(truth.mu, b.solve(truth.mu)).normal_force, force, 1e-6 * force);
+  }
+}
+
+/// Where b only scales all supremizers are one space, made offline or online: the same answers.
+TEST(MultiplierReductions, CollocatedWithOnlineEnrichment) {
+  Reduced r(disk("radius"), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = published();
+  options.pga.tolerance = 1e-9;
+  options.infsup_tolerance = false;
+  const Worst offline = errors_of(r, options, unseen);
+  const std::vector<int> nodes = r.model.support->basis.nodes;
+  options.enrichment = Enrichment::online;
+  const Worst online = errors_of(r, options, unseen);
+  EXPECT_TRUE(r.model.online_enriched);
+  EXPECT_EQ(r.model.support->basis.nodes, nodes);
+  EXPECT_NEAR(online.u, offline.u, 1e-2 * offline.u);
+  EXPECT_NEAR(online.lambda, offline.lambda, 1e-2 * offline.lambda);
+  EXPECT_NEAR(online.tangential, offline.tangential, 1e-2 * offline.tangential);
+}
+
+/// Where every mu has supremizers of its own, the space of a query holds those of its mu: b on it
+/// is b, and the displacement lies in it. It is smaller than the offline space, which holds those
+/// of all training mu.
+TEST(MultiplierReductions, OnlineEnrichmentFollowsTheNormal) {
+  Reduced r(disk("radius", {{"normal", "rigid"}}), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = published();
+  options.enrichment = Enrichment::online;
+  const Worst online = errors_of(r, options, unseen);
+  EXPECT_LE(online.u, 1e-2);
+  EXPECT_LE(online.lambda, 5e-2);
+  EXPECT_LE(online.tangential, 5e-2);
+  const Matrix functions = multiplier_coefficients(r.model.support->basis);
+  OnlineSolver solver(r.model);
+  for (const Sample &truth : unseen) {
+    const ReducedSolution answer = solver.solve(truth.mu);
+    const Matrix b =
+        functions.transpose() *
+        (r.model.b.reduced * answer.theta_b).reshaped(r.model.generators, r.model.primal_size());
+    const Matrix z = enriched_subspace(b, r.model.modes);
+    EXPECT_EQ(z.cols(), r.model.modes + functions.cols());
+    EXPECT_LT(z.cols(), r.model.primal_size());
+    EXPECT_LE((z.transpose() * z - Matrix::Identity(z.cols(), z.cols())).norm(), 1e-12);
+    EXPECT_LE((b - b * z * z.transpose()).norm(), 1e-12 * b.norm());
+    EXPECT_LE((answer.u - z * (z.transpose() * answer.u)).norm(), 1e-12 * answer.u.norm());
+  }
+}
+
+/// The patch test of one block: tractions on its sides, and the exact pressure (lambda + 2 G)
+/// strain.
+TEST(MultiplierReductions, CollocatedWithALoad) {
+  for (const char *friction : {"coulomb", "none"}) {
+    SCOPED_TRACE(friction);
+    Scene scene = make_scene("patch", {{"bodies", "one"}, {"degree", "2"}, {"friction", friction}});
+    scene.parameters = free_only(scene.parameters, "indentation,shear");
+    Reduced r(scene, "grid:3,4");
+    EXPECT_THROW(r.reduce(with(MultiplierReduction::condensed)), Error);
+    for (const Enrichment enrichment : {Enrichment::offline, Enrichment::online}) {
+      ReduceOptions options = published();
+      options.enrichment = enrichment;
+      r.reduce(options);
+      EXPECT_EQ(r.model.self_check.unanswered, 0);
+      OnlineSolver online(r.model);
+      for (const Mu &mu : {Mu{0.037, 0.01}, Mu{0.081, 0.19}}) { // sticks, slips
+        const Sample truth = solve_all(r.problem, {mu}).front();
+        const ReducedSolution answer = online.solve(mu);
+        const Outputs found = online.outputs(mu, answer);
+        const double pressure = 15 * (1 - 0.35) / (1.35 * 0.3) * mu[0] / 0.5;
+        EXPECT_NEAR(*found.peak_pressure, pressure, 1e-10 * pressure);
+        EXPECT_NEAR(*found.energy, *truth.outputs.energy, 1e-10 * std::abs(*truth.outputs.energy));
+        EXPECT_LE((online.field(answer) - truth.u).norm(), 1e-10 * truth.u.norm());
+        EXPECT_LE((online.multiplier(answer) - truth.lambda).norm(), 1e-10 * truth.lambda.norm());
+      }
+    }
+  }
+}
+
 TEST(MultiplierReductions, RefuseWhatTheyCannotDo) {
   Reduced r(disk("radius", {{"friction", "none"}}), "grid:3");
   EXPECT_THROW(r.reduce(with(MultiplierReduction::joint)), Error);

@@ -62,8 +62,8 @@ struct ReducedBases {
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
 
-/// Contact with a rigid support: throws bad_input for a scene with a load, and for reductions of
-/// the multipliers that its law of friction or the type of the cones does not allow.
+/// Contact with a rigid support: throws bad_input for reductions of the multipliers that a load of
+/// the scene, its law of friction or the type of the cones does not allow.
 void check_support_reduction(const Scene &scene, const ReduceOptions &options);
 
 /// All of the offline stage behind the snapshots. The model is complete on every rank, but for its
