@@ -180,8 +180,8 @@ def draw_greedy(axes, tight, loose, colour, label, floor):
 
 def infsup(run):
     """Inf-sup constants over the validation set, and what each supremizer brings."""
-    if kind_of(run) != "pair":
-        return  # verify does not make them
+    if kind_of(run) != "pair" and not (run / "verify" / "infsup.csv").is_file():
+        return  # of a support verify makes them for the collocated reduction alone
     beta, steps = table(run, "infsup.csv"), table(run, "stability.csv")
     x, xlabel = validation_axis(run, beta)
     order = np.argsort(beta["beta_on"] if x is None else x)

@@ -16,7 +16,6 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from infsup import constants
 from study_tools import (first_at, history, markdown, pair_options, short, stored, study_main,
                          summary, table)
 
@@ -72,32 +71,31 @@ def sizes(runs):
 
 
 def stability(runs):
-    """The constants at the smallest training radius, and the collocation nodes. Exceptions from
-    beta_on >= beta_S >= sqrt(1 - sigma^2) beta_on, beta_on being that of all supremizers."""
+    """The constants of the reduced pairs, the smallest over all radii, and the collocation nodes."""
     rows, exceptions, checked = [], 0, 0
     for key, name in COLLOCATED.items():
         run = runs["radius", key]
-        beta, c = constants(run)
-        sigma = history(run, "pga/sigma")[:len(beta)]
-        bound = np.sqrt(1 - sigma ** 2) * beta[-1]
-        slack = 1e-6 * beta[-1]  # sigma = 1 to round-off is a bound of 1e-8
-        exceptions += int(np.sum(beta > beta[-1] + slack) + np.sum(beta < bound - slack))
-        checked += 2 * len(beta)
-        radius = stored(run, "support/starts_mu").min()
+        steps, constants = table(run, "stability.csv"), table(run, "infsup.csv")
+        for larger, smaller in (("beta_on", "beta_off"), ("beta_off", "beta_dec"),
+                                ("beta_on", "beta_hf"), ("c_hf", "beta_on")):
+            exceptions += int(np.sum(constants[smaller] > constants[larger] * (1 + 1e-9)))
+            checked += len(constants)
+        exceptions += int(np.sum(steps["exceptions"]))
+        checked += len(steps)
+        beta = steps["beta_min"]
         pairs = history(run, "gcns/nodes").astype(int)
         error = dict(zip(pairs, history(run, "gcns/error")))
         best = min(error, key=error.get)
         violation = dict(zip(pairs, history(run, "gcns/violation")))
-        half = len(beta) // 2
         rows.append([name, f"{summary(run)['S']:.0f}", first_at(-beta, -1e-12)] +
-                    [short(value) for value in (radius * beta[half], radius * beta[-1],
-                                                beta[-1] / c[-1])] +
-                    [short(error[20]) if 20 in error else "-", best, short(error[best]),
+                    [short(value) for value in (beta[len(beta) // 2], beta[-1])] +
+                    [f"{history(run, 'pga/tolerance')[0]:.3f}",
+                     short(error[20]) if 20 in error else "-", best, short(error[best]),
                      short(violation[best])])
     rows.append(["published", "40", "10", "", "", "0.072", "0.39", "20", "0.39", "1e-6"])
     text = markdown("Stability and collocation nodes",
                     ["sizes", "supremizers", "fewest with beta > 0", "beta with half of them",
-                     "with all", "beta / c", "e_GCNS with 20 pairs", "best pairs", "e_GCNS",
+                     "with all", "beta_HF / c_HF", "e_GCNS with 20 pairs", "best pairs", "e_GCNS",
                      "violation (3.63)"], rows)
     return text + f"\nOrder of the constants: {exceptions} exceptions in {checked} comparisons.\n"
 
@@ -182,7 +180,7 @@ def jobs_of(study):
         for variant, (_, grid) in FREE.items():
             jobs[variant, "random"] = [*DEFAULT, "-train", RANDOM]
             jobs[variant, "grid"] = [*DEFAULT, "-train", grid]
-    return {key: (key[1], options, False) for key, options in jobs.items()}
+    return {key: (key[1], options, key[1] in COLLOCATED) for key, options in jobs.items()}
 
 
 def all_runs(study):
@@ -191,7 +189,8 @@ def all_runs(study):
     for name, options in REDUCTIONS.items():
         for mended in ("yes", "no"):
             runs["radius", name, mended] = study.run(
-                "radius", f"{name}, mended {mended}", [*options, "-multiplier_exact", mended])
+                "radius", f"{name}, mended {mended}", [*options, "-multiplier_exact", mended],
+                (name, mended) == ("collocated", "no"))
     runs["radius", "default"] = study.run("radius", "default", DEFAULT)
     runs["radius", "published"] = runs["radius", "collocated", "no"]
     return runs

@@ -7,8 +7,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_grid,
                           save)
-from infsup import constants
-from study_tools import rows_of, stored
+from study_tools import rows_of, stored, table
 
 import numpy as np
 
@@ -79,13 +78,14 @@ def greedy(runs, directory):
     figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
     for key, (name, colour) in SIZES.items():
         run = runs["radius", key]
-        beta, _ = constants(run)
-        beta *= stored(run, "support/starts_mu").min()
-        first = np.flatnonzero(beta)[0]
-        axes[0].plot(np.arange(first, len(beta)), beta[first:], ".-", color=colour, label=name)
+        steps = table(run, "stability.csv")
+        steps = steps[steps["beta_min"] > 1e-12]
+        axes[0].plot(steps["S"], steps["beta_min"], ".-", color=colour, label=name)
         sigma = history(run, "pga/sigma")
         axes[1].plot(np.arange(len(sigma)), sigma, ".-", color=colour, label=name)
-    axes[1].axhline(0.072, color="black", linestyle=":", label="tolerance 0.072")
+    tolerance = history(runs["radius", "published"], "pga/tolerance")[0]
+    axes[1].axhline(tolerance, color="black", linestyle=":", label=f"tolerance {tolerance:.3f}")
+    axes[1].axhline(0.072, color=GREY, linestyle="--", label="tolerance published, 0.072")
     log_axis(axes[0], "supremizers", r"smallest $\beta$", "inf-sup constant; before: 0")
     axes[0].set_xlim(left=0)
     axes[1].set_xlabel("supremizers")

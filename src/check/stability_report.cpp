@@ -1,10 +1,13 @@
 #include "rbvi/check/stability_report.hpp"
 
+#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/small_svd.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace rbvi {
 
@@ -27,26 +30,16 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   return basis;
 }
 
-/// Calls visit(p) for this rank's share of 0 .. count - 1.
+/// Calls visit(p) for this rank's share of 0 .. count - 1. Collective: a failure is everyone's.
 template <class Visit> void share(MPI_Comm comm, std::size_t count, Visit &&visit) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  for (std::size_t p = static_cast<std::size_t>(rank); p < count;
-       p += static_cast<std::size_t>(ranks))
-    visit(p);
-}
-
-/// Over the multipliers whose support has a partner everywhere (of one body all): the others press
-/// on nothing, or on next to nothing.
-double beta_hf(const Problem &problem, const RieszSpace &space, const Operators &op) {
-  if (!problem.two_bodies()) return high_fidelity_constant(space, op.b, problem.w_product());
-  const Vector whole = problem.w_product() * Vector::Ones(op.b.rows());
-  std::vector<Index> rows;
-  for (Index i = 0; i < whole.size(); ++i)
-    if (op.weights[i] > (1 - 1e-9) * whole[i]) rows.push_back(i);
-  const Matrix b = Matrix(op.b)(rows, Eigen::all), w = Matrix(problem.w_product())(rows, rows);
-  return high_fidelity_constant(space, b.sparseView(), w.sparseView());
+  collectively(comm, [&] {
+    for (std::size_t p = static_cast<std::size_t>(rank); p < count;
+         p += static_cast<std::size_t>(ranks))
+      visit(p);
+  });
 }
 
 } // namespace
@@ -56,30 +49,50 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
   check.modes = model.modes;
   check.space = make_riesz_space(problem.v_product(), problem.trace());
   check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis));
-  check.dual = orthonormal_dual_basis(model.dual_basis, problem.w_product());
+  check.dual = orthonormal_dual_basis(
+      model.support ? multiplier_functions(model.dual_basis, model.support->basis)
+                    : model.dual_basis,
+      problem.w_product());
   return check;
 }
 
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<Mu> &set, bool b_is_scaled) {
-  std::vector<double> values(4 * set.size(), 0);
+  constexpr Index count = 5;
+  Matrix values = Matrix::Zero(count, static_cast<Index>(set.size()));
   const Matrix modes = check.coordinates.leftCols(check.modes);
-  double hf_per_b = 0; // beta_HF / |b| where b is scaled
+  std::optional<PairConstants> per_b; // over |b|, where b is scaled
   share(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p], op);
-    InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
-    if (!b_is_scaled || hf_per_b == 0) hf_per_b = beta_hf(problem, check.space, op) / op.b.norm();
-    c.hf = hf_per_b * op.b.norm();
-    std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4,
-                values.begin() + static_cast<long>(4 * p));
+    const InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
+    const double size = op.b.norm();
+    if (!b_is_scaled || !per_b) {
+      const PairConstants pair = high_fidelity_pair(problem, check.space, op);
+      per_b = {pair.beta / size, pair.c / size};
+    }
+    values.col(static_cast<Index>(p)) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
   });
   MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
                 comm);
   std::vector<InfSup> result;
-  for (std::size_t p = 0; p < set.size(); ++p)
-    result.push_back({values[4 * p], values[4 * p + 1], values[4 * p + 2], values[4 * p + 3]});
+  for (const auto &at : values.colwise())
+    result.push_back({at[0], at[1], at[2], at[3], at[4]});
   return result;
+}
+
+Mu weakest_form(Problem &problem, const std::vector<Mu> &set) {
+  constexpr double tie = 1e-10;
+  double least = std::numeric_limits<double>::infinity();
+  Mu weakest;
+  Operators op;
+  for (const Mu &mu : set) {
+    problem.assemble_contact(mu, op);
+    if (op.b.norm() >= (1 - tie) * least) continue;
+    least = op.b.norm();
+    weakest = mu;
+  }
+  return weakest;
 }
 
 BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,

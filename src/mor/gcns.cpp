@@ -47,7 +47,7 @@ public:
     if (!(largest > 0))
       throw failure("GCNS: all tangential multipliers are zero: leave out the friction");
     for (double &size : sizes_)
-      if (size == 0) size = largest;
+      if (size <= round_off * largest) size = largest;
   }
 
   Gcns run(const GcnsOptions &options) {

@@ -4,6 +4,7 @@
 #include "rbvi/core/least_squares_friction.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/mor/small_svd.hpp"
+#include "rbvi/rom/reduced_law.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,10 @@ Vector slip_directions(const Matrix &tangential) {
 
 } // namespace
 
+Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis) {
+  return nodal * multiplier_coefficients(basis);
+}
+
 DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, double tolerance) {
   const Matrix factor = product_factor(product);
   const Matrix coordinates = factor * snapshots;
@@ -72,9 +77,11 @@ MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMa
                                       const ConeOptions &cone_options) {
   MultiplierBases bases;
   if (options.reduction == MultiplierReduction::condensed) return bases;
-  const Index nodes = coefficients.rows() / 2;
-  const Matrix normal = coefficients.topRows(nodes), tangential = coefficients.bottomRows(nodes);
-  if ((tangential.array() == 0).all())
+  const bool friction = !bounds.empty();
+  const Index nodes = friction ? coefficients.rows() / 2 : coefficients.rows();
+  const Matrix normal = coefficients.topRows(nodes);
+  const Matrix tangential = coefficients.bottomRows(coefficients.rows() - nodes);
+  if (friction && (tangential.array() == 0).all())
     throw failure("no snapshot has a tangential stress: use -multiplier_reduction condensed");
   MultiplierBasis &basis = bases.basis;
   if (options.reduction == MultiplierReduction::joint) {
@@ -86,10 +93,11 @@ MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMa
     basis.nodes = pivot_nodes(modes.columns, static_cast<int>(count));
     return bases;
   }
-  const SparseMatrix product_n = block(product, 0, nodes), product_t = block(product, nodes, nodes);
-  const Cone cone = build_cone(normal, product_n, cone_options);
+  const Cone cone = build_cone(normal, block(product, 0, nodes), cone_options);
   basis.normal = cone.basis.generators;
   bases.normal = cone.history;
+  if (!friction) return bases;
+  const SparseMatrix product_t = block(product, nodes, nodes);
   if (options.reduction == MultiplierReduction::cones) {
     basis.slip = slip_directions(tangential);
     const Cone left =

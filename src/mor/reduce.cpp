@@ -1,6 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/self_check.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -118,12 +119,19 @@ void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu
     riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(),
                              coupled_dofs(problem, dual, training));
   }
+  PgaOptions pga = options.pga;
+  if (options.infsup_tolerance && !bases.online_enriched) {
+    const Stage stage("inf-sup tolerance", times);
+    const RieszSpace whole =
+        make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace());
+    pga.tolerance = infsup_tolerance(problem.comm(), problem, whole, training);
+    bases.infsup_tolerance = pga.tolerance;
+  }
   const Stage stage("PGA", times);
   const Matrix modes =
       energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()))
              : mode_coordinates(riesz, bases.pod.basis);
   std::vector<Matrix> supremizers = supremizers_at(problem, riesz, dual, training);
-  PgaOptions pga = options.pga;
   if (bases.online_enriched) {
     supremizers = {span_of_supremizers(riesz, supremizers)};
     pga = {.tolerance = 1e-9}; // all but what the modes hold
@@ -327,7 +335,8 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
     result.model = project(problem, samples, result.affine, result.bases);
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
   }
-  if (result.bases.reduction == MultiplierReduction::collocated)
+  if (result.bases.multipliers.basis.tangential.size() > 0 &&
+      result.bases.reduction == MultiplierReduction::collocated)
     add_collocation(problem, samples, options.gcns, result, times);
   check_answers(problem, result.model, times);
   return result;

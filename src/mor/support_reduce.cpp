@@ -8,38 +8,34 @@ namespace rbvi {
 
 namespace {
 
+/// None without friction.
 std::vector<FrictionBound> bounds_at(const Scene &scene, const std::vector<Mu> &set) {
   std::vector<FrictionBound> bounds;
+  if (scene.support->friction.law == FrictionLaw::none) return bounds;
   for (const Mu &mu : set)
     bounds.push_back(friction_bound(scene.support->friction, expand(scene.parameters, mu)));
   return bounds;
-}
-
-/// The functions of the multipliers at all dual dofs.
-Matrix dual_functions(const Matrix &nodal, const MultiplierBasis &basis) {
-  const Index nodes = nodal.cols() / 2;
-  Matrix functions(nodal.rows(), basis.normal.cols() + basis.tangential.cols());
-  functions << nodal.leftCols(nodes) * basis.normal, nodal.rightCols(nodes) * basis.tangential;
-  return functions;
 }
 
 } // namespace
 
 void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
   if (scene.nitsche) return;
-  if (scene.f)
-    throw bad_input("scene " + scene.name +
-                    ": contact with a rigid support is reduced without a load only");
   const MultiplierReduction reduction = options.multipliers.reduction;
+  const bool reduced_body =
+      reduction == MultiplierReduction::collocated && !options.multipliers.exact;
+  if (scene.f && !reduced_body)
+    throw bad_input("scene " + scene.name +
+                    " has a load, which the condensed operator does not see: use "
+                    "-multiplier_reduction collocated -multiplier_exact no");
   if (reduction == MultiplierReduction::condensed) return;
-  if (scene.support->friction.law == FrictionLaw::none)
-    throw bad_input("the scene has no friction: use -multiplier_reduction condensed");
+  if (scene.support->friction.law == FrictionLaw::none &&
+      reduction != MultiplierReduction::collocated)
+    throw bad_input("the scene has no friction: use -multiplier_reduction condensed or collocated");
   if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
     throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
                     "-multiplier_reduction " +
                     multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
-  if (reduction == MultiplierReduction::collocated && options.enrichment == Enrichment::online)
-    throw bad_input("-pga_enrichment online is not for contact with a rigid support: use offline");
 }
 
 ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
@@ -77,7 +73,7 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   if (affine.b.size() == 1) training.resize(1);
   const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
   add_supremizers(problem, training, reference, options,
-                  dual_functions(nodal, bases.multipliers.basis), bases, times);
+                  multiplier_functions(nodal, bases.multipliers.basis), bases, times);
   return bases;
 }
 

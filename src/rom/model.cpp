@@ -102,9 +102,10 @@ void check_support(const ReducedModel &model, const SupportModel &support) {
   }
   if (support.reduction != MultiplierReduction::condensed) {
     const MultiplierBasis &basis = support.basis;
-    require(m == 2 * support.normal, "support/basis is for contact with friction");
+    require(m == 2 * support.normal || support.reduction == MultiplierReduction::collocated,
+            "support/basis is for contact with friction");
     require_shape(basis.normal, support.normal, basis.normal.cols(), "support/basis/normal");
-    require_shape(basis.tangential, support.normal, basis.tangential.cols(),
+    require_shape(basis.tangential, m - support.normal, basis.tangential.cols(),
                   "support/basis/tangential");
     if (support.reduction == MultiplierReduction::cones)
       require_shape(basis.slip, support.normal, 1, "support/basis/slip");

@@ -4,8 +4,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/packed.hpp"
-
-#include <Eigen/QR>
+#include "rbvi/rom/reduced_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -99,13 +98,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
 }
 
 void OnlineSolver::enrich() {
-  const Index modes = model_.modes, n = model_.primal_size();
-  const Index added = solved_size(model_) - modes;
-  const Eigen::HouseholderQR<Matrix> qr(b_.rightCols(n - modes).transpose());
-  enrichment_ = Matrix::Zero(n, modes + added);
-  enrichment_.topLeftCorner(modes, modes).setIdentity();
-  enrichment_.bottomRightCorner(n - modes, added) =
-      qr.householderQ() * Matrix::Identity(n - modes, added);
+  enrichment_ = enriched_subspace(b_, model_.modes);
   a_ = (enrichment_.transpose() * (a_.selfadjointView<Eigen::Lower>() * enrichment_)).eval();
   b_ = (b_ * enrichment_).eval();
 }

@@ -17,7 +17,7 @@ namespace {
 constexpr double ridge = 1e-12;
 
 [[noreturn]] void not_solved(const std::string &reason) {
-  throw failure("the reduced law of friction is not solved: " + reason +
+  throw failure("the reduced law of contact is not solved: " + reason +
                 "; reduce again with -multiplier_reduction condensed, or with more functions");
 }
 
@@ -47,8 +47,12 @@ Matrix sum_of(const std::vector<Matrix> &terms, const Vector &coefficients) {
 
 } // namespace
 
+Matrix multiplier_coefficients(const MultiplierBasis &basis) {
+  return block_diagonal(basis.normal, basis.tangential);
+}
+
 CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtMu &body) {
-  const Matrix functions = block_diagonal(basis.normal, basis.tangential);
+  const Matrix functions = multiplier_coefficients(basis);
   const Matrix y = body.stiffness->half_response(body.b.transpose() * functions);
   Matrix h = y.transpose() * y;
   h.diagonal() *= 1 + ridge;
@@ -56,16 +60,15 @@ CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtM
           basis.tangential(basis.nodes, Eigen::all), body.bound};
 }
 
-double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal,
+double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal, Index normal,
                         const FrictionBound &bound) {
-  const Index nodes = x.size() / 2;
-  const Vector bounds = friction_bounds(bound, x.head(nodes));
+  const Vector bounds = friction_bounds(bound, x.head(normal));
   const Vector y = x - w.cwiseQuotient(diagonal);
   double largest = 0;
-  for (Index i = 0; i < nodes; ++i) {
-    const double tangential = std::clamp(y[nodes + i], -bounds[i], bounds[i]);
-    largest = std::max(
-        {largest, std::abs(x[i] - std::max(0.0, y[i])), std::abs(x[nodes + i] - tangential)});
+  for (Index i = 0; i < x.size(); ++i) {
+    const double s = i < normal ? 0 : bounds[i - normal];
+    const double projected = i < normal ? std::max(0.0, y[i]) : std::clamp(y[i], -s, s);
+    largest = std::max(largest, std::abs(x[i] - projected));
   }
   const double size = x.cwiseAbs().maxCoeff();
   return size > 0 ? largest / size : largest;
@@ -143,8 +146,7 @@ ReducedLawAnswer ReducedLaw::solve(const BodyAtMu &body) {
   const CollocatedResult found = solve_collocated(collocated_problem(basis, body), last_);
   if (!found.converged) not_solved(found.reason);
   last_ = found.x;
-  return {block_diagonal(basis.normal, basis.tangential) * found.x, found.residual,
-          found.iterations};
+  return {multiplier_coefficients(basis) * found.x, found.residual, found.iterations};
 }
 
 } // namespace rbvi

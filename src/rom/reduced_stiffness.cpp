@@ -5,8 +5,10 @@
 #include "rbvi/rom/packed.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 
 #include <algorithm>
+#include <utility>
 
 namespace rbvi {
 
@@ -19,11 +21,26 @@ Mu corner(const ParameterSpace &space, double Parameter::*bound) {
   return expand(space, mu);
 }
 
+[[noreturn]] void not_definite() {
+  throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
+                "-eim_tolerance, or stay closer to the training set");
+}
+
 } // namespace
+
+Matrix enriched_subspace(const Matrix &b, Index modes) {
+  const Index n = b.cols(), added = std::min(n - modes, b.rows());
+  const Eigen::HouseholderQR<Matrix> qr(b.rightCols(n - modes).transpose());
+  Matrix subspace = Matrix::Zero(n, modes + added);
+  subspace.topLeftCorner(modes, modes).setIdentity();
+  subspace.bottomRightCorner(n - modes, added) =
+      qr.householderQ() * Matrix::Identity(n - modes, added);
+  return subspace;
+}
 
 ReducedStiffness::ReducedStiffness(const ReducedModel &model, const Scene &scene)
     : model_(model), scene_(scene) {
-  if (model.a.size() <= 2) find_common_eigenvectors();
+  if (model.a.size() <= 2 && !model.online_enriched) find_common_eigenvectors();
 }
 
 /// Of A_N at two corners of the box, or of its only term.
@@ -66,18 +83,24 @@ bool ReducedStiffness::depends_on_change(const Mu &all_parameters) const {
 void ReducedStiffness::set(const Mu &all_parameters) {
   if (!depends_on_change(all_parameters)) return;
   const Vector theta = affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
-  bool definite = true;
   if (eigenvectors_.size() > 0) {
     diagonal_ = eigenvalues_ * theta;
-    definite = diagonal_.minCoeff() > 0;
+    if (!(diagonal_.minCoeff() > 0)) not_definite();
   } else {
-    factor_.compute(unpacked(model_.a.reduced * theta, model_.primal_size()));
-    definite = factor_.info() == Eigen::Success;
+    a_ = unpacked(model_.a.reduced * theta, model_.primal_size());
+    if (!model_.online_enriched) factorise(a_);
   }
-  if (!definite)
-    throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
-                  "-eim_tolerance, or stay closer to the training set");
   at_ = all_parameters;
+}
+
+void ReducedStiffness::factorise(const Matrix &stiffness) {
+  factor_.compute(stiffness);
+  if (factor_.info() != Eigen::Success) not_definite();
+}
+
+void ReducedStiffness::restrict_to(Matrix subspace) {
+  subspace_ = std::move(subspace);
+  factorise(subspace_.transpose() * (a_.selfadjointView<Eigen::Lower>() * subspace_));
 }
 
 Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const {
@@ -89,13 +112,21 @@ Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const 
     load.noalias() +=
         theta_b[p] * (Eigen::Map<const Matrix>(values, model_.generators, n).transpose() * x);
   }
+  if (model_.online_enriched) return subspace_ * factor_.solve(subspace_.transpose() * load);
   if (!turned) return factor_.solve(load);
   return eigenvectors_ * load.cwiseQuotient(diagonal_);
 }
 
 Matrix ReducedStiffness::half_response(const Matrix &loads) const {
+  if (model_.online_enriched) return factor_.matrixL().solve(subspace_.transpose() * loads);
   if (eigenvectors_.size() == 0) return factor_.matrixL().solve(loads);
   return diagonal_.cwiseSqrt().cwiseInverse().asDiagonal() * (eigenvectors_.transpose() * loads);
+}
+
+Vector ReducedStiffness::transposed_half_response(const Vector &half) const {
+  if (model_.online_enriched) return subspace_ * factor_.matrixU().solve(half);
+  if (eigenvectors_.size() == 0) return factor_.matrixU().solve(half);
+  return eigenvectors_ * half.cwiseQuotient(diagonal_.cwiseSqrt());
 }
 
 } // namespace rbvi

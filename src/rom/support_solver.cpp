@@ -99,8 +99,16 @@ BodyAtMu SupportSolver::body_at(const Mu &all_parameters, const Vector &theta_b)
   if (support.reduction == MultiplierReduction::collocated)
     body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
   stiffness_.set(all_parameters);
+  if (model_.online_enriched)
+    stiffness_.restrict_to(enriched_subspace(
+        multiplier_coefficients(support.basis).transpose() * body.b, model_.modes));
   body.stiffness = &stiffness_;
   body.q = model_.g.reduced * support_coefficients(model_.g, false, scene_, all_parameters);
+  if (model_.f.size() > 0) {
+    body.load = stiffness_.half_response(
+        model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters));
+    body.q -= stiffness_.half_response(body.b.transpose()).transpose() * body.load;
+  }
   body.bound = friction_bound(scene_.support->friction, all_parameters);
   return body;
 }
@@ -134,7 +142,8 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
   if (!checks) return true;
   AtAllNodes nodes = at_all_nodes(body, answer.x);
   answer.energy = 0.5 * answer.x.dot(nodes.w - body.q);
-  answer.residual = natural_residual(answer.x, nodes.w, nodes.diagonal, body.bound);
+  answer.residual =
+      natural_residual(answer.x, nodes.w, nodes.diagonal, model_.support->normal, body.bound);
   answer.start = std::move(nodes.start);
   return !mends || answer.residual <= mended_above;
 }
@@ -171,8 +180,10 @@ SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
   const BodyAtMu body = body_at(all_parameters, answer.theta_b);
   solve_law(body, all_parameters, answer);
   answer.u = -stiffness_.response(answer.theta_b, answer.x);
+  if (body.load.size() > 0) answer.u += stiffness_.transposed_half_response(body.load);
   if (model_.support->condensed.terms.size() == 0)
-    answer.energy = 0.5 * stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm();
+    answer.energy = 0.5 * (stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm() -
+                           body.load.squaredNorm());
   last_start_ = answer.start;
   last_ = parts_of_box(scene_.parameters, all_parameters);
   return answer;

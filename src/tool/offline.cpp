@@ -49,7 +49,8 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
       {"cone_ring", std::to_string(options.reduce.cone.ring)},
       {"pga_enrichment", enrichment_names()[static_cast<std::size_t>(options.reduce.enrichment)]},
       {"pga_product", product_names()[static_cast<std::size_t>(options.reduce.product)]},
-      {"pga_tolerance", short_number(options.reduce.pga.tolerance)},
+      {"pga_tolerance",
+       options.reduce.infsup_tolerance ? "infsup" : short_number(options.reduce.pga.tolerance)},
       {"pga_beta_fraction", short_number(options.reduce.pga.stability)}});
   return settings;
 }

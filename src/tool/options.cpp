@@ -136,7 +136,10 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
   if (!reference.empty())
     options.reference =
         while_doing("reading option -reference_mu", [&] { return parse_mu(space, reference); });
-  options.pga.tolerance = number_of("pga_tolerance", 0, 0.999);
+  options.infsup_tolerance = text_of("pga_tolerance") == "infsup";
+  if (!options.infsup_tolerance)
+    options.pga.tolerance = while_doing("reading -pga_tolerance, a number or infsup",
+                                        [] { return number_of("pga_tolerance", 0, 0.999); });
   options.pga.stability = number_of("pga_beta_fraction", 0, 1 - 1e-12);
   options.pga.max_size = integer_of("pga_max_size", 0, 100000);
   options.eim.tolerance = number_of("eim_tolerance", 0, rough);

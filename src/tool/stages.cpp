@@ -111,7 +111,8 @@ StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
   if (result == nullptr) {
     if (online) return {"PGA", "the span of all supremizers" + product};
     return {"PGA", "supremizers" + product + " until " +
-                       (reduce.pga.tolerance > 0
+                       (reduce.infsup_tolerance ? "sigma <= beta_HF / c_HF at all training mu"
+                        : reduce.pga.tolerance > 0
                             ? "sigma <= " + short_number(reduce.pga.tolerance)
                             : "beta_off >= " + short_number(reduce.pga.stability) + " beta_on") +
                        (options.scene.pair ? "" : "; one SVD if B only scales")};
@@ -119,6 +120,17 @@ StageRow pga_row(const ToolOptions &options, const OfflineResult *result) {
   const ReducedBases &bases = result->made.bases;
   return {"PGA", "S = " + count(bases.supremizers, "supremizer") + product + ", sigma " +
                      short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};
+}
+
+/// Before that of the PGA, where its tolerance is computed.
+void add_tolerance_row(const ToolOptions &options, const OfflineResult *result,
+                       std::vector<StageRow> &rows) {
+  if (!options.reduce.infsup_tolerance || options.reduce.enrichment != Enrichment::offline) return;
+  rows.push_back(
+      {"inf-sup tolerance",
+       "smallest beta_HF / c_HF" +
+           (result == nullptr ? " over the training set"
+                              : ": " + short_number(result->made.bases.infsup_tolerance))});
 }
 
 StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResult *result) {
@@ -141,6 +153,8 @@ std::string multiplier_row(const ToolOptions &options, const OfflineResult *resu
     return name + ": " + count(static_cast<int>(basis.normal.cols()), "mode") + ", " +
            count(static_cast<int>(basis.nodes.size()), "node");
   const bool cones = options.reduce.multipliers.reduction == MultiplierReduction::cones;
+  if (basis.tangential.size() == 0)
+    return name + ": R = " + count(static_cast<int>(basis.normal.cols()), "generator");
   return name + ": R = " + count(static_cast<int>(basis.normal.cols()), "generator") + ", " +
          (cones ? "M = " : "S = ") +
          count(static_cast<int>(basis.tangential.cols()), cones ? "generator" : "mode");
@@ -171,15 +185,17 @@ void add_support_rows(const ToolOptions &options, const OfflineResult *result,
   else
     rows.push_back({"multipliers", multiplier_row(options, result)});
   if (reduction == MultiplierReduction::collocated) {
+    add_tolerance_row(options, result, rows);
     rows.push_back(pga_row(options, result));
+  }
+  const bool friction = options.scene.support->friction.law != FrictionLaw::none;
+  if (reduction == MultiplierReduction::collocated && friction)
     rows.push_back({"collocation nodes",
                     result == nullptr
                         ? "greedy (Algorithm 3), reduced problems solved exactly"
                         : count(static_cast<int>(result->made.collocation.nodes.size()), "node") +
                               ": " + result->made.collocation.reason});
-  }
-  if (options.scene.support->friction.law == FrictionLaw::none)
-    rows.push_back({"tangential multipliers", "the scene has no friction", true});
+  if (!friction) rows.push_back({"tangential multipliers", "the scene has no friction", true});
 }
 
 /// Nitsche's method: how the integrals over the curve are reduced.
@@ -207,6 +223,7 @@ void add_pair_rows(const ToolOptions &options, const OfflineResult *result,
     rows.push_back({"Riesz representers", options.reduce.product == SupremizerProduct::energy
                                               ? "one factorisation of A at the reference mu"
                                               : "one factorisation of V for all mu"});
+  add_tolerance_row(options, result, rows);
   rows.push_back(pga_row(options, result));
   rows.push_back(sweep_of_supremizers_row(options, result));
   rows.push_back({"tangential multipliers", "the scene has no friction", true});

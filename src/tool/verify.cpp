@@ -323,15 +323,20 @@ void command_verify(const ToolOptions &given) {
     if (rank != 0) return;
     sweep_up(options.out);
     make_directory(out);
+    for (const char *of_another_model : {"infsup.csv", "stability.csv"})
+      fs::remove(out / of_another_model);
     check_errors(model, problem, truths, options, out);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
-  if (options.stability && !model.support && !model.nitsche)
-    check_stability(world, problem, model, training, truths.mu, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
+  const std::string none = no_constants(model);
+  if (options.stability && none.empty())
+    check_stability(world, problem, model, training, truths.mu, out);
+  else if (options.stability && rank == 0)
+    std::printf("Inf-sup constants: none, %s\n", none.c_str());
   if (rank == 0) print_written(std::cout, {out, options.out / "model.h5"});
   report_failures(options, sweep.report, validation.size(), "validation",
                   "measured over the others");

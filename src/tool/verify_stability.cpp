@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <set>
 
 namespace rbvi {
@@ -18,6 +19,10 @@ double smallest(const std::vector<double> &values) {
   return *std::min_element(values.begin(), values.end());
 }
 
+double largest(const std::vector<double> &values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
 void report_constants(const fs::path &path, const ParameterSpace &space, const std::vector<Mu> &set,
                       const std::vector<InfSup> &constants) {
   Table table;
@@ -26,12 +31,18 @@ void report_constants(const fs::path &path, const ParameterSpace &space, const s
   table.add("beta_dec", column(constants, &InfSup::dec));
   table.add("beta_on", column(constants, &InfSup::on));
   table.add("beta_off", column(constants, &InfSup::off));
+  table.add("c_hf", column(constants, &InfSup::c_hf));
   table.write(path);
+  double ratio = std::numeric_limits<double>::infinity();
+  for (const InfSup &c : constants)
+    ratio = std::min(ratio, c.hf / c.c_hf);
   std::printf("Inf-sup constants over the span, smallest over %zu validation mu\n"
-              "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n",
+              "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n"
+              "  c_HF at most %.3e, beta_HF / c_HF at least %.3e\n",
               constants.size(), smallest(column(constants, &InfSup::hf)),
               smallest(column(constants, &InfSup::on)), smallest(column(constants, &InfSup::off)),
-              smallest(column(constants, &InfSup::dec)));
+              smallest(column(constants, &InfSup::dec)), largest(column(constants, &InfSup::c_hf)),
+              ratio);
 }
 
 void write_stability(const fs::path &path, const std::vector<StabilityRow> &rows) {
@@ -82,6 +93,14 @@ constexpr int most_steps = 200, most_steps_at_mu = 4000;
 
 } // namespace
 
+std::string no_constants(const ReducedModel &model) {
+  if (model.nitsche) return "Nitsche's method has no multipliers";
+  if (!model.support || model.support->reduction == MultiplierReduction::collocated) return "";
+  const auto kind = static_cast<std::size_t>(model.support->reduction);
+  return "-multiplier_reduction " + multiplier_reduction_names()[kind] +
+         " has no reduced pair of spaces (collocated has one)";
+}
+
 void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
                      const std::vector<Mu> &training, const std::vector<Mu> &validation,
                      const fs::path &out) {
@@ -92,7 +111,7 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
   all.insert(all.end(), validation.begin(), validation.end());
   const BoundCheck bound = check_bound(world, problem, check, all);
   // Where b is only scaled every mu has the same ratios.
-  const std::vector<Mu> different = scaled ? std::vector<Mu>{all.front()} : all;
+  const std::vector<Mu> different = scaled ? std::vector<Mu>{weakest_form(problem, all)} : all;
   const int steps = std::min(model.supremizers, most_steps);
   const std::vector<StabilityRow> rows =
       stability_along(world, problem, check, subset(different, most_steps_at_mu / (1 + steps)),

@@ -5,8 +5,12 @@
 #include "rbvi/rom/model.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace rbvi {
+
+/// Why there are no inf-sup constants to verify; empty: there are.
+std::string no_constants(const ReducedModel &model);
 
 /// What the model promises about stability, checked at every training and validation mu: infsup.csv
 /// and stability.csv into `out`, a summary to standard output. Collective.

@@ -23,6 +23,7 @@ TEST_F(Nitsche, IsReducedVerifiedAndAsked) {
   EXPECT_TRUE(contains(offline, "skipped: Nitsche's method has no multipliers")) << offline;
   const std::string verify = verified();
   EXPECT_TRUE(contains(verify, "nitsche empirical")) << verify;
+  EXPECT_TRUE(contains(verify, "Inf-sup constants: none, Nitsche's method")) << verify;
 
   const std::string online = output_of(rbvi_online("run/model.h5 --mu 0.85 --vtu run/u.vtu"));
   const std::string solve = output_of(rbvi(2, "solve -case disk.yaml -mu 0.85 -vtu full.vtu"));

@@ -23,6 +23,9 @@ TEST_F(RigidDisk, IsReducedVerifiedAndAsked) {
   EXPECT_TRUE(contains(offline, "1 factorisation, 1 term")) << offline;
   const std::string verify = verified();
   EXPECT_TRUE(contains(verify, "lambda_tau")) << verify;
+  EXPECT_TRUE(contains(verify, "Inf-sup constants: none, -multiplier_reduction condensed has no"))
+      << verify;
+  EXPECT_FALSE(fs::exists("run/verify/infsup.csv"));
 
   const std::string online = output_of(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu"));
   const std::string solve = output_of(rbvi(2, "solve -case disk.yaml -mu 0.85 -vtu full.vtu"));
@@ -44,6 +47,21 @@ TEST_F(RigidDisk, ThePlanSaysWhatIsFactorisedHowOften) {
   EXPECT_TRUE(contains(output_of(rbvi(1, plan + "poisson_ratio")), "one for each solve"));
 }
 
+TEST_F(RigidDisk, ThePublishedPairIsVerifiedToBeStable) {
+  const std::string offline =
+      output_of(rbvi(2, "offline -case disk.yaml -out run -multiplier_reduction collocated "
+                        "-multiplier_exact no -pga_tolerance infsup"));
+  EXPECT_TRUE(contains(offline, "smallest beta_HF / c_HF: 0.0")) << offline;
+  const std::string verify = verified();
+  EXPECT_TRUE(contains(verify, "beta_HF / c_HF at least")) << verify;
+  EXPECT_TRUE(contains(verify, "0 exceptions from beta_off")) << verify;
+  EXPECT_EQ(lines_with(slurp("run/verify/infsup.csv"), ""), 4);
+  EXPECT_TRUE(fs::exists("run/verify/stability.csv"));
+  output_of(rbvi(2, "offline -case disk.yaml -out run"));
+  verified();
+  EXPECT_FALSE(fs::exists("run/verify/infsup.csv")) << "it was of the model before";
+}
+
 TEST_F(RigidDisk, AnAnswerThatBreaksTheLawSaysSo) {
   const std::string offline =
       "offline -case disk.yaml -multiplier_reduction collocated -gcns_max_nodes 2 ";
@@ -63,9 +81,11 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
        {offline + "-mesh disk.msh", "-arc_edges is of the built-in mesh"},
        {offline + "-multiplier_reduction best", "condensed"},
        {offline + "-multiplier_reduction joint -friction none", "the scene has no friction"},
+       {offline + "-multiplier_reduction cones -friction none", "use -multiplier_reduction"},
        {offline + "-multiplier_reduction cones -cone_type hybrid",
         "-cone_type hybrid has functions of either sign"},
        {offline + "-hf_method vi", "use active_set or uzawa"},
+       {offline + "-pga_tolerance inf-sup", "a number or infsup"},
        {"solve -case disk.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
        {"solve -case disk.yaml -parameters radius,viscosity -mu 1,1", "viscosity"}});
 }

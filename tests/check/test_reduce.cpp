@@ -71,6 +71,7 @@ TEST_P(BothMaps, ConstantsComeInTheirOrder) {
       EXPECT_GE(c.on * (1 + 1e-9), c.off);
       EXPECT_GE(c.off * (1 + 1e-9), c.dec);
       EXPECT_GE(c.on * (1 + 1e-9), c.hf);
+      EXPECT_GE(c.c_hf * (1 + 1e-9), c.on);
       EXPECT_GT(c.off, 0);
     }
     const BoundCheck bound = check_bound(PETSC_COMM_WORLD, r.problem, check, set);

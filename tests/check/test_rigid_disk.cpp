@@ -1,9 +1,14 @@
 // Contact with friction on a rigid disk from snapshots to answers: every reduction, every
 // parameter.
+#include "../linear_algebra.hpp"
 #include "reduced.hpp"
 
+#include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
+#include "rbvi/rom/support_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -164,6 +169,234 @@ TEST(MultiplierReductions, CollocatedWithoutTheCondensedOperatorIsAsAccurateAsPu
   EXPECT_LE(e.lambda, 5e-2);
   EXPECT_LE(e.tangential, 0.39) << "the error published";
   EXPECT_FALSE(r.model.support->basis.nodes.empty());
+}
+
+/// The published pair, without the condensed operator.
+ReduceOptions published() {
+  ReduceOptions options = with(MultiplierReduction::collocated);
+  options.multipliers.exact = false;
+  options.pod.tolerance = 1e-6;
+  options.cone.tolerance = 1e-3;
+  options.infsup_tolerance = true;
+  return options;
+}
+
+/// Roots of the smallest and of the largest theta with squares y = theta gram y.
+std::pair<double, double> extremes(const Matrix &squares, const Matrix &gram) {
+  const Vector values = generalised_eigenvalues(squares, gram);
+  return {std::sqrt(std::max(values(0), 0.0)), std::sqrt(values(values.size() - 1))};
+}
+
+/// Of normal and tangential multipliers together, against generalised eigenproblems of the reduced
+/// b that a query uses, and of B V^-1 B^T.
+TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
+  Reduced r(disk("radius", {{"normal", "rigid"}}), "grid:21");
+  r.reduce(published());
+  const std::vector<Mu> set{{0.73}, {1.01}, {1.28}};
+  const StabilityCheck check = make_stability_check(r.problem, r.model);
+  const std::vector<InfSup> found =
+      infsup_over(PETSC_COMM_WORLD, r.problem, check, set, r.model.b.size() == 1);
+  ReplicatedSolver solver(r.problem.v_product(), r.problem.trace(), "v_");
+  // Generators of a greedy cone nearly depend on each other: orthonormal functions of their span.
+  const Matrix w = Matrix(r.problem.w_product());
+  const Eigen::LLT<Matrix> factor(w);
+  const Matrix functions = multiplier_functions(r.model.dual_basis, r.model.support->basis);
+  const ThinSvd svd = thin_svd((factor.matrixU() * functions).colwise().normalized());
+  ASSERT_GT(svd.values(functions.cols() - 1), 1e-8 * svd.values(0));
+  const Matrix x = factor.matrixU().solve(svd.left);
+  const Matrix coefficients = nodal_coefficients(r.model.dual_basis, x);
+  const Matrix one = Matrix::Identity(x.cols(), x.cols());
+  Operators op;
+  for (std::size_t p = 0; p < set.size(); ++p) {
+    r.problem.assemble_contact(set[p], op);
+    const Mu all = expand(r.problem.scene().parameters, set[p]);
+    const Vector theta = support_coefficients(r.model.b, true, r.problem.scene(), all);
+    const Matrix b =
+        coefficients.transpose() *
+        (r.model.b.reduced * theta).reshaped(r.model.generators, r.model.primal_size());
+    const Matrix modes = b.leftCols(r.model.modes);
+    const Matrix loads = Matrix(op.b.transpose());
+    const Matrix squares = op.b * solver.responses(loads);
+    const auto [beta, c] = extremes(squares, w);
+    const InfSup &at = found[p];
+    EXPECT_NEAR(at.hf, beta, 1e-8 * beta);
+    EXPECT_NEAR(at.c_hf, c, 1e-10 * c);
+    const double on = extremes(x.transpose() * squares * x, one).first;
+    EXPECT_NEAR(at.on, on, 1e-6 * on);
+    const double off = extremes(b * b.transpose(), one).first;
+    EXPECT_NEAR(at.off, off, 1e-6 * off);
+    EXPECT_NEAR(at.dec, extremes(modes * modes.transpose(), one).first, 1e-6 * c);
+    EXPECT_GE(at.on * (1 + 1e-9), at.off);
+    EXPECT_GE(at.off * (1 + 1e-9), at.dec);
+    EXPECT_GE(at.on * (1 + 1e-9), at.hf);
+  }
+}
+
+/// sigma below the smallest beta_HF / c_HF meets the published condition of stability (2.23) at
+/// every training mu.
+TEST(SupportStability, TheToleranceIsThatOfTheHighFidelityPair) {
+  const MPI_Comm world = PETSC_COMM_WORLD;
+  for (const char *normal : {"radial", "rigid"}) {
+    SCOPED_TRACE(normal);
+    Reduced r(disk("radius", {{"normal", normal}}), "grid:13");
+    r.reduce(published());
+    const std::vector<Mu> set = r.mus();
+    const StabilityCheck check = make_stability_check(r.problem, r.model);
+    double smallest = 1;
+    for (const InfSup &at : infsup_over(world, r.problem, check, set, false))
+      smallest = std::min(smallest, at.hf / at.c_hf);
+    ASSERT_EQ(r.model.histories.at("pga/tolerance").size(), 1U);
+    EXPECT_NEAR(r.model.histories.at("pga/tolerance").front(), smallest, 1e-9 * smallest);
+    EXPECT_LE(r.model.histories.at("pga/sigma").back(), smallest);
+    const auto rows = stability_along(world, r.problem, check, set, {0, r.model.supremizers});
+    EXPECT_GE(rows.front().condition, 1) << "without supremizers the condition says nothing";
+    EXPECT_LT(rows.back().condition, 1);
+    EXPECT_GT(rows.back().classic, 0);
+  }
+}
+
+/// A similarity multiplies b by the radius: so do the constants, and those of the smallest radius
+/// are the smallest.
+TEST(SupportStability, ConstantsAreProportionalToTheRadius) {
+  Problem problem(PETSC_COMM_WORLD, disk("radius"), {});
+  const RieszSpace space = make_riesz_space(problem.v_product(), problem.trace());
+  Operators op;
+  problem.assemble_contact({1}, op);
+  const PairConstants one = high_fidelity_pair(problem, space, op);
+  EXPECT_GT(one.beta, 0);
+  problem.assemble_contact({0.8}, op);
+  const PairConstants other = high_fidelity_pair(problem, space, op);
+  EXPECT_NEAR(other.beta, 0.8 * one.beta, 1e-9 * one.beta);
+  EXPECT_NEAR(other.c, 0.8 * one.c, 1e-9 * one.c);
+  EXPECT_EQ(weakest_form(problem, {{0.9}, {0.75}, {1.3}}), Mu{0.75});
+}
+
+/// In the norms of the mapped half-disk, V(R) = R^2 (mass + stiffness / R^2) and W(R) = R W, as the
+/// text has the tolerance. Another code gives 0.059 as the smallest over [0.7, 1.3] on a mesh of
+/// as many arc nodes; the ratio goes with the root of the mesh width beside the arc.
+TEST(SupportStability, TheRatioInNormsOfTheMappedDomainIsThatOfAnotherCode) {
+  std::vector<double> ratios;
+  for (const double radius : {0.7, 1.3}) {
+    Scene scene = make_scene("rigid_disk");
+    scene.v_product = h1_product(1 / radius, 2, 2);
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    const RieszSpace space = make_riesz_space(problem.v_product(), problem.trace());
+    Operators op;
+    problem.assemble_contact({radius}, op);
+    const PairConstants pair = high_fidelity_pair(problem, space, op);
+    ratios.push_back(pair.beta / pair.c);
+  }
+  EXPECT_NEAR(ratios[0], 0.059, 0.002);
+  EXPECT_GT(ratios[1], ratios[0]);
+}
+
+/// A cone of lambda_n and supremizers, no modes of lambda_tau and no collocation nodes: the limit
+/// of the coefficient of friction going to zero.
+TEST(MultiplierReductions, CollocatedWithoutFriction) {
+  Reduced r(disk("radius", {{"friction", "none"}}), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = published();
+  const Worst reduced = errors_of(r, options, unseen);
+  EXPECT_LE(reduced.u, 1e-2);
+  EXPECT_LE(reduced.lambda, 5e-2);
+  EXPECT_EQ(r.model.support->basis.tangential.size(), 0);
+  EXPECT_TRUE(r.model.support->basis.nodes.empty());
+  const StabilityCheck check = make_stability_check(r.problem, r.model);
+  for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, r.mus(), true))
+    EXPECT_GE(c.off, c.hf * (1 - 1e-9)) << "the greedy's tolerance is that of (2.23)";
+
+  options.multipliers.exact = true;
+  options.cone.tolerance = 1e-6;
+  EXPECT_LE(errors_of(r, options, unseen).lambda, 1e-5) << "mended on the condensed operator";
+
+  Scene scene = disk("radius");
+  scene.parameters.all[2].value = 1e-9;
+  Reduced slippery(scene, "grid:21");
+  slippery.reduce(published());
+  r.reduce(published());
+  const Matrix &cone = r.model.support->basis.normal;
+  ASSERT_EQ(slippery.model.support->basis.normal.cols(), cone.cols());
+  EXPECT_LE((slippery.model.support->basis.normal - cone).norm(), 1e-5 * cone.norm());
+  OnlineSolver a(r.model), b(slippery.model);
+  for (const Sample &truth : unseen) {
+    const double force = *a.outputs(truth.mu, a.solve(truth.mu)).normal_force;
+    EXPECT_NEAR(*b.outputs(truth.mu, b.solve(truth.mu)).normal_force, force, 1e-6 * force);
+  }
+}
+
+/// Where b only scales all supremizers are one space, made offline or online: the same answers.
+TEST(MultiplierReductions, CollocatedWithOnlineEnrichment) {
+  Reduced r(disk("radius"), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = published();
+  options.pga.tolerance = 1e-9;
+  options.infsup_tolerance = false;
+  const Worst offline = errors_of(r, options, unseen);
+  const std::vector<int> nodes = r.model.support->basis.nodes;
+  options.enrichment = Enrichment::online;
+  const Worst online = errors_of(r, options, unseen);
+  EXPECT_TRUE(r.model.online_enriched);
+  EXPECT_EQ(r.model.support->basis.nodes, nodes);
+  EXPECT_NEAR(online.u, offline.u, 1e-2 * offline.u);
+  EXPECT_NEAR(online.lambda, offline.lambda, 1e-2 * offline.lambda);
+  EXPECT_NEAR(online.tangential, offline.tangential, 1e-2 * offline.tangential);
+}
+
+/// Where every mu has supremizers of its own, the space of a query holds those of its mu: b on it
+/// is b, and the displacement lies in it. It is smaller than the offline space, which holds those
+/// of all training mu.
+TEST(MultiplierReductions, OnlineEnrichmentFollowsTheNormal) {
+  Reduced r(disk("radius", {{"normal", "rigid"}}), "grid:21");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:2"));
+  ReduceOptions options = published();
+  options.enrichment = Enrichment::online;
+  const Worst online = errors_of(r, options, unseen);
+  EXPECT_LE(online.u, 1e-2);
+  EXPECT_LE(online.lambda, 5e-2);
+  EXPECT_LE(online.tangential, 5e-2);
+  const Matrix functions = multiplier_coefficients(r.model.support->basis);
+  OnlineSolver solver(r.model);
+  for (const Sample &truth : unseen) {
+    const ReducedSolution answer = solver.solve(truth.mu);
+    const Matrix b =
+        functions.transpose() *
+        (r.model.b.reduced * answer.theta_b).reshaped(r.model.generators, r.model.primal_size());
+    const Matrix z = enriched_subspace(b, r.model.modes);
+    EXPECT_EQ(z.cols(), r.model.modes + functions.cols());
+    EXPECT_LT(z.cols(), r.model.primal_size());
+    EXPECT_LE((z.transpose() * z - Matrix::Identity(z.cols(), z.cols())).norm(), 1e-12);
+    EXPECT_LE((b - b * z * z.transpose()).norm(), 1e-12 * b.norm());
+    EXPECT_LE((answer.u - z * (z.transpose() * answer.u)).norm(), 1e-12 * answer.u.norm());
+  }
+}
+
+/// The patch test of one block: tractions on its sides, and the exact pressure (lambda + 2 G)
+/// strain.
+TEST(MultiplierReductions, CollocatedWithALoad) {
+  for (const char *friction : {"coulomb", "none"}) {
+    SCOPED_TRACE(friction);
+    Scene scene = make_scene("patch", {{"bodies", "one"}, {"degree", "2"}, {"friction", friction}});
+    scene.parameters = free_only(scene.parameters, "indentation,shear");
+    Reduced r(scene, "grid:3,4");
+    EXPECT_THROW(r.reduce(with(MultiplierReduction::condensed)), Error);
+    for (const Enrichment enrichment : {Enrichment::offline, Enrichment::online}) {
+      ReduceOptions options = published();
+      options.enrichment = enrichment;
+      r.reduce(options);
+      EXPECT_EQ(r.model.self_check.unanswered, 0);
+      OnlineSolver online(r.model);
+      for (const Mu &mu : {Mu{0.037, 0.01}, Mu{0.081, 0.19}}) { // sticks, slips
+        const Sample truth = solve_all(r.problem, {mu}).front();
+        const ReducedSolution answer = online.solve(mu);
+        const Outputs found = online.outputs(mu, answer);
+        const double pressure = 15 * (1 - 0.35) / (1.35 * 0.3) * mu[0] / 0.5;
+        EXPECT_NEAR(*found.peak_pressure, pressure, 1e-10 * pressure);
+        EXPECT_NEAR(*found.energy, *truth.outputs.energy, 1e-10 * std::abs(*truth.outputs.energy));
+        EXPECT_LE((online.field(answer) - truth.u).norm(), 1e-10 * truth.u.norm());
+        EXPECT_LE((online.multiplier(answer) - truth.lambda).norm(), 1e-10 * truth.lambda.norm());
+      }
+    }
+  }
 }
 
 TEST(MultiplierReductions, RefuseWhatTheyCannotDo) {

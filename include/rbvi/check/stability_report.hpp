@@ -11,17 +11,22 @@ namespace rbvi {
 struct StabilityCheck {
   RieszSpace space;
   Matrix coordinates; ///< (n_c + n) x n: the N modes, then the supremizers
-  Matrix dual;        ///< orthonormal basis of the span of the generators
+  Matrix dual;        ///< orthonormal basis of the span of the generators; on a support of the
+                      ///< functions of both multipliers together
   int modes = 0;
 };
 
-/// Collective. `problem`: on all ranks.
+/// Collective. `problem`: on all ranks; `model`: of a reduced pair of spaces.
 StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model);
 
-/// The four constants at each mu, shared among the ranks; all four on every rank. Collective on
-/// `comm`; `b_is_scaled`: beta_HF is computed once and scaled.
+/// All constants at each mu, shared among the ranks, on every rank. Collective on `comm`;
+/// `b_is_scaled`: those of the high-fidelity pair are computed once and scaled.
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<Mu> &set, bool b_is_scaled);
+
+/// Of the mu of a set the one with the smallest |b(mu)|, the first among equals: where b is only
+/// scaled it has the smallest constants of all. Not collective.
+Mu weakest_form(Problem &problem, const std::vector<Mu> &set);
 
 /// What the model's space guarantees over a set: beta_off >= sqrt(1 - sigma^2) beta_on.
 struct BoundCheck {

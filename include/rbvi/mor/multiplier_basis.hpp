@@ -1,6 +1,6 @@
 // Functions that the multipliers of contact with friction are combined from (Niakh 2022, 3.3.2, and
 // two others), in coefficients of the nodal dual basis: m = 2 k of them, k for lambda_n and k for
-// lambda_tau. Serial and dense.
+// lambda_tau (without friction k, for collocated alone). Serial and dense.
 //
 //   collocated   mCPG (or another cone) of lambda_n, POD of lambda_tau
 //   cones        a cone of lambda_n, and one of what is left to the bound, s(lambda_n) -
@@ -27,6 +27,10 @@ struct MultiplierBases {
   std::vector<double> tangential;    ///< error of POD with 0, 1, ... modes, as (3.60c)
 };
 
+/// The functions of `basis` at all dual dofs, those of lambda_n first: dual dofs x (R + S).
+/// `nodal`: the nodal dual basis, whose coefficients they are.
+Matrix multiplier_functions(const Matrix &nodal, const MultiplierBasis &basis);
+
 /// Modes of snapshots, orthonormal in `product`: as few as hold the tolerance.
 struct DenseModes {
   Matrix columns;
@@ -37,7 +41,8 @@ struct DenseModes {
 DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, double tolerance);
 
 /// `coefficients`: m x P; `product`: m x m, its blocks of lambda_n and lambda_tau; `bounds`: of
-/// each snapshot. Throws failure where the snapshots do not slip at all or, for cones, in two
+/// each snapshot, empty without friction: then m = k, and collocated has a cone of lambda_n alone.
+/// Throws failure where the snapshots do not slip at all or, for cones, in two
 /// directions at one node; bad_input for cones of type hybrid, which has functions of either sign.
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMatrix &product,
                                       const std::vector<FrictionBound> &bounds,

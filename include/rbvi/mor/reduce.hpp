@@ -35,6 +35,7 @@ struct ReduceOptions {
   PodOptions pod;
   ConeOptions cone;
   PgaOptions pga;
+  bool infsup_tolerance = false; ///< the tolerance of pga is infsup_tolerance() of the training set
   EimOptions eim;
   CondensedOptions condensed;    ///< contact with a rigid support
   MultiplierOptions multipliers; ///< of it
@@ -58,10 +59,11 @@ struct ReducedBases {
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
   bool online_enriched = false;
+  double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
 
-/// Contact with a rigid support: throws bad_input for a scene with a load, and for reductions of
-/// the multipliers that its law of friction or the type of the cones does not allow.
+/// Contact with a rigid support: throws bad_input for reductions of the multipliers that a load of
+/// the scene, its law of friction or the type of the cones does not allow.
 void check_support_reduction(const Scene &scene, const ReduceOptions &options);
 
 /// All of the offline stage behind the snapshots. The model is complete on every rank, but for its

@@ -59,6 +59,7 @@ double infsup_constant(const Matrix &primal, const Matrix &supremizers);
 
 struct InfSup {
   double hf, dec, on, off; ///< hf: NaN where it was not asked for
+  double c_hf = hf;        ///< continuity constant (2.3), likewise
 };
 
 /// What V_N + S guarantees at one mu.

@@ -1,5 +1,6 @@
 // The law of contact and friction on fewer functions than nodes (MultiplierReduction): collocated,
-// cones, joint. Everything in coefficients of the nodal dual basis, m = 2 k of them.
+// cones, joint. Everything in coefficients of the nodal dual basis, m of them: k for lambda_n, and
+// k for lambda_tau but for collocated without friction.
 #pragma once
 
 #include "rbvi/core/collocated_friction.hpp"
@@ -14,6 +15,7 @@ struct BodyAtMu {
   Matrix b;                          ///< m x n, reduced; collocated alone
   const ReducedStiffness *stiffness; ///< set to mu
   Vector q;                          ///< m: the gap, and the slip, of no multipliers
+  Vector load;                       ///< half response to the load; empty without one
   FrictionBound bound;
 };
 
@@ -44,12 +46,15 @@ private:
   std::vector<SlipState> last_states_; ///< joint
 };
 
+/// The functions of `collocated` in coefficients of the nodal dual basis: m x (R + S).
+Matrix multiplier_coefficients(const MultiplierBasis &basis);
+
 /// The reduced problem of `collocated`; its rows are those of the collocation nodes.
 CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtMu &body);
 
 /// Largest of |x - P(x - w / H_jj)| over max |x|, P the projection of the law: zero where x solves
-/// it. `w` = H x + q, `diagonal`: H_jj; m = 2 k entries each.
-double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal,
+/// it. `w` = H x + q, `diagonal`: H_jj; m entries each, the first `normal` of lambda_n.
+double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal, Index normal,
                         const FrictionBound &bound);
 
 } // namespace rbvi

@@ -1,6 +1,6 @@
 // The online stage of contact with a rigid support: the condensed operator and the gap at mu, the
 // law of contact and friction at every node by solve_friction, then the displacement in V_N by
-// A_N u = -B_N^T x. Where the multipliers are reduced further, the law is that of
+// A_N u = F_N - B_N^T x. Where the multipliers are reduced further, the law is that of
 // rom/reduced_law.hpp; with the condensed operator its answer is checked at all nodes, and mended
 // by solve_friction, which starts from it, where it fails.
 #pragma once
@@ -14,7 +14,7 @@ namespace rbvi {
 struct SupportAnswer {
   Vector u, x; ///< coefficients of the primal and of the dual basis
   Vector theta_b;
-  double energy = 0; ///< a(u,u)/2
+  double energy = 0; ///< a(u,u)/2 - f(u)
   double residual =
       0; ///< largest relative violation of the laws, at all nodes where they are known
   int iterations = 0;
