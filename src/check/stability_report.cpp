@@ -2,6 +2,7 @@
 
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/small_svd.hpp"
+#include "rbvi/par/turns.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -25,16 +26,6 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
     RBVI_CALL(BVInsertVec(basis.columns.get(), static_cast<PetscInt>(j),
                           from_natural(problem.dofs(), natural_columns.col(j)).get()));
   return basis;
-}
-
-/// Calls visit(p) for this rank's share of 0 .. count - 1.
-template <class Visit> void share(MPI_Comm comm, std::size_t count, Visit &&visit) {
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &ranks);
-  for (std::size_t p = static_cast<std::size_t>(rank); p < count;
-       p += static_cast<std::size_t>(ranks))
-    visit(p);
 }
 
 /// Over the multipliers whose support has a partner everywhere (of one body all): the others press
@@ -65,7 +56,7 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   std::vector<double> values(4 * set.size(), 0);
   const Matrix modes = check.coordinates.leftCols(check.modes);
   double hf_per_b = 0; // beta_HF / |b| where b is scaled
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p], op);
     InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
@@ -85,7 +76,7 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
 BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set) {
   BoundCheck result{.smallest = std::numeric_limits<double>::infinity()};
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
     const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
     const auto [bound, off] = stability_path(check.coordinates, check.modes, {all}, t).front();
@@ -105,7 +96,7 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
   const auto size = static_cast<Index>(counts.size());
   Matrix worst = Matrix::Constant(size, columns, -std::numeric_limits<double>::infinity());
   std::vector<int> exceptions(counts.size(), 0);
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
     const auto steps = stability_path(check.coordinates, check.modes, counts, t);
     for (Index k = 0; k < size; ++k) {
@@ -134,9 +125,9 @@ int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &ch
                        const std::vector<Mu> &set, double fraction) {
   const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
   int fewest = 0; // enough for every mu so far; all + 1: nothing is
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
-    const double needed = fraction * singular_values(t).minCoeff();
+    const double needed = fraction * singular_values(t, "infsup_").minCoeff();
     const auto enough = [&](int supremizers) {
       return infsup_constant(check.coordinates.leftCols(check.modes + supremizers), t) >= needed;
     };

@@ -249,6 +249,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.histories["bound_cone/error"] = bases.multipliers.left_to_bound.error;
   model.histories["tangential/error"] = bases.multipliers.tangential;
   model.histories["pga/sigma"] = bases.pga.sigma;
+  model.histories["pga/selected"] = {bases.pga.selected.begin(), bases.pga.selected.end()};
   model.histories["eim/a"] = affine.a.error;
   model.histories["eim/b"] = affine.b.error;
   model.histories["eim/f"] = affine.f.error;
