@@ -1,11 +1,13 @@
 #include "rbvi/check/stability_report.hpp"
 
+#include "rbvi/mor/high_fidelity_constant.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace rbvi {
 
@@ -13,6 +15,9 @@ namespace {
 
 /// Of a singular value, relative to the largest: what the arithmetic leaves.
 constexpr double round_off = 1e-10;
+
+/// Up to this many multipliers beta_HF comes from dense matrices.
+constexpr Index dense_multipliers = 1000;
 
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
@@ -30,14 +35,19 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
 
 /// Over the multipliers whose support has a partner everywhere (of one body all): the others press
 /// on nothing, or on next to nothing.
-double beta_hf(const Problem &problem, const RieszSpace &space, const Operators &op) {
-  if (!problem.two_bodies()) return high_fidelity_constant(space, op.b, problem.w_product());
+/// `sparse`: where they are too many for dense matrices.
+double beta_hf(const Problem &problem, const RieszSpace &space,
+               const std::optional<SparseInfSup> &sparse, const Operators &op) {
+  const auto constant = [&](const SparseMatrix &b, const SparseMatrix &w) {
+    return sparse ? sparse->constant(b, w) : high_fidelity_constant(space, b, w);
+  };
+  if (!problem.two_bodies()) return constant(op.b, problem.w_product());
   const Vector whole = problem.w_product() * Vector::Ones(op.b.rows());
   std::vector<Index> rows;
   for (Index i = 0; i < whole.size(); ++i)
     if (op.weights[i] > (1 - 1e-9) * whole[i]) rows.push_back(i);
   const Matrix b = Matrix(op.b)(rows, Eigen::all), w = Matrix(problem.w_product())(rows, rows);
-  return high_fidelity_constant(space, b.sparseView(), w.sparseView());
+  return constant(b.sparseView(), w.sparseView());
 }
 
 } // namespace
@@ -56,11 +66,15 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   std::vector<double> values(4 * set.size(), 0);
   const Matrix modes = check.coordinates.leftCols(check.modes);
   double hf_per_b = 0; // beta_HF / |b| where b is scaled
+  std::optional<SparseInfSup> sparse;
+  if (problem.w_product().rows() > dense_multipliers)
+    sparse.emplace(problem.v_product(), problem.trace());
   take_turns(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p], op);
     InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
-    if (!b_is_scaled || hf_per_b == 0) hf_per_b = beta_hf(problem, check.space, op) / op.b.norm();
+    if (!b_is_scaled || hf_per_b == 0)
+      hf_per_b = beta_hf(problem, check.space, sparse, op) / op.b.norm();
     c.hf = hf_per_b * op.b.norm();
     std::copy_n(std::array{c.hf, c.dec, c.on, c.off}.begin(), 4,
                 values.begin() + static_cast<long>(4 * p));

@@ -2,6 +2,7 @@
 #include "database.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/high_fidelity_constant.hpp"
 #include "rbvi/mor/small_eigen.hpp"
 #include "rbvi/mor/small_svd.hpp"
 
@@ -11,12 +12,14 @@ namespace rbvi {
 
 namespace {
 
-/// Which eigenvalues: all of a small matrix.
+/// Which values: all of a small matrix, the smallest of a large one.
 bool is_ineffective(const std::string &name) {
-  for (const char *which :
-       {"_nev", "_nsv", "_ncv", "_mpd", "_largest", "_smallest", "_target", "_interval", "_all"})
-    for (const char *prefix : {"pga_eps", "pga_svd", "infsup_svd"})
-      if (name.starts_with(std::string(prefix) + which)) return true;
+  for (const std::string &prefix : eigen_prefixes()) {
+    if (!name.starts_with(prefix)) continue;
+    const std::string rest = name.substr(prefix.size());
+    if (starts_with_any(rest, {"largest", "smallest", "target", "interval", "all"})) return true;
+    if (prefix != "infsup_eps_" && starts_with_any(rest, {"nev", "nsv", "ncv", "mpd"})) return true;
+  }
   return false;
 }
 
@@ -48,7 +51,8 @@ std::string why_not(const std::string &name, const ToolOptions &options, EigenUs
 } // namespace
 
 const std::vector<std::string> &eigen_prefixes() {
-  static const std::vector<std::string> prefixes{"pga_eps_", "pga_svd_", "infsup_svd_"};
+  static const std::vector<std::string> prefixes{"pga_eps_", "pga_svd_", "infsup_svd_",
+                                                 "infsup_eps_"};
   return prefixes;
 }
 
@@ -56,7 +60,9 @@ void check_eigen_options(const ToolOptions &options, EigenUse use) {
   bool asked = false;
   for (const std::string &name : unread_names(eigen_prefixes())) {
     if (is_ineffective(name))
-      throw bad_input("-" + name + " has no effect: all values of a small matrix are computed");
+      throw bad_input(
+          "-" + name +
+          " has no effect: all values of a small matrix are computed, the smallest of a large one");
     const std::string reason = why_not(name, options, use);
     if (reason.empty())
       asked = true;
@@ -67,7 +73,10 @@ void check_eigen_options(const ToolOptions &options, EigenUse use) {
   const char *prefix = use == EigenUse::supremizers ? "pga_" : "infsup_";
   try {
     (void)make_small_svd(prefix);
-    if (use == EigenUse::supremizers) (void)SmallEigen(prefix);
+    if (use == EigenUse::supremizers)
+      (void)SmallEigen(prefix);
+    else
+      (void)make_inverse_iteration();
   } catch (const Error &error) {
     throw bad_input(std::string("the options -") + prefix + "* do not work (" + error.what() + ")");
   }
