@@ -3,7 +3,7 @@
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/small_svd.hpp"
-#include "rbvi/par/collective.hpp"
+#include "rbvi/par/turns.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -15,6 +15,9 @@ namespace {
 
 /// Of a singular value, relative to the largest: what the arithmetic leaves.
 constexpr double round_off = 1e-10;
+
+/// Up to this many multipliers beta_HF comes from dense matrices.
+constexpr Index dense_multipliers = 1000;
 
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
@@ -28,18 +31,6 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
     RBVI_CALL(BVInsertVec(basis.columns.get(), static_cast<PetscInt>(j),
                           from_natural(problem.dofs(), natural_columns.col(j)).get()));
   return basis;
-}
-
-/// Calls visit(p) for this rank's share of 0 .. count - 1. Collective: a failure is everyone's.
-template <class Visit> void share(MPI_Comm comm, std::size_t count, Visit &&visit) {
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &ranks);
-  collectively(comm, [&] {
-    for (std::size_t p = static_cast<std::size_t>(rank); p < count;
-         p += static_cast<std::size_t>(ranks))
-      visit(p);
-  });
 }
 
 } // namespace
@@ -62,13 +53,17 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   Matrix values = Matrix::Zero(count, static_cast<Index>(set.size()));
   const Matrix modes = check.coordinates.leftCols(check.modes);
   std::optional<PairConstants> per_b; // over |b|, where b is scaled
-  share(comm, set.size(), [&](std::size_t p) {
+  std::optional<SparseInfSup> sparse;
+  if (problem.w_product().rows() > dense_multipliers)
+    sparse.emplace(problem.v_product(), problem.trace());
+  take_turns(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p], op);
     const InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
     const double size = op.b.norm();
     if (!b_is_scaled || !per_b) {
-      const PairConstants pair = high_fidelity_pair(problem, check.space, op);
+      const PairConstants pair =
+          high_fidelity_pair(problem, check.space, op, sparse ? &*sparse : nullptr);
       per_b = {pair.beta / size, pair.c / size};
     }
     values.col(static_cast<Index>(p)) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
@@ -98,7 +93,7 @@ Mu weakest_form(Problem &problem, const std::vector<Mu> &set) {
 BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                        const std::vector<Mu> &set) {
   BoundCheck result{.smallest = std::numeric_limits<double>::infinity()};
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
     const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
     const auto [bound, off] = stability_path(check.coordinates, check.modes, {all}, t).front();
@@ -118,7 +113,7 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
   const auto size = static_cast<Index>(counts.size());
   Matrix worst = Matrix::Constant(size, columns, -std::numeric_limits<double>::infinity());
   std::vector<int> exceptions(counts.size(), 0);
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
     const auto steps = stability_path(check.coordinates, check.modes, counts, t);
     for (Index k = 0; k < size; ++k) {
@@ -147,9 +142,9 @@ int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &ch
                        const std::vector<Mu> &set, double fraction) {
   const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
   int fewest = 0; // enough for every mu so far; all + 1: nothing is
-  share(comm, set.size(), [&](std::size_t p) {
+  take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
-    const double needed = fraction * singular_values(t).minCoeff();
+    const double needed = fraction * singular_values(t, "infsup_").minCoeff();
     const auto enough = [&](int supremizers) {
       return infsup_constant(check.coordinates.leftCols(check.modes + supremizers), t) >= needed;
     };

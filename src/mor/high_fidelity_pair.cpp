@@ -3,9 +3,10 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/mor/small_svd.hpp"
-#include "rbvi/par/collective.hpp"
+#include "rbvi/par/turns.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace rbvi {
 
@@ -23,12 +24,26 @@ std::vector<Index> covered_multipliers(const Problem &problem, const Operators &
   return rows;
 }
 
+/// What takes these rows of a matrix of `size` rows.
+SparseMatrix rows_of_identity(const std::vector<Index> &rows, Index size) {
+  SparseMatrix chosen(static_cast<Index>(rows.size()), size);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    chosen.insert(static_cast<Index>(i), rows[i]) = 1;
+  chosen.makeCompressed();
+  return chosen;
+}
+
 } // namespace
 
 PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space,
-                                 const Operators &op) {
+                                 const Operators &op, const SparseInfSup *sparse) {
   const std::vector<Index> rows = covered_multipliers(problem, op);
   if (rows.empty()) throw failure("no multiplier has a partner: there is no inf-sup constant");
+  if (sparse != nullptr) {
+    const SparseMatrix chosen = rows_of_identity(rows, problem.dual_size());
+    const SparseMatrix w = problem.w_product() * SparseMatrix(chosen.transpose());
+    return {sparse->constant(chosen * op.b, chosen * w), std::numeric_limits<double>::quiet_NaN()};
+  }
   const Eigen::LLT<Matrix> w(Matrix(problem.w_product())(rows, rows));
   if (w.info() != Eigen::Success) throw failure("the W product is not positive definite");
   Matrix x = Matrix::Zero(problem.dual_size(), static_cast<Index>(rows.size()));
@@ -41,20 +56,14 @@ PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space
 double infsup_tolerance(MPI_Comm comm, Problem &problem, const RieszSpace &space,
                         const std::vector<Mu> &set) {
   double smallest = largest_tolerance;
-  collectively(comm, [&] {
-    int rank = 0, ranks = 1;
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &ranks);
-    Operators op;
-    for (auto p = static_cast<std::size_t>(rank); p < set.size();
-         p += static_cast<std::size_t>(ranks)) {
-      problem.assemble_contact(set[p], op);
-      const PairConstants pair = high_fidelity_pair(problem, space, op);
-      if (!(pair.beta > round_off * pair.c))
-        throw failure("beta_HF is " + short_number(pair.beta) +
-                      ", zero to round-off: give -pga_tolerance a number");
-      smallest = std::min(smallest, pair.beta / pair.c);
-    }
+  Operators op;
+  take_turns(comm, set.size(), [&](std::size_t p) {
+    problem.assemble_contact(set[p], op);
+    const PairConstants pair = high_fidelity_pair(problem, space, op);
+    if (!(pair.beta > round_off * pair.c))
+      throw failure("beta_HF is " + short_number(pair.beta) +
+                    ", zero to round-off: give -pga_tolerance a number");
+    smallest = std::min(smallest, pair.beta / pair.c);
   });
   MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
   return smallest;

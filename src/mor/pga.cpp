@@ -1,137 +1,150 @@
 #include "rbvi/mor/stability.hpp"
 
+#include "pga_candidate.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/small_svd.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace rbvi {
 
 namespace {
 
-constexpr double tie = 1e-10;
-constexpr double inside = 1e-12;      // a supremizer this close to the space is in it
-constexpr double same_space = 1e-9;   // sine of the largest principal angle
-constexpr double cancellation = 1e-6; // a Gram matrix that shrank this much is computed afresh
-
-/// One training parameter: sigma^2 is the largest eigenvalue of gram = range^T (I - Pi) range.
-struct Candidate {
-  Matrix range; // orthonormal columns that span S_R(mu); T(mu) X until it is first needed
-  Matrix gram;
-  double built = 1; // largest eigenvalue when gram was last computed afresh
-  double sigma = 1; // upper bound
-  Index seen = -1;  // columns of the space in gram; -1: range is still T(mu) X
-  Index exact = -1; // number of columns at which sigma is the value itself
-};
-
-/// V_N + S in coordinates, and the supremizers that made it.
-struct Space {
-  Index contact, modes, size;
-  Matrix columns; // storage for all, `size` of them in use
-  Matrix sources; // contact x supremizers: unit vectors of S_R(mu) before projection
-
-  auto in_use() const { return columns.leftCols(size); }
-
-  /// (I - Pi) of vectors with contact coordinates alone.
-  Matrix remainder(const Matrix &top) const {
-    Matrix rest = Matrix::Zero(columns.rows(), top.cols());
-    rest.topRows(contact) = top;
-    rest.noalias() -= in_use() * (in_use().topRows(contact).transpose() * top);
-    return rest;
-  }
-
-  void add(const Vector &source) {
-    Vector column = remainder(source);
-    column -= in_use() * (in_use().transpose() * column);
-    sources.col(size - modes) = source;
-    columns.col(size) = column.normalized();
-    ++size;
-  }
-};
-
-double largest_eigenvalue(const Matrix &gram) {
-  if (gram.rows() == 0) return 0;
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram, Eigen::EigenvaluesOnly);
-  if (eigen.info() != Eigen::Success)
-    throw failure("an eigenproblem of the projected greedy did not converge");
-  return std::max(eigen.eigenvalues().tail(1)(0), 0.0);
+/// Collective. `matrix` of rank `root` on every rank.
+Matrix broadcast(MPI_Comm comm, int root, Matrix matrix) {
+  std::array<Index, 2> size{matrix.rows(), matrix.cols()};
+  MPI_Bcast(size.data(), static_cast<int>(sizeof size), MPI_BYTE, root, comm);
+  matrix.resize(size[0], size[1]);
+  MPI_Bcast(matrix.data(), static_cast<int>(matrix.size()), MPI_DOUBLE, root, comm);
+  return matrix;
 }
 
-void update(Candidate &candidate, const Space &space) {
-  if (candidate.seen < 0) {
-    candidate.range = orthonormal_range(candidate.range);
-    candidate.gram.setIdentity(candidate.range.cols(), candidate.range.cols());
-    candidate.seen = 0;
+constexpr double inside = 1e-12;    // a supremizer this close to the space is in it
+constexpr double same_space = 1e-9; // sine of the largest principal angle
+constexpr double arithmetic = 1e-8; // what bounds by different ways may differ by, relative
+
+/// The training parameters, shared among the ranks: those of this rank, and of all the bounds.
+class Candidates {
+public:
+  /// Collective. `supremizers`: T(mu_p) X for p = rank, rank + ranks, ...
+  Candidates(MPI_Comm comm, std::vector<Matrix> supremizers) : comm_(comm), eigen_("pga_") {
+    MPI_Comm_rank(comm, &rank_);
+    MPI_Comm_size(comm, &ranks_);
+    for (Matrix &one : supremizers)
+      mine_.emplace_back(std::move(one));
+    unsigned long count = mine_.size();
+    MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPI_UNSIGNED_LONG, MPI_SUM, comm);
+    sigma_.assign(count, 1);
   }
-  const auto fresh =
-      space.columns.block(0, candidate.seen, space.contact, space.size - candidate.seen);
-  const Matrix overlap = candidate.range.transpose() * fresh;
-  candidate.gram.selfadjointView<Eigen::Lower>().rankUpdate(overlap, -1);
-  candidate.seen = space.size;
-}
 
-/// Whether sigma is below `needed`, by a Cholesky factorisation: several times cheaper than the
-/// eigenvalue, and all that most candidates need.
-bool certainly_below(const Candidate &candidate, double needed) {
-  const double square = needed * needed;
-  if (square < cancellation * candidate.built) return false;
-  Matrix shifted = -candidate.gram;
-  shifted.diagonal().array() += square;
-  return Eigen::LLT<Eigen::Ref<Matrix>>(shifted).info() == Eigen::Success;
-}
-
-void evaluate(Candidate &candidate, const Space &space) {
-  double eigenvalue = largest_eigenvalue(candidate.gram);
-  if (eigenvalue < cancellation * candidate.built) {
-    const Matrix rest = space.remainder(candidate.range);
-    candidate.gram.noalias() = rest.transpose() * rest;
-    eigenvalue = candidate.built = largest_eigenvalue(candidate.gram);
-  }
-  candidate.sigma = std::min(candidate.sigma, std::sqrt(eigenvalue));
-  candidate.exact = space.size;
-}
-
-/// The training index with the largest sigma, the lowest among equals. Only candidates whose old
-/// value could still win are looked at, the most promising first.
-int greedy_choice(std::vector<Candidate> &candidates, const Space &space, int &evaluations) {
-  const auto count = static_cast<int>(candidates.size());
-  const auto at = [&](int p) -> Candidate & { return candidates[static_cast<std::size_t>(p)]; };
-  int winner = -1;
-  double best = 0;
-  const auto needed = [&](int p) { return p < winner ? best * (1 - tie) : best * (1 + tie); };
-  while (true) {
-    int next = -1;
-    for (int p = 0; p < count; ++p) {
-      const bool open = at(p).exact != space.size && (winner < 0 || at(p).sigma > needed(p));
-      if (open && (next < 0 || at(p).sigma > at(next).sigma)) next = p;
+  /// Collective. The training index with the largest sigma, the lowest among equals. Most are ruled
+  /// out by bounds: old values, then Cholesky factorisations with numbers that the largest is not
+  /// below. The others are evaluated, the same for any number of ranks.
+  int choose(const PgaSpace &space) {
+    constexpr int most_bisections = 8;
+    double needed = (1 - arithmetic) * floor(space);
+    screen(needed, space);
+    for (int k = 0; k < most_bisections && above(needed) > 1; ++k) {
+      const double middle = (needed + *std::max_element(sigma_.begin(), sigma_.end())) / 2;
+      screen(middle, space);
+      if (above(middle) > 0) needed = middle;
     }
-    if (next < 0) return winner;
-    if (at(next).seen != space.size) update(at(next), space);
-    if (winner >= 0 && certainly_below(at(next), needed(next))) {
-      at(next).sigma = needed(next);
-      continue;
-    }
-    evaluate(at(next), space);
-    ++evaluations;
-    best = std::max(best, at(next).sigma);
-    for (int p = count - 1; p >= 0; --p)
-      if (at(p).exact == space.size && at(p).sigma >= (1 - tie) * best) winner = p;
+    return evaluate_above(needed, space);
   }
-}
 
-/// Unit vectors of S_R(mu) that are farthest from the space: one, or all of a multiple eigenvalue.
-Matrix farthest(const Candidate &candidate) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(candidate.gram);
-  if (eigen.info() != Eigen::Success)
-    throw failure("an eigenproblem of the projected greedy did not converge");
-  const Vector &values = eigen.eigenvalues();
-  Index multiplicity = 1;
-  while (multiplicity < values.size() &&
-         values(values.size() - 1 - multiplicity) >= (1 - 2 * tie) * values(values.size() - 1))
-    ++multiplicity;
-  return candidate.range * eigen.eigenvectors().rightCols(multiplicity).rowwise().reverse();
-}
+  double sigma(int p) const { return sigma_[static_cast<std::size_t>(p)]; }
+  int evaluations() const { return evaluations_; }
+
+  /// Collective. Of the candidate that was chosen: PgaCandidate::farthest.
+  Matrix farthest(int p) const {
+    const int owner = p % ranks_;
+    Matrix vectors;
+    if (rank_ == owner) vectors = mine_[static_cast<std::size_t>(p / ranks_)].farthest();
+    return broadcast(comm_, owner, vectors);
+  }
+
+private:
+  /// Calls visit(p, candidate) for those of this rank; a failure is that of every rank.
+  template <class Visit> void each(Visit &&visit) {
+    collectively(comm_, [&] {
+      for (std::size_t k = 0; k < mine_.size(); ++k)
+        visit(static_cast<std::size_t>(rank_) + k * static_cast<std::size_t>(ranks_), mine_[k]);
+    });
+  }
+
+  /// A number that the largest sigma is not below: the best of a few with the largest bounds.
+  double floor(const PgaSpace &space) {
+    constexpr std::size_t promising = 16;
+    std::vector<std::size_t> order(sigma_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t p, std::size_t q) { return sigma_[p] > sigma_[q]; });
+    order.resize(std::min(order.size(), promising));
+    double highest = 0;
+    each([&](std::size_t p, PgaCandidate &candidate) {
+      if (std::find(order.begin(), order.end(), p) != order.end())
+        highest = std::max(highest, candidate.lower_bound(space));
+    });
+    MPI_Allreduce(MPI_IN_PLACE, &highest, 1, MPI_DOUBLE, MPI_MAX, comm_);
+    return highest;
+  }
+
+  long above(double needed) const {
+    return std::count_if(sigma_.begin(), sigma_.end(), [&](double s) { return s > needed; });
+  }
+
+  /// Lowers the bounds to `needed` where sigma is certainly below.
+  void screen(double needed, const PgaSpace &space) {
+    each([&](std::size_t p, PgaCandidate &candidate) {
+      if (sigma_[p] > needed && candidate.certainly_below(space, needed)) sigma_[p] = needed;
+    });
+    share_bounds();
+  }
+
+  void share_bounds() {
+    MPI_Allreduce(MPI_IN_PLACE, sigma_.data(), static_cast<int>(sigma_.size()), MPI_DOUBLE, MPI_MIN,
+                  comm_);
+  }
+
+  /// Evaluates the candidates whose bounds are above `needed`, which the largest is not below, and
+  /// where that turns out to be within a tie of it those whose bound it is; the winner.
+  int evaluate_above(double needed, const PgaSpace &space) {
+    std::vector<char> exact(sigma_.size(), 0);
+    double best = 0;
+    while (true) {
+      std::vector<char> open(sigma_.size(), 0);
+      for (std::size_t p = 0; p < open.size(); ++p)
+        open[p] = exact[p] == 0 && sigma_[p] > needed ? 1 : 0;
+      each([&](std::size_t p, PgaCandidate &candidate) {
+        if (open[p] != 0) sigma_[p] = std::min(sigma_[p], candidate.evaluate(space, eigen_));
+      });
+      share_bounds();
+      for (std::size_t p = 0; p < open.size(); ++p) {
+        if (open[p] == 0) continue;
+        exact[p] = 1;
+        ++evaluations_;
+        best = std::max(best, sigma_[p]);
+      }
+      const double equals = (1 - 2 * pga_tie) * best;
+      if (needed <= equals) break;
+      needed = equals;
+    }
+    std::size_t winner = 0;
+    while (exact[winner] == 0 || sigma_[winner] < (1 - pga_tie) * best)
+      ++winner;
+    return static_cast<int>(winner);
+  }
+
+  MPI_Comm comm_;
+  int rank_ = 0, ranks_ = 1, evaluations_ = 0;
+  SmallEigen eigen_;
+  std::vector<PgaCandidate> mine_;
+  std::vector<double> sigma_; // upper bounds of all, the same on every rank
+};
 
 struct Target {
   double sigma; // stop at or below
@@ -157,19 +170,39 @@ Target make_target(const PgaOptions &options, Index largest) {
   return {std::sqrt((1 - options.stability) * (1 + options.stability)), size, "stability reached"};
 }
 
-bool one_space(const Matrix &range, const std::vector<Matrix> &supremizers) {
-  return std::all_of(supremizers.begin() + 1, supremizers.end(), [&](const Matrix &other) {
-    const Matrix basis = orthonormal_range(other);
-    return basis.cols() == range.cols() &&
-           (basis - range * (range.transpose() * basis)).norm() <= same_space;
+/// Collective. An orthonormal basis of S_R(mu_0), and whether it is that of every training mu.
+struct FirstSpace {
+  Matrix range;
+  bool only;
+};
+
+FirstSpace first_space(MPI_Comm comm, const std::vector<Matrix> &supremizers) {
+  FirstSpace first;
+  int rank = 0, differ = 0;
+  MPI_Comm_rank(comm, &rank);
+  collectively(comm, [&] {
+    if (rank == 0) first.range = orthonormal_range(supremizers.front());
   });
+  first.range = broadcast(comm, 0, std::move(first.range));
+  collectively(comm, [&] {
+    const bool same = std::all_of(supremizers.begin(), supremizers.end(), [&](const Matrix &one) {
+      const Matrix basis = orthonormal_range(one);
+      return basis.cols() == first.range.cols() &&
+             (basis - first.range * (first.range.transpose() * basis)).norm() <= same_space;
+    });
+    differ = same ? 0 : 1;
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &differ, 1, MPI_INT, MPI_MAX, comm);
+  first.only = differ == 0;
+  return first;
 }
 
 /// The greedy on a single space takes the singular vectors of (I - Pi) range one after the other.
-void take_singular_vectors(Pga &result, Space &space, const Matrix &range, const Target &target) {
+void take_singular_vectors(Pga &result, PgaSpace &space, const Matrix &range,
+                           const Target &target) {
   result.parameter_independent = true;
   result.evaluations = 1;
-  const SmallSvd svd = small_svd(space.remainder(range));
+  const SmallSvd svd = small_svd(space.remainder(range), "pga_");
   for (Index n = 0;; ++n) {
     result.sigma.push_back(n < svd.values.size() ? std::min(svd.values(n), 1.0) : 0);
     if (const char *reason = target.stop(result.sigma.back(), n)) {
@@ -181,24 +214,22 @@ void take_singular_vectors(Pga &result, Space &space, const Matrix &range, const
   }
 }
 
-void sweep(Pga &result, Space &space, std::vector<Matrix> supremizers, const Target &target) {
-  std::vector<Candidate> candidates(supremizers.size());
-  for (std::size_t p = 0; p < candidates.size(); ++p)
-    candidates[p].range = std::move(supremizers[p]);
+void sweep(Pga &result, PgaSpace &space, Candidates candidates, const Target &target) {
   while (true) {
-    const int chosen = greedy_choice(candidates, space, result.evaluations);
-    const Candidate &candidate = candidates[static_cast<std::size_t>(chosen)];
-    const char *reason = target.stop(candidate.sigma, space.size - space.modes);
+    const int chosen = candidates.choose(space);
+    const double sigma = candidates.sigma(chosen);
+    const char *reason = target.stop(sigma, space.size - space.modes);
     if (reason != nullptr) {
-      result.sigma.push_back(candidate.sigma);
+      result.sigma.push_back(sigma);
+      result.evaluations = candidates.evaluations();
       result.reason = reason;
       return;
     }
-    const Matrix sources = farthest(candidate);
+    const Matrix sources = candidates.farthest(chosen);
     const Index room = target.size - (space.size - space.modes);
     for (Index k = 0; k < std::min(sources.cols(), room); ++k) {
       space.add(sources.col(k));
-      result.sigma.push_back(candidate.sigma);
+      result.sigma.push_back(sigma);
       result.selected.push_back(chosen);
     }
   }
@@ -206,21 +237,26 @@ void sweep(Pga &result, Space &space, std::vector<Matrix> supremizers, const Tar
 
 } // namespace
 
-Pga projected_greedy(const RieszSpace &space, const Matrix &modes, std::vector<Matrix> supremizers,
-                     const PgaOptions &options) {
+Pga projected_greedy(MPI_Comm comm, const RieszSpace &space, const Matrix &modes,
+                     std::vector<Matrix> supremizers, const PgaOptions &options) {
   const Index contact = space.factor.rows();
   const Target target = make_target(options, contact);
-  if (supremizers.empty()) throw failure("the projected greedy needs a training parameter");
-  Space enriched{contact, modes.cols(), modes.cols(),
-                 Matrix(modes.rows(), modes.cols() + target.size), Matrix(contact, target.size)};
+  collectively(comm, [&] {
+    int rank = 0;
+    MPI_Comm_rank(comm, &rank);
+    if (rank == 0 && supremizers.empty())
+      throw failure("the projected greedy needs a training parameter");
+  });
+  PgaSpace enriched{contact, modes.cols(), modes.cols(),
+                    Matrix(modes.rows(), modes.cols() + target.size), Matrix(contact, target.size)};
   enriched.columns.leftCols(modes.cols()) = modes;
 
   Pga result;
-  const Matrix range = orthonormal_range(supremizers.front());
-  if (one_space(range, supremizers))
-    take_singular_vectors(result, enriched, range, target);
+  const FirstSpace first = first_space(comm, supremizers);
+  if (first.only)
+    take_singular_vectors(result, enriched, first.range, target);
   else
-    sweep(result, enriched, std::move(supremizers), target);
+    sweep(result, enriched, Candidates(comm, std::move(supremizers)), target);
   result.coordinates = enriched.in_use();
   const Index added = enriched.size - enriched.modes;
   result.representers = enriched.sources.leftCols(added);

@@ -250,6 +250,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.histories["tangential/error"] = bases.multipliers.tangential;
   model.histories["pga/sigma"] = bases.pga.sigma;
   if (bases.infsup_tolerance > 0) model.histories["pga/tolerance"] = {bases.infsup_tolerance};
+  model.histories["pga/selected"] = {bases.pga.selected.begin(), bases.pga.selected.end()};
   model.histories["eim/a"] = affine.a.error;
   model.histories["eim/b"] = affine.b.error;
   model.histories["eim/f"] = affine.f.error;

@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
-#include "rbvi/par/collective.hpp"
+#include "rbvi/par/turns.hpp"
 #include "rbvi/rom/self_check.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -47,34 +47,43 @@ LinearBasis orthonormalised(const LinearBasis &modes, Mat product) {
   return copy;
 }
 
-/// Vectors that span S_R(mu) for every mu, in coordinates: T X itself where b only scales, else the
-/// representers of all contact dofs that b couples with X at some training mu.
-Matrix span_of_supremizers(const RieszSpace &riesz, const std::vector<Matrix> &supremizers) {
-  if (supremizers.size() == 1) return supremizers.front();
+/// Vectors that span S_R(mu) for every mu, in coordinates, on rank 0: T X itself where b only
+/// scales, else the representers of all contact dofs that b couples with X at some training mu.
+/// `supremizers`: of this rank's turns among `training` mu. Collective.
+std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
+                                        std::vector<Matrix> supremizers, std::size_t training) {
+  if (training == 1) return supremizers;
   const auto factor = riesz.factor.triangularView<Eigen::Lower>();
   Vector coupling = Vector::Zero(riesz.factor.rows());
   for (const Matrix &t : supremizers)
     coupling =
         coupling.cwiseMax(Matrix(factor.transpose().solve(t)).rowwise().lpNorm<Eigen::Infinity>());
+  MPI_Allreduce(MPI_IN_PLACE, coupling.data(), static_cast<int>(coupling.size()), MPI_DOUBLE,
+                MPI_MAX, comm);
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank != 0) return {};
   std::vector<Index> touched;
   for (Index i = 0; i < coupling.size(); ++i)
     if (coupling[i] > 1e-12 * coupling.maxCoeff()) touched.push_back(i);
-  return Matrix(riesz.factor.transpose())(Eigen::all, touched);
+  return {Matrix(riesz.factor.transpose())(Eigen::all, touched)};
 }
 
-/// Contact dofs that b couples with the dual basis at some training mu.
+/// Contact dofs that b couples with the dual basis at some training mu. Collective.
 std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
                                 const std::vector<Mu> &training) {
   std::vector<char> coupled(static_cast<std::size_t>(problem.trace().size), 0);
   Operators op;
-  for (const Mu &mu : training) {
-    problem.assemble_contact(mu, op);
+  take_turns(problem.comm(), training.size(), [&](std::size_t p) {
+    problem.assemble_contact(training[p], op);
     for (Index i = 0; i < dual.rows(); ++i) {
       if ((dual.row(i).array() == 0).all()) continue;
       for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
         if (entry.value() != 0) coupled[static_cast<std::size_t>(entry.col())] = 1;
     }
-  }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, coupled.data(), static_cast<int>(coupled.size()), MPI_CHAR, MPI_MAX,
+                problem.comm());
   std::vector<Index> dofs;
   for (std::size_t i = 0; i < coupled.size(); ++i)
     if (coupled[i] != 0) dofs.push_back(static_cast<Index>(i));
@@ -131,12 +140,16 @@ void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu
   const Matrix modes =
       energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()))
              : mode_coordinates(riesz, bases.pod.basis);
-  std::vector<Matrix> supremizers = supremizers_at(problem, riesz, dual, training);
+  std::vector<Matrix> supremizers;
+  take_turns(problem.comm(), training.size(), [&](std::size_t p) {
+    supremizers.push_back(supremizers_at(problem, riesz, dual, {training[p]}).front());
+  });
   if (bases.online_enriched) {
-    supremizers = {span_of_supremizers(riesz, supremizers)};
+    supremizers =
+        span_of_supremizers(problem.comm(), riesz, std::move(supremizers), training.size());
     pga = {.tolerance = 1e-9}; // all but what the modes hold
   }
-  bases.pga = projected_greedy(riesz, modes, std::move(supremizers), pga);
+  bases.pga = projected_greedy(problem.comm(), riesz, modes, std::move(supremizers), pga);
   if (bases.pga.representers.cols() == 0) return;
   bases.supremizers = static_cast<int>(
       append_orthonormalised(bases.pod.basis,

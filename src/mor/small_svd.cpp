@@ -3,27 +3,52 @@
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 namespace rbvi {
 
 namespace {
 
-Handle<SVD> solved(const Matrix &matrix) {
+std::map<std::string, Handle<SVD>> objects; // one for each prefix, until PETSc ends
+
+PetscErrorCode forget_objects() {
+  objects.clear();
+  return 0;
+}
+
+SVD object_of(const char *prefix) {
+  Handle<SVD> &svd = objects[prefix];
+  if (!svd) {
+    if (objects.size() == 1) RBVI_CALL(PetscRegisterFinalize(forget_objects));
+    svd = make_small_svd(prefix);
+  }
+  return svd.get();
+}
+
+void solve(SVD svd, const Matrix &matrix, const std::string &prefix) {
   const auto wanted = static_cast<PetscInt>(std::min(matrix.rows(), matrix.cols()));
-  if (!matrix.allFinite()) throw failure("singular values of a matrix with entries not finite");
-  const Handle<Mat> copy = sequential_dense(matrix);
-  Handle<SVD> svd;
-  RBVI_CALL(SVDCreate(PETSC_COMM_SELF, svd.put()));
-  RBVI_CALL(SVDSetOperators(svd.get(), copy.get(), nullptr));
-  RBVI_CALL(SVDSetType(svd.get(), SVDLAPACK));
-  RBVI_CALL(SVDSetDimensions(svd.get(), wanted, PETSC_DEFAULT, PETSC_DEFAULT));
-  RBVI_CALL(SVDSolve(svd.get()));
+  RBVI_CALL(SVDSetOperators(svd, sequential_dense(matrix).get(), nullptr));
+  RBVI_CALL(SVDSetDimensions(svd, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  RBVI_CALL(SVDSolve(svd));
   PetscInt converged = 0;
-  RBVI_CALL(SVDGetConverged(svd.get(), &converged));
+  RBVI_CALL(SVDGetConverged(svd, &converged));
   if (converged < wanted)
     throw failure("SLEPc returned " + std::to_string(converged) + " of " + std::to_string(wanted) +
-                  " singular values of a dense matrix; check the scaling of its entries");
+                  " singular values of a dense matrix: check the scaling of its entries" +
+                  (prefix.empty() ? "" : ", and leave out -" + prefix + "svd_type"));
+}
+
+/// The object of the prefix with all triplets of `matrix`.
+SVD solved(const Matrix &matrix, const char *prefix) {
+  if (!matrix.allFinite()) throw failure("singular values of a matrix with entries not finite");
+  SVD svd = object_of(prefix);
+  try {
+    solve(svd, matrix, prefix);
+  } catch (const Error &) {
+    objects.erase(prefix); // what it was in the middle of
+    throw;
+  }
   return svd;
 }
 
@@ -43,6 +68,16 @@ Matrix triangular_factor(const Matrix &matrix) {
 
 } // namespace
 
+Handle<SVD> make_small_svd(const char *prefix) {
+  Handle<SVD> svd;
+  RBVI_CALL(SVDCreate(PETSC_COMM_SELF, svd.put()));
+  RBVI_CALL(SVDSetType(svd.get(), SVDLAPACK));
+  if (*prefix == '\0') return svd;
+  RBVI_CALL(SVDSetOptionsPrefix(svd.get(), prefix));
+  RBVI_CALL(SVDSetFromOptions(svd.get()));
+  return svd;
+}
+
 Handle<Mat> sequential_dense(const Matrix &matrix) {
   Handle<Mat> copy;
   RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, static_cast<PetscInt>(matrix.rows()),
@@ -56,27 +91,26 @@ Handle<Mat> sequential_dense(const Matrix &matrix) {
   return copy;
 }
 
-SmallSvd small_svd(const Matrix &matrix) {
+SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
   const Index count = std::min(matrix.rows(), matrix.cols());
   SmallSvd result{Vector(count), Matrix(matrix.rows(), count), Matrix(matrix.cols(), count)};
   if (count == 0) return result;
-  const Handle<SVD> svd = solved(matrix);
+  SVD svd = solved(matrix, prefix);
   for (Index k = 0; k < count; ++k) {
     const Handle<Vec> left = wrapped_column(result.left, k);
     const Handle<Vec> right = wrapped_column(result.right, k);
-    RBVI_CALL(SVDGetSingularTriplet(svd.get(), static_cast<PetscInt>(k), &result.values(k),
-                                    left.get(), right.get()));
+    RBVI_CALL(SVDGetSingularTriplet(svd, static_cast<PetscInt>(k), &result.values(k), left.get(),
+                                    right.get()));
   }
   return result;
 }
 
-Vector singular_values(const Matrix &matrix) {
+Vector singular_values(const Matrix &matrix, const char *prefix) {
   Vector values(std::min(matrix.rows(), matrix.cols()));
   if (values.size() == 0) return values;
-  const Handle<SVD> svd = solved(triangular_factor(matrix));
+  SVD svd = solved(triangular_factor(matrix), prefix);
   for (Index k = 0; k < values.size(); ++k)
-    RBVI_CALL(
-        SVDGetSingularTriplet(svd.get(), static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
+    RBVI_CALL(SVDGetSingularTriplet(svd, static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
   return values;
 }
 

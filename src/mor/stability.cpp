@@ -14,6 +14,11 @@ namespace {
 
 constexpr double range_tolerance = 1e-12;
 
+/// All that inf-sup constants, c and sigma are read off.
+Vector stretches(const Matrix &matrix) {
+  return singular_values(matrix, "infsup_");
+}
+
 Matrix lower_cholesky(const Matrix &matrix, const char *what) {
   const Eigen::LLT<Matrix> cholesky(matrix);
   if (!matrix.allFinite() || cholesky.info() != Eigen::Success)
@@ -116,7 +121,7 @@ double infsup_constant(const Matrix &primal, const Matrix &supremizers) {
   if (supremizers.cols() == 0) return std::numeric_limits<double>::infinity();
   if (primal.cols() < supremizers.cols()) return 0;
   const Matrix pairing = primal.topRows(supremizers.rows()).transpose() * supremizers;
-  return singular_values(pairing)(supremizers.cols() - 1);
+  return stretches(pairing)(supremizers.cols() - 1);
 }
 
 namespace {
@@ -125,7 +130,7 @@ namespace {
 double smallest_stretch(const Matrix &supremizers) {
   if (supremizers.cols() == 0) return std::numeric_limits<double>::infinity();
   if (supremizers.rows() < supremizers.cols()) return 0;
-  return singular_values(supremizers)(supremizers.cols() - 1);
+  return stretches(supremizers)(supremizers.cols() - 1);
 }
 
 /// The triangular factor of a matrix that gets more rows.
@@ -160,13 +165,13 @@ InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, 
 }
 
 StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers) {
-  const Vector stretch = singular_values(supremizers);
+  const Vector stretch = stretches(supremizers);
   const Matrix range = orthonormal_range(supremizers);
   Matrix rest = Matrix::Zero(enriched.rows(), range.cols());
   rest.topRows(range.rows()) = range;
   rest -= enriched * (enriched.topRows(range.rows()).transpose() * range);
   StabilityBound bound{};
-  bound.sigma = range.cols() > 0 ? std::min(singular_values(rest)(0), 1.0) : 0;
+  bound.sigma = range.cols() > 0 ? std::min(stretches(rest)(0), 1.0) : 0;
   bound.c = stretch.size() > 0 ? stretch(0) : 0;
   bound.on = smallest_stretch(supremizers);
   // The smallest cosine between S_R(mu) and the space is sqrt(1 - sigma^2), without cancellation.
@@ -181,7 +186,7 @@ std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes
   const Matrix range = orthonormal_range(supremizers);
   const auto contact = coordinates.topRows(supremizers.rows());
   const Matrix work = contact.transpose() * supremizers, cosines = contact.transpose() * range;
-  const Vector stretch = singular_values(supremizers);
+  const Vector stretch = stretches(supremizers);
   const double on = smallest_stretch(supremizers);
   Matrix work_factor(0, work.cols()), cosine_factor(0, range.cols());
   Index seen = 0;

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/whole.hpp"
 
 #include <algorithm>
 
@@ -24,6 +25,8 @@ Share my_share(MPI_Comm comm, Index size) {
   return {first, size * (rank + 1) / ranks - first};
 }
 
+} // namespace
+
 Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
@@ -36,17 +39,21 @@ Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
   return whole;
 }
 
-} // namespace
+std::vector<PetscInt> whole_rows(Mat a, const Trace &trace) {
+  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
+  PetscInt first = 0;
+  RBVI_CALL(MatGetOwnershipRange(a, &first, nullptr));
+  for (std::size_t k = 0; k < trace.index.size(); ++k)
+    rows[static_cast<std::size_t>(trace.index[k])] = first + trace.local_row[k];
+  MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPIU_INT, MPI_SUM,
+                trace.comm);
+  return rows;
+}
 
 ReplicatedSolver::ReplicatedSolver(Mat a, const Trace &trace, const char *prefix)
-    : comm_(trace.comm), whole_(whole_matrix(a, trace.comm)),
-      rows_(static_cast<std::size_t>(trace.size), 0) {
+    : comm_(trace.comm), whole_(whole_matrix(a, trace.comm)), rows_(whole_rows(a, trace)) {
   RBVI_CALL(MatGetLocalSize(a, &local_rows_, nullptr));
   RBVI_CALL(MatGetOwnershipRange(a, &first_row_, nullptr));
-  for (std::size_t k = 0; k < trace.index.size(); ++k)
-    rows_[static_cast<std::size_t>(trace.index[k])] = first_row_ + trace.local_row[k];
-  MPI_Allreduce(MPI_IN_PLACE, rows_.data(), static_cast<int>(rows_.size()), MPIU_INT, MPI_SUM,
-                comm_);
   RBVI_CALL(MatSetOption(whole_.get(), MAT_SPD, PETSC_TRUE));
   ksp_ = make_direct_solver(PetscObjectComm(reinterpret_cast<PetscObject>(whole_.get())), prefix);
   RBVI_CALL(KSPSetOperators(ksp_.get(), whole_.get(), whole_.get()));

@@ -181,6 +181,7 @@ void command_bench(const ToolOptions &given) {
   MPI_Comm_size(world, &ranks);
   const ReducedModel model = model_of_run(world, given.out);
   const ToolOptions options = adopt_model(given, model);
+  check_eigen_options(options, EigenUse::none);
   collectively(world, [&] {
     if (rank == 0) bench(options, model, ranks);
   });

@@ -49,6 +49,12 @@ std::vector<std::string> unread_names() {
   return unread;
 }
 
+std::vector<std::string> unread_names(const std::vector<std::string> &prefixes) {
+  std::vector<std::string> unread = unread_names();
+  std::erase_if(unread, [&](const std::string &name) { return !starts_with_any(name, prefixes); });
+  return unread;
+}
+
 bool is_given(const std::string &name) {
   PetscBool set = PETSC_FALSE;
   RBVI_CALL(PetscOptionsHasName(nullptr, nullptr, ("-" + name).c_str(), &set));

@@ -9,6 +9,12 @@ namespace rbvi {
 /// be called before anything asks for an option.
 std::vector<std::string> unread_names();
 
+/// Those that begin with one of the prefixes and that nothing has asked for.
+std::vector<std::string> unread_names(const std::vector<std::string> &prefixes);
+
+/// How the options of SLEPc's objects begin.
+const std::vector<std::string> &eigen_prefixes();
+
 bool contains(const std::vector<std::string> &list, const std::string &name);
 bool starts_with_any(const std::string &name, const std::vector<std::string> &prefixes);
 

@@ -210,6 +210,7 @@ ToolOptions read_options(MPI_Comm comm) {
   for (const auto &[name, where] : origin)
     names.push_back(name);
   ToolOptions options;
+  options.command_line = command_line;
   const std::string scene = text_of("scene");
   if (scene.empty())
     throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");

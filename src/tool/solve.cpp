@@ -14,6 +14,7 @@ namespace rbvi {
 
 void command_solve(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
+  check_eigen_options(options, EigenUse::none);
   if (options.mu.empty()) throw bad_input("no parameter is given: use -mu 0.18,0.02,-0.01");
   const ParameterSpace &space = options.scene.parameters;
   const Mu mu = parse_mu(space, options.mu);

@@ -1,3 +1,5 @@
+#include "database.hpp"
+
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/replicated.hpp"
@@ -25,18 +27,9 @@ constexpr Ineffective ineffective[] = {{"nitsche_snes_stol", by_residual},
                                        {"nitsche_snes_lag_preconditioner", by_iterations},
                                        {"nitsche_ksp_reuse_preconditioner", by_iterations}};
 
-/// Options under our prefixes that no PETSc object has asked for.
-std::vector<std::string> unused_options() {
-  PetscInt count = 0;
-  char **names = nullptr, **values = nullptr;
-  RBVI_CALL(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  std::vector<std::string> unused;
-  for (PetscInt i = 0; i < count; ++i)
-    for (const std::string &prefix : solver_prefixes())
-      if (std::string(names[i]).starts_with(prefix)) unused.emplace_back(names[i]);
-  RBVI_CALL(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
-  return unused;
-}
+const std::vector<std::string> of_solvers{
+    "hf_ksp_", "hf_pc_",        "hf_mat_",      "vi_",         "v_ksp_",      "v_pc_",
+    "v_mat_",  "nitsche_snes_", "nitsche_ksp_", "nitsche_pc_", "nitsche_mat_"};
 
 /// Throws bad_input for options of a solver that this run does not have, or that have no effect.
 void check_solver_of(const std::string &name, const Scene &scene, const HfOptions &options) {
@@ -113,27 +106,29 @@ void try_solvers(Problem &problem, const HfOptions &options) {
 } // namespace
 
 const std::vector<std::string> &solver_prefixes() {
-  static const std::vector<std::string> prefixes{
-      "hf_ksp_", "hf_pc_",        "hf_mat_",      "vi_",         "v_ksp_",      "v_pc_",
-      "v_mat_",  "nitsche_snes_", "nitsche_ksp_", "nitsche_pc_", "nitsche_mat_"};
+  static const std::vector<std::string> prefixes = [] {
+    std::vector<std::string> all = of_solvers;
+    all.insert(all.end(), eigen_prefixes().begin(), eigen_prefixes().end());
+    return all;
+  }();
   return prefixes;
 }
 
 void check_solver_options(Problem &problem, const HfOptions &options) {
-  const std::vector<std::string> names = unused_options();
+  const std::vector<std::string> names = unread_names(of_solvers);
   if (names.empty()) return;
   for (const std::string &name : names)
     check_solver_of(name, problem.scene(), options);
   std::string reason;
   try {
     make_solvers(problem.comm(), names, options);
-    if (!unused_options().empty()) try_solvers(problem, options);
+    if (!unread_names(of_solvers).empty()) try_solvers(problem, options);
   } catch (const Error &error) {
     if (error.status() == Status::bad_input) throw;
     reason = std::string(" (") + error.what() + ")";
   }
   std::string unused;
-  for (const std::string &name : unused_options())
+  for (const std::string &name : unread_names(of_solvers))
     unused += " -" + name;
   if (!unused.empty())
     throw bad_input("no solver of this run asks for the option" + unused + reason);

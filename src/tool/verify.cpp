@@ -304,6 +304,7 @@ void command_verify(const ToolOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   ReducedModel model = model_of_run(world, given.out);
   const ToolOptions options = adopt_model(given, model);
+  check_eigen_options(options, EigenUse::constants);
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   const std::vector<Mu> training = from_columns(model.trained_mu);
   const Groups groups(world, options.ranks_per_solve);

@@ -121,7 +121,22 @@ TEST_P(BadInput, OptionsOfPetscWithoutAPrefix) {
        {offline + "-pc_type lu", "need the prefix of a solver: -hf_pc_type"},
        {offline + "-mat_mumps_icntl_14 50", "prefix of a solver: -hf_mat_mumps_icntl_14"},
        {offline + "-snes_rtol 1e-3", "prefix of a solver: -vi_snes_rtol, -nitsche_snes_rtol"},
-       {offline + "-eps_nev 3", "no object of rbvi takes PETSc's options -eps_*"}});
+       {offline + "-eps_nev 3", "need the prefix of a solver: -pga_eps_nev, -infsup_eps_nev"},
+       {offline + "-tao_type lmvm", "no object of rbvi takes PETSc's options -tao_*"}});
+}
+
+TEST_P(BadInput, OptionsOfEigenvalues) {
+  const std::string offline = "offline -case case.yaml -out run ";
+  const std::string disk = "offline -case disk.yaml -out run ";
+  spill("disk.yaml", "scene: rigid_disk\narc_edges: 40\ntrain: grid:3\n");
+  refuse({{offline + "-pga_eps_nev 3", "all values of a small matrix are computed"},
+          {offline + "-pga_eps_tpye lapack", "asks for the option -pga_eps_tpye"},
+          {offline + "-pga_eps_type nothing", "the options -pga_* do not work"},
+          {offline + "-infsup_svd_view", "inf-sup constants are computed by verify"},
+          {offline + "-pga_enrichment decorrelated -pga_eps_view", "makes no supremizers"},
+          {disk + "-pga_eps_view", "collocated alone makes supremizers"},
+          {disk + "-formulation nitsche -pga_eps_view", "Nitsche's method has no multipliers"},
+          {"solve -case case.yaml -mu 0.2,0,0 -csv x.csv -pga_eps_view", "made by offline"}});
 }
 
 TEST_P(BadInput, OptionsOfSolversWithoutEffect) {

@@ -1,5 +1,6 @@
 // Whole runs: what the tools print, the same model from any ranks, resume after a kill.
 #include "rbvi/core/parameters.hpp"
+#include "rbvi/rom/model.hpp"
 #include "run.hpp"
 
 #include <signal.h>
@@ -46,6 +47,18 @@ struct Runs : InDirectory {
   }
 };
 
+/// The same training parameters chosen for the supremizers, the same primal space to 1e-8.
+void expect_same_greedy(const ReducedModel &model, const ReducedModel &expected) {
+  EXPECT_EQ(model.histories.at("pga/selected"), expected.histories.at("pga/selected"));
+  ASSERT_EQ(model.primal_size(), expected.primal_size());
+  const auto orthonormal = [](const Matrix &basis) -> Matrix {
+    return Eigen::HouseholderQR<Matrix>(basis).householderQ() *
+           Matrix::Identity(basis.rows(), basis.cols());
+  };
+  const Matrix one = orthonormal(model.primal_basis), other = orthonormal(expected.primal_basis);
+  EXPECT_LE((one - other * (other.transpose() * one)).norm(), 1e-8);
+}
+
 TEST_F(Runs, TheSameModelFromAnyRanks) {
   for (const std::string map : {"similarity", "graded"}) {
     const std::string common =
@@ -56,11 +69,34 @@ TEST_F(Runs, TheSameModelFromAnyRanks) {
     for (int ranks = 2; ranks <= 4; ++ranks) {
       offline(ranks, common + std::to_string(ranks));
       expect_same(map + std::to_string(ranks), expected);
+      expect_same_greedy(read_model(map + std::to_string(ranks) + "/model.h5"),
+                         read_model(map + "1/model.h5"));
     }
     offline(2, common + "_together -sweep_ranks_per_solve 2");
     expect_same(map + "_together", expected);
     offline(4, common + "_pairs -sweep_ranks_per_solve 2");
     expect_same(map + "_pairs", expected);
+  }
+}
+
+/// The objects of SLEPc say what they are where they are asked to; a run's case file keeps the
+/// question for each command.
+TEST_F(Runs, EigenvaluesAndSingularValuesAreSlepcs) {
+  spill("case.yaml", slurp("case.yaml") + "infsup_svd_view:\n");
+  for (const std::string map : {"similarity", "graded"}) {
+    const std::string out = output_of(rbvi(2, "offline -case case.yaml -pga_eps_view -pga_svd_view "
+                                              "-disc_map " +
+                                                  map + " -out " + map));
+    EXPECT_EQ(contains(out, "EPS Object: (pga_)"), map == "graded") << "b only scales: one SVD";
+    EXPECT_EQ(contains(out, "SVD Object: (pga_)"), map == "similarity");
+    EXPECT_EQ(contains(out, "type: lapack"), true);
+    EXPECT_FALSE(contains(out, "(infsup_)"));
+    const std::string checked = output_of(rbvi(2, "verify -out " + map));
+    EXPECT_TRUE(contains(checked, "SVD Object: (infsup_)"));
+    EXPECT_FALSE(contains(checked, "(pga_)"));
+    const Finished refused = shell(rbvi(1, "verify -pga_eps_view -out " + map));
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(contains(refused.err, "supremizers are made by offline")) << refused.err;
   }
 }
 

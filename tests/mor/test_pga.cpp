@@ -69,8 +69,8 @@ class Greedy : public testing::TestWithParam<std::tuple<Index, Index, unsigned>>
 TEST_P(Greedy, sigma_and_the_stability_bound_hold_at_every_step) {
   const auto [size, cone, seed] = GetParam();
   const Example example = make_example(size, cone, 7, seed);
-  const Pga pga =
-      projected_greedy(example.space, example.modes, example.supremizers, {.tolerance = 1e-4});
+  const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                   example.supremizers, {.tolerance = 1e-4});
   const auto added = static_cast<Index>(pga.selected.size());
   ASSERT_EQ(pga.coordinates.cols(), size + added);
   ASSERT_EQ(pga.sigma.size(), pga.selected.size() + 1);
@@ -105,8 +105,8 @@ TEST_P(Greedy, sigma_and_the_stability_bound_hold_at_every_step) {
 TEST_P(Greedy, each_step_takes_the_worst_parameter_and_its_worst_direction) {
   const auto [size, cone, seed] = GetParam();
   const Example example = make_example(size, cone, 7, seed);
-  const Pga pga =
-      projected_greedy(example.space, example.modes, example.supremizers, {.tolerance = 0.05});
+  const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                   example.supremizers, {.tolerance = 0.05});
   const auto added = static_cast<Index>(pga.selected.size());
   ASSERT_EQ(pga.representers.cols(), added);
   const Matrix sources = example.space.factor.transpose() * pga.representers;
@@ -137,8 +137,8 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Greedy,
 TEST(Pga, stability_fraction_is_reached_and_not_by_luck) {
   const Example example = make_example(4, 6, 9, 100);
   for (const double fraction : {0.5, 0.9, 0.99}) {
-    const Pga pga = projected_greedy(example.space, example.modes, example.supremizers,
-                                     {.stability = fraction});
+    const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                     example.supremizers, {.stability = fraction});
     EXPECT_EQ(pga.reason, "stability reached");
     for (const Matrix &supremizers : example.supremizers)
       EXPECT_GE(infsup_constant(pga.coordinates, supremizers),
@@ -150,8 +150,8 @@ TEST(Pga, stability_fraction_is_reached_and_not_by_luck) {
 
 TEST(Pga, few_eigenproblems_per_step) {
   const Example example = make_example(6, 5, 40, 200);
-  const Pga pga =
-      projected_greedy(example.space, example.modes, example.supremizers, {.tolerance = 0.02});
+  const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                   example.supremizers, {.tolerance = 0.02});
   EXPECT_GT(pga.selected.size(), 10U);
   EXPECT_LT(pga.evaluations, 8 * static_cast<int>(pga.sigma.size())) << "of 40 candidates each";
 }
@@ -164,8 +164,8 @@ TEST(Pga, small_sigma_is_not_round_off) {
   Matrix turned = q.leftCols(3);
   turned.col(1) = std::cos(angle) * q.col(1) + std::sin(angle) * q.col(3);
   example.supremizers = {q.leftCols(3), turned};
-  const Pga pga =
-      projected_greedy(example.space, example.modes, example.supremizers, {.tolerance = 1e-10});
+  const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                   example.supremizers, {.tolerance = 1e-10});
   ASSERT_EQ(pga.sigma.size(), 5U);
   EXPECT_NEAR(pga.sigma[3], angle, 1e-3 * angle);
   EXPECT_LE(pga.sigma[4], 1e-10);
@@ -179,7 +179,8 @@ TEST(Pga, one_space_for_all_parameters_needs_one_svd) {
   for (int p = 1; p < 6; ++p)
     example.supremizers.push_back((1 + 0.3 * p) * first);
   const PgaOptions options{.tolerance = 1e-3};
-  const Pga pga = projected_greedy(example.space, example.modes, example.supremizers, options);
+  const Pga pga =
+      projected_greedy(PETSC_COMM_SELF, example.space, example.modes, example.supremizers, options);
   EXPECT_TRUE(pga.parameter_independent);
   EXPECT_EQ(pga.evaluations, 1);
   for (const int p : pga.selected)
@@ -191,12 +192,14 @@ TEST(Pga, one_space_for_all_parameters_needs_one_svd) {
   EXPECT_LE((pga.coordinates.transpose() * pga.coordinates - Matrix::Identity(5 + added, 5 + added))
                 .norm(),
             1e-12);
-  const Pga alone = projected_greedy(example.space, example.modes, {first}, options);
+  const Pga alone =
+      projected_greedy(PETSC_COMM_SELF, example.space, example.modes, {first}, options);
   EXPECT_EQ(alone.coordinates, pga.coordinates);
 
   // The sweep finds the same space: made to run by a second space that is contained already.
   example.supremizers = {first, first.leftCols(3)};
-  const Pga swept = projected_greedy(example.space, example.modes, example.supremizers, options);
+  const Pga swept =
+      projected_greedy(PETSC_COMM_SELF, example.space, example.modes, example.supremizers, options);
   EXPECT_FALSE(swept.parameter_independent);
   ASSERT_EQ(swept.sigma.size(), pga.sigma.size());
   for (std::size_t k = 0; k < pga.sigma.size(); ++k)
@@ -206,7 +209,8 @@ TEST(Pga, one_space_for_all_parameters_needs_one_svd) {
 TEST(Pga, nothing_to_add) {
   Example example = make_example(3, 4, 3, 500);
   example.modes = Matrix::Identity(contact + contact, contact);
-  const Pga pga = projected_greedy(example.space, example.modes, example.supremizers, {});
+  const Pga pga =
+      projected_greedy(PETSC_COMM_SELF, example.space, example.modes, example.supremizers, {});
   EXPECT_EQ(pga.selected.size(), 0U);
   EXPECT_EQ(pga.representers.cols(), 0);
   EXPECT_EQ(pga.coordinates.cols(), contact);
@@ -214,31 +218,90 @@ TEST(Pga, nothing_to_add) {
   EXPECT_EQ(pga.reason, "the space contains all supremizers");
 }
 
+/// Of this rank's turns.
+std::vector<Matrix> mine_of(const std::vector<Matrix> &all) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+  std::vector<Matrix> mine;
+  for (auto p = static_cast<std::size_t>(rank); p < all.size();
+       p += static_cast<std::size_t>(ranks))
+    mine.push_back(all[p]);
+  return mine;
+}
+
+TEST(Pga, choices_and_counts_do_not_depend_on_the_number_of_ranks) {
+  for (const Index parameters : {2, 11, 30}) {
+    Example example = make_example(6, 5, parameters, 800);
+    // Exact ties, on different ranks: the same spaces once more, spanned by other vectors.
+    for (Index p = 0; p < parameters; ++p)
+      example.supremizers.push_back(example.supremizers[static_cast<std::size_t>(p)] *
+                                    orthonormal(5, 5, 900 + static_cast<unsigned>(p)));
+    const PgaOptions options{.tolerance = 1e-3};
+    const Pga alone = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                       example.supremizers, options);
+    const Pga shared = projected_greedy(PETSC_COMM_WORLD, example.space, example.modes,
+                                        mine_of(example.supremizers), options);
+    EXPECT_GT(alone.selected.size(), 4U);
+    EXPECT_EQ(shared.selected, alone.selected);
+    EXPECT_EQ(shared.evaluations, alone.evaluations);
+    EXPECT_EQ(shared.reason, alone.reason);
+    EXPECT_EQ(shared.sigma, alone.sigma);
+    EXPECT_EQ(shared.coordinates, alone.coordinates);
+    EXPECT_EQ(shared.representers, alone.representers);
+    for (const int p : alone.selected)
+      EXPECT_LT(p, parameters) << "of equals the lowest index";
+  }
+}
+
+TEST(Pga, one_space_on_several_ranks) {
+  Example example = make_example(5, 6, 1, 810);
+  const Matrix first = example.supremizers.front();
+  for (int p = 1; p < 7; ++p)
+    example.supremizers.push_back((1 + 0.3 * p) * first);
+  const Pga pga = projected_greedy(PETSC_COMM_WORLD, example.space, example.modes,
+                                   mine_of(example.supremizers), {.tolerance = 1e-3});
+  const Pga one =
+      projected_greedy(PETSC_COMM_SELF, example.space, example.modes, {first}, {.tolerance = 1e-3});
+  EXPECT_TRUE(pga.parameter_independent);
+  EXPECT_EQ(pga.coordinates, one.coordinates);
+}
+
+TEST(Pga, a_failure_on_one_rank_is_that_of_all) {
+  Example example = make_example(3, 4, 9, 820);
+  example.supremizers.back()(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(projected_greedy(PETSC_COMM_WORLD, example.space, example.modes,
+                                mine_of(example.supremizers), {}),
+               Error);
+  EXPECT_THROW(projected_greedy(PETSC_COMM_WORLD, example.space, example.modes, {}, {}), Error);
+}
+
 TEST(Pga, dependent_supremizers_and_more_of_them_than_dofs) {
   Example example = make_example(2, 4, 3, 600);
   for (Matrix &one : example.supremizers)
     one = (one * random_matrix(4, contact + 5, 601)).eval();
-  const Pga pga =
-      projected_greedy(example.space, example.modes, example.supremizers, {.tolerance = 1e-6});
+  const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                   example.supremizers, {.tolerance = 1e-6});
   EXPECT_LE(pga.sigma.back(), 1e-6);
   EXPECT_LE(pga.selected.size(), 12U);
 }
 
 TEST(Pga, size_bound_and_bad_options) {
   const Example example = make_example(2, 5, 4, 700);
-  const Pga pga = projected_greedy(example.space, example.modes, example.supremizers,
-                                   {.tolerance = 1e-3, .max_size = 4});
+  const Pga pga = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,
+                                   example.supremizers, {.tolerance = 1e-3, .max_size = 4});
   EXPECT_EQ(pga.selected.size(), 4U);
   EXPECT_EQ(pga.reason, "maximal size reached");
   const auto run = [&](const PgaOptions &options) {
-    return projected_greedy(example.space, example.modes, example.supremizers, options);
+    return projected_greedy(PETSC_COMM_SELF, example.space, example.modes, example.supremizers,
+                            options);
   };
   EXPECT_THROW(run({.tolerance = 1}), Error);
   EXPECT_THROW(run({.stability = 1}), Error);
   EXPECT_THROW(run({.max_size = -1}), Error);
   Example bad = make_example(2, 5, 4, 700);
   bad.supremizers[2](1, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(projected_greedy(bad.space, bad.modes, bad.supremizers, {}), Error);
+  EXPECT_THROW(projected_greedy(PETSC_COMM_SELF, bad.space, bad.modes, bad.supremizers, {}), Error);
 }
 
 } // namespace

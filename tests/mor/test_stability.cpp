@@ -1,4 +1,5 @@
 #include "../linear_algebra.hpp"
+#include "rbvi/mor/high_fidelity_constant.hpp"
 #include "rbvi/mor/stability.hpp"
 
 #include "grid.hpp"
@@ -180,6 +181,8 @@ TEST_P(InfSupConstants, agree_with_brute_force_in_the_full_space) {
               brute_infsup(v, w, membrane.b_full, Matrix::Identity(n * n, n * n),
                            Matrix::Identity(duals, duals)),
               1e-9 * scale);
+  const SparseInfSup sparse(membrane.product.get(), membrane.trace);
+  EXPECT_NEAR(sparse.constant(membrane.b_contact, membrane.w_product), hf, 1e-9 * hf);
   EXPECT_NEAR(beta.dec, brute_infsup(v, w, membrane.b_full, primal, x), 1e-7 * scale);
   EXPECT_NEAR(beta.off, brute_infsup(v, w, membrane.b_full, all, x), 1e-7 * scale);
   const Matrix online = gathered(membrane.basis(beside(primal, riesz)).columns.get());
@@ -209,6 +212,19 @@ INSTANTIATE_TEST_SUITE_P(Sizes, InfSupConstants,
                                          std::tuple(3, 5, 5), std::tuple(10, 0, 6),
                                          std::tuple(10, 3, 6), std::tuple(12, 1, 12),
                                          std::tuple(1, 4, 14)));
+
+TEST(SparseInfSup, more_multipliers_than_dofs_and_dependent_rows) {
+  const Membrane membrane;
+  const SparseInfSup sparse(membrane.product.get(), membrane.trace);
+  const Index dofs = 2 * n;
+  EXPECT_EQ(sparse.constant(Matrix(Matrix::Ones(dofs + 1, dofs)).sparseView(),
+                            Matrix(Matrix::Identity(dofs + 1, dofs + 1)).sparseView()),
+            0);
+  Matrix b = Matrix(membrane.b_contact);
+  b.row(3).setZero();
+  const ErrorRecorder quiet;
+  EXPECT_THROW(sparse.constant(b.sparseView(), membrane.w_product), Error);
+}
 
 TEST(InfSupConstants, smallest_is_not_lost_at_the_root_of_round_off) {
   // Orthonormal pair with known cosines down to 1e-11.

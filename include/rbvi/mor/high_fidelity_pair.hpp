@@ -2,6 +2,7 @@
 // projected greedy that follows from them.
 #pragma once
 
+#include "rbvi/mor/high_fidelity_constant.hpp"
 #include "rbvi/mor/stability.hpp"
 #include "rbvi/problem/problem.hpp"
 
@@ -15,10 +16,10 @@ struct PairConstants {
 
 /// `op`: the contact operators at one mu; `space`: of all contact dofs. Of two bodies over the
 /// multipliers whose support has a partner everywhere: the others press on nothing, or on next to
-/// nothing. One dense SVD of the number of multipliers. Not collective. Throws failure where the
-/// SVD fails.
+/// nothing. One dense SVD of the number of multipliers; with `sparse`, beta alone (c is NaN),
+/// without dense matrices. Not collective. Throws failure where the SVD or the iteration fails.
 PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space,
-                                 const Operators &op);
+                                 const Operators &op, const SparseInfSup *sparse = nullptr);
 
 /// The smallest beta_HF(mu) / c_HF(mu) over `set`, at most 0.999, in the product of `space` (all
 /// contact dofs): since beta_on >= beta_HF and c_S <= c_HF there, sigma_S below it meets (2.23) at

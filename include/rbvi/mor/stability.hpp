@@ -111,23 +111,25 @@ struct Pga {
   Matrix coordinates;                 ///< (n_c + N) x (N + S): orthonormal, the modes first
   std::vector<double> sigma;          ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
   std::vector<int> selected;          ///< training index of each supremizer; -1: one SVD gave all
-  int evaluations = 0;                ///< eigenproblems (or SVDs) solved
+  int evaluations = 0;                ///< candidates evaluated by an eigenproblem, or 1 SVD
   bool parameter_independent = false; ///< S_R(mu) is one space: a single SVD replaced the sweep
   std::string reason;                 ///< why it stopped
 };
 
 /// Projected greedy algorithm (Algorithm 1), lazily evaluated: sigma does not increase, so that
 /// only candidates whose last value can still win are looked at again, with rank-k updates of the
-/// R x R matrices whose largest eigenvalue is sigma_S(mu)^2. A multiple eigenvalue gives all its
-/// vectors at once, as the greedy would take them one after the other.
+/// R x R matrices whose largest eigenvalue is sigma_S(mu)^2. Of these most are ruled out by a
+/// Cholesky factorisation, and SLEPc's EPS (prefix pga_) gives the value of the others. A multiple
+/// eigenvalue gives all its vectors at once, as the greedy would take them one after the other.
 ///
-/// `modes`: coordinates of V_N, (n_c + N) x N; `supremizers`: T(mu_p) X, n_c x R, for every
-/// training mu (move them in). One matrix, or all of the same span: a single SVD gives everything.
-/// Stops on the tolerance or on the sharper bound beta_off >= sqrt(1 - sigma_S^2) beta_on;
-/// supremizers within 1e-12 of the space count as inside. Ties within 1e-10 go to the lowest
-/// training index. Throws bad_input for an option out of its range, failure for entries that are
-/// not finite.
-Pga projected_greedy(const RieszSpace &space, const Matrix &modes, std::vector<Matrix> supremizers,
-                     const PgaOptions &options);
+/// Collective on `comm`; what it returns is on every rank, choices and counts are the same for any
+/// number of them. `modes`: coordinates of V_N, (n_c + N) x N; `supremizers`: T(mu_p) X, n_c x R,
+/// for this rank's turns among the training mu, p = rank, rank + ranks, ... (move them in). One
+/// matrix, or all of the same span: a single SVD (prefix pga_) gives everything. Stops on the
+/// tolerance or on the sharper bound beta_off >= sqrt(1 - sigma_S^2) beta_on; supremizers within
+/// 1e-12 of the space count as inside. Ties within 1e-10 go to the lowest training index. Throws
+/// bad_input for an option out of its range, failure for entries that are not finite.
+Pga projected_greedy(MPI_Comm comm, const RieszSpace &space, const Matrix &modes,
+                     std::vector<Matrix> supremizers, const PgaOptions &options);
 
 } // namespace rbvi

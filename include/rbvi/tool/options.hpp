@@ -23,6 +23,7 @@ struct ToolOptions {
   std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
   std::filesystem::path out;       ///< run directory; "" where none is given
   std::string case_file;           ///< all options of the run, for its own case file (case_of_run)
+  std::vector<std::string> command_line;        ///< names of the options that stand there
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
   bool plan = false;
@@ -64,6 +65,17 @@ const std::vector<std::string> &solver_prefixes();
 /// PETSc object asks for, or whose value it refuses. Costs nothing where none is given, and one
 /// solve where the objects alone cannot tell.
 void check_solver_options(Problem &problem, const HfOptions &options);
+
+/// What a command solves with objects of SLEPc that take options.
+enum class EigenUse {
+  none,
+  supremizers, ///< offline: the projected greedy, prefix pga_
+  constants    ///< verify: inf-sup constants, prefix infsup_
+};
+
+/// Throws bad_input if one of their options was given that nothing of the run asks for, or whose
+/// value SLEPc refuses. Those of another command may stand in a case file, not on the command line.
+void check_eigen_options(const ToolOptions &options, EigenUse use);
 
 /// Prints the usage, the options above and those of the scenes; or, where one is named, options,
 /// parameters and mesh of that scene alone. Throws bad_input for an unknown scene.

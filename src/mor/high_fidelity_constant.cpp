@@ -1,0 +1,171 @@
+#include "rbvi/mor/high_fidelity_constant.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/whole.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+/// x -> R^T (B V^-1 B^T)^-1 R x, symmetric, with W = R R^T.
+struct Inverse {
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> w; ///< R = P^T L
+  Handle<KSP> ksp;
+  Handle<Vec> right, solution; ///< of the saddle point matrix
+  PetscInt fields = 0;         ///< rows of V, in front
+};
+
+PetscErrorCode apply(Mat shell, Vec x, Vec y) {
+  PetscFunctionBeginUser;
+  void *context = nullptr;
+  PetscCall(MatShellGetContext(shell, &context));
+  const auto &inverse = *static_cast<const Inverse *>(context);
+  PetscInt size = 0;
+  const PetscScalar *from = nullptr;
+  PetscScalar *to = nullptr;
+  PetscCall(VecGetLocalSize(x, &size));
+  PetscCall(VecZeroEntries(inverse.right.get()));
+  PetscCall(VecGetArrayRead(x, &from));
+  PetscCall(VecGetArray(inverse.right.get(), &to));
+  const Vector image = inverse.w.matrixL() * Eigen::Map<const Vector>(from, size);
+  Eigen::Map<Vector>(to + inverse.fields, size) = inverse.w.permutationPinv() * image;
+  PetscCall(VecRestoreArray(inverse.right.get(), &to));
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(KSPSolve(inverse.ksp.get(), inverse.right.get(), inverse.solution.get()));
+  PetscCall(VecGetArrayRead(inverse.solution.get(), &from));
+  PetscCall(VecGetArrayWrite(y, &to));
+  const Vector solved =
+      inverse.w.permutationP() * Eigen::Map<const Vector>(from + inverse.fields, size);
+  Eigen::Map<Vector>(to, size) = -(inverse.w.matrixU() * solved);
+  PetscCall(VecRestoreArrayWrite(y, &to));
+  PetscCall(VecRestoreArrayRead(inverse.solution.get(), &from));
+  PetscFunctionReturn(0);
+}
+
+/// A sequential sparse matrix whose entries visit(add) adds, add(row, column, value), of at most
+/// `longest` entries a row.
+template <class Visit>
+Handle<Mat> assembled(PetscInt size, const std::vector<PetscInt> &longest, const Visit &visit) {
+  Handle<Mat> matrix;
+  RBVI_CALL(MatCreateSeqAIJ(PETSC_COMM_SELF, size, size, 0, longest.data(), matrix.put()));
+  visit([&](PetscInt row, PetscInt column, double value) {
+    RBVI_CALL(MatSetValue(matrix.get(), row, column, value, ADD_VALUES));
+  });
+  RBVI_CALL(MatAssemblyBegin(matrix.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(matrix.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  return matrix;
+}
+
+/// [V B^T; B 0], with the zeros of its diagonal.
+Handle<Mat> saddle_point(Mat v, const SparseMatrix &b, const std::vector<PetscInt> &dofs) {
+  PetscInt fields = 0;
+  RBVI_CALL(MatGetSize(v, &fields, nullptr));
+  const auto size = static_cast<PetscInt>(fields + b.rows());
+  std::vector<PetscInt> longest(static_cast<std::size_t>(size), 1);
+  const auto each_of_b = [&](const auto &visit) {
+    for (Index i = 0; i < b.rows(); ++i)
+      for (SparseMatrix::InnerIterator entry(b, i); entry; ++entry)
+        visit(static_cast<PetscInt>(fields + i), dofs[static_cast<std::size_t>(entry.col())],
+              entry.value());
+  };
+  const auto each_of_v = [&](const auto &visit) {
+    for (PetscInt row = 0; row < fields; ++row) {
+      PetscInt count = 0;
+      const PetscInt *columns = nullptr;
+      const PetscScalar *values = nullptr;
+      RBVI_CALL(MatGetRow(v, row, &count, &columns, &values));
+      for (PetscInt k = 0; k < count; ++k)
+        visit(row, columns[k], values[k]);
+      RBVI_CALL(MatRestoreRow(v, row, &count, &columns, &values));
+    }
+  };
+  each_of_v([&](PetscInt row, PetscInt, double) { ++longest[static_cast<std::size_t>(row)]; });
+  each_of_b([&](PetscInt row, PetscInt column, double) {
+    ++longest[static_cast<std::size_t>(row)];
+    ++longest[static_cast<std::size_t>(column)];
+  });
+  return assembled(size, longest, [&](const auto &add) {
+    each_of_v(add);
+    each_of_b([&](PetscInt row, PetscInt column, double value) {
+      add(row, column, value);
+      add(column, row, value);
+    });
+    for (PetscInt row = fields; row < size; ++row)
+      add(row, row, 0);
+  });
+}
+
+/// An indefinite matrix, by MUMPS, with room for the pivots that the zeros of its diagonal delay.
+Handle<KSP> factorised(Mat matrix) {
+  constexpr PetscInt more_room = 14, percent = 500;
+  Handle<KSP> ksp;
+  PC pc = nullptr;
+  RBVI_CALL(KSPCreate(PETSC_COMM_SELF, ksp.put()));
+  RBVI_CALL(KSPSetOperators(ksp.get(), matrix, matrix));
+  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY));
+  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  RBVI_CALL(PCSetType(pc, PCCHOLESKY));
+  RBVI_CALL(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  Mat factor = nullptr;
+  RBVI_CALL(PCFactorSetUpMatSolverType(pc));
+  RBVI_CALL(PCFactorGetMatrix(pc, &factor));
+  RBVI_CALL(MatMumpsSetIcntl(factor, more_room, percent));
+  RBVI_CALL(KSPSetErrorIfNotConverged(ksp.get(), PETSC_TRUE));
+  RBVI_CALL(KSPSetUp(ksp.get()));
+  return ksp;
+}
+
+} // namespace
+
+Handle<EPS> make_inverse_iteration() {
+  constexpr double tolerance = 1e-12; // relative, of 1 / beta^2
+  constexpr PetscInt most_restarts = 200;
+  Handle<EPS> eps;
+  RBVI_CALL(EPSCreate(PETSC_COMM_SELF, eps.put()));
+  RBVI_CALL(EPSSetOptionsPrefix(eps.get(), "infsup_"));
+  RBVI_CALL(EPSSetProblemType(eps.get(), EPS_HEP));
+  RBVI_CALL(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
+  RBVI_CALL(EPSSetTolerances(eps.get(), tolerance, most_restarts));
+  RBVI_CALL(EPSSetDimensions(eps.get(), 1, PETSC_DEFAULT, PETSC_DEFAULT));
+  RBVI_CALL(EPSSetFromOptions(eps.get()));
+  RBVI_CALL(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_REAL));
+  return eps;
+}
+
+SparseInfSup::SparseInfSup(Mat product, const Trace &trace)
+    : product_(whole_matrix(product, trace.comm)), dofs_(whole_rows(product, trace)) {}
+
+double SparseInfSup::constant(const SparseMatrix &b_contact, const SparseMatrix &w_product) const {
+  if (b_contact.rows() == 0) return std::numeric_limits<double>::infinity();
+  if (b_contact.rows() > b_contact.cols()) return 0;
+  Inverse inverse;
+  const Handle<Mat> matrix = saddle_point(product_.get(), b_contact, dofs_);
+  inverse.w.compute(w_product);
+  if (inverse.w.info() != Eigen::Success) throw failure("the W product is not positive definite");
+  inverse.ksp = factorised(matrix.get());
+  RBVI_CALL(MatGetSize(product_.get(), &inverse.fields, nullptr));
+  RBVI_CALL(MatCreateVecs(matrix.get(), inverse.right.put(), inverse.solution.put()));
+
+  const auto size = static_cast<PetscInt>(b_contact.rows());
+  Handle<Mat> shell;
+  RBVI_CALL(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &inverse, shell.put()));
+  RBVI_CALL(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply)));
+  const Handle<EPS> eps = make_inverse_iteration();
+  RBVI_CALL(EPSSetOperators(eps.get(), shell.get(), nullptr));
+  RBVI_CALL(EPSSolve(eps.get()));
+  PetscInt converged = 0;
+  RBVI_CALL(EPSGetConverged(eps.get(), &converged));
+  double inverse_square = 0;
+  if (converged > 0) RBVI_CALL(EPSGetEigenvalue(eps.get(), 0, &inverse_square, nullptr));
+  if (!(inverse_square > 0))
+    throw failure("the inverse iteration for beta_HF did not converge: raise -infsup_eps_max_it or "
+                  "-infsup_eps_tol");
+  return 1 / std::sqrt(inverse_square);
+}
+
+} // namespace rbvi
