@@ -20,7 +20,7 @@ def membranes():
     mu = ["0.2,0,0", "0.17,0.03,-0.02", "0.23,-0.04,0.01"]
     for name, case, scene in (("membrane", "case", []),
                               ("membrane_graded", "case", ["-disc_map", "graded"]),
-                              ("membrane_lumped", "case", ["-lumped", "yes"]),
+                              ("membrane_consistent", "case", ["-lumped", "no"]),
                               ("membrane_published", "published", [])):
         yield Formulation(name, CASES / f"membrane_obstacle/{case}.yaml", scene,
                           ["-train", "grid:3,3,3"], mu)

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/contact_area.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/local_fit.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -32,6 +33,18 @@ void measure_support(const Problem &problem, const Operators &op, const Vector &
   support_outputs({lambda, op.weights, op.b * upwards, op.bound, points}, outputs);
 }
 
+/// The sum of the active weights; with vertex quadrature over an obstacle's region, contact_area.
+double contact_measure(const Problem &problem, const Operators &op, const MethodResult &result) {
+  if (problem.scene().lumped) {
+    const ContactRegion &region = problem.contact();
+    return contact_area(op.weights, result.lambda, flat_cells(region), region.dim + 1);
+  }
+  double measure = 0;
+  for (const Index i : result.active)
+    measure += op.weights[i];
+  return measure;
+}
+
 Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
                 const HfSolution &solution) {
   Handle<Vec> au;
@@ -53,10 +66,7 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
     return outputs;
   }
   outputs.normal_force = images * op.weights.dot(result.lambda);
-  double measure = 0;
-  for (const Index i : result.active)
-    measure += op.weights[i];
-  outputs.contact_measure = images * measure;
+  outputs.contact_measure = images * contact_measure(problem, op, result);
   outputs.peak_pressure = result.lambda.maxCoeff();
   if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
   return outputs;
