@@ -46,6 +46,7 @@ def rigid_disks():
     for kind in ("collocated", "cones", "joint"):
         yield Formulation(f"disk_{kind}", case, [], ["-train", "grid:31"], mu,
                           ["-multiplier_reduction", kind])
+    yield Formulation("disk_lumped", case, ["-friction", "none", "-lumped", "yes"], few, mu)
     yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)
     yield Formulation("disk_stiffness", case,
                       ["-parameters", "radius,core_stiffness,poisson_ratio"],

@@ -135,10 +135,9 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
-  if (options.method == HfMethod::vi && (problem.two_bodies() || problem.on_support()))
-    throw bad_input(
-        "vi needs a bound at each node, and contact of two bodies or with a rigid support bounds "
-        "integrals over several: use -hf_method active_set or uzawa");
+  if (options.method == HfMethod::vi && problem.two_bodies())
+    throw bad_input("vi needs a bound at each node, and contact of two bodies bounds integrals "
+                    "over several: use -hf_method active_set or uzawa");
   if (problem.nitsche()) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
     return;
