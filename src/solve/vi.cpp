@@ -114,12 +114,22 @@ PrimalProblem problem_on_obstacle(const Trace &trace, const Operators &op) {
   return primal;
 }
 
-Handle<SNES> make_snes(MPI_Comm comm) {
+/// Size of the terms of the residual where SNES starts, at zero moved into the bounds.
+double residual_scale(const PrimalProblem &primal) {
+  const Handle<Vec> start = like(primal.f), force = like(primal.f), zero = like(primal.f);
+  RBVI_CALL(VecZeroEntries(zero.get()));
+  RBVI_CALL(VecMedian(primal.lower.get(), zero.get(), primal.upper.get(), start.get()));
+  RBVI_CALL(MatMult(primal.a, start.get(), force.get()));
+  const double scale = norm(primal.f) + norm(force.get());
+  return scale > 0 ? scale : 1;
+}
+
+Handle<SNES> make_snes(MPI_Comm comm, double scale) {
   Handle<SNES> snes;
   RBVI_CALL(SNESCreate(comm, snes.put()));
   RBVI_CALL(SNESSetOptionsPrefix(snes.get(), "vi_"));
   RBVI_CALL(SNESSetType(snes.get(), SNESVINEWTONRSLS));
-  RBVI_CALL(SNESSetTolerances(snes.get(), 1e-14, 1e-12, 0, 200, PETSC_DEFAULT));
+  RBVI_CALL(SNESSetTolerances(snes.get(), 1e-14 * scale, 1e-12, 0, 200, PETSC_DEFAULT));
   KSP ksp = nullptr;
   PC pc = nullptr;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
@@ -139,7 +149,7 @@ MethodResult minimise(MPI_Comm comm, PrimalProblem &primal) {
   const Handle<Vec> r = like(primal.f);
   Handle<Mat> tangent;
   RBVI_CALL(MatDuplicate(primal.a, MAT_COPY_VALUES, tangent.put()));
-  const Handle<SNES> snes = make_snes(comm);
+  const Handle<SNES> snes = make_snes(comm, residual_scale(primal));
   RBVI_CALL(SNESSetFunction(snes.get(), r.get(), residual, &primal));
   RBVI_CALL(SNESSetJacobian(snes.get(), tangent.get(), tangent.get(), jacobian, &primal));
   // The energy measures progress where iterates are feasible; the semismooth method leaves the

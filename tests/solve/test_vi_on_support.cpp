@@ -52,6 +52,15 @@ TEST(ViOnSupport, AgreesWithTheActiveSet) {
   }
 }
 
+/// Whatever the unit of pressure is.
+TEST(ViOnSupport, ABodyMayBeSoftOrStiff) {
+  for (const char *young : {"1e-6", "1e15"}) {
+    Problem problem(PETSC_COMM_WORLD, disk("none", {{"arc_edges", "40"}, {"young", young}}), {});
+    const HfSolution truth = HighFidelity(problem, {}).solve(several[0]);
+    expect_same(HighFidelity(problem, with_vi()).solve(several[0]), truth);
+  }
+}
+
 TEST(ViOnSupport, IsTheSameOnAnyNumberOfRanks) {
   const Mu mu = several[1];
   Problem shared(PETSC_COMM_WORLD, disk("none"), {}), own(PETSC_COMM_SELF, disk("none"), {});
