@@ -138,6 +138,10 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
   if (options.method == HfMethod::vi && problem.two_bodies())
     throw bad_input("vi needs a bound at each node, and contact of two bodies bounds integrals "
                     "over several: use -hf_method active_set or uzawa");
+  if (options.method == HfMethod::vi && problem.on_support() &&
+      (!problem.scene().lumped || problem.scene().support->friction.law != FrictionLaw::none))
+    throw bad_input("vi on a rigid support needs a bound at each node and no friction: set "
+                    "-friction none and -lumped yes, or use -hf_method active_set");
   if (problem.nitsche()) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
     return;

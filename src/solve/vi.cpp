@@ -44,12 +44,8 @@ PetscErrorCode energy(SNES, Vec u, PetscReal *value, void *context) {
   PetscFunctionReturn(0);
 }
 
-/// Throws bad_input unless row i of b has entries at node i alone, and there are no tangential
-/// rows.
+/// Throws bad_input unless row i of b has entries at node i alone.
 void require_nodal_bounds(const Operators &op, Index components) {
-  if (op.normal < op.b.rows())
-    throw bad_input("vi is for contact without friction: set -friction none, or use -hf_method "
-                    "active_set");
   for (Index i = 0; i < op.b.rows(); ++i)
     for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
       if (entry.value() != 0 && entry.col() / components != i)

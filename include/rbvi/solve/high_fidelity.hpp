@@ -70,12 +70,11 @@ struct Start {
 class HighFidelity {
 public:
   /// Collective. KSP options under -hf_, SNES options under -vi_. Throws bad_input for `vi` with
-  /// two bodies.
+  /// two bodies, and on a support with friction or without vertex quadrature.
   HighFidelity(Problem &problem, const HfOptions &options);
   ~HighFidelity();
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
-  /// not converge; throws bad_input for `vi` on a scene without vertex quadrature or
-  /// with friction.
+  /// not converge; throws bad_input for `vi` on a scene without vertex quadrature.
   HfSolution solve(const Mu &mu);
   /// Forgets earlier solutions: the next solve starts cold.
   void forget() { solved_.clear(); }
