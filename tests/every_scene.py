@@ -21,7 +21,7 @@ def membranes():
     mu = ["0.2,0,0", "0.17,0.03,-0.02", "0.23,-0.04,0.01"]
     for name, case, scene in (("membrane", "case", []),
                               ("membrane_graded", "case", ["-disc_map", "graded"]),
-                              ("membrane_lumped", "case", ["-lumped", "yes"]),
+                              ("membrane_consistent", "case", ["-lumped", "no"]),
                               ("membrane_published", "published", [])):
         yield Formulation(name, CASES / f"membrane_obstacle/{case}.yaml", scene,
                           ["-train", "grid:3,3,3"], mu)
@@ -47,6 +47,7 @@ def rigid_disks():
     for kind in ("collocated", "cones", "joint"):
         yield Formulation(f"disk_{kind}", case, [], ["-train", "grid:31"], mu,
                           ["-multiplier_reduction", kind])
+    yield Formulation("disk_lumped", case, ["-friction", "none", "-lumped", "yes"], few, mu)
     yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)
     yield Formulation("disk_stiffness", case,
                       ["-parameters", "radius,core_stiffness,poisson_ratio"],

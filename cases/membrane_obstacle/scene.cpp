@@ -120,7 +120,10 @@ SceneEntry membrane_obstacle() {
           "elastic membrane pushed onto a disc-shaped obstacle of free radius and centre",
           {{"load", "-25", "load per unit area", {}, {-1e6, 1e6}},
            {"disc_map", "similarity", "how the reference disc is mapped", {"similarity", "graded"}},
-           {"lumped", "no", "vertex quadrature in b and g", {"no", "yes"}}},
+           {"lumped",
+            "yes",
+            "vertex quadrature in b and g; no: exact quadrature, the published method",
+            {"no", "yes"}}},
           make};
 }
 

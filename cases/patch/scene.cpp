@@ -135,6 +135,7 @@ Scene make_one(const SceneOptions &options) {
                                {"friction_coefficient", "", 0, 1, 0.3, friction_range}});
   scene.parameters.free = {indentation};
   scene.nitsche = nitsche_recipe(options);
+  scene.lumped = options.at("lumped") == "yes";
   scene.material = [material](const Mu &, const Point &) { return material; };
   scene.mesh = mesh_of_one();
   scene.map = [](const Mu &, const Point &x) { return x; };
@@ -152,6 +153,10 @@ Scene make_one(const SceneOptions &options) {
 Scene make(const SceneOptions &options) {
   if (options.at("bodies") == "two" && options.at("formulation") != "mixed")
     throw bad_input("Nitsche's method is for one body on a rigid support: use -bodies one");
+  if (options.at("lumped") == "yes" &&
+      (options.at("bodies") == "two" || options.at("formulation") != "mixed"))
+    throw bad_input("-lumped yes is for one body on a rigid support by multipliers: use -bodies "
+                    "one, and leave out -formulation nitsche");
   Scene scene = options.at("bodies") == "one" ? make_one(options) : make_two(options);
   scene.training = "grid:5";
   scene.validation = "random:5:1";
@@ -164,7 +169,8 @@ SceneEntry patch() {
   std::vector<SceneOption> options{
       {"bodies", "two", "two blocks, or one on a rigid support", {"one", "two"}},
       {"degree", "1", "of the displacement of one body", {"1", "2"}},
-      {"friction", "coulomb", "law of friction of one body", {"none", "coulomb"}}};
+      {"friction", "coulomb", "law of friction of one body", {"none", "coulomb"}},
+      {"lumped", "no", "one body: vertex quadrature in b and g", {"no", "yes"}}};
   for (SceneOption &option : nitsche_options())
     options.push_back(std::move(option));
   return {"patch",

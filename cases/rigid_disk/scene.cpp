@@ -156,6 +156,9 @@ Scene make(const SceneOptions &options) {
   };
   scene.nitsche = nitsche_recipe(options);
   const bool nitsche = scene.nitsche.has_value();
+  scene.lumped = options.at("lumped") == "yes";
+  if (scene.lumped && nitsche)
+    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   scene.parameters = parameters(scene.support->friction.law, nitsche, young);
   scene.check_parameters = check_indentation;
   scene.training = "grid:61";
@@ -206,6 +209,7 @@ SceneEntry rigid_disk() {
        {},
        {0, 10000},
        true},
+      {"lumped", "no", "vertex quadrature in b and g", {"no", "yes"}},
       {"young", "15", "Young's modulus in Pa", {}, young_range}};
   for (SceneOption &option : nitsche_options())
     options.push_back(std::move(option));

@@ -28,7 +28,8 @@ const std::vector<OutputColumn> &output_columns() {
        "integral of the magnitude of the tangential stress"},
       {"reaction", &Outputs::reaction, quantity, "vertical force of the support on the body"},
       {"contact_measure", &Outputs::contact_measure, measure,
-       "length or area in contact: weights of the nodes with pressure"},
+       "length or area in contact: weights of the nodes with pressure (of the membrane with "
+       "-lumped each by its pressure over the largest beside it)"},
       {"contact_half_width", &Outputs::contact_half_width, measure, "half of contact_measure"},
       {"stick_half_width", &Outputs::stick_half_width, measure,
        "half of the length in contact below the bound of friction"},

@@ -15,24 +15,29 @@ namespace {
 /// Of an edge: multiplier of vertex e or e + 1, displacement of vertex e, e + 1 or the middle.
 using Products = std::array<std::array<double, 3>, 2>;
 
-/// A Gauss point of every edge; the weights sum to 1.
+/// A quadrature point of every edge; the weights sum to 1.
 struct TracePoint {
   double weight;
   std::array<double, 2> eta; ///< of both multipliers: 1 - s and s
   Products products;         ///< weight * multiplier * displacement
 };
 
-std::array<TracePoint, 4> trace_points(int degree) {
-  std::array<TracePoint, 4> points{};
-  for (std::size_t q = 0; q < 4; ++q) {
-    const auto [s, weight] = edge_quadrature[q];
-    points[q] = {weight, {1 - s, s}, {}};
-    std::array<double, 3> phi{};
-    lagrange_values(1, degree, points[q].eta, phi);
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t node = 0; node < 3; ++node)
-        points[q].products[a][node] = weight * points[q].eta[a] * phi[node];
-  }
+TracePoint trace_point(int degree, const EdgePoint &at) {
+  TracePoint point{at.weight, {1 - at.s, at.s}, {}};
+  std::array<double, 3> phi{};
+  lagrange_values(1, degree, point.eta, phi);
+  for (std::size_t a = 0; a < 2; ++a)
+    for (std::size_t node = 0; node < 3; ++node)
+      point.products[a][node] = at.weight * point.eta[a] * phi[node];
+  return point;
+}
+
+/// Four Gauss points, or the two vertices: there only the vertex itself moves, a middle is free.
+std::vector<TracePoint> trace_points(int degree, bool lumped) {
+  if (lumped) return {trace_point(degree, {0, 0.5}), trace_point(degree, {1, 0.5})};
+  std::vector<TracePoint> points;
+  for (const EdgePoint &at : edge_quadrature)
+    points.push_back(trace_point(degree, at));
   return points;
 }
 
@@ -166,7 +171,7 @@ void integrate(const Scene &scene, const Mu &mu, const SupportCurve &curve, cons
   const SupportRecipe &support = scene.support.value();
   const bool friction = support.friction.law != FrictionLaw::none;
   const std::vector<double> lengths = mapped_lengths(scene, mu, curve);
-  const std::array<TracePoint, 4> points = trace_points(scene.degree);
+  const std::vector<TracePoint> points = trace_points(scene.degree, scene.lumped);
   const auto vertices = static_cast<Index>(pattern.vertices);
   result.b = zeros(pattern, friction ? 2 : 1);
   result.g = Vector::Zero(result.b.rows());

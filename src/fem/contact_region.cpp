@@ -82,6 +82,13 @@ ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std:
   return region;
 }
 
+std::vector<int> flat_cells(const ContactRegion &region) {
+  std::vector<int> flat;
+  for (const auto &cell : region.cells)
+    flat.insert(flat.end(), cell.begin(), cell.begin() + region.dim + 1);
+  return flat;
+}
+
 std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene,
                                        const Mu &mu) {
   std::vector<Point> mapped;

@@ -99,8 +99,7 @@ void describe_contact(const Problem &problem, ReducedModel &model) {
       model.contact_points(r, c) = points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
   if (pair) model.slave_nodes = static_cast<int>(problem.curves().slave_nodes);
   if (pair || support) return;
-  for (const auto &cell : problem.contact().cells)
-    model.contact_cells.insert(model.contact_cells.end(), cell.begin(), cell.begin() + dim + 1);
+  model.contact_cells = flat_cells(problem.contact());
 }
 
 } // namespace

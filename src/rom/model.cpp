@@ -65,7 +65,7 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, int corners,
 }
 
 void check_fields(const ReducedModel &model, int dim) {
-  const Index nodes = model.mesh_points.rows(), contact = model.contact_points.rows();
+  const Index nodes = model.mesh_points.rows();
   if (nodes == 0 && model.primal_basis.rows() == 0) return;
   require_shape(model.mesh_points, nodes, dim, "fields/points");
   require(nodes > 0 && model.primal_basis.rows() % nodes == 0,
@@ -74,7 +74,6 @@ void check_fields(const ReducedModel &model, int dim) {
                 "fields/primal_basis");
   require_indices(model.contact_nodes, nodes, "contact/nodes");
   require_indices(model.mesh_cells, nodes, "fields/cells");
-  require_indices(model.contact_cells, contact, "fields/contact_cells");
   const bool on_support = model.support || model.nitsche;
   const int degree = on_support ? make_scene(model.scene_name, model.scene_options).degree : 1;
   require(model.mesh_cells.size() % static_cast<std::size_t>(nodes_per_cell(dim, degree)) == 0,
@@ -210,6 +209,9 @@ void check_model(const ReducedModel &model) {
   require(static_cast<Index>(model.contact_nodes.size()) == contact,
           "contact/nodes does not fit contact/points");
   require_shape(model.contact_points, contact, dim, "contact/points");
+  require_indices(model.contact_cells, contact, "fields/contact_cells");
+  require(model.contact_cells.size() % static_cast<std::size_t>(dim + 1) == 0,
+          "fields/contact_cells is not a list of cells");
   if (!model.support && !model.nitsche)
     require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
   const Index free = model.parameters.size();

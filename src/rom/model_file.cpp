@@ -362,11 +362,11 @@ void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
   model.lumped_weights = file.matrix("contact/lumped_weights");
   model.contact_nodes = file.ints("contact/nodes");
   model.slave_nodes = file.integer("contact/slave_nodes");
+  model.contact_cells = file.ints("fields/contact_cells");
   if (!all) return;
   model.primal_basis = file.matrix("fields/primal_basis");
   model.mesh_points = file.matrix("fields/points");
   model.mesh_cells = file.ints("fields/cells");
-  model.contact_cells = file.ints("fields/contact_cells");
 }
 
 ReducedModel read_members(const H5Reader &file, bool with_fields) {

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/element/contact_area.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/packed.hpp"
 #include "rbvi/rom/reduced_stiffness.hpp"
@@ -302,8 +303,11 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   const double peak = lambda.maxCoeff();
   result.normal_force = images * weights.dot(lambda);
   result.peak_pressure = peak;
+  const auto active = lambda.array() > active_fraction * std::max(0.0, peak);
   result.contact_measure =
-      peak > 0 ? images * (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
+      images * (scene_.lumped ? contact_area(weights, active.select(lambda, 0),
+                                             model_.contact_cells, scene_.dim + 1)
+                              : active.select(weights, 0).sum());
   return result;
 }
 

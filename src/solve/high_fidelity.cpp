@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/contact_area.hpp"
 #include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/local_fit.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -32,6 +33,18 @@ void measure_support(const Problem &problem, const Operators &op, const Vector &
   support_outputs({lambda, op.weights, op.b * upwards, op.bound, points}, outputs);
 }
 
+/// The sum of the active weights; with vertex quadrature over an obstacle's region, contact_area.
+double contact_measure(const Problem &problem, const Operators &op, const MethodResult &result) {
+  if (problem.scene().lumped) {
+    const ContactRegion &region = problem.contact();
+    return contact_area(op.weights, result.lambda, flat_cells(region), region.dim + 1);
+  }
+  double measure = 0;
+  for (const Index i : result.active)
+    measure += op.weights[i];
+  return measure;
+}
+
 Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
                 const HfSolution &solution) {
   Handle<Vec> au;
@@ -53,10 +66,7 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
     return outputs;
   }
   outputs.normal_force = images * op.weights.dot(result.lambda);
-  double measure = 0;
-  for (const Index i : result.active)
-    measure += op.weights[i];
-  outputs.contact_measure = images * measure;
+  outputs.contact_measure = images * contact_measure(problem, op, result);
   outputs.peak_pressure = result.lambda.maxCoeff();
   if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
   return outputs;
@@ -125,10 +135,13 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
-  if (options.method == HfMethod::vi && (problem.two_bodies() || problem.on_support()))
-    throw bad_input(
-        "vi needs a bound at each node, and contact of two bodies or with a rigid support bounds "
-        "integrals over several: use -hf_method active_set or uzawa");
+  if (options.method == HfMethod::vi && problem.two_bodies())
+    throw bad_input("vi needs a bound at each node, and contact of two bodies bounds integrals "
+                    "over several: use -hf_method active_set or uzawa");
+  if (options.method == HfMethod::vi && problem.on_support() &&
+      (!problem.scene().lumped || problem.scene().support->friction.law != FrictionLaw::none))
+    throw bad_input("vi on a rigid support needs a bound at each node and no friction: set "
+                    "-friction none and -lumped yes, or use -hf_method active_set");
   if (problem.nitsche()) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
     return;

@@ -4,18 +4,26 @@
 
 namespace rbvi {
 
-LocalFrames::LocalFrames(const Problem &problem, const ContactLayer &layer,
-                         const std::vector<PetscInt> &rows)
-    : problem_(problem), node_of_dof_(layer.natural.size(), -1) {
-  const ContactSupport &support = problem.support();
+std::vector<int> nodes_of_dofs(const ContactSupport &support, const ContactLayer &layer) {
+  std::vector<int> node_of_dof(layer.natural.size(), -1);
   for (std::size_t k = 0; k < support.natural_node.size(); ++k) {
     const auto found =
         std::lower_bound(layer.natural.begin(), layer.natural.end(), 2 * support.natural_node[k]);
-    const auto dof = static_cast<std::size_t>(found - layer.natural.begin());
-    node_of_dof_[dof] = static_cast<int>(k);
-    nodes_.push_back({rows[dof], support.curve.points[k], {}, 0});
+    node_of_dof[static_cast<std::size_t>(found - layer.natural.begin())] = static_cast<int>(k);
   }
+  return node_of_dof;
+}
+
+LocalFrames::LocalFrames(const Problem &problem, std::size_t nodes) : problem_(problem) {
+  const ContactSupport &support = problem.support();
   const Dofs &dofs = problem.dofs();
+  for (std::size_t k = 0; k < nodes; ++k)
+    nodes_.push_back({-1, support.curve.points[k], {}, 0});
+  for (std::size_t k = 0; k < support.trace.index.size(); ++k) {
+    const auto contact_dof = static_cast<std::size_t>(support.trace.index[k]);
+    if (contact_dof % 2 == 0 && contact_dof / 2 < nodes)
+      nodes_[contact_dof / 2].row = dofs.first_free + support.trace.local_row[k];
+  }
   const auto local = static_cast<PetscInt>(dofs.natural_owned.size());
   RBVI_CALL(MatCreateAIJ(problem.comm(), local, local, PETSC_DETERMINE, PETSC_DETERMINE, 2, nullptr,
                          1, nullptr, q_.put()));
@@ -64,11 +72,11 @@ Handle<Vec> LocalFrames::turned_back(Vec v) const {
   return result;
 }
 
-void LocalFrames::turn(std::vector<NitscheFace> &faces) const {
+void LocalFrames::turn(std::vector<NitscheFace> &faces, const std::vector<int> &node_of_dof) const {
   for (NitscheFace &face : faces)
     for (std::size_t i = 0; i < 12; i += 2) {
       if (face.dofs[i] < 0) continue;
-      const int k = node_of_dof_[static_cast<std::size_t>(face.dofs[i])];
+      const int k = node_of_dof[static_cast<std::size_t>(face.dofs[i])];
       if (k < 0) continue;
       const Point &n = nodes_[static_cast<std::size_t>(k)].n;
       for (NitschePoint &point : face.points)

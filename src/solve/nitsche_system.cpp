@@ -90,7 +90,9 @@ NitscheSystem &system_of(void *context) {
 NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &problem,
                              const NitscheOptions &chosen)
     : solver(of), options(chosen), rows(rows_of(of.layer().trace, problem.dofs().first_free)) {
-  if (options.nonpenetration) frames.emplace(problem, of.layer(), rows);
+  if (!options.nonpenetration) return;
+  frames.emplace(problem, problem.support().natural_node.size());
+  node_of_dof = nodes_of_dofs(problem.support(), of.layer());
 }
 
 void NitscheSystem::set(const Scene &scene, const Operators &op) {
@@ -99,7 +101,7 @@ void NitscheSystem::set(const Scene &scene, const Operators &op) {
   law = nitsche_law(scene.support->friction, op.mu);
   if (frames) {
     frames->set(op.mu);
-    frames->turn(faces);
+    frames->turn(faces, node_of_dof);
     f = frames->turned(op.f);
     upper = frames->upper();
     const Handle<Vec> lower = like(op.f);

@@ -18,6 +18,7 @@ struct NitscheSystem {
   const NitscheOptions &options;
   std::vector<PetscInt> rows; ///< of the dofs of the layer
   std::optional<LocalFrames> frames;
+  std::vector<int> node_of_dof; ///< with local frames: of the layer
   Handle<SNES> snes;
   Handle<Mat> a_gamma, tangent;
   Handle<Vec> au, ay, force; ///< scratch

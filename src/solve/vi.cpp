@@ -1,13 +1,20 @@
+#include "local_frames.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "vectors.hpp"
 
 namespace rbvi {
 
 namespace {
 
+/// a v = f in unknowns v that are bounded one by one: near an obstacle u itself, near a support its
+/// normal and tangential components (local frames).
 struct PrimalProblem {
   Mat a;
   Vec f;
+  Handle<Vec> lower, upper;
+  Handle<Mat> turned_a{}; ///< in local frames: a and f
+  Handle<Vec> turned_f{};
 };
 
 PetscErrorCode residual(SNES, Vec u, Vec r, void *context) {
@@ -37,32 +44,36 @@ PetscErrorCode energy(SNES, Vec u, PetscReal *value, void *context) {
   PetscFunctionReturn(0);
 }
 
+/// Throws bad_input unless row i of b has entries at node i alone.
+void require_nodal_bounds(const Operators &op, Index components) {
+  for (Index i = 0; i < op.b.rows(); ++i)
+    for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
+      if (entry.value() != 0 && entry.col() / components != i)
+        throw bad_input(
+            "vi needs a bound at each node: set -lumped yes, or use -hf_method active_set");
+}
+
 /// The bound of each contact dof: row i of b reads b_i u_c <= g_i.
-void nodal_bounds(const Trace &trace, const Operators &op, Vec lower, Vec upper) {
-  RBVI_CALL(VecSet(lower, PETSC_NINFINITY));
-  RBVI_CALL(VecSet(upper, PETSC_INFINITY));
+void set_bounds_of_obstacle(const Trace &trace, const Operators &op, PrimalProblem &primal) {
   Vector low = Vector::Constant(trace.size, PETSC_NINFINITY);
   Vector high = Vector::Constant(trace.size, PETSC_INFINITY);
   for (Index i = 0; i < op.b.rows(); ++i)
     for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry) {
       if (entry.value() == 0) continue;
-      if (entry.col() != i)
-        throw bad_input(
-            "vi needs a bound at each node: set -lumped yes, or use -hf_method active_set");
       (entry.value() < 0 ? low : high)[entry.col()] = op.g[i] / entry.value();
     }
   PetscScalar *l = nullptr, *h = nullptr;
-  RBVI_CALL(VecGetArray(lower, &l));
-  RBVI_CALL(VecGetArray(upper, &h));
+  RBVI_CALL(VecGetArray(primal.lower.get(), &l));
+  RBVI_CALL(VecGetArray(primal.upper.get(), &h));
   for (std::size_t k = 0; k < trace.index.size(); ++k) {
     l[trace.local_row[k]] = low[trace.index[k]];
     h[trace.local_row[k]] = high[trace.index[k]];
   }
-  RBVI_CALL(VecRestoreArray(lower, &l));
-  RBVI_CALL(VecRestoreArray(upper, &h));
+  RBVI_CALL(VecRestoreArray(primal.lower.get(), &l));
+  RBVI_CALL(VecRestoreArray(primal.upper.get(), &h));
 }
 
-/// lambda_i = (F - A u)_i / b_ii, zero where the node is free.
+/// lambda_i = b_i (F - A u) / |b_i|^2, zero where the node is free.
 Vector recover_multiplier(const Trace &trace, const Operators &op, Vec u) {
   Handle<Vec> r;
   RBVI_CALL(VecDuplicate(u, r.put()));
@@ -71,36 +82,50 @@ Vector recover_multiplier(const Trace &trace, const Operators &op, Vec u) {
   const Vector reaction = restrict_to(trace, r.get()), trace_u = restrict_to(trace, u);
   Vector lambda = Vector::Zero(op.b.rows());
   for (Index i = 0; i < lambda.size(); ++i) {
-    const double diagonal = op.b.coeff(i, i), bound = op.g[i] / diagonal;
-    const double scale = std::max(std::abs(bound), op.nodal_gap.cwiseAbs().maxCoeff());
-    if (std::abs(trace_u[i] - bound) <= 1e-12 * scale)
-      lambda[i] = std::max(0.0, reaction[i] / diagonal);
+    const auto row = op.b.row(i);
+    const double size = row.norm();
+    if (!(size > 0)) continue;
+    const double scale = std::max(std::abs(op.g[i]) / size, op.nodal_gap.cwiseAbs().maxCoeff());
+    if (std::abs(row.dot(trace_u) - op.g[i]) <= 1e-12 * scale * size)
+      lambda[i] = std::max(0.0, row.dot(reaction) / (size * size));
   }
   return lambda;
 }
 
-} // namespace
+/// In local frames, the bounds those of the normal components at the vertices.
+PrimalProblem problem_on_support(const Operators &op, const LocalFrames &frames) {
+  PrimalProblem primal{
+      op.a, op.f, like(op.f), frames.upper(), frames.turned(op.a), frames.turned(op.f)};
+  primal.a = primal.turned_a.get();
+  primal.f = primal.turned_f.get();
+  RBVI_CALL(VecSet(primal.lower.get(), PETSC_NINFINITY));
+  return primal;
+}
 
-MethodResult solve_vi(const Problem &problem, const Operators &op) {
-  MethodResult result;
-  RBVI_CALL(VecDuplicate(op.f, result.u.put()));
-  RBVI_CALL(VecZeroEntries(result.u.get()));
-  Handle<Vec> lower, upper, r;
-  RBVI_CALL(VecDuplicate(op.f, lower.put()));
-  RBVI_CALL(VecDuplicate(op.f, upper.put()));
-  RBVI_CALL(VecDuplicate(op.f, r.put()));
-  nodal_bounds(problem.trace(), op, lower.get(), upper.get());
+PrimalProblem problem_on_obstacle(const Trace &trace, const Operators &op) {
+  PrimalProblem primal{op.a, op.f, like(op.f), like(op.f)};
+  RBVI_CALL(VecSet(primal.lower.get(), PETSC_NINFINITY));
+  RBVI_CALL(VecSet(primal.upper.get(), PETSC_INFINITY));
+  set_bounds_of_obstacle(trace, op, primal);
+  return primal;
+}
 
-  PrimalProblem context{op.a, op.f};
+/// Size of the terms of the residual where SNES starts, at zero moved into the bounds.
+double residual_scale(const PrimalProblem &primal) {
+  const Handle<Vec> start = like(primal.f), force = like(primal.f), zero = like(primal.f);
+  RBVI_CALL(VecZeroEntries(zero.get()));
+  RBVI_CALL(VecMedian(primal.lower.get(), zero.get(), primal.upper.get(), start.get()));
+  RBVI_CALL(MatMult(primal.a, start.get(), force.get()));
+  const double scale = norm(primal.f) + norm(force.get());
+  return scale > 0 ? scale : 1;
+}
+
+Handle<SNES> make_snes(MPI_Comm comm, double scale) {
   Handle<SNES> snes;
-  RBVI_CALL(SNESCreate(problem.comm(), snes.put()));
+  RBVI_CALL(SNESCreate(comm, snes.put()));
   RBVI_CALL(SNESSetOptionsPrefix(snes.get(), "vi_"));
   RBVI_CALL(SNESSetType(snes.get(), SNESVINEWTONRSLS));
-  RBVI_CALL(SNESSetFunction(snes.get(), r.get(), residual, &context));
-  Handle<Mat> tangent;
-  RBVI_CALL(MatDuplicate(op.a, MAT_COPY_VALUES, tangent.put()));
-  RBVI_CALL(SNESSetJacobian(snes.get(), tangent.get(), tangent.get(), jacobian, &context));
-  RBVI_CALL(SNESSetTolerances(snes.get(), 1e-14, 1e-12, 0, 200, PETSC_DEFAULT));
+  RBVI_CALL(SNESSetTolerances(snes.get(), 1e-14 * scale, 1e-12, 0, 200, PETSC_DEFAULT));
   KSP ksp = nullptr;
   PC pc = nullptr;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
@@ -109,13 +134,27 @@ MethodResult solve_vi(const Problem &problem, const Operators &op) {
   RBVI_CALL(PCSetType(pc, PCLU));
   RBVI_CALL(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   RBVI_CALL(SNESSetFromOptions(snes.get()));
+  return snes;
+}
+
+/// The unknowns of `primal`, and how SNES ended.
+MethodResult minimise(MPI_Comm comm, PrimalProblem &primal) {
+  MethodResult result;
+  result.u = like(primal.f);
+  RBVI_CALL(VecZeroEntries(result.u.get()));
+  const Handle<Vec> r = like(primal.f);
+  Handle<Mat> tangent;
+  RBVI_CALL(MatDuplicate(primal.a, MAT_COPY_VALUES, tangent.put()));
+  const Handle<SNES> snes = make_snes(comm, residual_scale(primal));
+  RBVI_CALL(SNESSetFunction(snes.get(), r.get(), residual, &primal));
+  RBVI_CALL(SNESSetJacobian(snes.get(), tangent.get(), tangent.get(), jacobian, &primal));
   // The energy measures progress where iterates are feasible; the semismooth method leaves the
   // bounds on its way and has a merit function of its own.
   PetscBool semismooth = PETSC_FALSE;
   RBVI_CALL(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(snes.get()), SNESVINEWTONSSLS,
                                    &semismooth));
-  if (semismooth == PETSC_FALSE) RBVI_CALL(SNESSetObjective(snes.get(), energy, &context));
-  RBVI_CALL(SNESVISetVariableBounds(snes.get(), lower.get(), upper.get()));
+  if (semismooth == PETSC_FALSE) RBVI_CALL(SNESSetObjective(snes.get(), energy, &primal));
+  RBVI_CALL(SNESVISetVariableBounds(snes.get(), primal.lower.get(), primal.upper.get()));
   RBVI_CALL(SNESSolve(snes.get(), nullptr, result.u.get()));
 
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
@@ -127,6 +166,22 @@ MethodResult solve_vi(const Problem &problem, const Operators &op) {
   result.reason =
       std::string("SNES: ") + SNESConvergedReasons[reason] +
       (reason > 0 ? "" : ": try -vi_snes_max_it, another -vi_snes_type, or -hf_method active_set");
+  return result;
+}
+
+} // namespace
+
+MethodResult solve_vi(const Problem &problem, const Operators &op) {
+  require_nodal_bounds(op, problem.scene().components);
+  std::optional<LocalFrames> frames;
+  if (problem.on_support()) {
+    frames.emplace(problem, static_cast<std::size_t>(problem.support().curve.vertices));
+    frames->set(op.mu);
+  }
+  PrimalProblem primal =
+      frames ? problem_on_support(op, *frames) : problem_on_obstacle(problem.trace(), op);
+  MethodResult result = minimise(problem.comm(), primal);
+  if (frames) result.u = frames->turned_back(result.u.get());
   result.lambda = recover_multiplier(problem.trace(), op, result.u.get());
   for (Index i = 0; i < result.lambda.size(); ++i)
     if (result.lambda[i] > 0) result.active.push_back(i);

@@ -102,6 +102,12 @@ double offline_seconds(const ReducedModel &model, const std::vector<Sample> &sna
   return sum;
 }
 
+/// Whether vi solves the scene once it has vertex quadrature: one body, without friction.
+bool vi_fits(const Scene &scene) {
+  return scene.options.contains("lumped") && !scene.pair &&
+         (!scene.support || scene.support->friction.law == FrictionLaw::none);
+}
+
 std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &options,
                                       const std::vector<Sample> &truths) {
   constexpr std::size_t few_slow = 3, few = 8;
@@ -121,7 +127,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   rows.push_back(bench_solver(problem, hf, truths, few, true));
   hf.uzawa_accelerated = false;
   rows.push_back(bench_solver(problem, hf, truths, few_slow, true));
-  if (options.scene.options.contains("lumped")) {
+  if (vi_fits(options.scene)) {
     SceneOptions lumped = options.scene.options;
     lumped["lumped"] = "yes";
     Scene scene = make_scene(options.scene.name, lumped);

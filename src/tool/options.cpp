@@ -174,6 +174,21 @@ HfOptions hf_options() {
   return options;
 }
 
+/// Throws bad_input where vi is asked for and constraints are not bounds at single nodes.
+void check_vi(const ToolOptions &options) {
+  if (options.hf.method != HfMethod::vi) return;
+  const Scene &scene = options.scene;
+  if (scene.pair)
+    throw bad_input("-hf_method vi needs a bound at each node, and contact of two bodies bounds "
+                    "integrals over several: use active_set or uzawa");
+  if (scene.support && (scene.support->friction.law != FrictionLaw::none || !scene.lumped))
+    throw bad_input("-hf_method vi on a rigid support needs a bound at each node and no friction: "
+                    "set -friction none and -lumped yes, or use active_set");
+  if (!scene.lumped)
+    throw bad_input("-hf_method vi needs a bound at each node: set -lumped yes, or use "
+                    "active_set");
+}
+
 /// Throws bad_input for a mesh file beside an option of the built-in mesh.
 void check_mesh_options(const std::string &scene) {
   if (text_of("mesh").empty()) return;
@@ -230,13 +245,7 @@ ToolOptions read_options(MPI_Comm comm) {
   if (options.scene.nitsche && contains(names, "hf_method"))
     throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
                     "-nitsche_snes_type");
-  if (options.hf.method == HfMethod::vi && !options.scene.lumped)
-    throw bad_input(options.scene.pair || options.scene.support
-                        ? "-hf_method vi needs a bound at each node, and contact of two bodies or "
-                          "with a rigid support bounds integrals over several: use active_set or "
-                          "uzawa"
-                        : "-hf_method vi needs a bound at each node: set -lumped yes, or use "
-                          "active_set");
+  check_vi(options);
   options.reduce = reduce_options(options.scene.parameters);
   const bool multipliers = options.scene.support && !options.scene.nitsche;
   if (!multipliers && contains(names, "multiplier_reduction"))

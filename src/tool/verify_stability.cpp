@@ -5,6 +5,7 @@
 #include "rbvi/tool/tables.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <set>
@@ -37,12 +38,13 @@ void report_constants(const fs::path &path, const ParameterSpace &space, const s
   for (const InfSup &c : constants)
     ratio = std::min(ratio, c.hf / c.c_hf);
   std::printf("Inf-sup constants over the span, smallest over %zu validation mu\n"
-              "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n"
-              "  c_HF at most %.3e, beta_HF / c_HF at least %.3e\n",
+              "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n",
               constants.size(), smallest(column(constants, &InfSup::hf)),
               smallest(column(constants, &InfSup::on)), smallest(column(constants, &InfSup::off)),
-              smallest(column(constants, &InfSup::dec)), largest(column(constants, &InfSup::c_hf)),
-              ratio);
+              smallest(column(constants, &InfSup::dec)));
+  if (std::isfinite(ratio)) // above 1000 multipliers c_HF is not computed
+    std::printf("  c_HF at most %.3e, beta_HF / c_HF at least %.3e\n",
+                largest(column(constants, &InfSup::c_hf)), ratio);
 }
 
 void write_stability(const fs::path &path, const std::vector<StabilityRow> &rows) {

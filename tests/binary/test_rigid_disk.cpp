@@ -84,8 +84,10 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
        {offline + "-multiplier_reduction cones -friction none", "use -multiplier_reduction"},
        {offline + "-multiplier_reduction cones -cone_type hybrid",
         "-cone_type hybrid has functions of either sign"},
-       {offline + "-hf_method vi", "use active_set or uzawa"},
        {offline + "-pga_tolerance inf-sup", "a number or infsup"},
+       {offline + "-hf_method vi", "set -friction none and -lumped yes"},
+       {offline + "-hf_method vi -lumped yes", "set -friction none and -lumped yes"},
+       {offline + "-formulation nitsche -lumped yes", "leave out -formulation nitsche"},
        {"solve -case disk.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
        {"solve -case disk.yaml -parameters radius,viscosity -mu 1,1", "viscosity"}});
 }

@@ -2,7 +2,8 @@
 """check_expected.py RBVI CASE_DIR: high-fidelity answers against CASE_DIR/expected.csv.
 
 expected.csv: one row per number, with the free parameters first, then quantity (a column of the
-tables of rbvi), value and relative tolerance. Lines that start with # say where the values are from.
+tables of rbvi), value and relative tolerance, and where they differ from those of the case the options
+of the solve. Lines that start with # say where the values are from.
 """
 
 import csv
@@ -12,11 +13,11 @@ import tempfile
 from pathlib import Path
 
 
-def solve(rbvi, case, mu, directory):
+def solve(rbvi, case, mu, options, directory):
     """The table row of one high-fidelity solve."""
     out = Path(directory) / "row.csv"
-    subprocess.run([rbvi, "solve", "-case", case / "case.yaml", "-mu", ",".join(mu), "-csv", out],
-                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([rbvi, "solve", "-case", case / "case.yaml", "-mu", ",".join(mu), "-csv", out,
+                    *options.split()], check=True, stdout=subprocess.DEVNULL)
     with open(out, encoding="utf-8") as file:
         return next(csv.DictReader(file))
 
@@ -28,15 +29,16 @@ def main(rbvi, case):
     with tempfile.TemporaryDirectory() as directory:
         for row in rows:
             quantity, value = row.pop("quantity"), float(row.pop("value"))
-            tolerance, mu = float(row.pop("tolerance")), tuple(row.values())
-            if mu not in answers:
-                answers[mu] = solve(rbvi, case, mu, directory)
-            got = float(answers[mu][quantity])
+            tolerance, options = float(row.pop("tolerance")), row.pop("options", None) or ""
+            mu = tuple(row.values())
+            if (mu, options) not in answers:
+                answers[mu, options] = solve(rbvi, case, mu, options, directory)
+            got = float(answers[mu, options][quantity])
             error = abs(got - value) / abs(value)
             verdict = "ok" if error <= tolerance else "WRONG"
             wrong += verdict != "ok"
             print(f"{verdict:5} mu = {','.join(mu):18} {quantity:16} {got:12.6f} expected "
-                  f"{value:12.6f}, off by {error:.1e} of {tolerance:.0e}")
+                  f"{value:12.6f}, off by {error:.1e} of {tolerance:.1e} {options}")
     if not rows:
         print("expected.csv has no rows")
     return 1 if wrong or not rows else 0

@@ -316,5 +316,30 @@ TEST(Support, NamesTheParameterWhoseMapLeavesNoEdge) {
   }
 }
 
+/// Vertex quadrature: the rows of a vertex have its own displacement alone, times its weight.
+TEST(Support, VertexQuadratureIsNodal) {
+  for (int degree : {1, 2}) {
+    const SupportCurve curve = support_curve(arc(9, 0.4), degree);
+    Scene scene = crooked(degree);
+    const Mu mu{0.8};
+    const SupportOperators whole = couple_with_support(scene, mu, curve);
+    scene.lumped = true;
+    const SupportOperators of = couple_with_support(scene, mu, curve);
+    EXPECT_LT((of.weights - whole.weights).norm(), 1e-14 * whole.weights.norm());
+    Matrix b = Matrix::Zero(2 * curve.vertices, 2 * size(curve.points));
+    Vector g(2 * curve.vertices);
+    for (Index i = 0; i < curve.vertices; ++i) {
+      const Point &x = curve.points[static_cast<std::size_t>(i)];
+      const Point n = scene.support->normal(mu, x), tau = turned(n), motion = scene.motion(mu, x);
+      b.row(i).segment<2>(2 * i) << of.weights[i] * n[0], of.weights[i] * n[1];
+      b.row(curve.vertices + i).segment<2>(2 * i) << of.weights[i] * tau[0], of.weights[i] * tau[1];
+      g[i] = of.weights[i] * (scene.support->gap(mu, x) - dot(motion, n));
+      g[curve.vertices + i] = -of.weights[i] * dot(motion, tau);
+    }
+    EXPECT_LT((Matrix(of.b) - b).norm(), 1e-14 * b.norm());
+    EXPECT_LT((of.g - g).norm(), 1e-14 * g.norm());
+  }
+}
+
 } // namespace
 } // namespace rbvi

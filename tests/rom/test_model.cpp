@@ -239,6 +239,8 @@ TEST(CheckModel, NamesWhatDoesNotFit) {
   EXPECT_TRUE(refused([](M &m) { m.free_modes = 5; }));
   EXPECT_TRUE(refused([](M &m) { m.mesh_cells[0] = 5; }));
   EXPECT_TRUE(refused([](M &m) { m.contact_nodes[0] = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact_cells[0] = 3; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact_cells.push_back(0); }));
   EXPECT_TRUE(refused([](M &m) { m.b.sample.contributions[0].cell = 99; }));
   EXPECT_TRUE(refused([](M &m) { m.b.sample.contributions.back().entry = 2; }));
   EXPECT_TRUE(refused([](M &m) { m.lumped_weights.conservativeResize(3, 1); }));

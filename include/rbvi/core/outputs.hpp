@@ -15,7 +15,9 @@ struct Outputs {
   std::optional<double> energy;       ///< J(u) = a(u,u)/2 - f(u)
   std::optional<double> normal_force; ///< integral of the multiplier
   std::optional<double> tangential_force, reaction;
-  std::optional<double> contact_measure; ///< sum of the lumped weights of the active nodes
+  /// Sum of the lumped weights of the active nodes; of an obstacle by vertex quadrature,
+  /// contact_area.
+  std::optional<double> contact_measure;
   std::optional<double> contact_half_width, stick_half_width;
   std::optional<double> peak_pressure, centre_pressure;
   std::optional<double> min_u;

@@ -5,7 +5,8 @@
 // Multipliers are continuous and linear on the edges, those of the normal constraint first, then
 // those of the slip. Displacements are those of the nodes of the curve, of degree 1 or 2; column =
 // node * 2 + component. Everything is integrated on the mapped straight edges with four Gauss
-// points; normal and gap are the scene's, at the points of the reference edges.
+// points, or (Scene::lumped) with their two vertices, which makes the constraint one at each vertex;
+// normal and gap are the scene's, at the points of the reference edges.
 #pragma once
 
 #include "rbvi/core/dense.hpp"

@@ -21,6 +21,9 @@ struct ContactRegion {
 /// Collective.
 ContactRegion make_contact_region(const Mesh &mesh, const Dofs &dofs, const std::string &region);
 
+/// Not collective. The dual dofs of all cells one after the other, dim + 1 of each.
+std::vector<int> flat_cells(const ContactRegion &region);
+
 /// Not collective. The region's cells, `mapped` filled by h(mu).
 std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene,
                                        const Mu &mu);

@@ -218,7 +218,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path);
 
 /// Throws bad_input (see H5Reader), also for a scene or an option that this build does not have, or
 /// parameters that are not those of the scene. `with_fields` false leaves out what reconstruction
-/// alone needs: primal_basis, mesh_points, mesh_cells, contact_cells.
+/// alone needs: primal_basis, mesh_points, mesh_cells.
 ReducedModel read_model(const std::filesystem::path &path, bool with_fields = true);
 
 /// The same model with the first n primal columns alone (n = modes: the decorrelated basis) and

@@ -5,9 +5,10 @@
 //   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column:
 //               the truth
 //   uzawa       lambda <- Proj(lambda + rho (B u - G)), fixed step or accelerated: the baseline
-//   vi          SNES with its VI extension on the bound-constrained primal problem (scenes with
-//               vertex quadrature in b and g: there the constraint is a bound at each node; never
-//               two bodies, whose constraints couple the nodes of both)
+//   vi          SNES with its VI extension on the bound-constrained primal problem, on a support in
+//               local frames (scenes with vertex quadrature in b and g: there the constraint is a
+//               bound at each node; without friction; never two bodies, whose constraints couple
+//               the nodes of both)
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
@@ -69,7 +70,7 @@ struct Start {
 class HighFidelity {
 public:
   /// Collective. KSP options under -hf_, SNES options under -vi_. Throws bad_input for `vi` with
-  /// two bodies or a rigid support.
+  /// two bodies, and on a support with friction or without vertex quadrature.
   HighFidelity(Problem &problem, const HfOptions &options);
   ~HighFidelity();
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does

@@ -61,7 +61,8 @@ MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start
 MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
                          const SparseMatrix &w_product, const HfOptions &options);
 
-/// Needs a `b` with one entry per row (vertex quadrature).
+/// Needs a `b` whose rows have one node each (vertex quadrature), else throws bad_input; without
+/// friction. On a support the unknowns are those of local frames.
 MethodResult solve_vi(const Problem &problem, const Operators &op);
 
 /// Collective.
