@@ -309,8 +309,9 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   const double peak = lambda.maxCoeff();
   result.normal_force = images * weights.dot(lambda);
   result.peak_pressure = peak;
-  result.contact_measure =
-      peak > 0 ? images * (lambda.array() > active_fraction * peak).select(weights, 0).sum() : 0;
+  const auto active = lambda.array() > active_fraction * std::max(peak, 0.0);
+  result.contact_measure = images * active.select(weights, 0).sum();
+  result.contact_nodes = images * static_cast<double>(active.count());
   return result;
 }
 

@@ -57,6 +57,7 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   for (const Index i : result.active)
     measure += op.weights[i];
   outputs.contact_measure = images * measure;
+  outputs.contact_nodes = images * static_cast<double>(result.active.size());
   outputs.peak_pressure = result.lambda.maxCoeff();
   if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
   return outputs;

@@ -332,7 +332,10 @@ void command_verify(const ToolOptions &given) {
     check_stability(world, problem, model, training, truths.mu, out);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
-  if (rank == 0) print_written(std::cout, {out, options.out / "model.h5"});
+  if (rank == 0) {
+    warn_of_resolution(answers, std::cout);
+    print_written(std::cout, {out, options.out / "model.h5"});
+  }
   report_failures(options, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }

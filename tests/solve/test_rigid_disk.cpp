@@ -63,6 +63,8 @@ TEST(RigidDisk, AgreesWithTheKnownValues) {
     EXPECT_NEAR(*s.outputs.peak_pressure, k.peak, 1e-3 * k.peak);
     EXPECT_NEAR(*s.outputs.contact_half_width, k.half_width, edge);
     EXPECT_NEAR(*s.outputs.stick_half_width, k.stick, edge);
+    EXPECT_NEAR(*s.outputs.contact_nodes * edge, k.half_width * 2, 2 * edge);
+    EXPECT_NEAR(*s.outputs.stick_nodes * edge, k.stick * 2, 2 * edge);
     EXPECT_LE(s.kkt.largest(), 1e-12);
     EXPECT_LE(*s.outputs.friction_violation, 1e-13 * k.peak);
   }
