@@ -120,6 +120,7 @@ MeshRecipe mesh(int edges) {
                    arc(centre, 1, down, pi / 8), pi / 4, "arc"},
                   {"arc", "the whole half circle of radius 1 m, 'contact' included",
                    arc(centre, 1, down, pi / 2), pi}};
+  recipe.inclusion = {"core", centre, core_radius};
   return recipe;
 }
 

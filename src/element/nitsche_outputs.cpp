@@ -69,6 +69,7 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
       sums.edge_pressures, (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2,
       sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
+  outputs.contact_nodes = static_cast<double>((fields.p_n.array() < 0).count());
   const double normal = fields.sigma_n.norm();
   outputs.law_error_normal = ratio((fields.sigma_n - fields.p_n.cwiseMin(0)).norm(), normal);
   if (law.law == FrictionLaw::none) return;
@@ -80,6 +81,8 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   const double error = (fields.sigma_tau - held).norm();
   outputs.tangential_force = sums.tangential;
   outputs.stick_half_width = sums.stick / 2;
+  outputs.stick_nodes = static_cast<double>(
+      (fields.p_n.array() < 0 && fields.p_tau.array().abs() < bounds.array()).count());
   outputs.friction_violation = std::max(0.0, (fields.sigma_tau.cwiseAbs() - bounds).maxCoeff());
   outputs.law_error_tangential = ratio(error, fields.sigma_tau.norm());
   outputs.law_error_tau_over_n = ratio(error, normal);

@@ -67,9 +67,10 @@ double centre_pressure(const Vector &pressure, const Vector &s, double half_widt
 void support_outputs(const SupportState &state, Outputs &outputs) {
   const Index count = state.weights.size();
   const Vector pressure = state.lambda.head(count);
-  double contact = 0, stick = 0;
+  double contact = 0, stick = 0, sticking = 0;
   for (Index i = 0; i < count; ++i)
     if (pressure[i] > 0) contact += state.weights[i];
+  outputs.contact_nodes = static_cast<double>((pressure.array() > 0).count());
   outputs.normal_force = state.weights.dot(pressure);
   outputs.reaction = -state.lift.dot(state.lambda);
   outputs.contact_measure = contact;
@@ -82,9 +83,13 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
   const Vector bounds = friction_bounds(state.bound, pressure);
   const double violation = std::max(0.0, (shear - bounds).maxCoeff());
   for (Index i = 0; i < count; ++i)
-    if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) stick += state.weights[i];
+    if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) {
+      stick += state.weights[i];
+      ++sticking;
+    }
   outputs.tangential_force = state.weights.dot(shear);
   outputs.stick_half_width = stick / 2;
+  outputs.stick_nodes = sticking;
   outputs.friction_violation = violation;
 }
 

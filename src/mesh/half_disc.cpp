@@ -14,14 +14,17 @@ constexpr double right_angle = std::numbers::pi / 2;
 constexpr double contact_angle = std::numbers::pi / 8; ///< of the right half
 constexpr double core_radius = 0.6;
 
-// With these values 100 contact edges give 708 nodes and 5350 dofs of degree 2.
+// With these values 100 contact edges give 787 nodes and 5950 dofs of degree 2.
 constexpr double growth = 0.2255; ///< of the edges, per distance from the contact arc
 constexpr double corner_edge = 6; ///< at the clamped corner, where the stress is singular,
                                   ///< per number of contact edges; at most longest_corner
-constexpr double longest_corner = 0.06;
-constexpr double corner_growth = 0.25;   ///< of the edges, per distance from the corner
-constexpr double longest_edge = 0.135;   ///< along the rings; across them up to 0.21
-constexpr double ring_distance = 0.885;  ///< of the rings below the core, in edges
+constexpr double longest_corner = 0.021;
+constexpr double corner_growth = 0.25;  ///< of the edges, per distance from the corner
+constexpr double rim_edge = 0.06;       ///< where the rim of the core meets the flat side: clamped,
+                                        ///< it is singular, too, if the core is soft or stiff
+constexpr double rim_growth = 0.15;     ///< of the edges, per distance from there
+constexpr double longest_edge = 0.135;  ///< along the rings; across them up to 0.21
+constexpr double ring_distance = 0.885; ///< of the rings below the core, in edges
 constexpr double core_ring_distance = 1; ///< of the rings in the core, in edges
 constexpr double offset_distance = 0.2;  ///< up to here the rings are offset curves
 constexpr double inner_end = 0.61;       ///< angle where the last ring leaves the core's arc
@@ -60,7 +63,8 @@ struct EdgeLength {
     const double distance =
         beside ? length(x, polar(1, contact_angle)) : 1 - std::hypot(x[0], x[1]);
     const double from_corner = corner + corner_growth * length(x, {1, 0, 0});
-    return std::min({shortest + growth * distance, from_corner, longest_edge});
+    const double from_rim = rim_edge + rim_growth * length(x, {core_radius, 0, 0});
+    return std::min({shortest + growth * distance, from_corner, from_rim, longest_edge});
   }
 };
 
@@ -196,8 +200,10 @@ void RightHalf::add_rows() {
 
 void RightHalf::add_core() {
   const auto first = static_cast<int>(mesh.cells.size());
-  const GradedCurve radius(edge, segment(polar(core_radius, right_angle / 2), {0, 0, 0}));
-  const auto rings = static_cast<int>(std::lround(radius.measure() / core_ring_distance));
+  const GradedCurve axis(edge, segment(polar(core_radius, 0), {0, 0, 0}));
+  const GradedCurve top(edge, segment(polar(core_radius, right_angle), {0, 0, 0}));
+  const auto rings =
+      static_cast<int>(std::lround((axis.measure() + top.measure()) / 2 / core_ring_distance));
   Ring ring = core_arc;
   const auto append = [&](const Ring &next) {
     zip_best(mesh, next, ring);
@@ -205,8 +211,10 @@ void RightHalf::add_core() {
     ring = next;
   };
   for (int j = 1; j < rings; ++j) {
-    const Point x = radius.at(static_cast<double>(j) / rings);
-    append(add_ring(mesh, {edge, arc(std::hypot(x[0], x[1]), 0, right_angle)}));
+    const double t = static_cast<double>(j) / rings, below = -axis.at(t)[1], beside = top.at(t)[0];
+    append(add_ring(mesh, {edge, [=](double s) {
+                             return polar((1 - s * s) * below + s * s * beside, s * right_angle);
+                           }}));
   }
   mesh.points.push_back({0, 0, 0});
   append({static_cast<int>(mesh.points.size()) - 1});

@@ -92,6 +92,8 @@ SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options) {
     check_mesh(mesh, finer);
     check_places(mesh, scene, finer);
   }
+  balance_inclusion(mesh, scene);
+  check_mesh(mesh, source);
   return mesh;
 }
 

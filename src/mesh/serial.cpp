@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <iterator>
 #include <tuple>
 
 namespace rbvi {
@@ -16,6 +17,10 @@ namespace {
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
+}
+
+double distance(const Point &x, const Point &y) {
+  return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
 }
 
 /// Facet i of a cell lies opposite to vertex i; its vertices in an order whose parity is that of
@@ -48,8 +53,7 @@ void check_volumes(const SerialMesh &mesh, const std::string &source) {
     for (int i = 0; i <= mesh.dim; ++i) {
       vertices[at(i)] = mesh.points[at(mesh.cells[c][at(i)])];
       for (int j = 0; j < i; ++j) {
-        const Point &x = vertices[at(i)], &y = vertices[at(j)];
-        longest = std::max(longest, std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]));
+        longest = std::max(longest, distance(vertices[at(i)], vertices[at(j)]));
       }
     }
     if (!(simplex(mesh.dim, vertices).volume > 1e-12 * std::pow(longest, mesh.dim)))
@@ -82,19 +86,50 @@ template <class T> void append(std::string &bytes, const T &value) {
   bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
 }
 
+/// The point at a distance from the centre, on the ray through x.
+Point at_distance(double d, const Point &x, const Point &centre) {
+  const double factor = d / distance(x, centre);
+  Point moved{};
+  for (std::size_t k = 0; k < 3; ++k)
+    moved[k] = centre[k] + factor * (x[k] - centre[k]);
+  return moved;
+}
+
+/// Of each cell, whether it is in a region.
+std::vector<bool> cells_in(const SerialMesh &mesh, const std::string &region) {
+  std::vector<bool> in_region(mesh.cells.size(), false);
+  if (mesh.region.contains(region))
+    for (const int cell : mesh.region.at(region))
+      in_region[at(cell)] = true;
+  return in_region;
+}
+
 /// Vertices that a region shares with the rest of the mesh.
 std::vector<bool> interface_of(const SerialMesh &mesh, const std::string &region) {
   std::vector<bool> inside(mesh.points.size(), false), outside(inside);
-  if (!mesh.region.contains(region)) return inside;
-  std::vector<bool> in_region(mesh.cells.size(), false);
-  for (const int cell : mesh.region.at(region))
-    in_region[at(cell)] = true;
+  const std::vector<bool> in_region = cells_in(mesh, region);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (int i = 0; i <= mesh.dim; ++i)
       (in_region[c] ? inside : outside)[at(mesh.cells[c][at(i)])] = true;
   for (std::size_t v = 0; v < inside.size(); ++v)
     inside[v] = inside[v] && outside[v];
   return inside;
+}
+
+/// Edges of triangles that a region shares with the rest of the mesh, each once.
+std::vector<std::array<int, 2>> rim_edges(const SerialMesh &mesh, const std::string &region) {
+  const std::vector<bool> in_region = cells_in(mesh, region);
+  std::vector<std::array<int, 2>> inside, outside, both;
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [first, last] = std::minmax(mesh.cells[c][i], mesh.cells[c][(i + 1) % 3]);
+      (in_region[c] ? inside : outside).push_back({first, last});
+    }
+  std::sort(inside.begin(), inside.end());
+  std::sort(outside.begin(), outside.end());
+  std::set_intersection(inside.begin(), inside.end(), outside.begin(), outside.end(),
+                        std::back_inserter(both));
+  return both;
 }
 
 } // namespace
@@ -126,6 +161,10 @@ void check_mesh(const SerialMesh &mesh, const std::string &source) {
 }
 
 void snap_curves(SerialMesh &mesh, const Scene &scene) {
+  const Inclusion &inclusion = scene.mesh.inclusion;
+  const std::vector<bool> on_rim = interface_of(mesh, inclusion.region);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (on_rim[v]) mesh.points[v] = at_distance(inclusion.radius, mesh.points[v], inclusion.centre);
   if (!scene.snap) return;
   std::vector<bool> on_curve = interface_of(mesh, scene.contact_region);
   if (mesh.boundary.contains(scene.mesh.curved))
@@ -134,6 +173,26 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
         on_curve[at(facet[at(i)])] = true;
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (on_curve[v]) mesh.points[v] = scene.snap(mesh.points[v]);
+}
+
+void balance_inclusion(SerialMesh &mesh, const Scene &scene) {
+  const Inclusion &inclusion = scene.mesh.inclusion;
+  if (!mesh.region.contains(inclusion.region)) return;
+  // Of the halves of the edges at each vertex: their lengths, and what the polygon lacks there.
+  std::vector<double> length(mesh.points.size(), 0), lacks(length);
+  for (const auto &ends : rim_edges(mesh, inclusion.region)) {
+    const double chord = distance(mesh.points[at(ends[0])], mesh.points[at(ends[1])]);
+    const double angle = 2 * std::asin(chord / (2 * inclusion.radius));
+    const double segment = inclusion.radius * inclusion.radius * (angle - std::sin(angle)) / 2;
+    for (const int v : ends) {
+      length[at(v)] += chord / 2;
+      lacks[at(v)] += segment / 2;
+    }
+  }
+  for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    if (length[v] > 0)
+      mesh.points[v] =
+          at_distance(inclusion.radius + lacks[v] / length[v], mesh.points[v], inclusion.centre);
 }
 
 std::string fingerprint_of(const SerialMesh &mesh) {

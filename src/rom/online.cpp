@@ -308,6 +308,7 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
       images * (scene_.lumped ? contact_area(weights, active.select(lambda, 0),
                                              model_.contact_cells, scene_.dim + 1)
                               : active.select(weights, 0).sum());
+  result.contact_nodes = images * static_cast<double>(active.count());
   return result;
 }
 

@@ -57,6 +57,7 @@ struct Tally {
   long rows = 0, unanswered = 0, near_failed = 0;
   double seconds = 0, residual = 0, violation = 0;
   std::string reason; ///< of the first row without an answer
+  ResolutionTally resolution;
   void add_failure(const std::string &why) {
     ++rows;
     if (unanswered++ == 0) reason = why;
@@ -147,6 +148,7 @@ void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &argum
     tally.seconds += outputs.seconds.value_or(0);
     tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
     tally.violation = std::max(tally.violation, violation(outputs));
+    tally.resolution.add(outputs);
   } catch (const Error &error) {
     tally.add_failure(error.what());
     table.add_failure(mu, error.what());
@@ -211,6 +213,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   std::ostream &warnings = to_file ? out : std::cerr;
   warn_of_violation(solver.model(), tally.violation, warnings);
   warn_of_failed_samples(tally.near_failed, warnings);
+  tally.resolution.print(warnings);
   if (tally.unanswered > 0)
     throw failure(
         std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +

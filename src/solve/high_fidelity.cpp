@@ -67,6 +67,7 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   }
   outputs.normal_force = images * op.weights.dot(result.lambda);
   outputs.contact_measure = images * contact_measure(problem, op, result);
+  outputs.contact_nodes = images * static_cast<double>(result.active.size());
   outputs.peak_pressure = result.lambda.maxCoeff();
   if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
   return outputs;

@@ -9,7 +9,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 3;
+constexpr int sample_schema = 4;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
@@ -22,6 +22,8 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::peak_pressure,
                                     &Outputs::centre_pressure,
                                     &Outputs::min_u,
+                                    &Outputs::contact_nodes,
+                                    &Outputs::stick_nodes,
                                     &Outputs::kkt_residual,
                                     &Outputs::max_penetration,
                                     &Outputs::friction_violation,

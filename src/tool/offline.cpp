@@ -114,6 +114,7 @@ void command_offline(const ToolOptions &options) {
     print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
     std::cout << "Self-check: ";
     print_self_check(std::cout, model.self_check, model.parameters);
+    warn_of_resolution(sweep.samples, std::cout);
     print_written(std::cout, {options.out / "model.h5", options.out / "samples.csv",
                               case_of_run(options.out), options.out / "samples"});
   }

@@ -34,6 +34,7 @@ void command_solve(const ToolOptions &options) {
     if (rank != 0) return;
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
+    warn_of_resolution({{mu, {}, {}, solution.outputs}}, std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
     if (!options.csv.empty()) {
       write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});

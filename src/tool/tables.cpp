@@ -43,4 +43,11 @@ void write_sample_table(const std::filesystem::path &path, const ParameterSpace 
   write_atomically(path, out.str());
 }
 
+void warn_of_resolution(const std::vector<Sample> &samples, std::ostream &out) {
+  ResolutionTally tally;
+  for (const Sample &sample : samples)
+    tally.add(sample.outputs);
+  tally.print(out);
+}
+
 } // namespace rbvi

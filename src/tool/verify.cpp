@@ -338,7 +338,10 @@ void command_verify(const ToolOptions &given) {
     check_stability(world, problem, model, training, truths.mu, out);
   else if (options.stability && rank == 0)
     std::printf("Inf-sup constants: none, %s\n", none.c_str());
-  if (rank == 0) print_written(std::cout, {out, options.out / "model.h5"});
+  if (rank == 0) {
+    warn_of_resolution(answers, std::cout);
+    print_written(std::cout, {out, options.out / "model.h5"});
+  }
   report_failures(options, sweep.report, validation.size(), "validation",
                   "measured over the others");
 }

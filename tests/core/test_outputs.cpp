@@ -77,5 +77,51 @@ TEST(PrintOutputs, OneLineForEach) {
   EXPECT_FALSE(in >> name);
 }
 
+Outputs zones(double contact, double stick, double tangential_force) {
+  Outputs outputs;
+  outputs.contact_nodes = contact;
+  outputs.stick_nodes = stick;
+  outputs.tangential_force = tangential_force;
+  return outputs;
+}
+
+TEST(ResolutionWarning, NamesTheZoneThatIsTooSmall) {
+  const auto says = [](const Outputs &outputs, const std::string &part) {
+    return resolution_warning(outputs).find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(says(zones(8, 6, 1), "only 8 nodes are in contact"));
+  EXPECT_FALSE(says(zones(8, 6, 1), "tangential_force"));
+  EXPECT_TRUE(says(zones(20, 1, 1), "only 1 of 20 nodes in contact stick"));
+  EXPECT_TRUE(says(zones(20, 1, 1), "tangential_force may be off by 7.5e-02"));
+  EXPECT_FALSE(says(zones(20, 1, 1), ": forces"));
+  EXPECT_TRUE(says(zones(5, 0, 1), "tangential_force may be off by 3.0e-01"));
+  EXPECT_TRUE(says(zones(5, 0, 1), ": forces"));
+  Outputs frictionless;
+  frictionless.contact_nodes = 8;
+  EXPECT_TRUE(says(frictionless, "only 8 nodes"));
+}
+
+TEST(ResolutionWarning, IsEmptyWhereThereAreEnoughNodesOrNoZone) {
+  EXPECT_EQ(resolution_warning({}), "");
+  EXPECT_EQ(resolution_warning(zones(9, 5, 1)), "");
+  EXPECT_EQ(resolution_warning(zones(0, 0, 0)), "");
+  EXPECT_EQ(resolution_warning(zones(20, 0, 0)), ""); // no friction to speak of
+}
+
+TEST(ResolutionTally, PrintsTheFirstAndHowMany) {
+  std::ostringstream none, one, two;
+  ResolutionTally tally;
+  tally.add(zones(9, 5, 1));
+  tally.print(none);
+  EXPECT_EQ(none.str(), "");
+  tally.add(zones(20, 1, 1));
+  tally.print(one);
+  EXPECT_EQ(one.str(), "warning: " + resolution_warning(zones(20, 1, 1)) + "\n");
+  tally.add(zones(5, 5, 1));
+  tally.print(two);
+  EXPECT_EQ(two.str(),
+            "warning: " + resolution_warning(zones(20, 1, 1)) + " (the first of 2 such answers)\n");
+}
+
 } // namespace
 } // namespace rbvi

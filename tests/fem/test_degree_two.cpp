@@ -48,8 +48,10 @@ TEST(DegreeTwo, NodesAreTheSameForAnyNumberOfRanks) {
 
 TEST(DegreeTwo, TheDefaultHalfDiskHasTheSizeOfTheReference) {
   const Body disk("rigid_disk", {});
-  EXPECT_NEAR(disk.mesh.total_vertices, 704, 14);
-  EXPECT_NEAR(disk.dofs.total, 5350, 107);
+  // The reference has 704 and 5350. An eighth more grades the ends of the core's rim and the
+  // corners, without which a soft core is 9e-4 off in energy.
+  EXPECT_NEAR(disk.mesh.total_vertices, 704, 704 / 8);
+  EXPECT_NEAR(disk.dofs.total, 5350, 5350 / 8);
 }
 
 TEST(DegreeTwo, NodesOfACellAreItsVerticesAndTheMiddlesOfItsEdges) {

@@ -22,6 +22,7 @@ Scene half_disc_scene(int edges) {
   scene.name = "disc_on_support";
   scene.components = 2;
   scene.mesh = {"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+  scene.mesh.inclusion = {"core", {0, 0, 0}, 0.6};
   scene.snap = [](const Point &x) -> Point { return {x[0] / radius(x), x[1] / radius(x), 0}; };
   return scene;
 }
@@ -169,10 +170,10 @@ TEST_P(HalfDisc, IsTheSameEveryTime) {
 TEST(HalfDiscCounts, NodesAndUnknownsOfDegreeTwo) {
   const SerialMesh coarse = half_disc(), fine = half_disc(316);
   EXPECT_EQ(coarse.boundary.at("contact").size(), 100u);
-  EXPECT_EQ(coarse.points.size(), 708u);
-  EXPECT_EQ(2 * (coarse.points.size() + cells_of_edges(coarse).size()), 5350u);
-  EXPECT_EQ(fine.points.size(), 1990u);
-  EXPECT_EQ(2 * (fine.points.size() + cells_of_edges(fine).size()), 15130u);
+  EXPECT_EQ(coarse.points.size(), 787u);
+  EXPECT_EQ(2 * (coarse.points.size() + cells_of_edges(coarse).size()), 5950u);
+  EXPECT_EQ(fine.points.size(), 2018u);
+  EXPECT_EQ(2 * (fine.points.size() + cells_of_edges(fine).size()), 15346u);
 }
 
 TEST(HalfDiscRefined, FollowsTheArc) {
@@ -190,6 +191,48 @@ TEST(HalfDiscRefined, FollowsTheArc) {
     EXPECT_NEAR(deficit / finer, 4, 0.05);
     deficit = finer;
   }
+}
+
+/// What the area of the core, a polygon, lacks to that of the half disc.
+double core_deficit(const SerialMesh &mesh) {
+  return 0.18 * pi - area(mesh, mesh.region.at("core"));
+}
+
+TEST(HalfDiscRefined, FollowsTheRimOfTheCore) {
+  const Scene scene = half_disc_scene(0);
+  SerialMesh mesh = half_disc();
+  for (int level = 1; level <= 2; ++level) {
+    const double coarser = core_deficit(mesh);
+    mesh = refined(mesh);
+    snap_curves(mesh, scene);
+    EXPECT_NEAR(coarser / core_deficit(mesh), 4, 0.05);
+  }
+}
+
+TEST(HalfDiscRefined, TheCoreKeepsTheAreaOfTheDisc) {
+  const Scene scene = half_disc_scene(0);
+  SerialMesh mesh = half_disc();
+  for (int level = 0; level <= 2; ++level) {
+    SerialMesh balanced = mesh;
+    balance_inclusion(balanced, scene);
+    EXPECT_NO_THROW(check_mesh(balanced, "half disc"));
+    expect_boundaries(balanced, boundaries_of_half_disc);
+    EXPECT_EQ(points_of(balanced, "arc"), points_of(mesh, "arc"));
+    const std::vector<int> images = mirror_images(balanced);
+    EXPECT_EQ(std::count(images.begin(), images.end(), -1), 0);
+    // Second order in the edges becomes fourth: they are 0.1 long, a sixth of the radius.
+    EXPECT_LT(std::abs(core_deficit(balanced)), 2e-2 / std::pow(4, level) * core_deficit(mesh));
+    mesh = refined(mesh);
+    snap_curves(mesh, scene);
+  }
+}
+
+TEST(HalfDiscRefined, MakesTheBalancedMesh) {
+  const Scene scene = half_disc_scene(0);
+  SerialMesh mesh = refined(half_disc());
+  snap_curves(mesh, scene);
+  balance_inclusion(mesh, scene);
+  EXPECT_EQ(make_mesh(PETSC_COMM_WORLD, scene, {"", 1}).fingerprint, fingerprint_of(mesh));
 }
 
 TEST(HalfDiscErrors, TheNumberOfEdgesIsEvenAndAtLeastEight) {
@@ -291,7 +334,8 @@ TEST(OneBody, IsTheSameOnAllRanks) {
 TEST(OneBody, TheRecipeChoosesTheEdges) {
   for (const auto &[edges, made] : std::map<int, int>{{0, 100}, {316, 316}}) {
     const Mesh mesh = make_mesh(PETSC_COMM_WORLD, half_disc_scene(edges), {});
-    const SerialMesh serial = half_disc(made);
+    SerialMesh serial = half_disc(made);
+    balance_inclusion(serial, half_disc_scene(edges));
     EXPECT_EQ(at(mesh.total_vertices), serial.points.size());
     EXPECT_EQ(at(mesh.total_cells), serial.cells.size());
     EXPECT_EQ(mesh.fingerprint, fingerprint_of(serial));

@@ -137,7 +137,7 @@ TEST_F(OnlineBinary, AnswersMany) {
   EXPECT_TRUE(lines[1].starts_with("0.18,0.02,-0.01,"));
   EXPECT_EQ(split(lines[2], ',').size(), split(lines[0], ',').size());
   const Finished table = online("model.h5 --queries random:5:1 --full");
-  EXPECT_EQ(lines_of(table.out).size(), 6U);
+  EXPECT_EQ(lines_of(table.out).size(), 7U); // and the warning: three nodes
   EXPECT_TRUE(contains(table.out, ",min_u,"));
 }
 
@@ -265,7 +265,7 @@ TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
   write_model(model, "model.h5");
   const std::string warning = "1 answer lies nearest to a training parameter that has no";
   EXPECT_TRUE(contains(online("model.h5 --mu 0.18,0,0").out, warning));
-  EXPECT_FALSE(contains(online("model.h5 --mu 0.22,0,0").out, "warning"));
+  EXPECT_FALSE(contains(online("model.h5 --mu 0.22,0,0").out, "no high-fidelity answer"));
   std::ofstream("mu.csv") << "radius,center_x,center_y\n0.18,0,0\n0.22,0,0\n";
   EXPECT_TRUE(contains(online("model.h5 --queries mu.csv --out out.csv").out, warning));
 }
@@ -274,8 +274,8 @@ TEST_F(OnlineBinary, ReadsAndWritesStreams) {
   const Finished run = shell("printf 'radius,center_x,center_y\\n0.2,0,0\\n0.9,0,0\\nx,0,0\\n"
                              "0.18,0.01,0\\n' | " RBVI_ONLINE " model.h5 --queries - --out -");
   EXPECT_EQ(run.status, 1);
-  const auto rows = rows_of(run.out); // the last line is that of the failure
-  ASSERT_EQ(rows.size(), 5U) << run.out;
+  const auto rows = rows_of(run.out);    // the last line is that of the failure
+  ASSERT_EQ(rows.size(), 6U) << run.out; // and the warning: three nodes
   EXPECT_EQ(rows[0].at("status"), "ok");
   EXPECT_TRUE(contains(rows[1].at("status"), "outside")) << rows[1].at("status");
   EXPECT_TRUE(contains(rows[2].at("status"), "line 4")) << rows[2].at("status");

@@ -20,6 +20,9 @@ struct Outputs {
   std::optional<double> contact_measure;
   std::optional<double> contact_half_width, stick_half_width;
   std::optional<double> peak_pressure, centre_pressure;
+  /// Nodes (or macro-edges of a pair) with pressure, and those of them below the bound of friction:
+  /// how well the mesh resolves the two zones.
+  std::optional<double> contact_nodes, stick_nodes;
   std::optional<double> min_u;
   /// Of the problem that was solved, relative: stationarity, feasibility, complementarity; of a
   /// reduced answer that of the reduced problem, by Nitsche's method the residual of its equation.
@@ -89,6 +92,19 @@ void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector
 
 /// "name value" lines for one answer, with "(error ...)" where one was measured.
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors = {});
+
+/// What is not accurate in this answer because so few nodes are in contact, or stick, and how far
+/// it may be off; empty: there are enough, or none.
+std::string resolution_warning(const Outputs &outputs);
+
+/// The warnings of several answers.
+struct ResolutionTally {
+  long answers = 0; ///< with a warning
+  std::string first;
+  void add(const Outputs &outputs);
+  /// One line, where there is a warning.
+  void print(std::ostream &out) const;
+};
 
 /// Whether a table of rbvi can have a column of this name beside the parameters.
 bool is_table_column(const std::string &name);

@@ -59,6 +59,13 @@ struct MeshFact {
   std::string within = ""; ///< a boundary that holds all facets of this one
 };
 
+/// A region of a material of its own: a disc, or the part of one between lines through its centre.
+struct Inclusion {
+  std::string region; ///< "": there is none
+  Point centre{};
+  double radius = 0;
+};
+
 /// Names the built-in mesh generator; `region` and `boundary` are the labels it sets.
 struct MeshRecipe {
   std::string generator; ///< "square_with_disc", "two_quarter_discs", "two_blocks", "half_disc"...
@@ -69,6 +76,9 @@ struct MeshRecipe {
   /// Edges of the contact boundary where the generator lets them be chosen; 0: its default.
   int edges = 0;
   std::vector<MeshFact> facts{}; ///< what a mesh must be beside the names above
+  /// Refined vertices of its rim are brought back onto the circle; in the end the polygon is given
+  /// the area of the disc.
+  Inclusion inclusion{};
 };
 
 /// A boundary on which some components of the displacement are imposed.

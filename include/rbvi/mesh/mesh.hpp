@@ -14,7 +14,7 @@ namespace rbvi {
 
 struct MeshOptions {
   std::string file; ///< Gmsh file; "" for the scene's built-in generator
-  int refine = 0;   ///< uniform refinements; vertices of curves are brought back by Scene::snap
+  int refine = 0;   ///< uniform refinements; vertices of curves are brought back (snap_curves)
 };
 
 /// This rank's part of the mesh: its own cells and their nodes. Nodes are the vertices and, where
@@ -79,8 +79,9 @@ SerialMesh two_blocks();
 /// Lower half of the disc of radius 1 about the origin, mirrored exactly about x = 0 (coordinates,
 /// cells and edges). Region "core": |x| <= 0.6, which the mesh fits. Boundaries: "top" (the flat
 /// side y = 0), "contact" (the arc of polar angle -5 pi / 8 to -3 pi / 8, `edges` equal edges),
-/// "arc" (the whole half-circle). With the default of 100 edges 708 nodes; edges from
-/// pi / (4 `edges`) at the contact arc to about 0.2, aspect ratios <= 1.65. Deterministic: rings at
+/// "arc" (the whole half-circle). With the default of 100 edges 787 nodes; edges from
+/// pi / (4 `edges`) at the contact arc to about 0.2, aspect ratios <= 1.65, graded to the singular
+/// points of the flat side: the corners, and the ends of the core's rim. Deterministic: rings at
 /// growing distances from the contact arc, which turn into the core's arc, then rows along the rest
 /// of that arc and rings in the core. Throws bad_input unless `edges` is even and >= 8.
 SerialMesh half_disc(int edges = 100);

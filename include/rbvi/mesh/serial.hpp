@@ -16,8 +16,15 @@ SerialMesh read_gmsh(const std::string &file, const Scene &scene);
 SerialMesh refined(const SerialMesh &mesh);
 
 /// Moves by Scene::snap the vertices that the scene's contact region shares with the rest, and
-/// those of the boundary that its recipe names as curved.
+/// those of the boundary that its recipe names as curved; onto its circle those of the rim of its
+/// inclusion.
 void snap_curves(SerialMesh &mesh, const Scene &scene);
+
+/// Moves the vertices of the rim of the scene's inclusion (2D), which are on its circle, outwards
+/// by some h^2 / (12 radius), h the length of an edge: as much as gives the polygon the area of the
+/// disc. With chords of the circle the energy is that of a smaller inclusion, wrong by O(h^2); so
+/// the first variation of the energy vanishes up to the variation of the fields along an edge.
+void balance_inclusion(SerialMesh &mesh, const Scene &scene);
 
 /// Throws bad_input, naming `source`: a degenerate or inverted cell (volume <= 1e-12 times its
 /// longest edge to the power dim), two cells on the same side of their common facet, or a facet of

@@ -4,6 +4,7 @@
 #include "rbvi/sweep/sweep.hpp"
 
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -41,5 +42,8 @@ std::vector<double> column(const std::vector<Row> &rows, Value Row::*member) {
 /// One row per sample: parameters, outputs.
 void write_sample_table(const std::filesystem::path &path, const ParameterSpace &space,
                         const std::vector<Sample> &samples);
+
+/// One line where samples rest on few nodes (resolution_warning).
+void warn_of_resolution(const std::vector<Sample> &samples, std::ostream &out);
 
 } // namespace rbvi
