@@ -4,6 +4,7 @@
 
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/high_fidelity_pair.hpp"
 
 #include <gtest/gtest.h>
 
@@ -136,6 +137,21 @@ TEST(ReducedDisks, OtherDiscretisationsReduceAsWell) {
     r.reduce(with(ConeType::hybrid));
     EXPECT_EQ(r.model.dual_basis.rows(), std::string(multiplier) == "p1" ? 561 : 280);
     expect_samples_returned(r, 1e-9, 1e-6);
+  }
+}
+
+/// beta_HF by inverse iteration is that of dense matrices, with multipliers without a partner, too.
+TEST(HighFidelityPair, TheIterationAgreesWithDenseMatrices) {
+  for (const std::string name : {"membrane_obstacle", "two_disks", "rigid_disk"}) {
+    SCOPED_TRACE(name);
+    Problem problem(PETSC_COMM_WORLD, make_scene(name), {});
+    const RieszSpace space = make_riesz_space(problem.v_product(), problem.trace());
+    const SparseInfSup sparse(problem.v_product(), problem.trace());
+    Operators op;
+    problem.assemble_contact(box_centre(problem.scene().parameters), op);
+    const double dense = high_fidelity_pair(problem, space, op).beta;
+    EXPECT_GT(dense, 0);
+    EXPECT_NEAR(high_fidelity_pair(problem, space, op, &sparse).beta, dense, 1e-6 * dense);
   }
 }
 
