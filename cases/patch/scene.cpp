@@ -168,7 +168,6 @@ Scene make(const SceneOptions &options) {
 SceneEntry patch() {
   std::vector<SceneOption> options{
       {"bodies", "two", "two blocks, or one on a rigid support", {"one", "two"}},
-      {"degree", "1", "of the displacement of one body", {"1", "2"}},
       {"friction", "coulomb", "law of friction of one body", {"none", "coulomb"}},
       {"lumped", "no", "one body: vertex quadrature in b and g", {"no", "yes"}}};
   for (SceneOption &option : nitsche_options())

@@ -11,6 +11,7 @@
 // plane stiffness as it is, so that a does not depend on mu.
 #include "scene.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_pair.hpp"
 
@@ -22,8 +23,9 @@ namespace rbvi {
 
 namespace {
 
-constexpr double centre = 1.5;  ///< of the upper reference disk, height
-constexpr double deepest = 0.2; ///< indentation over a radius: deformations stay small
+constexpr double centre = 1.5;       ///< of the upper reference disk, height
+constexpr int quadratic_edges = 140; ///< of each contact arc: as many nodes as 560 of degree 1
+constexpr double deepest = 0.2;      ///< indentation over a radius: deformations stay small
 
 /// The upper disk is shifted until it is the initial gap above the origin, the lower one shrinks or
 /// grows from its highest point, the origin.
@@ -58,13 +60,14 @@ std::vector<MeshFact> body_facts(double up) {
        arc(middle, 1, -up * 1.5 * quarter, quarter / 2), quarter, "arc"}};
 }
 
-MeshRecipe mesh() {
+MeshRecipe mesh(int edges) {
   constexpr double quarter = std::numbers::pi / 4;
   const Point up{0, centre, 0}, down{0, -centre, 0};
-  MeshRecipe recipe{"two_quarter_discs",
+  MeshRecipe recipe{edges == 0 ? "two_quarter_discs" : "two_graded_quarter_discs",
                     {"upper", "lower"},
                     {"axis", "top", "bottom", "slave", "master", "arc"},
-                    "arc"};
+                    "arc",
+                    edges};
   std::vector<MeshFact> &facts = recipe.facts = body_facts(1);
   for (MeshFact &fact : body_facts(-1))
     facts.push_back(std::move(fact));
@@ -79,12 +82,20 @@ MeshRecipe mesh() {
   return recipe;
 }
 
+int arc_edges(const SceneOptions &options, int degree) {
+  const double edges = number_in(options, "arc_edges");
+  if (edges != 0 && (edges < 8 || std::fmod(edges, 1) != 0))
+    throw bad_input("option arc_edges is " + options.at("arc_edges") +
+                    ": it must be a whole number of at least 8, or 0");
+  return edges == 0 && degree == 2 ? quadratic_edges : static_cast<int>(edges);
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
   scene.training = "grid:81";
   scene.validation = "random:30:1";
-  scene.mesh = mesh();
+  scene.mesh = mesh(arc_edges(options, scene.degree));
   const double gap = number_in(options, "initial_gap");
   const double indentation = number_in(options, "indentation");
   const Range radii{std::max(0.1, indentation / deepest), 10};
@@ -109,7 +120,13 @@ SceneEntry two_disks() {
                 "displacement of each flat side towards the other disk",
                 {},
                 {0, deepest}},
-               {"initial_gap", "0.001", "between the undeformed disks", {}, {-deepest, 1}}}),
+               {"initial_gap", "0.001", "between the undeformed disks", {}, {-deepest, 1}},
+               {"arc_edges",
+                "0",
+                "edges of each contact arc; 0: 560, of degree 2 140",
+                {},
+                {0, 10000},
+                true}}),
           make};
 }
 

@@ -43,7 +43,7 @@ bool constant_stiffness(const Scene &scene) {
 std::vector<SceneOption> pair_options() {
   return {{"multiplier",
            "p0",
-           "pressure: constant on pairs of edges (p0) or continuous (p1)",
+           "pressure: constant on pairs of edges, of degree 2 on edges (p0), or continuous (p1)",
            {"p0", "p1"}},
           {"integration",
            "intersection",

@@ -7,6 +7,7 @@ namespace rbvi {
 
 std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own) {
   std::vector<SceneOption> options = pair_options();
+  options.push_back({"degree", "1", "of the displacement", {"1", "2"}});
   options.push_back({"young", "15", "Young's modulus", {}, young_range});
   options.push_back({"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range});
   options.insert(options.end(), own.begin(), own.end());
@@ -16,12 +17,13 @@ std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &ow
 void set_elastic_pair(const SceneOptions &options, Scene &scene) {
   scene.dim = 2;
   scene.components = 2;
+  scene.degree = options.at("degree") == "2" ? 2 : 1;
   scene.pair = PairRecipe{"slave", "master", pair_discretisation(options)};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = [material](const Mu &, const Point &) { return material; };
-  scene.a = elasticity("", material);
+  scene.a = elasticity("", material, scene.degree);
   scene.a_parameters = std::vector<int>{};
-  scene.v_product = h1_product(1, 2);
+  scene.v_product = h1_product(1, 2, scene.degree);
 }
 
 } // namespace rbvi

@@ -5,7 +5,8 @@
 
 namespace rbvi {
 
-ContactCurves make_contact_curves(const Mesh &mesh, const Dofs &dofs, const PairRecipe &pair) {
+ContactCurves make_contact_curves(const Mesh &mesh, const Dofs &dofs, const Scene &scene) {
+  const PairRecipe &pair = scene.pair.value();
   if (mesh.dim != 2)
     throw bad_input("two bodies can meet in two dimensions only: the mesh has " +
                     std::to_string(mesh.dim));
@@ -17,7 +18,8 @@ ContactCurves make_contact_curves(const Mesh &mesh, const Dofs &dofs, const Pair
     if (name == pair.slave) curves.slave_nodes = static_cast<Index>(nodes.size());
     for (const CurveNode &node : nodes) {
       curves.natural_node.push_back(node.natural);
-      curves.points.push_back(node.point);
+      const bool middle = node.natural >= mesh.total_vertices;
+      curves.points.push_back(middle && scene.snap ? scene.snap(node.point) : node.point);
       natural_dofs.push_back(node.natural * dofs.components + vertical);
     }
   }

@@ -42,6 +42,9 @@ struct Generator {
 constexpr std::array generators{
     Generator{"square_with_disc", [](const MeshRecipe &) { return square_with_disc(); }},
     Generator{"two_quarter_discs", [](const MeshRecipe &) { return two_quarter_discs(); }},
+    Generator{"two_graded_quarter_discs",
+              [](const MeshRecipe &recipe) { return two_graded_quarter_discs(recipe.edges); },
+              true},
     Generator{"two_blocks", [](const MeshRecipe &) { return two_blocks(); }},
     Generator{"half_disc",
               [](const MeshRecipe &recipe) {

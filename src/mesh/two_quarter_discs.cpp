@@ -1,8 +1,11 @@
-#include "rings.hpp"
+#include "quarter_disc.hpp"
+
+#include "rbvi/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace rbvi {
 
@@ -116,13 +119,39 @@ void add_lower_body(SerialMesh &mesh, const SerialMesh &upper) {
   }
 }
 
-} // namespace
-
-SerialMesh two_quarter_discs() {
-  const SerialMesh upper = upper_body();
+SerialMesh two_bodies(const SerialMesh &upper) {
   SerialMesh mesh = upper;
   add_lower_body(mesh, upper);
   return mesh;
+}
+
+} // namespace
+
+SerialMesh two_quarter_discs() {
+  return two_bodies(upper_body());
+}
+
+SerialMesh two_graded_quarter_discs(int edges) {
+  if (edges < 8)
+    throw bad_input("the mesh of two quarter discs cannot have " + std::to_string(edges) +
+                    " contact edges: at least 8");
+  SerialMesh upper = quarter_disc({.contact_angle = contact_angle,
+                                   .edges = edges,
+                                   .growth = 0.2255,
+                                   .corner_edge = std::min(0.021, 3.0 / edges),
+                                   .rim_edge = 0.135,
+                                   .longest_edge = 0.135,
+                                   .inner_end = 0.9,
+                                   .outer_end = 1.15});
+  for (Point &x : upper.points)
+    x[1] += centre;
+  std::vector<int> cells(upper.cells.size());
+  std::iota(cells.begin(), cells.end(), 0);
+  upper.region = {{"upper", cells}};
+  auto contact = upper.boundary.extract("contact");
+  contact.key() = "slave";
+  upper.boundary.insert(std::move(contact));
+  return two_bodies(upper);
 }
 
 } // namespace rbvi

@@ -37,16 +37,17 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
     : scene_(std::move(scene)), mesh_(make_mesh(comm, scene_, options)),
       dofs_(number_dofs(mesh_, scene_.components, scene_.fixed)), cells_(reference_cells(mesh_)),
       a_(make_matrix(mesh_, dofs_, scene_.a.region)), f_(make_vector(dofs_)) {
-  if (scene_.degree != 1 && !scene_.support)
-    throw bad_input("scene " + scene_.name + ": degree 2 is for contact with a rigid support");
+  if (scene_.degree != 1 && !scene_.support && !scene_.pair)
+    throw bad_input("scene " + scene_.name +
+                    ": degree 2 is for contact of two bodies or with a rigid support");
   if (scene_.support) {
     support_ = make_contact_support(mesh_, dofs_, *scene_.support);
     w_product_ = multiplier_product(support_->curve, *scene_.support);
   } else if (scene_.pair) {
-    curves_ = make_contact_curves(mesh_, dofs_, *scene_.pair);
+    curves_ = make_contact_curves(mesh_, dofs_, scene_);
     const auto slave = curves_->points.begin();
     w_product_ = multiplier_product({slave, slave + curves_->slave_nodes},
-                                    scene_.pair->discretisation.multiplier);
+                                    scene_.pair->discretisation.multiplier, scene_.degree);
   } else {
     contact_ = make_contact_region(mesh_, dofs_, scene_.contact_region);
     b_.emplace(*contact_, ContactMatrix::Columns::contact_dofs);

@@ -59,8 +59,9 @@ std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene) {
   const Index count = model.two_bodies() ? model.slave_nodes : model.contact_points.rows();
   for (Index i = 0; i < count; ++i)
     points.push_back(point_of(model.contact_points, i));
-  return model.two_bodies() ? multiplier_points(points, scene.pair->discretisation.multiplier)
-                            : points;
+  return model.two_bodies()
+             ? multiplier_points(points, scene.pair->discretisation.multiplier, scene.degree)
+             : points;
 }
 
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
@@ -80,8 +81,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
   check_kernel(model.f, scene_.f, "f");
   check_kernel(model.g, scene_.g, "g");
   if (model.two_bodies() != scene_.pair.has_value() ||
-      (scene_.pair && multiplier_count(model.slave_nodes, scene_.pair->discretisation.multiplier) !=
-                          model.dual_basis.rows()))
+      (scene_.pair && multiplier_count(model.slave_nodes, scene_.pair->discretisation.multiplier,
+                                       scene_.degree) != model.dual_basis.rows()))
     throw bad_input("the contact curves of the model do not fit its scene in this build");
   for (Index i = 0; i < model.contact_points.rows() && model.two_bodies(); ++i)
     curves_.push_back(point_of(model.contact_points, i));

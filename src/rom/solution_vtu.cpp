@@ -125,7 +125,7 @@ Grid curve(const State &state) {
   Vector pressure(constant ? count - 1 : count);
   for (Index k = 0; k < pressure.size(); ++k) {
     const Index node = pair.paired[static_cast<std::size_t>(k)];
-    pressure[k] = lambda[constant ? macro_edge_of(node, model.slave_nodes) : node];
+    pressure[k] = lambda[constant ? macro_edge_of(node, model.slave_nodes, scene.degree) : node];
   }
   if (constant) grid.of_cells.push_back({"pressure", pressure, "Pa"});
   grid.of_nodes.push_back(

@@ -89,7 +89,8 @@ struct FixedBoundary {
 
 /// Where multipliers of two bodies live (2D).
 enum class MultiplierSpace {
-  macro_edges, ///< constant on macro-edges of two slave edges (local average contact, LAC)
+  macro_edges, ///< constant on macro-edges (local average contact, LAC): two slave edges, of
+               ///< degree 2 one
   nodes        ///< continuous, linear on each slave edge
 };
 
@@ -105,7 +106,8 @@ struct PairDiscretisation {
 };
 
 /// Two bodies that meet along two curves. The partner of a point of the slave (upper) curve is the
-/// point of the master (lower) one below it; the gap is measured along e_y (2.49).
+/// point of the master (lower) one below it; the gap is measured along e_y (2.49). Of degree 2
+/// Scene::snap brings the middles of their edges onto them.
 struct PairRecipe {
   std::string slave, master; ///< boundaries
   PairDiscretisation discretisation;

@@ -1,12 +1,16 @@
-// Contact of two bodies along two polygonal curves in 2D, with vertical pairing: the partner of a
-// point x of the slave (upper) curve is the point phi(x) of the master (lower) curve with the same
-// abscissa. The displacements of both satisfy
+// Contact of two bodies along two curves in 2D, with vertical pairing: the partner of a point x of
+// the slave (upper) curve is the point phi(x) of the master (lower) curve with the same abscissa.
+// The displacements of both satisfy
 //
 //   (u_master o phi - u_slave) . e_y <= gap = (x - phi(x)) . e_y,
 //
-// which is (2.49) with the slave on top. A curve is its nodes in the order of strictly increasing
-// abscissa; in every function of this file a curve of less than 2 nodes or of another order throws
-// bad_input, naming the curve and the node.
+// which is (2.49) with the slave on top. A curve is the nodes of its edges: the vertices in the
+// order of strictly increasing abscissa, then, of degree 2, a point of each edge near its middle.
+// Of degree 1 the gap is that of the polygons. Of degree 2 it is that of the parabolas through the
+// three points of each edge, so that bodies with straight edges meet along their true curves if
+// these points are on them; displacements are quadratic in the abscissa, with their third node in
+// the middle of the straight edge. In every function of this file a curve of too few nodes, or of
+// another order, throws bad_input, naming the curve and the node.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -14,7 +18,7 @@
 
 namespace rbvi {
 
-/// The constraint, weak and at nodes. Columns are the vertical displacements of the slave nodes,
+/// The constraint, weak and at vertices. Columns are the vertical displacements of the slave nodes,
 /// then of the master nodes, each in the order of their curve; eta are the basis functions of the
 /// multipliers. A slave point beyond the ends of the master curve has no partner and contributes
 /// nothing.
@@ -22,21 +26,24 @@ struct PairOperators {
   SparseMatrix b;            ///< multipliers x nodes: int (v_master o phi - v_slave) eta ds (2.51)
   Vector g;                  ///< multipliers: int gap eta ds (2.52)
   Vector weights;            ///< multipliers: int eta ds over the slave points that have a partner
-  std::vector<Index> paired; ///< slave nodes that have a partner, increasing
-  SparseMatrix nodal_b;      ///< paired x nodes: the constraint at these nodes
+  std::vector<Index> paired; ///< slave vertices that have a partner, increasing
+  SparseMatrix nodal_b;      ///< paired x nodes: the constraint at these vertices
   Vector nodal_gap;          ///< paired
 };
 
-/// Number of multipliers on a slave curve of at least 2 nodes. Macro-edges: two edges each, the
-/// last takes a third if their number is odd.
-Index multiplier_count(Index slave_nodes, MultiplierSpace space);
+/// Vertices of a curve by its number of nodes.
+Index vertex_count(Index nodes, int degree);
+
+/// Number of multipliers on a slave curve of so many nodes. A macro-edge has a node inside: of
+/// degree 1 it is two edges, the last three if their number is odd; of degree 2 it is one edge.
+Index multiplier_count(Index slave_nodes, MultiplierSpace space, int degree = 1);
 
 /// The macro-edge that holds a slave edge.
-Index macro_edge_of(Index edge, Index slave_nodes);
+Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
 
-/// Integrals are in arc length of the slave curve. O(slave + master nodes).
+/// Integrals are in arc length of the straight slave edges. O(slave + master nodes).
 PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &master,
-                     const PairDiscretisation &discretisation);
+                     const PairDiscretisation &discretisation, int degree = 1);
 
 /// The same for a scene with a pair: its curves mapped by h(mu), its motion taken into both gaps.
 /// `points`: reference nodes of the slave curve, then of the master curve. Throws failure, naming
@@ -44,11 +51,13 @@ PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &
 PairOperators couple_at(const Scene &scene, const Mu &all_parameters,
                         const std::vector<Point> &points, Index slave_nodes);
 
-/// Gram matrix of the multipliers in L2 of the slave curve; an entry (possibly zero) for every pair
-/// of neighbours.
-SparseMatrix multiplier_product(const std::vector<Point> &slave, MultiplierSpace space);
+/// Gram matrix of the multipliers in L2 of the slave polygon; an entry (possibly zero) for every
+/// pair of neighbours.
+SparseMatrix multiplier_product(const std::vector<Point> &slave, MultiplierSpace space,
+                                int degree = 1);
 
-/// Where a multiplier is drawn: the middle of its macro-edge, by arc length, or its node.
-std::vector<Point> multiplier_points(const std::vector<Point> &slave, MultiplierSpace space);
+/// Where a multiplier is drawn: the middle of its macro-edge, by arc length, or its vertex.
+std::vector<Point> multiplier_points(const std::vector<Point> &slave, MultiplierSpace space,
+                                     int degree = 1);
 
 } // namespace rbvi

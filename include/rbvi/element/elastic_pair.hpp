@@ -1,16 +1,16 @@
-// What scenes of two elastic bodies in contact share: the same material, P1 displacements in the
-// plane, contact between the boundaries "slave" and "master".
+// What scenes of two elastic bodies in contact share: the same material, displacements of
+// degree 1 or 2 in the plane, contact between the boundaries "slave" and "master".
 #pragma once
 
 #include "rbvi/core/scene.hpp"
 
 namespace rbvi {
 
-/// The options multiplier, integration, young and poisson_ratio, then the scene's own.
+/// The options multiplier, integration, degree, young and poisson_ratio, then the scene's own.
 std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own = {});
 
-/// Sets dimension, components, material, a, v_product and the pair as these options say. a does not
-/// depend on the parameters: right where h(mu) moves each body by a similarity.
+/// Sets dimension, components, degree, material, a, v_product and the pair as these options say. a
+/// does not depend on the parameters: right where h(mu) moves each body by a similarity.
 void set_elastic_pair(const SceneOptions &options, Scene &scene);
 
 } // namespace rbvi

@@ -70,6 +70,11 @@ SerialMesh square_with_disc();
 /// turn into the flat side.
 SerialMesh two_quarter_discs();
 
+/// The same two bodies, regions and boundaries with `edges` equal edges on each contact arc, graded
+/// to the corners where the flat sides, which are clamped, meet the circles. Throws bad_input unless
+/// there are at least 8.
+SerialMesh two_graded_quarter_discs(int edges);
+
 /// Two blocks with meshes that do not match, for patch tests: region "upper" is
 /// [0, 1] x [0.25, 0.75], "lower" [0, 1] x [-0.75, -0.25]. Boundaries: "sides" (x = 0 and x = 1),
 /// "top", "bottom", "slave" (y = 0.25, 10 edges), "master" (y = -0.25, 7 edges). 106 nodes,
