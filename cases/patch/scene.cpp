@@ -174,7 +174,7 @@ SceneEntry patch() {
     options.push_back(std::move(option));
   return {"patch",
           "patch test: blocks on top of each other, or one on a rigid support with friction",
-          elastic_pair_options(options), make};
+          elastic_pair_options(1, options), make};
 }
 
 } // namespace rbvi

@@ -115,18 +115,18 @@ Scene make(const SceneOptions &options) {
 SceneEntry two_disks() {
   return {"two_disks", "Hertz contact of two elastic half-disks, the lower one of free radius",
           elastic_pair_options(
-              {{"indentation",
-                "0.09",
-                "displacement of each flat side towards the other disk",
-                {},
-                {0, deepest}},
-               {"initial_gap", "0.001", "between the undeformed disks", {}, {-deepest, 1}},
-               {"arc_edges",
-                "0",
-                "edges of each contact arc; 0: 560, of degree 2 140",
-                {},
-                {0, 10000},
-                true}}),
+              2, {{"indentation",
+                   "0.09",
+                   "displacement of each flat side towards the other disk",
+                   {},
+                   {0, deepest}},
+                  {"initial_gap", "0.001", "between the undeformed disks", {}, {-deepest, 1}},
+                  {"arc_edges",
+                   "0",
+                   "edges of each contact arc; 0: 140, of degree 1 560",
+                   {},
+                   {0, 10000},
+                   true}}),
           make};
 }
 

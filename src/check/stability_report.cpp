@@ -16,9 +16,6 @@ namespace {
 /// Of a singular value, relative to the largest: what the arithmetic leaves.
 constexpr double round_off = 1e-10;
 
-/// Up to this many multipliers beta_HF comes from dense matrices.
-constexpr Index dense_multipliers = 1000;
-
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
   const Handle<Vec> like = make_vector(problem.dofs());
@@ -53,17 +50,14 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   Matrix values = Matrix::Zero(count, static_cast<Index>(set.size()));
   const Matrix modes = check.coordinates.leftCols(check.modes);
   std::optional<PairConstants> per_b; // over |b|, where b is scaled
-  std::optional<SparseInfSup> sparse;
-  if (problem.w_product().rows() > dense_multipliers)
-    sparse.emplace(problem.v_product(), problem.trace());
+  const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
   take_turns(comm, set.size(), [&](std::size_t p) {
     Operators op;
     problem.assemble_contact(set[p], op);
     const InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
     const double size = op.b.norm();
     if (!b_is_scaled || !per_b) {
-      const PairConstants pair =
-          high_fidelity_pair(problem, check.space, op, sparse ? &*sparse : nullptr);
+      const PairConstants pair = high_fidelity_pair(problem, check.space, op, sparse);
       per_b = {pair.beta / size, pair.c / size};
     }
     values.col(static_cast<Index>(p)) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;

@@ -12,6 +12,11 @@ namespace rbvi {
 
 namespace {
 
+std::size_t checked_degree(int degree) {
+  check_degree(degree);
+  return static_cast<std::size_t>(degree);
+}
+
 /// The nodes of one curve.
 class Curve {
 public:
@@ -47,9 +52,8 @@ private:
 };
 
 Curve::Curve(const std::vector<Point> &nodes, int degree, const std::string &name)
-    : nodes_(nodes), degree_(static_cast<std::size_t>(degree)),
+    : nodes_(nodes), degree_(checked_degree(degree)),
       edges_(nodes.empty() ? 0 : (nodes.size() - 1) / degree_) {
-  check_degree(degree);
   if (edges_ == 0 || nodes.size() != edges_ * degree_ + 1)
     throw bad_input("the " + name + " curve needs " +
                     (degree == 1 ? "at least 2 nodes" : "an odd number of nodes, at least 3") +

@@ -5,9 +5,9 @@
 
 namespace rbvi {
 
-std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own) {
+std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<SceneOption> &own) {
   std::vector<SceneOption> options = pair_options();
-  options.push_back({"degree", "1", "of the displacement", {"1", "2"}});
+  options.push_back({"degree", std::to_string(degree), "of the displacement", {"1", "2"}});
   options.push_back({"young", "15", "Young's modulus", {}, young_range});
   options.push_back({"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range});
   options.insert(options.end(), own.begin(), own.end());

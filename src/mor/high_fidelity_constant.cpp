@@ -5,45 +5,62 @@
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 
 namespace rbvi {
 
 namespace {
 
-/// x -> R^T (B V^-1 B^T)^-1 R x, symmetric, with W = R R^T.
-struct Inverse {
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> w; ///< R = P^T L
-  Handle<KSP> ksp;
-  Handle<Vec> right, solution; ///< of the saddle point matrix
-  PetscInt fields = 0;         ///< rows of V, in front
-};
+/// A symmetric operator y = A x; returns PETSc's error code.
+using Operator = std::function<PetscErrorCode(const Vector &x, Vector &y)>;
 
 PetscErrorCode apply(Mat shell, Vec x, Vec y) {
   PetscFunctionBeginUser;
   void *context = nullptr;
   PetscCall(MatShellGetContext(shell, &context));
-  const auto &inverse = *static_cast<const Inverse *>(context);
   PetscInt size = 0;
   const PetscScalar *from = nullptr;
   PetscScalar *to = nullptr;
   PetscCall(VecGetLocalSize(x, &size));
-  PetscCall(VecZeroEntries(inverse.right.get()));
   PetscCall(VecGetArrayRead(x, &from));
-  PetscCall(VecGetArray(inverse.right.get(), &to));
-  const Vector image = inverse.w.matrixL() * Eigen::Map<const Vector>(from, size);
-  Eigen::Map<Vector>(to + inverse.fields, size) = inverse.w.permutationPinv() * image;
-  PetscCall(VecRestoreArray(inverse.right.get(), &to));
+  const Vector before = Eigen::Map<const Vector>(from, size);
   PetscCall(VecRestoreArrayRead(x, &from));
-  PetscCall(KSPSolve(inverse.ksp.get(), inverse.right.get(), inverse.solution.get()));
-  PetscCall(VecGetArrayRead(inverse.solution.get(), &from));
+  Vector after(size);
+  PetscCall((*static_cast<const Operator *>(context))(before, after));
   PetscCall(VecGetArrayWrite(y, &to));
-  const Vector solved =
-      inverse.w.permutationP() * Eigen::Map<const Vector>(from + inverse.fields, size);
-  Eigen::Map<Vector>(to, size) = -(inverse.w.matrixU() * solved);
+  Eigen::Map<Vector>(to, size) = after;
   PetscCall(VecRestoreArrayWrite(y, &to));
-  PetscCall(VecRestoreArrayRead(inverse.solution.get(), &from));
   PetscFunctionReturn(0);
+}
+
+/// By SLEPc's EPS, prefix infsup_.
+double largest_eigenvalue(Index rows, Operator a, const std::string &of) {
+  const auto size = static_cast<PetscInt>(rows);
+  Handle<Mat> shell;
+  RBVI_CALL(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &a, shell.put()));
+  RBVI_CALL(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply)));
+  const Handle<EPS> eps = make_infsup_eps();
+  RBVI_CALL(EPSSetOperators(eps.get(), shell.get(), nullptr));
+  RBVI_CALL(EPSSolve(eps.get()));
+  PetscInt converged = 0;
+  RBVI_CALL(EPSGetConverged(eps.get(), &converged));
+  double value = 0;
+  if (converged > 0) RBVI_CALL(EPSGetEigenvalue(eps.get(), 0, &value, nullptr));
+  if (!(value > 0))
+    throw failure("the iteration for " + of +
+                  " did not converge: raise -infsup_eps_max_it or "
+                  "-infsup_eps_tol");
+  return value;
+}
+
+/// W = R R^T, R = P^T L.
+using Root = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
+
+void factorise(const SparseMatrix &w_product, Root &root) {
+  root.compute(w_product);
+  if (root.info() != Eigen::Success) throw failure("the W product is not positive definite");
 }
 
 /// A sequential sparse matrix whose entries visit(add) adds, add(row, column, value), of at most
@@ -122,8 +139,8 @@ Handle<KSP> factorised(Mat matrix) {
 
 } // namespace
 
-Handle<EPS> make_inverse_iteration() {
-  constexpr double tolerance = 1e-12; // relative, of 1 / beta^2
+Handle<EPS> make_infsup_eps() {
+  constexpr double tolerance = 1e-12; // relative, of 1 / beta^2 and c^2
   constexpr PetscInt most_restarts = 200;
   Handle<EPS> eps;
   RBVI_CALL(EPSCreate(PETSC_COMM_SELF, eps.put()));
@@ -143,29 +160,46 @@ SparseInfSup::SparseInfSup(Mat product, const Trace &trace)
 double SparseInfSup::constant(const SparseMatrix &b_contact, const SparseMatrix &w_product) const {
   if (b_contact.rows() == 0) return std::numeric_limits<double>::infinity();
   if (b_contact.rows() > b_contact.cols()) return 0;
-  Inverse inverse;
+  Root w;
+  factorise(w_product, w);
   const Handle<Mat> matrix = saddle_point(product_.get(), b_contact, dofs_);
-  inverse.w.compute(w_product);
-  if (inverse.w.info() != Eigen::Success) throw failure("the W product is not positive definite");
-  inverse.ksp = factorised(matrix.get());
-  RBVI_CALL(MatGetSize(product_.get(), &inverse.fields, nullptr));
-  RBVI_CALL(MatCreateVecs(matrix.get(), inverse.right.put(), inverse.solution.put()));
+  const Handle<KSP> ksp = factorised(matrix.get());
+  Handle<Vec> right, solution;
+  PetscInt fields = 0; // rows of V, in front
+  RBVI_CALL(MatGetSize(product_.get(), &fields, nullptr));
+  RBVI_CALL(MatCreateVecs(matrix.get(), right.put(), solution.put()));
+  const Operator inverse = [&](const Vector &x, Vector &y) {
+    PetscFunctionBeginUser;
+    const PetscScalar *from = nullptr;
+    PetscScalar *to = nullptr;
+    PetscCall(VecZeroEntries(right.get()));
+    PetscCall(VecGetArray(right.get(), &to));
+    Eigen::Map<Vector>(to + fields, x.size()) = w.permutationPinv() * (w.matrixL() * x).eval();
+    PetscCall(VecRestoreArray(right.get(), &to));
+    PetscCall(KSPSolve(ksp.get(), right.get(), solution.get()));
+    PetscCall(VecGetArrayRead(solution.get(), &from));
+    y = w.permutationP() * Eigen::Map<const Vector>(from + fields, x.size());
+    y = -(w.matrixU() * y).eval();
+    PetscCall(VecRestoreArrayRead(solution.get(), &from));
+    PetscFunctionReturn(0);
+  };
+  return 1 / std::sqrt(largest_eigenvalue(b_contact.rows(), inverse, "beta_HF"));
+}
 
-  const auto size = static_cast<PetscInt>(b_contact.rows());
-  Handle<Mat> shell;
-  RBVI_CALL(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &inverse, shell.put()));
-  RBVI_CALL(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply)));
-  const Handle<EPS> eps = make_inverse_iteration();
-  RBVI_CALL(EPSSetOperators(eps.get(), shell.get(), nullptr));
-  RBVI_CALL(EPSSolve(eps.get()));
-  PetscInt converged = 0;
-  RBVI_CALL(EPSGetConverged(eps.get(), &converged));
-  double inverse_square = 0;
-  if (converged > 0) RBVI_CALL(EPSGetEigenvalue(eps.get(), 0, &inverse_square, nullptr));
-  if (!(inverse_square > 0))
-    throw failure("the inverse iteration for beta_HF did not converge: raise -infsup_eps_max_it or "
-                  "-infsup_eps_tol");
-  return 1 / std::sqrt(inverse_square);
+double largest_stretch(const Matrix &riesz_factor, const SparseMatrix &b_contact,
+                       const SparseMatrix &w_product) {
+  if (b_contact.rows() == 0) return 0;
+  Root w;
+  factorise(w_product, w);
+  const auto lower = riesz_factor.triangularView<Eigen::Lower>();
+  const Operator square = [&](const Vector &x, Vector &y) {
+    const Vector eta = w.permutationPinv() * w.matrixU().solve(x);
+    const Vector representer = lower.transpose() * (b_contact.transpose() * eta).eval();
+    y = w.permutationP() * (b_contact * (lower * representer).eval());
+    w.matrixL().solveInPlace(y);
+    return PetscErrorCode{0};
+  };
+  return std::sqrt(largest_eigenvalue(b_contact.rows(), square, "c_HF"));
 }
 
 } // namespace rbvi

@@ -6,13 +6,13 @@
 #include "rbvi/par/turns.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace rbvi {
 
 namespace {
 
-constexpr double round_off = 1e-10;         ///< of a singular value, relative to the largest
+constexpr double round_off = 1e-10; ///< of a singular value, relative to the largest
+constexpr Index dense_multipliers = 1000;
 constexpr double largest_tolerance = 0.999; ///< sigma never exceeds 1
 
 /// Multipliers whose support has a partner everywhere; of one body all.
@@ -35,14 +35,20 @@ SparseMatrix rows_of_identity(const std::vector<Index> &rows, Index size) {
 
 } // namespace
 
+std::optional<SparseInfSup> sparse_infsup(Problem &problem) {
+  if (problem.dual_size() <= dense_multipliers) return std::nullopt;
+  return SparseInfSup(problem.v_product(), problem.trace());
+}
+
 PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space,
-                                 const Operators &op, const SparseInfSup *sparse) {
+                                 const Operators &op, const std::optional<SparseInfSup> &sparse) {
   const std::vector<Index> rows = covered_multipliers(problem, op);
   if (rows.empty()) throw failure("no multiplier has a partner: there is no inf-sup constant");
-  if (sparse != nullptr) {
+  if (sparse) {
     const SparseMatrix chosen = rows_of_identity(rows, problem.dual_size());
-    const SparseMatrix w = problem.w_product() * SparseMatrix(chosen.transpose());
-    return {sparse->constant(chosen * op.b, chosen * w), std::numeric_limits<double>::quiet_NaN()};
+    const SparseMatrix b = chosen * op.b,
+                       w = chosen * SparseMatrix(problem.w_product() * chosen.transpose());
+    return {sparse->constant(b, w), largest_stretch(space.factor, b, w)};
   }
   const Eigen::LLT<Matrix> w(Matrix(problem.w_product())(rows, rows));
   if (w.info() != Eigen::Success) throw failure("the W product is not positive definite");
@@ -56,10 +62,11 @@ PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space
 double infsup_tolerance(MPI_Comm comm, Problem &problem, const RieszSpace &space,
                         const std::vector<Mu> &set) {
   double smallest = largest_tolerance;
+  const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
   Operators op;
   take_turns(comm, set.size(), [&](std::size_t p) {
     problem.assemble_contact(set[p], op);
-    const PairConstants pair = high_fidelity_pair(problem, space, op);
+    const PairConstants pair = high_fidelity_pair(problem, space, op, sparse);
     if (!(pair.beta > round_off * pair.c))
       throw failure("beta_HF is " + short_number(pair.beta) +
                     ", zero to round-off: give -pga_tolerance a number");

@@ -79,7 +79,7 @@ void check_eigen_options(const ToolOptions &options, EigenUse use) {
     if (use == EigenUse::supremizers)
       (void)SmallEigen(prefix);
     else
-      (void)make_inverse_iteration();
+      (void)make_infsup_eps();
   } catch (const Error &error) {
     throw bad_input(std::string("the options -") + prefix + "* do not work (" + error.what() + ")");
   }

@@ -19,11 +19,12 @@ std::size_t at(Index i) {
 }
 
 struct Discs {
-  Scene scene = make_scene("two_disks");
+  Scene scene;
   Mesh mesh;
   Dofs dofs;
-  explicit Discs(MPI_Comm comm = PETSC_COMM_WORLD, int refine = 0)
-      : mesh(make_mesh(comm, scene, {"", refine})), dofs(number_dofs(mesh, 2, scene.fixed)) {}
+  explicit Discs(MPI_Comm comm = PETSC_COMM_WORLD, int refine = 0, const std::string &degree = "1")
+      : scene(make_scene("two_disks", {{"degree", degree}})),
+        mesh(make_mesh(comm, scene, {"", refine})), dofs(number_dofs(mesh, 2, scene.fixed)) {}
 };
 
 bool on_axis(const Point &x) {
@@ -123,7 +124,7 @@ TEST(FixedComponents, OthersThanTheDisplacementHasAreRefused) {
 TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
   for (const int refine : {0, 1}) {
     const Discs d(PETSC_COMM_WORLD, refine);
-    const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, *d.scene.pair);
+    const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, d.scene);
     const Index nodes = (560 << refine) + 1;
     ASSERT_EQ(curves.slave_nodes, nodes);
     ASSERT_EQ(curves.points.size(), at(2 * nodes));
@@ -142,10 +143,32 @@ TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
   }
 }
 
+/// With straight edges of the mesh: the middles are brought onto the circle, the dofs are theirs.
+TEST(ContactCurves, OfDegreeTwoHaveMiddlesOnTheCircle) {
+  for (const int refine : {0, 1}) {
+    const Discs d(PETSC_COMM_WORLD, refine, "2");
+    const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, d.scene);
+    const Index edges = 140 << refine, nodes = 2 * edges + 1;
+    ASSERT_EQ(curves.slave_nodes, nodes);
+    ASSERT_EQ(curves.points.size(), at(2 * nodes));
+    for (Index i = 0; i < nodes; ++i) {
+      const double part = i <= edges ? double(i) : double(i - edges) - 0.5;
+      const double angle = std::numbers::pi / 4 * part / double(edges);
+      const Point &slave = curves.points[at(i)], &master = curves.points[at(nodes + i)];
+      EXPECT_NEAR(slave[0], std::sin(angle), 1e-14);
+      EXPECT_NEAR(slave[1], 1.5 - std::cos(angle), 1e-14);
+      EXPECT_NEAR(master[0], slave[0], 1e-15);
+      EXPECT_NEAR(master[1], -slave[1], 1e-15);
+      EXPECT_EQ(curves.natural_node[at(i)] < d.mesh.total_vertices, i <= edges);
+    }
+    EXPECT_EQ(curves.trace.size, 2 * nodes);
+  }
+}
+
 /// The field with the value k at natural dof k shows which dofs the trace takes.
 TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
   const Discs d;
-  const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, *d.scene.pair);
+  const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, d.scene);
   const Vector numbers = Vector::LinSpaced(d.dofs.total, 0, static_cast<double>(d.dofs.total - 1));
   const Vector trace = restrict_to(curves.trace, from_natural(d.dofs, numbers).get());
   ASSERT_EQ(trace.size(), 2 * 561);
@@ -155,8 +178,8 @@ TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
 
 TEST(ContactCurves, AreTheSameOnAnyNumberOfRanks) {
   const Discs world, alone(PETSC_COMM_SELF);
-  const ContactCurves many = make_contact_curves(world.mesh, world.dofs, *world.scene.pair);
-  const ContactCurves one = make_contact_curves(alone.mesh, alone.dofs, *alone.scene.pair);
+  const ContactCurves many = make_contact_curves(world.mesh, world.dofs, world.scene);
+  const ContactCurves one = make_contact_curves(alone.mesh, alone.dofs, alone.scene);
   EXPECT_EQ(many.slave_nodes, one.slave_nodes);
   EXPECT_EQ(many.natural_node, one.natural_node);
   EXPECT_EQ(many.points, one.points);
@@ -174,7 +197,7 @@ TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
     const auto curves_where = [&](int fixed) {
       std::vector<FixedBoundary> conditions = d.scene.fixed;
       conditions.push_back({name, {fixed}});
-      return make_contact_curves(d.mesh, number_dofs(d.mesh, 2, conditions), *d.scene.pair);
+      return make_contact_curves(d.mesh, number_dofs(d.mesh, 2, conditions), d.scene);
     };
     EXPECT_EQ(curves_where(0).points.size(), 2U * 561U);
     const std::string message = refusal([&] { (void)curves_where(1); });
@@ -186,16 +209,16 @@ TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
 TEST(ContactCurves, NeedAnEdge) {
   Discs d;
   d.mesh.boundary.at("master").assign(d.mesh.points.size(), false);
-  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, *d.scene.pair); }),
+  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, d.scene); }),
                   "'master' has no edge");
 }
 
 TEST(ContactCurves, NeedToBeGraphsOverX) {
-  const Scene scene = make_scene("patch");
+  Scene scene = make_scene("patch");
+  scene.pair->master = "sides";
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
-  const std::string message = refusal([&] {
-    (void)make_contact_curves(mesh, number_dofs(mesh, 2, {}), {"slave", "sides", {}});
-  });
+  const std::string message =
+      refusal([&] { (void)make_contact_curves(mesh, number_dofs(mesh, 2, {}), scene); });
   EXPECT_CONTAINS(message, "'sides'");
   EXPECT_CONTAINS(message, "same x");
 }
@@ -203,7 +226,7 @@ TEST(ContactCurves, NeedToBeGraphsOverX) {
 TEST(ContactCurves, AreForTwoDimensions) {
   Discs d;
   d.mesh.dim = 3;
-  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, *d.scene.pair); }),
+  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, d.scene); }),
                   "two dimensions");
 }
 

@@ -171,6 +171,54 @@ TEST(TwoQuarterDiscs, WithoutACurvedBoundaryNothingIsMoved) {
   EXPECT_EQ(mesh.points, fine.points);
 }
 
+class TwoGradedQuarterDiscs : public testing::TestWithParam<int> {
+protected:
+  const SerialMesh mesh = two_graded_quarter_discs(GetParam());
+};
+INSTANTIATE_TEST_SUITE_P(Edges, TwoGradedQuarterDiscs, testing::Values(8, 21, 70, 140, 280));
+
+TEST_P(TwoGradedQuarterDiscs, AreWellShapedAndFillThePolygons) {
+  EXPECT_NO_THROW(check_mesh(mesh, "discs"));
+  EXPECT_LE(worst_aspect_ratio(mesh), GetParam() == 140 ? 1.56 : 2.2);
+  EXPECT_LE(largest_jump(mesh), 2.5);
+  EXPECT_LT(range_of_edges(mesh).second, 0.22);
+  for (const std::string body : {"upper", "lower"}) {
+    EXPECT_LT(area(mesh, mesh.region.at(body)), quarter);
+    EXPECT_GT(area(mesh, mesh.region.at(body)), 0.99 * quarter);
+    for (const int cell : mesh.region.at(body))
+      EXPECT_EQ(corners(mesh, cell)[0][1] > 0, body == "upper");
+  }
+  EXPECT_EQ(mesh.region.at("upper").size() + mesh.region.at("lower").size(), mesh.cells.size());
+}
+
+TEST_P(TwoGradedQuarterDiscs, BoundariesAreCompleteAndExact) {
+  expect_boundaries(mesh, boundaries_of_discs);
+  for (const int v : nodes_of(mesh, "arc"))
+    EXPECT_LE(distance_to_circle(mesh.points[at(v)]), 5e-16);
+  for (const std::string name : {"slave", "master"}) {
+    const std::vector<int> arc = nodes_of(mesh, name);
+    ASSERT_EQ(arc.size(), at(GetParam() + 1));
+    EXPECT_EQ(mesh.points[at(arc.front())], (Point{0, name == "slave" ? 0.5 : -0.5, 0}));
+    EXPECT_NEAR(mesh.points[at(arc.back())][0], std::sin(quarter), 1e-15);
+    for (std::size_t i = 1; i < arc.size(); ++i)
+      EXPECT_NEAR(length(mesh.points[at(arc[i])], mesh.points[at(arc[i - 1])]),
+                  2 * std::sin(quarter / (2 * GetParam())), 1e-14);
+  }
+}
+
+TEST_P(TwoGradedQuarterDiscs, AreTheSameEveryTime) {
+  const SerialMesh again = two_graded_quarter_discs(GetParam());
+  EXPECT_EQ(again.points, mesh.points);
+  EXPECT_EQ(again.cells, mesh.cells);
+  EXPECT_EQ(again.boundary, mesh.boundary);
+}
+
+TEST(TwoGradedQuarterDiscsCounts, DegreeTwoHasTheNodesThatTheFixedMeshHasOfDegreeOne) {
+  const SerialMesh mesh = two_graded_quarter_discs(140);
+  EXPECT_EQ(mesh.points.size() + cells_of_edges(mesh).size(), 6142u);
+  EXPECT_THROW((void)two_graded_quarter_discs(7), Error);
+}
+
 TEST(TwoBlocks, FillTheBlocksWithMeshesThatDoNotMatch) {
   const SerialMesh mesh = two_blocks();
   EXPECT_NO_THROW(check_mesh(mesh, "blocks"));
@@ -269,8 +317,9 @@ TEST(TwoBodiesErrors, AnUnknownGeneratorIsAnsweredByThoseThatExist) {
   } catch (const Error &error) {
     EXPECT_EQ(error.status(), Status::bad_input);
     const std::string message = error.what();
-    for (const std::string name : {"three_quarter_discs", "square_with_disc", "two_quarter_discs",
-                                   "two_blocks", "half_disc", "one_block"})
+    for (const std::string name :
+         {"three_quarter_discs", "square_with_disc", "two_quarter_discs",
+          "two_graded_quarter_discs", "two_blocks", "half_disc", "one_block"})
       EXPECT_NE(message.find(name), std::string::npos) << message;
   }
 }

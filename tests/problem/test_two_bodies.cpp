@@ -14,7 +14,9 @@ namespace {
 
 constexpr double indentation = 0.09, initial_gap = 0.001; // defaults of two_disks
 
-Scene discs(const SceneOptions &options = {}) {
+/// Of degree 1.
+Scene discs(SceneOptions options = {}) {
+  options.emplace("degree", "1");
   return make_scene("two_disks", options);
 }
 
@@ -180,7 +182,7 @@ TEST_P(Discretisations, TheGapTakesTheMotionIn) {
 /// u = motion + w: a rigid motion strains no cell, and it is what the fixed boundaries prescribe.
 TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
   for (const auto &[name, mu] : {std::pair{"two_disks", 0.7}, std::pair{"patch", 0.08}}) {
-    Problem problem(PETSC_COMM_WORLD, make_scene(name), {});
+    Problem problem(PETSC_COMM_WORLD, make_scene(name, {{"degree", "1"}}), {});
     const Scene &scene = problem.scene();
     MappedCells cells = reference_cells(problem.mesh());
     map_cells(scene, {mu}, problem.mesh(), cells);

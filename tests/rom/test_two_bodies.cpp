@@ -18,7 +18,8 @@ namespace {
 using synthetic::PairSizes;
 
 Scene scene_with(const std::string &multiplier, const std::string &integration = "intersection") {
-  return make_scene("two_disks", {{"multiplier", multiplier}, {"integration", integration}});
+  return make_scene("two_disks",
+                    {{"degree", "1"}, {"multiplier", multiplier}, {"integration", integration}});
 }
 
 const Scene p0 = scene_with("p0"), p1 = scene_with("p1");
@@ -54,7 +55,7 @@ TEST(OnlinePair, AgreesWithDenseOperatorsAndBruteForce) {
 }
 
 TEST(OnlinePair, WorksWithoutAMotion) {
-  Scene scene = make_scene("two_disks", {{"initial_gap", "-0.1"}});
+  Scene scene = make_scene("two_disks", {{"degree", "1"}, {"initial_gap", "-0.1"}});
   scene.motion = nullptr;
   EXPECT_GT(expect_agreement(synthetic::random_pair_model({}, 1, scene), scene), 0);
 }

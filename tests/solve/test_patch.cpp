@@ -15,8 +15,9 @@ struct Material {
 };
 
 SceneOptions blocks(const std::string &multiplier, const std::string &integration = "intersection",
-                    const Material &material = {}) {
+                    const Material &material = {}, const std::string &degree = "1") {
   return {{"multiplier", multiplier},
+          {"degree", degree},
           {"integration", integration},
           {"young", std::to_string(material.young)},
           {"poisson_ratio", std::to_string(material.poisson)}};
@@ -58,17 +59,20 @@ void expect_exact(const SceneOptions &options, const Material &material, int ref
 }
 
 TEST(Patch, ConstantPressureIsExact) {
-  for (const std::string multiplier : {"p0", "p1"})
-    for (const int refine : {0, 1}) {
-      SCOPED_TRACE(multiplier + ", refined " + std::to_string(refine));
-      expect_exact(blocks(multiplier), {}, refine);
-    }
+  for (const std::string degree : {"1", "2"})
+    for (const std::string multiplier : {"p0", "p1"})
+      for (const int refine : {0, 1}) {
+        SCOPED_TRACE("degree " + degree + ", " + multiplier + ", refined " +
+                     std::to_string(refine));
+        expect_exact(blocks(multiplier, "intersection", {}, degree), {}, refine);
+      }
 }
 
 TEST(Patch, IsExactForEveryMaterial) {
   for (const Material material : {Material{1, 0}, Material{200, 0.45}, Material{3, -0.3}}) {
     SCOPED_TRACE(material.poisson);
-    expect_exact(blocks("p0", "intersection", material), material, 0);
+    for (const std::string degree : {"1", "2"})
+      expect_exact(blocks("p0", "intersection", material, degree), material, 0);
   }
 }
 

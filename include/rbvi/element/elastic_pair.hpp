@@ -6,8 +6,9 @@
 
 namespace rbvi {
 
-/// The options multiplier, integration, degree, young and poisson_ratio, then the scene's own.
-std::vector<SceneOption> elastic_pair_options(const std::vector<SceneOption> &own = {});
+/// The options multiplier, integration, degree (by default the one given), young and poisson_ratio,
+/// then the scene's own.
+std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<SceneOption> &own);
 
 /// Sets dimension, components, degree, material, a, v_product and the pair as these options say. a
 /// does not depend on the parameters: right where h(mu) moves each body by a similarity.

@@ -1,4 +1,4 @@
-// beta_HF (2.3) of pairs too large for dense matrices.
+// beta_HF and c_HF (2.3) of pairs with too many multipliers for dense matrices of them.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -29,7 +29,13 @@ private:
   std::vector<PetscInt> dofs_; ///< row of each contact dof in it
 };
 
-/// The EPS that `constant` uses, its options read. Throws failure for a value that SLEPc refuses.
-Handle<EPS> make_inverse_iteration();
+/// The largest |b(v, eta)| over |v| |eta| = 1: c^2 is the largest eigenvalue of R^-1 B V^-1 B^T
+/// R^-T, by the same EPS. `riesz_factor`: L of E^T V^-1 E = L L^T on the contact dofs, n_c x n_c;
+/// `b_contact`: dual x n_c. Serial. Throws failure if the iteration does not converge.
+double largest_stretch(const Matrix &riesz_factor, const SparseMatrix &b_contact,
+                       const SparseMatrix &w_product);
+
+/// The EPS of both, its options read. Throws failure for a value that SLEPc refuses.
+Handle<EPS> make_infsup_eps();
 
 } // namespace rbvi
