@@ -200,7 +200,7 @@ TEST(QuadraticPair, AMacroEdgeIsOneEdge) {
 
 std::string message(const Curve &slave, int degree) {
   try {
-    couple(slave, line(4, 0, 1, 0), {}, degree);
+    couple(slave, {{-1, 0, 0}, {3, 0, 0}, {1, 0, 0}}, {}, degree);
   } catch (const Error &error) {
     EXPECT_EQ(error.status(), Status::bad_input);
     return error.what();

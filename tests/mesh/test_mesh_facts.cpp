@@ -15,6 +15,7 @@ SerialMesh built(const Scene &scene) {
   const std::string &name = scene.mesh.generator;
   if (name == "square_with_disc") return square_with_disc();
   if (name == "two_quarter_discs") return two_quarter_discs();
+  if (name == "two_graded_quarter_discs") return two_graded_quarter_discs(scene.mesh.edges);
   if (name == "two_blocks") return two_blocks();
   return name == "one_block" ? one_block() : half_disc(scene.mesh.edges == 0 ? 100 : 316);
 }
