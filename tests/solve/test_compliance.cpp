@@ -59,7 +59,8 @@ class CompliancePerSpace : public testing::TestWithParam<const char *> {};
 INSTANTIATE_TEST_SUITE_P(Multipliers, CompliancePerSpace, testing::Values("p0", "p1"));
 
 TEST_P(CompliancePerSpace, GivesTheCondensedColumnsAtEveryParameter) {
-  Problem problem(PETSC_COMM_WORLD, make_scene("two_disks", {{"multiplier", GetParam()}}), {});
+  Problem problem(PETSC_COMM_WORLD,
+                  make_scene("two_disks", {{"degree", "1"}, {"multiplier", GetParam()}}), {});
   const Trace &trace = problem.trace();
   const CountingSolver solver(problem.assemble({0.7}).a);
   Compliance kept;
@@ -92,7 +93,8 @@ TEST_P(CompliancePerSpace, GivesTheCondensedColumnsAtEveryParameter) {
 
 /// B A^-1 B^T is symmetric and positive definite on the multipliers that have a partner.
 TEST_P(CompliancePerSpace, TheCondensedOperatorIsSymmetric) {
-  Problem problem(PETSC_COMM_WORLD, make_scene("two_disks", {{"multiplier", GetParam()}}), {});
+  Problem problem(PETSC_COMM_WORLD,
+                  make_scene("two_disks", {{"degree", "1"}, {"multiplier", GetParam()}}), {});
   const Operators &op = problem.assemble({0.7});
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
