@@ -105,11 +105,14 @@ def interpolation(runs, directory):
                                         ("rigid", "of the rigid disk", ORANGE)):
             for axis, operator in zip(row, operators[variant]):
                 errors = separation_errors(runs[variant, f"grid {count}"], operator)
-                for error, style, name in zip(errors, ("o-", "x--"), ("training", "validation")):
-                    axis.plot(np.arange(len(error)), np.maximum(error, 1e-16), style,
-                              color=colour, label=f"normal {normal}, {name} set")
+                for error, style, name in zip(errors, (dict(marker="o"), dict(marker="+", ls="")),
+                                              ("training", "validation")):
+                    axis.plot(np.arange(len(error)), np.maximum(error, 1e-16), color=colour,
+                              markersize=8, markerfacecolor="none", label=f"normal {normal}, "
+                              f"{name} set", **style)
         for axis, title in zip(row, ("$B^n$", r"$B^\tau$", "gap")):
             log_axis(axis, "terms", "", f"{title}, {count} training radii")
+            axis.set_ylim(1e-16, 3)
         for axis in row[:2]:
             as_published(axis, 41, 1e-3)
         row[0].set_ylabel("largest relative error")
