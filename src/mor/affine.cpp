@@ -228,7 +228,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart) {
   std::vector<int> all(training.size()), none;
   std::iota(all.begin(), all.end(), 0);
-  const bool neither = problem.two_bodies() || problem.nitsche(),
+  const bool without_b = problem.two_bodies() || problem.nitsche(),
              load = static_cast<bool>(problem.scene().f);
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());
@@ -238,9 +238,9 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   for (PetscInt i = 0; i < op.g.size(); ++i)
     g_keys.push_back({i, 0});
   Snapshots a(triangle.keys(), different_stiffness(problem, training));
-  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), neither ? none : all),
-      g(g_keys, neither ? none : all);
-  for (const int number : load || !neither ? all : a.numbers) {
+  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), without_b ? none : all),
+      g(g_keys, without_b ? none : all);
+  for (const int number : load || !without_b ? all : a.numbers) {
     const auto p = static_cast<std::size_t>(number);
     problem.assemble(training[p]);
     a.add(p, [&] { return triangle.values(op.a); });
@@ -257,7 +257,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   result.g = g.separate(MPI_COMM_SELF, options);
   result.sample_a = sample_domain(problem, result.a.entries, true);
   result.sample_f = sample_domain(problem, result.f.entries, false);
-  if (neither) return result;
+  if (without_b) return result;
   if (problem.on_support()) {
     const SupportCurve &curve = problem.support().curve;
     result.sample_b = sample_support(curve, problem.dual_size(), entries_of_b(result), true);

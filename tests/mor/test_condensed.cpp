@@ -60,8 +60,7 @@ void expect_agreement(const Scene &scene, const std::vector<Mu> &training,
   Problem problem(PETSC_COMM_WORLD, scene, {});
   const AffineOperators affine = separate(problem, training, {1e-12, 0});
   const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
-  const CondensedOperator condensed =
-      condense(problem, affine, training, basis, options).condensed;
+  const CondensedOperator condensed = condense(problem, affine, training, basis, options).condensed;
   for (const Mu &mu : others) {
     const Matrix expected = truth(problem, basis, mu);
     const Vector theta = theta_of(problem, affine.b, training, mu);

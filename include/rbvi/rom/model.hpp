@@ -122,7 +122,7 @@ struct SupportModel {
   CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
   bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
   TermsApart apart;
-  Matrix lift;        ///< dual dofs x b.size(): B e_y, term by term
+  Matrix lift;      ///< dual dofs x b.size(): B e_y, term by term
   Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
                     ///< operator their multipliers), where a query starts from
   Matrix starts_mu; ///< free parameters x P: where they are
