@@ -83,7 +83,8 @@ def pair_options(pair):
 
 def rows_of(path):
     with open(path, newline="") as file:
-        return [{key: value if key == "model" else float(value) for key, value in row.items()}
+        return [{key: value if key in ("model", "operator") else float(value)
+                 for key, value in row.items()}
                 for row in csv.DictReader(file)]
 
 
@@ -104,6 +105,13 @@ def stored(run, name):
 
 def history(run, name):
     return stored(run, "histories/values/" + name).ravel()
+
+
+def separation_errors(run, operator):
+    """Errors of an interpolated operator with 0, 1, ... terms: training set, validation set."""
+    rows = [row for row in rows_of(run / "verify" / "eim.csv") if row["operator"] == operator]
+    return tuple(np.array([row[name] for row in rows])
+                 for name in ("training_error", "validation_error"))
 
 
 def first_at(values, tolerance):

@@ -16,8 +16,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
-from study_tools import (first_at, history, markdown, pair_options, short, stored, study_main,
-                         summary, table)
+from study_tools import (first_at, history, markdown, pair_options, separation_errors, short,
+                         stored, study_main, summary, table)
 
 CASE = Path(__file__).parent / "published.yaml"
 VARIANTS = {  # radius: of the free parameter alone
@@ -55,19 +55,21 @@ def largest_errors(run):
 
 def sizes(runs):
     rows = []
-    for variant, normal in (("radius", "of the half-disk"), ("rigid", "of the rigid disk")):
+    for variant, normal, forms in (("radius", "of the half-disk", ("b", "b", "g")),
+                                   ("rigid", "of the rigid disk",
+                                    ("b_normal", "b_tangential", "g"))):
         for count in (61, 150):
             run = runs[variant, f"grid {count}"]
+            terms = [separation_errors(run, form)[0] for form in forms]
             rows.append([normal, len(stored(run, "support/starts_mu")[0]),
                          first_at(history(run, "pod/error"), 1e-6),
                          first_at(history(run, "normal_cone/error"), 1e-3),
                          first_at(history(run, "tangential/error"), 1e-4)] +
-                        [first_at(history(run, "eim/" + form), t)
-                         for form in "bg" for t in (1e-3, 1e-6)])
-    rows.append(["published", "61", "30", "20", "20", "41", "", "", ""])
+                        [first_at(error, t) for error in terms for t in (1e-3, 1e-6)])
+    rows.append(["published", "61", "30", "20", "20", "41", "", "41", "", "", ""])
     return markdown("Sizes of the bases and terms of the operators",
                     ["normal", "training radii", "N at 1e-6", "R at 1e-3", "S at 1e-4",
-                     "b at 1e-3", "1e-6", "gap at 1e-3", "1e-6"], rows)
+                     "B^n at 1e-3", "1e-6", "B^tau at 1e-3", "1e-6", "gap at 1e-3", "1e-6"], rows)
 
 
 def stability(runs):

@@ -7,7 +7,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_grid,
                           save)
-from study_tools import rows_of, stored, table
+from study_tools import rows_of, separation_errors, stored, table
 
 import numpy as np
 
@@ -95,19 +95,28 @@ def greedy(runs, directory):
 
 
 def interpolation(runs, directory):
-    """Errors of the empirical interpolation of b and of the gap (figure 3.6)."""
-    figure, axes = plt.subplots(1, 2, figsize=(9, 3.4), constrained_layout=True)
-    for variant, normal, colour in (("radius", "of the half-disk", BLUE),
-                                    ("rigid", "of the rigid disk", ORANGE)):
-        for count, style in ((61, "o-"), (150, "s:")):
-            for axis, form in zip(axes, "bg"):
-                error = history(runs[variant, f"grid {count}"], "eim/" + form)
-                axis.plot(np.arange(len(error)), np.maximum(error, 1e-16), style, color=colour,
-                          label=f"normal {normal}, {count} radii")
-    as_published(axes[0], 41, 1e-3)
-    log_axis(axes[0], "terms", "largest relative error", "b, training set")
-    log_axis(axes[1], "terms", "largest relative error", "gap, training set")
-    axes[0].legend(fontsize=8)
+    """Errors of the empirical interpolation of B^n, of B^tau and of the gap over the training and
+    the validation set (figure 3.6)."""
+    figure, axes = plt.subplots(2, 3, figsize=(13, 6), constrained_layout=True, sharex="col",
+                                sharey="row")
+    operators = {"radius": ("b", "b", "g"), "rigid": ("b_normal", "b_tangential", "g")}
+    for row, count in zip(axes, (61, 150)):
+        for variant, normal, colour in (("radius", "of the half-disk", BLUE),
+                                        ("rigid", "of the rigid disk", ORANGE)):
+            for axis, operator in zip(row, operators[variant]):
+                errors = separation_errors(runs[variant, f"grid {count}"], operator)
+                for error, style, name in zip(errors, (dict(marker="o"), dict(marker="+", ls="")),
+                                              ("training", "validation")):
+                    axis.plot(np.arange(len(error)), np.maximum(error, 1e-16), color=colour,
+                              markersize=8, markerfacecolor="none", label=f"normal {normal}, "
+                              f"{name} set", **style)
+        for axis, title in zip(row, ("$B^n$", r"$B^\tau$", "gap")):
+            log_axis(axis, "terms", "", f"{title}, {count} training radii")
+            axis.set_ylim(1e-16, 3)
+        for axis in row[:2]:
+            as_published(axis, 41, 1e-3)
+        row[0].set_ylabel("largest relative error")
+    axes[0, 0].legend(fontsize=8)
     save(figure, directory, "eim.png")
 
 

@@ -1,5 +1,6 @@
 #include "rbvi/mor/affine.hpp"
 
+#include "rbvi/mor/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
@@ -9,57 +10,6 @@
 namespace rbvi {
 
 namespace {
-
-/// The local entries of the lower triangle of A, by natural numbers, and where their values stand.
-class LowerTriangle {
-public:
-  LowerTriangle(Mat a, const Dofs &dofs) : natural_(natural_of_rows(dofs)) {
-    visit(a, [this](PetscInt row, PetscInt column, double) {
-      const EntryKey key{natural_[static_cast<std::size_t>(row)],
-                         natural_[static_cast<std::size_t>(column)]};
-      taken_.push_back(key.row >= key.column);
-      if (taken_.back()) keys_.push_back(key);
-    });
-  }
-  const std::vector<EntryKey> &keys() const { return keys_; }
-  Vector values(Mat a) const {
-    Vector result(static_cast<Index>(keys_.size()));
-    auto taken = taken_.begin();
-    Index next = 0;
-    visit(a, [&](PetscInt, PetscInt, double value) {
-      if (*taken++) result[next++] = value;
-    });
-    return result;
-  }
-
-private:
-  static std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
-    std::vector<PetscInt> natural(static_cast<std::size_t>(dofs.total_free), 0);
-    for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
-      natural[static_cast<std::size_t>(dofs.first_free) + i] = dofs.natural_owned[i];
-    MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPIU_INT, MPI_SUM,
-                  dofs.comm);
-    return natural;
-  }
-
-  template <class Visitor> static void visit(Mat a, Visitor &&visitor) {
-    PetscInt begin = 0, end = 0;
-    RBVI_CALL(MatGetOwnershipRange(a, &begin, &end));
-    for (PetscInt row = begin; row < end; ++row) {
-      PetscInt count = 0;
-      const PetscInt *columns = nullptr;
-      const PetscScalar *values = nullptr;
-      RBVI_CALL(MatGetRow(a, row, &count, &columns, &values));
-      for (PetscInt k = 0; k < count; ++k)
-        visitor(row, columns[k], values[k]);
-      RBVI_CALL(MatRestoreRow(a, row, &count, &columns, &values));
-    }
-  }
-
-  std::vector<PetscInt> natural_;
-  std::vector<EntryKey> keys_;
-  std::vector<bool> taken_;
-};
 
 /// One cell that touches sampled entries: its number, its vertices, and (entry, local) pairs.
 struct TouchedCell {
@@ -196,24 +146,6 @@ SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &en
   return to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine));
 }
 
-std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix) {
-  std::vector<EntryKey> keys;
-  for (Index row = 0; row < matrix.rows(); ++row)
-    for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
-      keys.push_back({static_cast<PetscInt>(row), static_cast<PetscInt>(entry.col())});
-  return keys;
-}
-
-Vector local_values(Vec vector) {
-  PetscInt size = 0;
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetLocalSize(vector, &size));
-  RBVI_CALL(VecGetArrayRead(vector, &values));
-  Vector result = Eigen::Map<const Vector>(values, size);
-  RBVI_CALL(VecRestoreArrayRead(vector, &values));
-  return result;
-}
-
 /// The first mu of the set with each value of the parameters that a depends on, by number.
 std::vector<int> different_stiffness(const Problem &problem, const std::vector<Mu> &set) {
   std::set<Mu> seen;
@@ -243,15 +175,60 @@ struct Snapshots {
       number = numbers[static_cast<std::size_t>(number)];
     return result;
   }
+  /// Those of the rows from `first` on, `count` of them.
+  Snapshots rows(PetscInt first, PetscInt count) const {
+    std::vector<Index> taken;
+    Snapshots result({}, numbers);
+    for (std::size_t e = 0; e < keys.size(); ++e) {
+      if (keys[e].row < first || keys[e].row >= first + count) continue;
+      taken.push_back(static_cast<Index>(e));
+      result.keys.push_back(keys[e]);
+    }
+    result.values = values(taken, Eigen::all);
+    return result;
+  }
 };
+
+/// B as one, or B^n and B^tau apart.
+void separate_rows(const Snapshots &b, Index normal, Index dual, const EimOptions &options,
+                   const std::optional<RowOptions> &apart, AffineOperators &result) {
+  const bool friction = dual > normal;
+  if (apart && friction) {
+    const Eim whole = b.separate(MPI_COMM_SELF, {.tolerance = 0, .max_size = 1});
+    if (whole.exact()) {
+      result.b = whole;
+      return;
+    }
+    const auto n = static_cast<PetscInt>(normal), all = static_cast<PetscInt>(dual);
+    result.b = b.rows(0, n).separate(MPI_COMM_SELF, apart->normal);
+    result.b_tangential = b.rows(n, all - n).separate(MPI_COMM_SELF, apart->tangential);
+    return;
+  }
+  result.b = b.separate(MPI_COMM_SELF, apart ? apart->normal : options);
+}
+
+/// The sampled entries of B, in the order of its terms.
+std::vector<EntryKey> entries_of_b(const AffineOperators &affine) {
+  std::vector<EntryKey> entries = affine.b.entries;
+  entries.insert(entries.end(), affine.b_tangential.entries.begin(),
+                 affine.b_tangential.entries.end());
+  return entries;
+}
 
 } // namespace
 
+std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem) {
+  const Index dual = problem.dual_size();
+  if (affine.b_tangential.size() == 0) return {{affine.b, 0, dual}};
+  const Index normal = problem.support().curve.vertices;
+  return {{affine.b, 0, normal}, {affine.b_tangential, normal, dual - normal}};
+}
+
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
-                         const EimOptions &options) {
+                         const EimOptions &options, const std::optional<RowOptions> &apart) {
   std::vector<int> all(training.size()), none;
   std::iota(all.begin(), all.end(), 0);
-  const bool apart = problem.two_bodies() || problem.nitsche(),
+  const bool without_b = problem.two_bodies() || problem.nitsche(),
              load = static_cast<bool>(problem.scene().f);
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());
@@ -261,28 +238,29 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   for (PetscInt i = 0; i < op.g.size(); ++i)
     g_keys.push_back({i, 0});
   Snapshots a(triangle.keys(), different_stiffness(problem, training));
-  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), apart ? none : all),
-      g(g_keys, apart ? none : all);
-  for (const int number : load || !apart ? all : a.numbers) {
+  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), without_b ? none : all),
+      g(g_keys, without_b ? none : all);
+  for (const int number : load || !without_b ? all : a.numbers) {
     const auto p = static_cast<std::size_t>(number);
     problem.assemble(training[p]);
     a.add(p, [&] { return triangle.values(op.a); });
     f.add(p, [&] { return local_values(op.f); });
-    b.add(p, [&] { return Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros()); });
+    b.add(p, [&] { return nonzero_values(op.b); });
     g.add(p, [&] { return op.g; });
   }
 
   AffineOperators result;
   result.a = a.separate(problem.comm(), options);
-  result.b = b.separate(MPI_COMM_SELF, options);
+  separate_rows(b, problem.on_support() ? problem.support().curve.vertices : problem.dual_size(),
+                problem.dual_size(), options, apart, result);
   result.f = f.separate(problem.comm(), options);
   result.g = g.separate(MPI_COMM_SELF, options);
   result.sample_a = sample_domain(problem, result.a.entries, true);
   result.sample_f = sample_domain(problem, result.f.entries, false);
-  if (apart) return result;
+  if (without_b) return result;
   if (problem.on_support()) {
     const SupportCurve &curve = problem.support().curve;
-    result.sample_b = sample_support(curve, problem.dual_size(), result.b.entries, true);
+    result.sample_b = sample_support(curve, problem.dual_size(), entries_of_b(result), true);
     result.sample_g = sample_support(curve, problem.dual_size(), result.g.entries, false);
     return result;
   }

@@ -55,17 +55,22 @@ std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
 }
 
 /// The terms of b on the basis, side by side: contact dofs x (multipliers * terms).
-Matrix loads_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
+Matrix loads_of(Problem &problem, const AffineOperators &affine, const std::vector<Mu> &training,
                 const Matrix &basis) {
   const Index m = basis.cols();
-  Matrix loads = Matrix::Zero(problem.trace().size, m * b.size());
+  Matrix loads = Matrix::Zero(problem.trace().size, m * affine.b_size());
   Operators op;
-  for (int i = 0; i < b.size(); ++i) {
-    const int snapshot = b.snapshots[static_cast<std::size_t>(i)];
-    problem.assemble_contact(training[static_cast<std::size_t>(snapshot)], op);
-    const Matrix at_snapshot = op.b.transpose() * basis;
-    for (int p = i; p < b.size(); ++p)
-      loads.middleCols(p * m, m) += b.combination(i, p) * at_snapshot;
+  int first = 0;
+  for (const RowsOfB &rows : rows_of_b(affine, problem)) {
+    for (int i = 0; i < rows.eim.size(); ++i) {
+      const int snapshot = rows.eim.snapshots[static_cast<std::size_t>(i)];
+      problem.assemble_contact(training[static_cast<std::size_t>(snapshot)], op);
+      const Matrix at_snapshot = op.b.middleRows(rows.first, rows.count).transpose() *
+                                 basis.middleRows(rows.first, rows.count);
+      for (int p = i; p < rows.eim.size(); ++p)
+        loads.middleCols((first + p) * m, m) += rows.eim.combination(i, p) * at_snapshot;
+    }
+    first += rows.eim.size();
   }
   return loads;
 }
@@ -137,12 +142,13 @@ Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers) {
          (basis.transpose() * multipliers);
 }
 
-Condensation condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                      const Matrix &basis, const CondensedOptions &options, LinearBasis *modes) {
+Condensation condense(Problem &problem, const AffineOperators &affine,
+                      const std::vector<Mu> &training, const Matrix &basis,
+                      const CondensedOptions &options, LinearBasis *modes) {
   const Scene &scene = problem.scene();
   const Mu all = expand(scene.parameters, training.front());
-  const Matrix loads = loads_of(problem, b, training, basis);
-  const bool appends = modes != nullptr && b.size() == 1 && options.responses > 0;
+  const Matrix loads = loads_of(problem, affine, training, basis);
+  const bool appends = modes != nullptr && affine.b_size() == 1 && options.responses > 0;
   const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all);
   Condensation result;
   CondensedOperator &condensed = result.condensed;

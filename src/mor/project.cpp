@@ -4,6 +4,7 @@
 #include "rbvi/rom/packed.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace rbvi {
 
@@ -49,24 +50,37 @@ Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
 /// The training numbers that some operator was sampled at, each once.
 std::vector<int> sampled_snapshots(const AffineOperators &affine) {
   std::vector<int> all;
-  for (const Eim *operator_eim : {&affine.a, &affine.b, &affine.f, &affine.g})
+  for (const Eim *operator_eim : {&affine.a, &affine.b, &affine.b_tangential, &affine.f, &affine.g})
     all.insert(all.end(), operator_eim->snapshots.begin(), operator_eim->snapshots.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
+double error_of(const Eim &eim) {
+  return eim.error.empty() ? 0 : eim.error.back();
+}
+
 AffineTerms start_terms(const Eim &eim, const SampleMesh &sample, Index entries) {
-  AffineTerms terms;
-  terms.reduced = Matrix::Zero(entries, eim.size());
-  terms.interpolation = eim.interpolation;
-  terms.sample = sample;
-  terms.error = eim.error.empty() ? 0 : eim.error.back();
+  return {Matrix::Zero(entries, eim.size()), eim.interpolation, sample, error_of(eim)};
+}
+
+/// B^n and B^tau apart have one interpolation matrix, block diagonal.
+AffineTerms start_terms_of_b(const AffineOperators &affine, Index entries) {
+  AffineTerms terms = start_terms(affine.b, affine.sample_b, entries);
+  const Eim &other = affine.b_tangential;
+  const Index first = affine.b.size(), count = other.size();
+  if (count == 0) return terms;
+  terms.reduced = Matrix::Zero(entries, first + count);
+  terms.interpolation.conservativeResizeLike(Matrix::Zero(first + count, first + count));
+  terms.interpolation.bottomRightCorner(count, count) = other.interpolation;
+  terms.error = std::max(terms.error, error_of(other));
   return terms;
 }
 
 /// Adds a snapshot's projection to every term that contains it.
-void accumulate(const Eim &eim, int snapshot, const Vector &projected, Matrix &terms) {
+template <class Terms>
+void accumulate(const Eim &eim, int snapshot, const Vector &projected, Terms &&terms) {
   for (int i = 0; i < eim.size(); ++i)
     if (eim.snapshots[static_cast<std::size_t>(i)] == snapshot)
       for (int j = i; j < eim.size(); ++j)
@@ -151,6 +165,24 @@ Vector upwards(const Problem &problem) {
   return result;
 }
 
+/// Adds a snapshot of B to the terms that contain it: of B^n and B^tau apart each has its own.
+void accumulate_b(const Problem &problem, const AffineOperators &affine, int snapshot,
+                  const Operators &op, const Matrix &trace, ReducedModel &model) {
+  Index first = 0;
+  for (const auto &[eim, row, rows] : rows_of_b(affine, problem)) {
+    const Index begin = std::exchange(first, first + eim.size());
+    if (!uses(eim, snapshot)) continue;
+    const auto b = op.b.middleRows(row, rows);
+    const Matrix reduced = model.dual_basis.middleRows(row, rows).transpose() * (b * trace);
+    accumulate(eim, snapshot, reduced.reshaped(), model.b.reduced.middleCols(begin, eim.size()));
+    if (model.support)
+      accumulate(eim, snapshot, b * upwards(problem),
+                 model.support->lift.block(row, begin, rows, eim.size()));
+    else
+      accumulate(eim, snapshot, op.weights, model.lumped_weights);
+  }
+}
+
 /// The training multipliers, and where they are.
 void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis,
                        SupportModel &support) {
@@ -159,6 +191,21 @@ void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis,
   for (std::size_t p = 0; p < samples.size(); ++p)
     std::copy(samples[p].mu.begin(), samples[p].mu.end(),
               support.starts_mu.col(static_cast<Index>(p)).begin());
+}
+
+/// e_EIM along the terms, and the training number of each.
+void add_separation(const AffineOperators &affine,
+                    std::map<std::string, std::vector<double>> &histories) {
+  const bool apart = affine.b_tangential.size() > 0;
+  const auto add = [&](const std::string &name, const Eim &eim) {
+    histories["eim/" + name] = eim.error;
+    histories["eim_selected/" + name] = {eim.snapshots.begin(), eim.snapshots.end()};
+  };
+  add("a", affine.a);
+  add(apart ? "b_normal" : "b", affine.b);
+  if (apart) add("b_tangential", affine.b_tangential);
+  add("f", affine.f);
+  add("g", affine.g);
 }
 
 } // namespace
@@ -184,7 +231,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   const Index n = model.primal_size(), generators = model.generators;
   const Matrix trace = restrict_to(problem.trace(), basis); // contact dofs x n
   model.a = start_terms(affine.a, affine.sample_a, n * (n + 1) / 2);
-  model.b = start_terms(affine.b, affine.sample_b, generators * n);
+  model.b = start_terms_of_b(affine, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
   if (problem.on_support() && !problem.nitsche()) {
@@ -197,7 +244,9 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     model.support->mended = bases.mended;
     model.support->basis = bases.multipliers.basis;
     model.support->condensed = bases.condensed;
-    model.support->lift = Matrix::Zero(problem.dual_size(), affine.b.size());
+    model.support->lift = Matrix::Zero(problem.dual_size(), affine.b_size());
+    if (affine.b_tangential.size() > 0)
+      model.support->apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
     store_multipliers(samples, model.dual_basis, *model.support);
   } else {
     model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
@@ -207,14 +256,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
     if (uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.comm(), op.a, basis), model.a.reduced);
-    if (uses(affine.b, p)) {
-      const Matrix b = model.dual_basis.transpose() * (op.b * trace);
-      accumulate(affine.b, p, b.reshaped(), model.b.reduced);
-      if (model.support)
-        accumulate(affine.b, p, op.b * upwards(problem), model.support->lift);
-      else
-        accumulate(affine.b, p, op.weights, model.lumped_weights);
-    }
+    if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, trace, model);
     if (uses(affine.g, p))
       accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
     if (uses(affine.f, p)) {
@@ -250,10 +292,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.histories["pga/sigma"] = bases.pga.sigma;
   if (bases.infsup_tolerance > 0) model.histories["pga/tolerance"] = {bases.infsup_tolerance};
   model.histories["pga/selected"] = {bases.pga.selected.begin(), bases.pga.selected.end()};
-  model.histories["eim/a"] = affine.a.error;
-  model.histories["eim/b"] = affine.b.error;
-  model.histories["eim/f"] = affine.f.error;
-  model.histories["eim/g"] = affine.g.error;
+  add_separation(affine, model.histories);
   return model;
 }
 

@@ -284,7 +284,7 @@ struct CheckedPair {
 CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, const AffineOperators &affine,
                          StageTimes &times) {
-  CheckedPair pair{build_bases(problem, samples, options, affine.b.size() == 1, times),
+  CheckedPair pair{build_bases(problem, samples, options, affine.b_size() == 1, times),
                    {},
                    options.cone.ring,
                    0};
@@ -320,6 +320,16 @@ void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOpt
   result.ring = best.ring;
 }
 
+/// The published reduction interpolates B^n and B^tau apart. The others see B in the condensed
+/// operator alone, which grows with the square of the number of its terms.
+std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
+  if (options.multipliers.reduction != MultiplierReduction::collocated) return std::nullopt;
+  RowOptions apart{options.eim, options.eim};
+  apart.normal.tolerance = options.eim_normal.value_or(options.eim.tolerance);
+  apart.tangential.tolerance = options.eim_tangential.value_or(options.eim.tolerance);
+  return apart;
+}
+
 } // namespace
 
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
@@ -331,7 +341,7 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   {
     const Stage stage("interpolation", times);
     if (training.empty()) throw failure("there is no sample to build a basis from");
-    result.affine = separate(problem, training, options.eim);
+    result.affine = separate(problem, training, options.eim, rows_apart(options));
   }
   if (problem.nitsche()) {
     reduce_nitsche(problem, samples, options, result, times);

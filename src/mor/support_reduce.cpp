@@ -58,7 +58,7 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   if (!collocated || choice.exact) {
     const Stage stage("condensation", times);
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
-    Condensation made = condense(problem, affine.b, training, nodal, options.condensed, modes);
+    Condensation made = condense(problem, affine, training, nodal, options.condensed, modes);
     bases.condensed = std::move(made.condensed);
     bases.supremizers = made.responses;
   }
@@ -70,7 +70,7 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
                                               bounds_at(scene, training), choice, options.cone);
   }
   if (!collocated || options.enrichment == Enrichment::decorrelated) return bases;
-  if (affine.b.size() == 1) training.resize(1);
+  if (affine.b_size() == 1) training.resize(1);
   const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
   add_supremizers(problem, training, reference, options,
                   multiplier_functions(nodal, bases.multipliers.basis), bases, times);

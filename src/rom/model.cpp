@@ -110,6 +110,11 @@ void check_support(const ReducedModel &model, const SupportModel &support) {
       require_shape(basis.slip, support.normal, 1, "support/basis/slip");
     require_indices(basis.nodes, support.normal, "support/basis/nodes");
   }
+  const int apart = support.apart.normal, all = model.b.size();
+  require(apart >= 0 && (apart == 0 || (apart < all && m > support.normal)),
+          "support/apart does not fit");
+  require(model.b.interpolation.bottomLeftCorner(all - apart, apart).isZero(0),
+          "b/interpolation mixes terms of B^n and of B^tau");
   require_shape(support.lift, model.dual_basis.rows(), model.b.size(), "support/lift");
   require_shape(support.starts, m, support.starts.cols(), "support/starts");
   require_shape(support.starts_mu, model.parameters.size(), support.starts.cols(),

@@ -1,4 +1,4 @@
-// Layout of model.h5 (schema 6). n = modes + supremizers, R generators, c = dual dofs of the
+// Layout of model.h5 (schema 7). n = modes + supremizers, R generators, c = dual dofs of the
 // contact region, d = dimension; every term set T = a, b, f, g has its own J.
 //
 //   scene/name, scene/options/{names,values}          text
@@ -22,6 +22,7 @@
 //   support/vertices                                  of the contact curve; 0: no rigid support
 //   support/{normal,axes,error}                       columns for lambda_n; parameter, lower,
 //   upper, support/{shape,terms,lift}                        points of each axis; see SupportModel
+//   support/apart                                     see TermsApart
 //   support/{reduction,mended}                        0 condensed, 1 collocated, 2 cones, 3 joint
 //   support/basis/{normal,tangential,slip,nodes}      see MultiplierBasis
 //   support/{starts,starts_mu}                        m x P, free parameters x P
@@ -251,6 +252,9 @@ void write_support(H5Writer &file, const std::optional<SupportModel> &support) {
   file.write("support/shape", support->condensed.shape);
   file.write("support/terms", support->condensed.terms);
   file.write("support/lift", support->lift);
+  const TermsApart &apart = support->apart;
+  file.write("support/apart", std::vector<double>{static_cast<double>(apart.normal),
+                                                  apart.normal_error, apart.tangential_error});
   file.write("support/reduction", static_cast<int>(support->reduction));
   file.write("support/mended", support->mended ? 1 : 0);
   file.write("support/basis/normal", support->basis.normal);
@@ -275,6 +279,9 @@ std::optional<SupportModel> read_support(const H5Reader &file) {
   support.condensed.shape = file.matrix("support/shape");
   support.condensed.terms = file.matrix("support/terms");
   support.lift = file.matrix("support/lift");
+  const std::vector<double> apart = file.doubles("support/apart");
+  if (apart.size() != 3) throw bad_input("support/apart has not 3 entries");
+  support.apart = {static_cast<int>(apart[0]), apart[1], apart[2]};
   support.reduction = static_cast<MultiplierReduction>(file.integer("support/reduction"));
   support.mended = file.integer("support/mended") != 0;
   support.basis.normal = file.matrix("support/basis/normal");

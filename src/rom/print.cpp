@@ -11,10 +11,11 @@ namespace rbvi {
 
 namespace {
 
-constexpr int label_width = 22;
+constexpr std::size_t label_width = 22;
 
 std::ostream &label(std::ostream &out, const std::string &text) {
-  return out << std::left << std::setw(label_width) << text;
+  out << std::left << std::setw(int{label_width}) << text;
+  return text.size() < label_width ? out : out << ' ';
 }
 
 std::string joined(const std::map<std::string, std::string> &map) {
@@ -41,7 +42,7 @@ void print_parameters(std::ostream &out, const ParameterSpace &space) {
     const Parameter &p = space.all[i];
     const bool is_free =
         std::find(space.free.begin(), space.free.end(), static_cast<int>(i)) != space.free.end();
-    label(out, i == 0 ? "parameters" : "") << std::setw(label_width) << p.name;
+    label(out, i == 0 ? "parameters" : "") << std::setw(int{label_width}) << p.name;
     if (is_free)
       out << '[' << p.lower << ", " << p.upper << ']';
     else
@@ -54,6 +55,13 @@ void print_terms(std::ostream &out, const std::string &name, const AffineTerms &
   label(out, "terms of " + name) << terms.size();
   if (terms.size() > 0) out << " (interpolation error " << terms.error << ')';
   out << '\n';
+}
+
+/// B^n and B^tau apart.
+void print_terms_of_rows(std::ostream &out, int terms, const TermsApart &apart) {
+  label(out, "terms of b") << apart.normal << " of B^n (interpolation error " << apart.normal_error
+                           << "), " << terms - apart.normal << " of B^tau (interpolation error "
+                           << apart.tangential_error << ")\n";
 }
 
 void print_support(std::ostream &out, const SupportModel &support, int multipliers) {
@@ -123,7 +131,10 @@ void print_model(std::ostream &out, const ReducedModel &model) {
     label(out, "b, g") << "assembled for each mu on " << model.slave_nodes << " + "
                        << model.contact_points.rows() - model.slave_nodes << " contact nodes\n";
   } else {
-    print_terms(out, "b", model.b);
+    if (model.support && model.support->apart.normal > 0)
+      print_terms_of_rows(out, model.b.size(), model.support->apart);
+    else
+      print_terms(out, "b", model.b);
     print_terms(out, "g", model.g);
   }
   label(out, "multipliers") << model.dual_basis.rows() << '\n';

@@ -41,6 +41,10 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
         multiplier_reduction_names()[static_cast<std::size_t>(choice.reduction)];
     if (choice.reduction == MultiplierReduction::condensed) return settings;
     settings["tangential_tolerance"] = short_number(choice.tangential);
+    if (options.reduce.eim_normal)
+      settings["eim_normal_tolerance"] = short_number(*options.reduce.eim_normal);
+    if (options.reduce.eim_tangential)
+      settings["eim_tangential_tolerance"] = short_number(*options.reduce.eim_tangential);
   }
   settings.merge(std::map<std::string, std::string>{
       {"cone_type", cone_type_names()[static_cast<std::size_t>(options.reduce.cone.type)]},

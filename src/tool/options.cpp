@@ -144,6 +144,10 @@ ReduceOptions reduce_options(const ParameterSpace &space) {
   options.pga.max_size = integer_of("pga_max_size", 0, 100000);
   options.eim.tolerance = number_of("eim_tolerance", 0, rough);
   options.eim.max_size = integer_of("eim_max_size", 0, 100000);
+  if (is_given("eim_normal_tolerance"))
+    options.eim_normal = number_of("eim_normal_tolerance", 0, rough);
+  if (is_given("eim_tangential_tolerance"))
+    options.eim_tangential = number_of("eim_tangential_tolerance", 0, rough);
   options.condensed.tolerance = number_of("condensed_tolerance", 0, rough);
   options.condensed.responses = number_of("response_tolerance", 0, rough);
   options.multipliers.reduction = static_cast<MultiplierReduction>(
@@ -200,6 +204,18 @@ void check_mesh_options(const std::string &scene) {
                         "one of the two");
 }
 
+/// Throws bad_input for tolerances of B^n and of B^tau where they are not apart.
+void check_rows_apart(const Scene &scene, const ReduceOptions &reduce) {
+  if (!reduce.eim_normal && !reduce.eim_tangential) return;
+  if (!scene.support || scene.nitsche ||
+      reduce.multipliers.reduction != MultiplierReduction::collocated)
+    throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for contact with a "
+                    "rigid support and -multiplier_reduction collocated: use -eim_tolerance");
+  if (reduce.eim_tangential && scene.support->friction.law == FrictionLaw::none)
+    throw bad_input("-eim_tangential_tolerance is for contact with friction, which this scene has "
+                    "not");
+}
+
 } // namespace
 
 bool is_option(const std::string &word) {
@@ -251,6 +267,7 @@ ToolOptions read_options(MPI_Comm comm) {
   if (!multipliers && contains(names, "multiplier_reduction"))
     throw bad_input("-multiplier_reduction is for contact with a rigid support by multipliers, "
                     "which this scene has not");
+  check_rows_apart(options.scene, options.reduce);
   if (!options.scene.nitsche && contains(names, "nitsche_quadrature"))
     throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
   if (options.scene.support && !contains(names, "cone_type"))

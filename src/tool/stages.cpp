@@ -40,12 +40,24 @@ StageRow snapshot_row(const ToolOptions &options, std::size_t training, int grou
 }
 
 std::string terms(const char *name, const Eim &eim) {
-  return std::string(name) + " " + std::to_string(eim.size()) +
-         (eim.reason.starts_with("separable") ? " (exact)" : "");
+  return std::string(name) + " " + std::to_string(eim.size()) + (eim.exact() ? " (exact)" : "");
+}
+
+/// "to 0.0001", and of B^n and B^tau where they have their own.
+std::string interpolation_tolerance(const ReduceOptions &reduce) {
+  std::string text = "to " + short_number(reduce.eim.tolerance);
+  if (reduce.eim_normal) text += ", B^n to " + short_number(*reduce.eim_normal);
+  if (reduce.eim_tangential) text += ", B^tau to " + short_number(*reduce.eim_tangential);
+  return text;
+}
+
+std::string terms_of_b(const AffineOperators &affine) {
+  if (affine.b_tangential.size() == 0) return terms("B", affine.b);
+  return terms("B^n", affine.b) + ", " + terms("B^tau", affine.b_tangential);
 }
 
 StageRow interpolation_row(const ToolOptions &options, const OfflineResult *result) {
-  const std::string tolerance = "to " + short_number(options.reduce.eim.tolerance);
+  const std::string tolerance = interpolation_tolerance(options.reduce);
   const bool load = static_cast<bool>(options.scene.f);
   const bool apart = options.scene.pair.has_value() || options.scene.nitsche.has_value();
   const std::string exact = options.scene.pair ? "; B, G are assembled exactly online" : "";
@@ -57,7 +69,7 @@ StageRow interpolation_row(const ToolOptions &options, const OfflineResult *resu
                                  "; a sum of few terms ends there" + exact};
   const AffineOperators &affine = result->made.affine;
   return {"interpolation",
-          "terms: " + terms("A", affine.a) + (apart ? "" : ", " + terms("B", affine.b)) +
+          "terms: " + terms("A", affine.a) + (apart ? "" : ", " + terms_of_b(affine)) +
               (load ? ", " + terms("F", affine.f) : "") +
               (apart ? "" : ", " + terms("G", affine.g)) + "; " + tolerance + exact};
 }
@@ -138,7 +150,7 @@ StageRow sweep_of_supremizers_row(const ToolOptions &options, const OfflineResul
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return {stage, "no supremizers are wanted", true};
   if (result == nullptr && !options.scene.pair) return {stage, "only if B does more than scale"};
-  if (!options.scene.pair && result->made.affine.b.size() == 1)
+  if (!options.scene.pair && result->made.affine.b_size() == 1)
     return {stage, "B only scales: one set and one SVD serve all mu", true};
   return {stage, "B depends on mu: part of PGA"};
 }

@@ -1,8 +1,10 @@
 // rbvi verify: a finished model against high-fidelity solves over the validation set.
 #include "rbvi/check/errors.hpp"
 #include "rbvi/check/output_errors.hpp"
+#include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/h5.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/mor/cones.hpp"
 #include "rbvi/par/collective.hpp"
@@ -213,6 +215,29 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
   });
 }
 
+/// What the terms leave of each operator, along their number, over the training and the validation
+/// set (Niakh 2022, figure 3.6). Collective.
+void write_separation(const fs::path &path, Problem &problem, const ReducedModel &model,
+                      const std::vector<Mu> &validation) {
+  const std::vector<SeparationErrors> separated = separation_errors(problem, model, validation);
+  collectively(problem.comm(), [&] {
+    int rank = 0;
+    MPI_Comm_rank(problem.comm(), &rank);
+    if (rank != 0) return;
+    std::ostringstream text;
+    text << std::setprecision(4) << "operator,terms,training_error,validation_error\n";
+    std::string line;
+    for (const auto &[name, training, errors] : separated) {
+      for (std::size_t j = 0; j < errors.size(); ++j)
+        text << name << ',' << j << ',' << training[j] << ',' << errors[j] << '\n';
+      line += (line.empty() ? "" : ", ") + name + ' ' + short_number(errors.back());
+    }
+    write_atomically(path, text.str());
+    std::printf("Interpolation over %zu validation mu, largest error: %s\n", validation.size(),
+                line.c_str());
+  });
+}
+
 std::string reduction_name(const SupportModel &support) {
   return multiplier_reduction_names()[static_cast<std::size_t>(support.reduction)];
 }
@@ -331,6 +356,7 @@ void command_verify(const ToolOptions &given) {
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
+  write_separation(out / "eim.csv", problem, model, truths.mu);
   int rank = 0;
   MPI_Comm_rank(world, &rank);
   const std::string none = no_constants(model);

@@ -62,6 +62,20 @@ TEST_F(RigidDisk, ThePublishedPairIsVerifiedToBeStable) {
   EXPECT_FALSE(fs::exists("run/verify/infsup.csv")) << "it was of the model before";
 }
 
+TEST_F(RigidDisk, NormalAndTangentialRowsAreInterpolatedApart) {
+  const std::string offline =
+      output_of(rbvi(2, "offline -case disk.yaml -out run -multiplier_reduction collocated "
+                        "-multiplier_exact no -normal rigid -eim_normal_tolerance 1e-2 "
+                        "-eim_tangential_tolerance 1e-3"));
+  EXPECT_TRUE(contains(offline, "B^n 2, B^tau 3")) << offline;
+  EXPECT_TRUE(contains(output_of(rbvi(1, "inspect run/model.h5")), "2 of B^n")) << offline;
+  EXPECT_TRUE(contains(verified(), "b_normal 0.00"));
+  const std::string table = slurp("run/verify/eim.csv");
+  EXPECT_TRUE(table.starts_with("operator,terms,training_error,validation_error\n")) << table;
+  EXPECT_EQ(lines_with(table, "b_normal,"), 3);
+  EXPECT_EQ(lines_with(table, "b_tangential,"), 4);
+}
+
 TEST_F(RigidDisk, AnAnswerThatBreaksTheLawSaysSo) {
   const std::string offline =
       "offline -case disk.yaml -multiplier_reduction collocated -gcns_max_nodes 2 ";
@@ -77,6 +91,9 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused(
       {{offline + "-friction slippery", "use one of none, tresca, coulomb"},
+       {offline + "-eim_normal_tolerance 1e-3", "for contact with a rigid support and"},
+       {offline + "-multiplier_reduction collocated -friction none -eim_tangential_tolerance 1e-3",
+        "contact with friction, which this scene has not"},
        {offline + "-arc_edges 7", "must be even and at least 8"},
        {offline + "-mesh disk.msh", "-arc_edges is of the built-in mesh"},
        {offline + "-multiplier_reduction best", "condensed"},

@@ -60,8 +60,7 @@ void expect_agreement(const Scene &scene, const std::vector<Mu> &training,
   Problem problem(PETSC_COMM_WORLD, scene, {});
   const AffineOperators affine = separate(problem, training, {1e-12, 0});
   const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
-  const CondensedOperator condensed =
-      condense(problem, affine.b, training, basis, options).condensed;
+  const CondensedOperator condensed = condense(problem, affine, training, basis, options).condensed;
   for (const Mu &mu : others) {
     const Matrix expected = truth(problem, basis, mu);
     const Vector theta = theta_of(problem, affine.b, training, mu);
@@ -97,7 +96,7 @@ TEST(Condensed, TooFewPointsAreAnErrorThatSaysSo) {
   const AffineOperators affine = separate(problem, {{1.0}}, {});
   const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
   try {
-    (void)condense(problem, affine.b, {{1.0}}, basis, {1e-9, 5});
+    (void)condense(problem, affine, {{1.0}}, basis, {1e-9, 5});
     FAIL() << "5 points do not reach 1e-9";
   } catch (const Error &error) {
     EXPECT_NE(std::string(error.what()).find("-condensed_tolerance"), std::string::npos);

@@ -31,17 +31,17 @@ struct Condensation {
   int responses = 0; ///< functions appended to the modes
 };
 
-/// `b`: the separation of b over the samples at `training`. One factorisation and basis.cols() *
-/// b.size() solves for each Chebyshev point, shared among the ranks. Collective. Throws failure
-/// where the tolerance needs more points.
+/// `affine`: the separation of b over the samples at `training`. One factorisation and
+/// basis.cols() * affine.b_size() solves for each Chebyshev point, shared among the ranks.
+/// Collective. Throws failure where the tolerance needs more points.
 ///
 /// `modes`, where given and b has one term: the responses A^-1 B^T `basis` are appended to them, at
 /// the ends and in the middle of each free parameter of A. The displacement is then as exact as the
 /// multipliers, which no set of snapshots makes it where active sets are new. Of the first A all
 /// are taken (down to a remainder of 1e-8 of their norm), of the others what is left above
 /// options.responses.
-Condensation condense(Problem &problem, const Eim &b, const std::vector<Mu> &training,
-                      const Matrix &basis, const CondensedOptions &options,
-                      LinearBasis *modes = nullptr);
+Condensation condense(Problem &problem, const AffineOperators &affine,
+                      const std::vector<Mu> &training, const Matrix &basis,
+                      const CondensedOptions &options, LinearBasis *modes = nullptr);
 
 } // namespace rbvi

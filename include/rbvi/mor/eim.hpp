@@ -34,6 +34,8 @@ struct Eim {
   std::vector<double> error; ///< e_EIM(j), j = 0, 1, ..., J (B.32): error[0] = 1
   std::string reason;        ///< "separable: rank 1, error at round-off", "tolerance reached", ...
   int size() const { return static_cast<int>(snapshots.size()); }
+  /// The sum of these terms is the operator at every training mu, to round-off.
+  bool exact() const { return reason.starts_with("separable"); }
 };
 
 /// Collective. `values`: local entries x P; `keys`: one per local entry, each owned by one rank.

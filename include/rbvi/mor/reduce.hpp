@@ -37,6 +37,8 @@ struct ReduceOptions {
   PgaOptions pga;
   bool infsup_tolerance = false; ///< the tolerance of pga is infsup_tolerance() of the training set
   EimOptions eim;
+  /// MultiplierReduction::collocated: tolerances of B^n and of B^tau, where not that of eim.
+  std::optional<double> eim_normal, eim_tangential;
   CondensedOptions condensed;    ///< contact with a rigid support
   MultiplierOptions multipliers; ///< of it
   GcnsOptions gcns;

@@ -106,6 +106,12 @@ struct MultiplierBasis {
   std::vector<int> nodes; ///< collocated, joint: the collocation nodes
 };
 
+/// Where B^n and B^tau, the rows of lambda_n and those of lambda_tau, are interpolated apart.
+struct TermsApart {
+  int normal = 0; ///< of b the first so many terms are of B^n, the others of B^tau; 0: all of both
+  double normal_error = 0, tangential_error = 0; ///< e_EIM reached of each (3.61)
+};
+
 /// Contact with a rigid support. The dual basis of the model is nodal: a column for every node of
 /// the curve, or pair of mirror images.
 struct SupportModel {
@@ -115,7 +121,8 @@ struct SupportModel {
   MultiplierBasis basis;       ///< empty where reduction is condensed
   CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
   bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
-  Matrix lift;        ///< dual dofs x b.size(): B e_y, term by term
+  TermsApart apart;
+  Matrix lift;      ///< dual dofs x b.size(): B e_y, term by term
   Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
                     ///< operator their multipliers), where a query starts from
   Matrix starts_mu; ///< free parameters x P: where they are
@@ -175,7 +182,7 @@ struct ReducedModel {
   int primal_size() const { return modes + supremizers; }
 
   AffineTerms a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x J
-  AffineTerms b; ///< reduced: R x n, column-major, R n x J
+  AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
   AffineTerms f; ///< n x J; J = 0: no load
   AffineTerms g; ///< R x J
 
@@ -207,7 +214,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 6;
+inline constexpr int model_schema = 7;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

@@ -1,0 +1,26 @@
+// How well the terms of a model sum up to its operators, along their number (3.61):
+//
+//   e(j) = max over mu of |B(mu) - sum over q <= j of theta_q(mu) B_q| / max over mu of |B(mu)|
+//
+// in the largest entry, over the set that the terms come from and over another one.
+#pragma once
+
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/model.hpp"
+
+namespace rbvi {
+
+struct SeparationErrors {
+  /// a, b, f or g; where B^n and B^tau are interpolated apart b_normal and b_tangential.
+  std::string name;
+  std::vector<double> training, validation; ///< with 0, 1, ..., J terms
+};
+
+/// Collective. Of every operator of the model that has terms. `problem`: of the model's scene and
+/// mesh; `validation`: free parameters. The terms are assembled again at the training mu that they
+/// were chosen at, their coefficients are those of a query. Throws failure if the model does not
+/// say which these mu are.
+std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedModel &model,
+                                                const std::vector<Mu> &validation);
+
+} // namespace rbvi

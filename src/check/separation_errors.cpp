@@ -1,0 +1,139 @@
+#include "rbvi/check/separation_errors.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/mor/operator_entries.hpp"
+#include "rbvi/rom/online.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace rbvi {
+
+namespace {
+
+/// One interpolation.
+struct Separated {
+  std::string name;
+  Index terms;
+  std::function<Vector(const Operators &)> values; ///< this rank's entries
+  std::function<Vector(const Mu &)> theta;         ///< at all parameters, of a query
+};
+
+/// Of b: all rows, or B^n and B^tau, by the first entries of its terms and of its values.
+void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Separated> &parts) {
+  const auto theta = [&model, &scene](const Mu &all) {
+    return model.support ? support_coefficients(model.b, true, scene, all)
+                         : affine_coefficients(model.b, scene.b, scene, all);
+  };
+  const Index normal = model.support ? model.support->apart.normal : 0;
+  if (normal == 0) {
+    parts.push_back(
+        {"b", model.b.size(), [](const Operators &op) { return nonzero_values(op.b); }, theta});
+    return;
+  }
+  const auto entries_of_normal = [](const Operators &op) {
+    return Index{op.b.outerIndexPtr()[op.normal]};
+  };
+  const Index tangential = model.b.size() - normal;
+  parts.push_back({"b_normal", normal,
+                   [=](const Operators &op) -> Vector {
+                     return nonzero_values(op.b).head(entries_of_normal(op));
+                   },
+                   [=](const Mu &all) -> Vector { return theta(all).head(normal); }});
+  parts.push_back({"b_tangential", tangential,
+                   [=](const Operators &op) -> Vector {
+                     return nonzero_values(op.b).tail(op.b.nonZeros() - entries_of_normal(op));
+                   },
+                   [=](const Mu &all) -> Vector { return theta(all).tail(tangential); }});
+}
+
+/// Those with terms. `triangle`, `scene` and `model` must outlive them.
+std::vector<Separated> separated(const LowerTriangle &triangle, const Scene &scene,
+                                 const ReducedModel &model) {
+  std::vector<Separated> parts;
+  parts.push_back(
+      {"a", model.a.size(), [&triangle](const Operators &op) { return triangle.values(op.a); },
+       [&](const Mu &all) { return affine_coefficients(model.a, scene.a, scene, all); }});
+  add_contact(model, scene, parts);
+  parts.push_back(
+      {"f", model.f.size(), [](const Operators &op) { return local_values(op.f); },
+       [&](const Mu &all) { return affine_coefficients(model.f, scene.f, scene, all); }});
+  parts.push_back({"g", model.g.size(), [](const Operators &op) { return op.g; },
+                   [&](const Mu &all) {
+                     return model.support ? support_coefficients(model.g, false, scene, all)
+                                          : affine_coefficients(model.g, scene.g, scene, all);
+                   }});
+  std::erase_if(parts, [](const Separated &part) { return part.terms == 0; });
+  return parts;
+}
+
+const std::vector<double> &history(const ReducedModel &model, const std::string &name) {
+  const auto found = model.histories.find(name);
+  if (found == model.histories.end())
+    throw failure("the model has no history " + name + ": reduce again");
+  return found->second;
+}
+
+/// The functions that theta combines: at the mu where term i was chosen the first i + 1 of them
+/// sum up to the operator. Entries x terms. Collective.
+Matrix functions_of(Problem &problem, const ReducedModel &model, const Separated &part) {
+  const std::vector<double> &selected = history(model, "eim_selected/" + part.name);
+  if (static_cast<Index>(selected.size()) != part.terms)
+    throw failure("the model does not say where the terms of " + part.name + " are from");
+  Matrix functions;
+  for (Index i = 0; i < part.terms; ++i) {
+    const auto number = static_cast<Index>(selected[static_cast<std::size_t>(i)]);
+    if (number < 0 || number >= model.trained_mu.cols())
+      throw failure("the terms of " + part.name + " are from no training parameter of the model");
+    const Vector column = model.trained_mu.col(number);
+    const Operators &op = problem.assemble({column.begin(), column.end()});
+    const Vector values = part.values(op), theta = part.theta(op.mu);
+    if (i == 0) functions.resize(values.size(), part.terms);
+    functions.col(i) = (values - functions.leftCols(i) * theta.head(i)) / theta[i];
+  }
+  return functions;
+}
+
+/// Raises the entries of `largest` to what is left with 0, 1, ... terms.
+void add_remainders(Vector values, const Matrix &functions, const Vector &theta, Vector &largest) {
+  const auto raise = [&](Index j) {
+    if (values.size() > 0) largest[j] = std::max(largest[j], values.cwiseAbs().maxCoeff());
+  };
+  raise(0);
+  for (Index j = 0; j < theta.size(); ++j) {
+    values -= theta[j] * functions.col(j);
+    raise(j + 1);
+  }
+}
+
+} // namespace
+
+std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedModel &model,
+                                                const std::vector<Mu> &validation) {
+  if (validation.empty()) return {};
+  const LowerTriangle triangle(problem.assemble(validation.front()).a, problem.dofs());
+  const std::vector<Separated> parts = separated(triangle, problem.scene(), model);
+  std::vector<Matrix> functions;
+  std::vector<Vector> largest;
+  for (const Separated &part : parts) {
+    functions.push_back(functions_of(problem, model, part));
+    largest.push_back(Vector::Zero(part.terms + 1));
+  }
+  for (const Mu &mu : validation) {
+    const Operators &op = problem.assemble(mu);
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      add_remainders(parts[k].values(op), functions[k], parts[k].theta(op.mu), largest[k]);
+  }
+  std::vector<SeparationErrors> result;
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    Vector &left = largest[k];
+    RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, left.data(), static_cast<PetscMPIInt>(left.size()),
+                            MPI_DOUBLE, MPI_MAX, problem.comm()));
+    if (const double scale = left[0]; scale > 0) left /= scale;
+    result.push_back(
+        {parts[k].name, history(model, "eim/" + parts[k].name), {left.begin(), left.end()}});
+  }
+  return result;
+}
+
+} // namespace rbvi
