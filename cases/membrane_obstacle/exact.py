@@ -57,7 +57,7 @@ class Exact:
     """The solution at mu = (r, cx, cy), for contact sets that are star-shaped about c."""
 
     def __init__(self, mu, load=LOAD):
-        self.obstacle, self.centre = CURVATURE / mu[0]**2, mu[1] + 1j * mu[2]
+        self.mu, self.obstacle, self.centre = mu, CURVATURE / mu[0]**2, mu[1] + 1j * mu[2]
         self.load, self.pressure = load, 4 * CURVATURE / mu[0]**2 - load
         self.inner = 0.27 * mu[0] * np.exp(1j * ANGLES)  # the circle where u = psi is asked for
         self.torsion_inside = torsion(self.centre + self.inner)
@@ -103,8 +103,9 @@ class Exact:
     def excess(self):
         """u - psi on the inner circle."""
         rho = self.radius(ANGLES)
-        # -int log|x - y| dy over C: its harmonic part by the moments of C, |x - c|^2 / 2 beside it.
-        log = np.pi * np.abs(self.inner)**2 / 2 + 2 * np.pi * np.mean(rho**2 / 2 * (np.log(rho) - 0.5))
+        # int log|x - y| dy over C: a harmonic part by the moments of C, and pi |x - c|^2 / 2.
+        mean = 2 * np.pi * np.mean(rho**2 / 2 * (np.log(rho) - 0.5))
+        log = np.pi * np.abs(self.inner)**2 / 2 + mean
         for k in range(1, ANGLES.size // 2):
             power = np.log(rho) if k == 2 else rho**(2 - k) / (2 - k)
             moment = 2 * np.pi * np.mean(power * np.exp(-1j * k * ANGLES))
@@ -125,4 +126,4 @@ class Exact:
             self.modes = start - change
             if np.max(np.abs(change)) < 1e-11:
                 return
-        raise RuntimeError(f"no contact set at r = {self.obstacle}, c = {self.centre}")
+        raise RuntimeError(f"no contact set found at mu = {self.mu}")
