@@ -62,7 +62,7 @@ struct SerialMesh {
 SerialMesh square_with_disc();
 
 /// The same square, disc and names, graded: the finest edges are in the disc about its centre, to
-/// 0.65 of its radius, 0.68 of the `circle_edges` equal edges of the circle; outside they are of
+/// 0.65 of its radius, 0.65 of the `circle_edges` equal edges of the circle; outside they are of
 /// nearly one length. With 60 edges 3399 nodes, 631 of them in the closed disc. Aspect ratios
 /// <= 1.65. Deterministic: concentric rings of 6 k nodes, rings of as many nodes as the circle has,
 /// then rings that turn into the square. Throws bad_input unless `circle_edges` is a multiple
