@@ -21,6 +21,7 @@ namespace rbvi {
 namespace {
 
 constexpr double reference_radius = 0.2;
+constexpr int lumped_edges = 60;   ///< of the circle, with vertex quadrature
 constexpr double transition = 0.3; ///< width of the ring over which the map turns into the identity
 
 // Along its radii the ring is stretched by 1 + phi' (r - 0.2 + c . e) > 0, with |phi'| <= 1.5 /
@@ -61,15 +62,24 @@ double obstacle(const Mu &mu, const Point &x) {
   return -1.25 * (dx * dx + dy * dy) / (mu[0] * mu[0]);
 }
 
-MeshRecipe mesh() {
+MeshRecipe mesh(int circle_edges) {
   const Place square = box({-0.5, -0.5, 0}, {0.5, 0.5, 0});
   const double disc = std::numbers::pi * reference_radius * reference_radius;
-  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, ""};
+  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, "", circle_edges};
   recipe.facts = {{"", "the square of side 1 m about the origin", square, 1},
                   {"obstacle", "the disk of radius 0.2 m about the origin",
                    disk({0, 0, 0}, reference_radius), disc},
                   {"boundary", "all four sides of the square", rim(square), 4}};
   return recipe;
+}
+
+/// Edges of the circle in the graded mesh; 0 is the mesh of the published answers.
+int circle_edges(const SceneOptions &options, bool lumped) {
+  const double edges = number_in(options, "circle_edges");
+  if (std::fmod(edges, 12) != 0)
+    throw bad_input("option circle_edges is " + options.at("circle_edges") +
+                    ": it must be a multiple of 12, or 0");
+  return edges == 0 && lumped ? lumped_edges : static_cast<int>(edges);
 }
 
 /// Throws bad_input unless the disc of radius all[0] about (all[1], all[2]) is far enough from the
@@ -93,7 +103,8 @@ Scene make(const SceneOptions &options) {
   scene.check_parameters = check_disc_in_square;
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
-  scene.mesh = mesh();
+  scene.lumped = options.at("lumped") == "yes";
+  scene.mesh = mesh(circle_edges(options, scene.lumped));
   scene.map = options.at("disc_map") == "graded" ? graded : similarity;
   scene.snap = [](const Point &x) -> Point {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
@@ -101,7 +112,6 @@ Scene make(const SceneOptions &options) {
   };
   scene.fixed = {{"boundary", {}}};
   scene.contact_region = "obstacle";
-  scene.lumped = options.at("lumped") == "yes";
   const double load = number_in(options, "load");
   scene.a = laplace("");
   if (load != 0) scene.f = constant_load("", load);
@@ -116,15 +126,23 @@ Scene make(const SceneOptions &options) {
 } // namespace
 
 SceneEntry membrane_obstacle() {
-  return {"membrane_obstacle",
-          "elastic membrane pushed onto a disc-shaped obstacle of free radius and centre",
-          {{"load", "-25", "load per unit area", {}, {-1e6, 1e6}},
-           {"disc_map", "similarity", "how the reference disc is mapped", {"similarity", "graded"}},
-           {"lumped",
-            "yes",
-            "vertex quadrature in b and g; no: exact quadrature, the published method",
-            {"no", "yes"}}},
-          make};
+  return {
+      "membrane_obstacle",
+      "elastic membrane pushed onto a disc-shaped obstacle of free radius and centre",
+      {{"load", "-25", "load per unit area", {}, {-1e6, 1e6}},
+       {"disc_map", "similarity", "how the reference disc is mapped", {"similarity", "graded"}},
+       {"lumped",
+        "yes",
+        "vertex quadrature in b and g; no: exact quadrature, the published method",
+        {"no", "yes"}},
+       {"circle_edges",
+        "0",
+        "edges of the disc's circle in the graded mesh, a multiple of 12; 0: 60, with -lumped no "
+        "the published mesh",
+        {},
+        {0, 240},
+        true}},
+      make};
 }
 
 } // namespace rbvi

@@ -40,7 +40,11 @@ struct Generator {
 };
 
 constexpr std::array generators{
-    Generator{"square_with_disc", [](const MeshRecipe &) { return square_with_disc(); }},
+    Generator{"square_with_disc",
+              [](const MeshRecipe &recipe) {
+                return recipe.edges == 0 ? square_with_disc() : square_with_disc(recipe.edges);
+              },
+              true},
     Generator{"two_quarter_discs", [](const MeshRecipe &) { return two_quarter_discs(); }},
     Generator{"two_graded_quarter_discs",
               [](const MeshRecipe &recipe) { return two_graded_quarter_discs(recipe.edges); },

@@ -131,6 +131,8 @@ TEST(Validity, OptionsOfScenesThatMakeNoSense) {
   EXPECT_TRUE(refused("rigid_disk", "nitsche_gamma0", "0"));
   for (const char *edges : {"7", "9", "6", "8.5", "-8", "1e9"})
     EXPECT_TRUE(refused("rigid_disk", "arc_edges", edges)) << edges;
+  for (const char *edges : {"6", "18", "12.5", "-12", "252", "1e9"})
+    EXPECT_TRUE(refused("membrane_obstacle", "circle_edges", edges)) << edges;
 }
 
 TEST(Describe, Ranges) {

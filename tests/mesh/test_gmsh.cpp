@@ -43,7 +43,7 @@ GmshDrawing membrane(const std::string &boundary = "boundary") {
 
 class Encodings : public testing::TestWithParam<GmshEncoding> {
 protected:
-  const Scene scene = make_scene("membrane_obstacle");
+  const Scene scene = make_scene("membrane_obstacle", {{"lumped", "no"}});
 };
 INSTANTIATE_TEST_SUITE_P(Gmsh, Encodings, testing::ValuesIn(gmsh_encodings),
                          [](const testing::TestParamInfo<GmshEncoding> &encoding) {
