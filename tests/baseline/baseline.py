@@ -80,7 +80,7 @@ def differs(key, value, expected, scale):
         return difference > (1 if model == "full" else max(1, expected))
     own_error = WITHIN_THEIR_ERROR.get((formulation, model), 0)
     if output == "quadrature_residual":  # an estimate of an error, of which the first digits count
-        return difference > max(1e-8, (1 if own_error else 1e-2) * expected)
+        return difference > (1e-2 if own_error else max(1e-8, 1e-2 * expected))
     round_off = max(ROUND_OFF.get(output, 0), max(1e-10, own_error) * scale)
     return difference > max(1.1e-9 * abs(expected), round_off)
 
