@@ -157,7 +157,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
     rows.push_back(std::move(row));
 
   std::ostringstream head;
-  head << "Scene " << model.scene_name << ", " << problem.mesh().total_vertices << " nodes, "
+  head << "Scene " << model.scene_name << ", " << problem.mesh().total_nodes << " nodes, "
        << truths.size() << " validation parameters, timed on 1 of " << ranks << " ranks.\n"
        << "Errors are relative to the samples of the run (vi: of the lumped scene), u in V, lambda "
           "in W; "
