@@ -1,6 +1,7 @@
 #include "rbvi/mor/high_fidelity_constant.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/operator_entries.hpp"
 #include "rbvi/solve/whole.hpp"
 
 #include <Eigen/SparseCholesky>
@@ -90,24 +91,14 @@ Handle<Mat> saddle_point(Mat v, const SparseMatrix &b, const std::vector<PetscIn
         visit(static_cast<PetscInt>(fields + i), dofs[static_cast<std::size_t>(entry.col())],
               entry.value());
   };
-  const auto each_of_v = [&](const auto &visit) {
-    for (PetscInt row = 0; row < fields; ++row) {
-      PetscInt count = 0;
-      const PetscInt *columns = nullptr;
-      const PetscScalar *values = nullptr;
-      RBVI_CALL(MatGetRow(v, row, &count, &columns, &values));
-      for (PetscInt k = 0; k < count; ++k)
-        visit(row, columns[k], values[k]);
-      RBVI_CALL(MatRestoreRow(v, row, &count, &columns, &values));
-    }
-  };
-  each_of_v([&](PetscInt row, PetscInt, double) { ++longest[static_cast<std::size_t>(row)]; });
+  visit_entries(v,
+                [&](PetscInt row, PetscInt, double) { ++longest[static_cast<std::size_t>(row)]; });
   each_of_b([&](PetscInt row, PetscInt column, double) {
     ++longest[static_cast<std::size_t>(row)];
     ++longest[static_cast<std::size_t>(column)];
   });
   return assembled(size, longest, [&](const auto &add) {
-    each_of_v(add);
+    visit_entries(v, add);
     each_of_b([&](PetscInt row, PetscInt column, double value) {
       add(row, column, value);
       add(column, row, value);

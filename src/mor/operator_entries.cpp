@@ -13,26 +13,11 @@ std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
   return natural;
 }
 
-/// Calls with row, column and value of each local entry.
-template <class Visitor> void visit(Mat a, Visitor &&visitor) {
-  PetscInt begin = 0, end = 0;
-  RBVI_CALL(MatGetOwnershipRange(a, &begin, &end));
-  for (PetscInt row = begin; row < end; ++row) {
-    PetscInt count = 0;
-    const PetscInt *columns = nullptr;
-    const PetscScalar *values = nullptr;
-    RBVI_CALL(MatGetRow(a, row, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k)
-      visitor(row, columns[k], values[k]);
-    RBVI_CALL(MatRestoreRow(a, row, &count, &columns, &values));
-  }
-}
-
 } // namespace
 
 LowerTriangle::LowerTriangle(Mat a, const Dofs &dofs) {
   const std::vector<PetscInt> natural = natural_of_rows(dofs);
-  visit(a, [&](PetscInt row, PetscInt column, double) {
+  visit_entries(a, [&](PetscInt row, PetscInt column, double) {
     const EntryKey key{natural[static_cast<std::size_t>(row)],
                        natural[static_cast<std::size_t>(column)]};
     taken_.push_back(key.row >= key.column);
@@ -44,7 +29,7 @@ Vector LowerTriangle::values(Mat a) const {
   Vector result(static_cast<Index>(keys_.size()));
   auto taken = taken_.begin();
   Index next = 0;
-  visit(a, [&](PetscInt, PetscInt, double value) {
+  visit_entries(a, [&](PetscInt, PetscInt, double value) {
     if (*taken++) result[next++] = value;
   });
   return result;
