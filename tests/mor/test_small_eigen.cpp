@@ -80,6 +80,16 @@ TEST(SmallEigen, follows_its_options) {
             std::string::npos);
 }
 
+TEST(SmallEigen, fewer_pairs_than_asked_for_is_a_failure_that_says_what_to_do) {
+  const Matrix matrix = with_eigenvalues(Vector::LinSpaced(30, 2, 1.9), 3);
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-few_eps_type", "gd"));
+  const std::string message =
+      failure_with("-few_eps_max_it", "1", [&] { SmallEigen("few_").values(matrix); });
+  RBVI_CALL(PetscOptionsClearValue(nullptr, "-few_eps_type"));
+  EXPECT_NE(message.find("of 30 eigenvalues"), std::string::npos) << message;
+  EXPECT_NE(message.find("leave out -few_eps_type"), std::string::npos) << message;
+}
+
 TEST(SmallSvdObject, reads_its_options_and_is_made_anew_after_a_failure) {
   const Matrix matrix = with_eigenvalues(Vector::LinSpaced(30, 2, 1.9), 3);
   const ErrorRecorder quiet;
