@@ -1,9 +1,9 @@
 #include "rbvi/check/errors.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/cones.hpp"
-#include "rbvi/mor/stability.hpp"
-#include "rbvi/rom/packed.hpp"
+#include "rbvi/mor/bases/cones.hpp"
+#include "rbvi/mor/stability/stability.hpp"
+#include "rbvi/rom/model/packed.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,8 @@
 #include "rbvi/check/separation_errors.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/operator_entries.hpp"
+#include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"
 
 #include <algorithm>

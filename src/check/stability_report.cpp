@@ -1,8 +1,8 @@
 #include "rbvi/check/stability_report.hpp"
 
-#include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/reduce.hpp"
-#include "rbvi/mor/small_svd.hpp"
+#include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
 
 #include <algorithm>

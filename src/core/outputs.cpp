@@ -4,20 +4,9 @@
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <iomanip>
 
 namespace rbvi {
-
-namespace {
-
-std::string ten_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
-
-} // namespace
 
 const std::vector<OutputColumn> &output_columns() {
   using enum OutputKind;
@@ -62,87 +51,16 @@ const std::vector<OutputColumn> &output_columns() {
   return columns;
 }
 
-namespace {
-
-std::string two_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1e", value);
-  return text;
-}
-
-/// In double quotes, which are doubled inside, without line breaks: one field of a CSV row.
-std::string quoted(const std::string &text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return result + '"';
-}
-
-} // namespace
-
-OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const Outputs &like,
-                         ErrorOfOutput errors, bool status)
-    : out_(out), parameters_(space.size()), errors_(std::move(errors)), status_(status) {
-  for (const OutputColumn &column : output_columns())
-    if (like.*column.value) columns_.push_back(column);
-  for (int i = 0; i < parameters_; ++i)
-    out_ << (i > 0 ? "," : "") << space.at(i).name;
-  for (const OutputColumn &column : columns_) {
-    out_ << ',' << column.name;
-    if (errors_.contains(column.name)) out_ << ',' << column.name << "_error";
-  }
-  out_ << (status_ ? ",status\n" : "\n");
-}
-
-void OutputTable::begin(const Mu &mu) {
-  for (int i = 0; i < parameters_; ++i)
-    out_ << (i > 0 ? "," : "")
-         << (mu.empty() ? "" : shortest_number(mu[static_cast<std::size_t>(i)]));
-}
-
-void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold) {
-  begin(mu);
-  for (const OutputColumn &column : columns_) {
-    const std::optional<double> value = outputs.*column.value;
-    out_ << ',' << (value ? ten_digits(*value) : "");
-    const auto error = errors_.find(column.name);
-    if (error != errors_.end()) out_ << ',' << (errors_hold ? two_digits(error->second) : "");
-  }
-  out_ << (status_ ? ",ok\n" : "\n");
-}
-
-void OutputTable::add_failure(const Mu &mu, const std::string &reason) {
-  begin(mu);
-  for (const OutputColumn &column : columns_)
-    out_ << (errors_.contains(column.name) ? ",," : ",");
-  out_ << ',' << quoted(reason) << '\n';
-}
-
-void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector<Mu> &mus,
-               const std::vector<Outputs> &rows) {
-  if (mus.size() != rows.size())
-    throw failure("a table of " + std::to_string(mus.size()) + " parameters and " +
-                  std::to_string(rows.size()) + " results");
-  Outputs like;
-  for (const OutputColumn &column : output_columns())
-    for (const Outputs &row : rows)
-      if (row.*column.value) like.*column.value = row.*column.value;
-  OutputTable table(out, space, like);
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    table.add(mus[r], rows[r]);
-}
-
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
   for (const OutputColumn &column : output_columns()) {
     const std::optional<double> value = outputs.*column.value;
     if (!value) continue;
-    out << std::left << std::setw(22) << column.name << ten_digits(*value);
+    const std::string digits = formatted("%.10g", *value);
+    out << std::left << std::setw(22) << column.name << digits;
     const auto error = errors.find(column.name);
     if (error != errors.end())
-      out << std::setw(static_cast<int>(18 - ten_digits(*value).size())) << ""
-          << "(error " << two_digits(error->second) << ')';
+      out << std::setw(static_cast<int>(18 - digits.size())) << ""
+          << "(error " << formatted("%.1e", error->second) << ')';
     out << '\n';
   }
 }
@@ -175,7 +93,8 @@ std::string resolution_warning(const Outputs &outputs) {
   if (narrow) text += "forces may be off by 3e-3 or more, pressures and widths by 0.1";
   if (narrow && slips) text += ", and ";
   if (slips)
-    text += "where the slip turns, tangential_force may be off by " + two_digits(1.5 / contact);
+    text +=
+        "where the slip turns, tangential_force may be off by " + formatted("%.1e", 1.5 / contact);
   return text + "; a finer mesh tells (-mesh_refine)";
 }
 

@@ -1,10 +1,7 @@
 #include "rbvi/core/scene.hpp"
 
-#include "../../cases/membrane_obstacle/scene.hpp"
-#include "../../cases/patch/scene.hpp"
-#include "../../cases/rigid_disk/scene.hpp"
-#include "../../cases/two_disks/scene.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 
 #include <algorithm>
@@ -12,13 +9,6 @@
 namespace rbvi {
 
 namespace {
-
-std::string joined(const std::vector<std::string> &names) {
-  std::string text;
-  for (const std::string &name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 void check_option(const SceneOption &option, const std::string &value) {
   if (option.choices.empty()) {
@@ -77,12 +67,6 @@ std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options) {
 
 double number_in(const SceneOptions &options, const std::string &name) {
   return parse_number(options.at(name), "option " + name);
-}
-
-const std::vector<SceneEntry> &scene_catalogue() {
-  static const std::vector<SceneEntry> catalogue{membrane_obstacle(), two_disks(), rigid_disk(),
-                                                 patch()};
-  return catalogue;
 }
 
 Scene make_scene(const std::string &name, const SceneOptions &options) {

@@ -25,9 +25,20 @@ std::size_t edits(const std::string &from, const std::string &to) {
 
 } // namespace
 
-std::string short_number(double value) {
+std::string formatted(const char *format, double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string short_number(double value) {
+  return formatted("%.4g", value);
+}
+
+std::string joined(const std::vector<std::string> &parts, const std::string &separator) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    text += (i > 0 ? separator : "") + parts[i];
   return text;
 }
 

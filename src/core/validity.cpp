@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 namespace rbvi {
@@ -18,9 +17,7 @@ bool inside(const Range &range, double value) {
 
 /// Without the round-off of a bound that was computed.
 std::string bound(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return shortest_number(std::strtod(text, nullptr));
+  return shortest_number(std::strtod(formatted("%.12g", value).c_str(), nullptr));
 }
 
 } // namespace

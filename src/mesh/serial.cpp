@@ -1,8 +1,8 @@
 #include "rbvi/mesh/serial.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
 #include "rbvi/element/geometry.hpp"
+#include "rbvi/io/checksum.hpp"
 
 #include <algorithm>
 #include <cmath>

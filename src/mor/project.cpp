@@ -1,7 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/par/gather.hpp"
-#include "rbvi/rom/packed.hpp"
+#include "rbvi/rom/model/packed.hpp"
 
 #include <algorithm>
 #include <utility>

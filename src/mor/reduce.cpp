@@ -1,7 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/high_fidelity_pair.hpp"
+#include "rbvi/mor/stability/high_fidelity_pair.hpp"
 #include "rbvi/par/turns.hpp"
 #include "rbvi/rom/self_check.hpp"
 #include "rbvi/solve/methods.hpp"

@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/support_outputs.hpp"
-#include "rbvi/rom/support_solver.hpp"
+#include "rbvi/rom/support/support_solver.hpp"
 
 namespace rbvi {
 

@@ -4,8 +4,9 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/contact_area.hpp"
 #include "rbvi/element/support_outputs.hpp"
-#include "rbvi/rom/packed.hpp"
-#include "rbvi/rom/reduced_stiffness.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/rom/model/packed.hpp"
+#include "rbvi/rom/support/reduced_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>

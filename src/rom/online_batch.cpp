@@ -2,8 +2,10 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/output_table.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/training_samples.hpp"
 
 #include <unistd.h>
 

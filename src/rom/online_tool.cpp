@@ -1,12 +1,12 @@
 #include "online_batch.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
-#include "rbvi/core/overwrite.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/overwrite.hpp"
+#include "rbvi/io/write_atomically.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/training_samples.hpp"
-#include "rbvi/rom/vtu.hpp"
+#include "rbvi/rom/solution_vtu.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 #include "rbvi/rom/print.hpp"
 
+#include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/self_check.hpp"
-#include "rbvi/rom/training_samples.hpp"
 
 #include <algorithm>
 #include <iomanip>

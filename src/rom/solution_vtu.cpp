@@ -1,8 +1,9 @@
-// One solution as VTU files: the bodies and their contact.
+#include "rbvi/rom/solution_vtu.hpp"
+
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/cell_fields.hpp"
 #include "rbvi/element/lagrange.hpp"
-#include "rbvi/rom/cell_fields.hpp"
-#include "rbvi/rom/vtu.hpp"
+#include "rbvi/io/vtu.hpp"
 
 namespace rbvi {
 

@@ -1,4 +1,4 @@
-#include "rbvi/core/lcp.hpp"
+#include "rbvi/law/lcp.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {

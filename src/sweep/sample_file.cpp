@@ -1,7 +1,7 @@
 #include "sample_file.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
+#include "rbvi/io/h5.hpp"
 
 #include <limits>
 

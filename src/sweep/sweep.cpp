@@ -1,8 +1,10 @@
 #include "rbvi/sweep/sweep.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
-#include "rbvi/core/temporary_files.hpp"
+#include "rbvi/io/checksum.hpp"
+#include "rbvi/io/h5.hpp"
+#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"

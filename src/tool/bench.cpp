@@ -1,18 +1,18 @@
 // rbvi bench: run time against error, on one rank, over the validation set.
 #include "rbvi/check/bench.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/training_samples.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/model_case.hpp"
-#include "rbvi/tool/run_directory.hpp"
+#include "rbvi/tool/options/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <sstream>
@@ -23,20 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text(const char *format, double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
-
 std::string error_text(double value) {
-  return value < 0 ? "" : text("%.1e", value);
+  return value < 0 ? "" : formatted("%.1e", value);
 }
 
 /// Queries from which the seconds spent offline are won back; "" if never or not applicable.
 std::string threshold(const BenchRow &row, double best) {
   if (row.offline == 0 || row.median >= best) return "";
-  return text("%.0f", std::ceil(row.offline / (best - row.median)));
+  return formatted("%.0f", std::ceil(row.offline / (best - row.median)));
 }
 
 const std::vector<std::string> header{"method",     "includes", "queries",      "median_ms",
@@ -48,37 +42,36 @@ std::vector<std::string> cells(const BenchRow &row, double best) {
   return {row.method,
           row.includes,
           std::to_string(row.queries),
-          text("%.3f", 1e3 * row.median),
-          text("%.3f", 1e3 * row.slow),
+          formatted("%.3f", 1e3 * row.median),
+          formatted("%.3f", 1e3 * row.slow),
           error_text(row.u_mean),
           error_text(row.u_max),
           error_text(row.lambda_mean),
           error_text(row.lambda_max),
-          answers ? text("%.3g", best / row.median) : "",
+          answers ? formatted("%.3g", best / row.median) : "",
           threshold(row, best),
           error_text(row.outputs_max)};
 }
 
-std::string joined(const std::vector<std::string> &parts, const std::string &begin,
-                   const std::string &between, const std::string &end) {
-  std::string line = begin;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    line += (i > 0 ? between : "") + parts[i];
-  return line + end + "\n";
+std::string line(const std::vector<std::string> &parts, const std::string &begin,
+                 const std::string &between,
+                 const std::string &end){return begin + joined(parts, between) + end +
+                                                "
+                                                ";
 }
 
 std::string markdown(const std::vector<BenchRow> &rows, double best) {
-  std::string table = joined(header, "| ", " | ", " |") +
-                      joined(std::vector<std::string>(header.size(), "---"), "|", "|", "|");
+  std::string table = line(header, "| ", " | ", " |") +
+                      line(std::vector<std::string>(header.size(), "---"), "|", "|", "|");
   for (const BenchRow &row : rows)
-    table += joined(cells(row, best), "| ", " | ", " |");
+    table += line(cells(row, best), "| ", " | ", " |");
   return table;
 }
 
 std::string csv(const std::vector<BenchRow> &rows, double best) {
-  std::string table = joined(header, "", ",", "");
+  std::string table = line(header, "", ",", "");
   for (const BenchRow &row : rows)
-    table += joined(cells(row, best), "\"", "\",\"", "\"");
+    table += line(cells(row, best), "\"", "\",\"", "\"");
   return table;
 }
 
@@ -164,7 +157,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
           "reduced (N+S, R).\n"
        << "outputs_max: energy, forces and pressures, relative to the range of each.\n"
        << "speed_up: against the first row; benefit_from: queries from which "
-       << text("%.2f", offline) << " s offline are won back\n"
+       << formatted("%.2f", offline) << " s offline are won back\n"
        << "(" << snapshots.size() << " snapshots by their solve times, plus the other stages).\n\n";
   const std::string table = head.str() + markdown(rows, best);
   sweep_up(options.out);

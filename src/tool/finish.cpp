@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/tool/options.hpp"
+#include "rbvi/tool/options/options.hpp"
 
 #include <unistd.h>
 

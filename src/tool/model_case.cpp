@@ -3,8 +3,9 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/rom/training_samples.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -2,7 +2,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/vtu.hpp"
+#include "rbvi/rom/solution_vtu.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"

@@ -1,7 +1,8 @@
 #include "rbvi/tool/tables.hpp"
 
-#include "rbvi/core/h5.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/output_table.hpp"
+#include "rbvi/io/write_atomically.hpp"
 
 #include <sstream>
 

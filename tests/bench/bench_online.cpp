@@ -1,7 +1,8 @@
 // Seconds per reduced answer, without reconstruction, for the published sizes of membrane_obstacle
 // and random operators of about half active constraints.
-#include "synthetic.hpp"
+#include "../rom/synthetic.hpp"
 
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/online.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Whole runs: what the tools print, the same model from any ranks, resume after a kill.
 #include "rbvi/core/parameters.hpp"
-#include "rbvi/rom/model.hpp"
+#include "rbvi/rom/model/model.hpp"
 #include "run.hpp"
 
 #include <signal.h>

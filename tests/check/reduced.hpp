@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rbvi/check/errors.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/reduce.hpp"
 
 namespace rbvi::testing_reduced {

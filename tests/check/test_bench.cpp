@@ -1,6 +1,7 @@
 #include "rbvi/check/bench.hpp"
 #include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 
 #include <gtest/gtest.h>
 

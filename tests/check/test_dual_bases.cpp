@@ -1,4 +1,5 @@
 // Every dual basis and every enrichment from snapshots to answers.
+#include "rbvi/io/parameter_sets.hpp"
 #include "reduced.hpp"
 
 #include <gtest/gtest.h>

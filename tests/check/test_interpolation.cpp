@@ -1,4 +1,5 @@
 #include "rbvi/check/interpolation.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 
 #include <gtest/gtest.h>
 

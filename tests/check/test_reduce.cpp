@@ -3,6 +3,7 @@
 #include "reduced.hpp"
 
 #include "rbvi/check/stability_report.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,10 +5,10 @@
 
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
 #include "rbvi/element/scalar_forms.hpp"
-#include "rbvi/mor/high_fidelity_pair.hpp"
-#include "rbvi/rom/support_solver.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
 

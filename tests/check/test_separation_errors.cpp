@@ -3,7 +3,7 @@
 
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/rom/support_solver.hpp"
+#include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
 

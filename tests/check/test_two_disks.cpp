@@ -4,7 +4,8 @@
 
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/high_fidelity_pair.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/stability/high_fidelity_pair.hpp"
 
 #include <gtest/gtest.h>
 

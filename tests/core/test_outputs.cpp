@@ -1,5 +1,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/io/output_table.hpp"
 
 #include <gtest/gtest.h>
 #include <set>

@@ -1,6 +1,6 @@
 #include "refuses.hpp"
 
-#include "rbvi/core/parameter_sets.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 
 #include <cmath>
 #include <filesystem>

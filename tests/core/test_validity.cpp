@@ -1,9 +1,9 @@
 // Ranges of validity of every scene's parameters and options, alone and together.
 #include "refuses.hpp"
 
-#include "rbvi/core/overwrite.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/io/overwrite.hpp"
 
 #include <cmath>
 #include <fstream>

@@ -1,7 +1,7 @@
 // Polygonal curves for tests of contact operators.
 #pragma once
 
-#include "../core/random_matrix.hpp"
+#include "../law/random_matrix.hpp"
 #include "rbvi/core/scene.hpp"
 
 #include <gtest/gtest.h>

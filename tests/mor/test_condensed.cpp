@@ -1,7 +1,7 @@
 // The condensed operator of contact with a rigid support, against B A^-1 B^T at single mu.
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/condensed.hpp"
+#include "rbvi/mor/separation/condensed.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <gtest/gtest.h>

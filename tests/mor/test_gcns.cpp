@@ -1,8 +1,8 @@
-#include "../core/columns.hpp"
-#include "../core/half_plane.hpp"
+#include "../law/columns.hpp"
+#include "../law/half_plane.hpp"
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/gcns.hpp"
+#include "rbvi/mor/bases/gcns.hpp"
 
 #include <gtest/gtest.h>
 

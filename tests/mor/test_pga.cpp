@@ -1,8 +1,8 @@
-#include "rbvi/mor/stability.hpp"
+#include "rbvi/mor/stability/stability.hpp"
 
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/small_svd.hpp"
+#include "rbvi/par/small_svd.hpp"
 
 #include <gtest/gtest.h>
 

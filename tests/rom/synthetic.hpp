@@ -2,8 +2,9 @@
 // given numbers, for tests that compute the answer another way.
 #pragma once
 
+#include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/online.hpp"
-#include "rbvi/rom/packed.hpp"
 
 #include <cmath>
 #include <random>

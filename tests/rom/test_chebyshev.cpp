@@ -1,6 +1,6 @@
 // Interpolation at Chebyshev points: exact for polynomials, exponential for smooth functions, and
 // its own estimate of what it misses.
-#include "rbvi/rom/chebyshev.hpp"
+#include "rbvi/rom/model/chebyshev.hpp"
 
 #include <gtest/gtest.h>
 

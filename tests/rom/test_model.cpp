@@ -1,10 +1,10 @@
 #include "synthetic.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
+#include "rbvi/io/h5.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/vtu.hpp"
+#include "rbvi/rom/solution_vtu.hpp"
 
 #include <fstream>
 #include <gtest/gtest.h>

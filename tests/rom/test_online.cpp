@@ -2,6 +2,8 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/contact_area.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 #include "brute_force.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/online.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #include "synthetic.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/self_check.hpp"
 
 #include <gtest/gtest.h>

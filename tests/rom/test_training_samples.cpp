@@ -1,8 +1,8 @@
 #include "synthetic.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/training_samples.hpp"
 
 #include <gtest/gtest.h>
 #include <sstream>

@@ -5,7 +5,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
-#include "rbvi/rom/vtu.hpp"
+#include "rbvi/rom/solution_vtu.hpp"
 
 #include <fstream>
 #include <iterator>

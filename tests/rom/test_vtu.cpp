@@ -1,7 +1,8 @@
 // VTU files by a reader of its own, in both formats; stresses and bodies on cells.
 #include "rbvi/core/error.hpp"
-#include "rbvi/rom/cell_fields.hpp"
-#include "rbvi/rom/vtu.hpp"
+#include "rbvi/element/cell_fields.hpp"
+#include "rbvi/io/vtu.hpp"
+#include "rbvi/rom/solution_vtu.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

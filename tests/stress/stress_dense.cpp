@@ -1,9 +1,10 @@
 // The two dense solvers against each other on random problems of all conditions, with ties and
 // warm starts; and reduced models of random size against their optimality system.
-#include "synthetic.hpp"
+#include "../rom/synthetic.hpp"
 
-#include "rbvi/core/lcp.hpp"
-#include "rbvi/core/nonnegative_qp.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/law/lcp.hpp"
+#include "rbvi/law/qp/nonnegative_qp.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/h5.hpp"
-#include "rbvi/core/temporary_files.hpp"
+#include "rbvi/io/h5.hpp"
+#include "rbvi/io/temporary_files.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
 #include "../coarse_mesh.hpp"

@@ -1,7 +1,7 @@
 // What -help says of a mesh is what make_mesh asks for.
 #include "rbvi/core/error.hpp"
 #include "rbvi/tool/finish.hpp"
-#include "rbvi/tool/options.hpp"
+#include "rbvi/tool/options/options.hpp"
 
 #include <gtest/gtest.h>
 

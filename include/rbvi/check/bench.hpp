@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rbvi/problem/problem.hpp"
-#include "rbvi/rom/model.hpp"
+#include "rbvi/rom/model/model.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
 #include <functional>

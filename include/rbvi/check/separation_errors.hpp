@@ -6,7 +6,7 @@
 #pragma once
 
 #include "rbvi/problem/problem.hpp"
-#include "rbvi/rom/model.hpp"
+#include "rbvi/rom/model/model.hpp"
 
 namespace rbvi {
 

@@ -1,13 +1,13 @@
 // The inf-sup constants of a finished model, over sets of parameters.
 #pragma once
 
-#include "rbvi/mor/stability.hpp"
+#include "rbvi/mor/stability/stability.hpp"
 #include "rbvi/problem/problem.hpp"
-#include "rbvi/rom/model.hpp"
+#include "rbvi/rom/model/model.hpp"
 
 namespace rbvi {
 
-/// A model's bases in the coordinates of mor/stability.hpp.
+/// A model's bases in the coordinates of mor/stability/stability.hpp.
 struct StabilityCheck {
   RieszSpace space;
   Matrix coordinates; ///< (n_c + n) x n: the N modes, then the supremizers

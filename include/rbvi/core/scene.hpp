@@ -7,7 +7,7 @@
 // scene serves the offline assembly and the online evaluation of sampled entries.
 #pragma once
 
-#include "rbvi/core/parameter_sets.hpp"
+#include "rbvi/core/parameters.hpp"
 
 #include <array>
 #include <functional>
@@ -232,7 +232,7 @@ std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options);
 /// The number in an option.
 double number_in(const SceneOptions &options, const std::string &name);
 
-/// The scenes of this build.
+/// The scenes of this build; defined in cases/catalogue.cpp.
 const std::vector<SceneEntry> &scene_catalogue();
 
 /// Makes a scene; options that are left out take their default. Throws bad_input for an unknown

@@ -6,8 +6,14 @@
 
 namespace rbvi {
 
+/// One number by a format of printf.
+std::string formatted(const char *format, double value);
+
 /// "%.4g".
 std::string short_number(double value);
+
+/// "a, b, c".
+std::string joined(const std::vector<std::string> &parts, const std::string &separator = ", ");
 
 /// The shortest text that reads back as the same number.
 std::string shortest_number(double value);

@@ -1,9 +1,9 @@
 // What people ask of contact with a rigid support: forces, half-widths, pressures.
 #pragma once
 
-#include "rbvi/core/friction.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
+#include "rbvi/law/friction/friction.hpp"
 
 namespace rbvi {
 

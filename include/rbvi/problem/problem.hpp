@@ -10,7 +10,7 @@
 // |lambda_tau| <= bound, lambda_tau = bound slip / |slip| where it slips (corrected (3.32)).
 #pragma once
 
-#include "rbvi/core/friction.hpp"
+#include "rbvi/law/friction/friction.hpp"
 
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/contact_curves.hpp"

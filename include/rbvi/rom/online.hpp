@@ -7,15 +7,15 @@
 // term too. Of two bodies B and G are assembled anew, on the contact curves alone. Free modes have
 // equations in place of inequalities. An online-enriched model is first reduced to V_N + S_R(mu)
 // (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
-// rom/support_solver.hpp, by Nitsche's method rom/nitsche_solver.hpp.
+// rom/support/support_solver.hpp, by Nitsche's method rom/nitsche/nitsche_solver.hpp.
 #pragma once
 
-#include "rbvi/core/mixed_qp.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/element/contact_pair.hpp"
-#include "rbvi/rom/model.hpp"
-#include "rbvi/rom/nitsche_solver.hpp"
-#include "rbvi/rom/support_solver.hpp"
+#include "rbvi/law/qp/mixed_qp.hpp"
+#include "rbvi/rom/model/model.hpp"
+#include "rbvi/rom/nitsche/nitsche_solver.hpp"
+#include "rbvi/rom/support/support_solver.hpp"
 
 #include <memory>
 
@@ -93,10 +93,6 @@ std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene);
 /// `displacement`: components at each, without the motion.
 Vector normal_gap(const Scene &scene, const Mu &all_parameters, const Matrix &contact_points,
                   const Vector &displacement);
-
-/// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
-Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
-                           const Mu &all_parameters);
 
 /// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
 /// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with

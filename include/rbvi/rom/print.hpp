@@ -1,7 +1,7 @@
 // What a reduced model is, for people.
 #pragma once
 
-#include "rbvi/rom/model.hpp"
+#include "rbvi/rom/model/model.hpp"
 
 #include <filesystem>
 #include <ostream>

@@ -2,7 +2,7 @@
 // done and how long it took, and in both what is skipped and why.
 #pragma once
 
-#include "rbvi/tool/options.hpp"
+#include "rbvi/tool/options/options.hpp"
 
 namespace rbvi {
 

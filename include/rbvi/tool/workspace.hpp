@@ -4,7 +4,7 @@
 
 #include "rbvi/par/groups.hpp"
 #include "rbvi/par/stage.hpp"
-#include "rbvi/tool/options.hpp"
+#include "rbvi/tool/options/options.hpp"
 
 #include <memory>
 

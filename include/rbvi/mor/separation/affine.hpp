@@ -1,0 +1,42 @@
+// Separation of mu and space: empirical interpolation of A, B, F, G over the training set, with the
+// small meshes on which the sampled entries are re-assembled online.
+#pragma once
+
+#include "rbvi/mor/separation/eim.hpp"
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/model/model.hpp"
+
+#include <optional>
+
+namespace rbvi {
+
+struct AffineOperators {
+  Eim a, b, f, g;   ///< of size 0: f without a load; b and g of two bodies (assembled exactly
+                    ///< online) and of Nitsche's method (there are none)
+  Eim b_tangential; ///< B^tau, where b is of B^n alone; of size 0 where b is of all rows
+  SampleMesh sample_a, sample_b, sample_f, sample_g; ///< sample_b: entries of b, then b_tangential
+  int b_size() const { return b.size() + b_tangential.size(); }
+};
+
+/// B^n and B^tau apart: the rows of the multipliers lambda_n, and those of lambda_tau (3.46).
+struct RowOptions {
+  EimOptions normal, tangential;
+};
+
+/// An interpolation, and the rows of B that it is of.
+struct RowsOfB {
+  const Eim &eim;
+  Index first, count;
+};
+
+/// All rows together, or B^n and B^tau. `affine` must outlive it.
+std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem);
+
+/// Collective. Assembles the operators at every mu of `training` (A: its lower triangle, where the
+/// parameters that it depends on differ) and interpolates each. `apart`: of B on a rigid support,
+/// in place of `options`. B stays one where it is a multiple of one form at all `training`, since
+/// then one term serves all rows, and without friction, where there is only B^n.
+AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
+                         const EimOptions &options, const std::optional<RowOptions> &apart = {});
+
+} // namespace rbvi

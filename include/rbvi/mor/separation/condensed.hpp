@@ -1,0 +1,47 @@
+// The condensed operator H = B A^-1 B^T on a basis of the multipliers, for contact with a rigid
+// support: what changes with mu in A is interpolated at Chebyshev points, what changes in B is
+// separated already.
+//
+// The law of contact and friction is not smooth in mu, and no linear space or cone of few functions
+// follows it; H is, and converges exponentially. So the multipliers keep their nodes, and the body
+// between them is reduced.
+#pragma once
+
+#include "rbvi/mor/bases/pod.hpp"
+#include "rbvi/mor/separation/affine.hpp"
+
+namespace rbvi {
+
+struct CondensedOptions {
+  double tolerance = 1e-9; ///< of the interpolation, relative
+  int max_points = 33;     ///< along one parameter
+  double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
+};
+
+/// Multipliers of mirror images in one column each where the scene is symmetric, the mesh is, and
+/// the multipliers in `snapshots` (dual dofs x P) are to 1e-8; else one column for each dual dof.
+/// Columns for lambda_n first, as many again with friction.
+Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots);
+
+/// Coefficients of multipliers (dual dofs x P) in a basis of disjoint columns.
+Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
+
+struct Condensation {
+  CondensedOperator condensed;
+  int responses = 0; ///< functions appended to the modes
+};
+
+/// `affine`: the separation of b over the samples at `training`. One factorisation and
+/// basis.cols() * affine.b_size() solves for each Chebyshev point, shared among the ranks.
+/// Collective. Throws failure where the tolerance needs more points.
+///
+/// `modes`, where given and b has one term: the responses A^-1 B^T `basis` are appended to them, at
+/// the ends and in the middle of each free parameter of A. The displacement is then as exact as the
+/// multipliers, which no set of snapshots makes it where active sets are new. Of the first A all
+/// are taken (down to a remainder of 1e-8 of their norm), of the others what is left above
+/// options.responses.
+Condensation condense(Problem &problem, const AffineOperators &affine,
+                      const std::vector<Mu> &training, const Matrix &basis,
+                      const CondensedOptions &options, LinearBasis *modes = nullptr);
+
+} // namespace rbvi

@@ -1,0 +1,46 @@
+// The entries of the operators that empirical interpolation takes as vectors: keys and values.
+#pragma once
+
+#include "rbvi/mor/separation/eim.hpp"
+#include "rbvi/problem/problem.hpp"
+
+namespace rbvi {
+
+/// Calls visitor(row, column, value) for each local entry. Not collective.
+template <class Visitor> void visit_entries(Mat a, Visitor &&visitor) {
+  PetscInt begin = 0, end = 0;
+  RBVI_CALL(MatGetOwnershipRange(a, &begin, &end));
+  for (PetscInt row = begin; row < end; ++row) {
+    PetscInt count = 0;
+    const PetscInt *columns = nullptr;
+    const PetscScalar *values = nullptr;
+    RBVI_CALL(MatGetRow(a, row, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k)
+      visitor(row, columns[k], values[k]);
+    RBVI_CALL(MatRestoreRow(a, row, &count, &columns, &values));
+  }
+}
+
+/// The local entries of the lower triangle of a symmetric matrix over the free dofs, by natural
+/// numbers, and where their values stand.
+class LowerTriangle {
+public:
+  /// Collective. Of the pattern of `a`.
+  LowerTriangle(Mat a, const Dofs &dofs);
+  const std::vector<EntryKey> &keys() const { return keys_; }
+  /// In the order of keys(). `a`: of the same pattern.
+  Vector values(Mat a) const;
+
+private:
+  std::vector<EntryKey> keys_;
+  std::vector<bool> taken_;
+};
+
+/// This rank's entries.
+Vector local_values(Vec vector);
+
+/// All stored entries, row by row.
+std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix);
+Vector nonzero_values(const SparseMatrix &matrix);
+
+} // namespace rbvi

@@ -1,0 +1,12 @@
+// The coefficients theta(mu) of a separated operator.
+#pragma once
+
+#include "rbvi/rom/model/model.hpp"
+
+namespace rbvi {
+
+/// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
+Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
+                           const Mu &all_parameters);
+
+} // namespace rbvi

@@ -1,0 +1,249 @@
+// The reduced model: immutable data that answers a new parameter on one core.
+//
+//   sum_q theta^a_q(mu) A_q u + sum_q theta^b_q(mu) B_q^T x = sum_q theta^f_q(mu) F_q
+//   sum_q theta^b_q(mu) B_q u <= sum_q theta^g_q(mu) G_q,    x >= 0,  complementary
+//
+// u: n coefficients of the primal basis (N POD modes, then S supremizers), x: R coefficients of the
+// generators of the dual cone. theta comes from empirical interpolation (B.36): a few entries of
+// the full operator are re-assembled on their few cells. Of two bodies B and G do not separate:
+// they are assembled for each mu on the two contact curves alone, exactly, from the trace of the
+// basis. Other full-order data are there for outputs and for reconstruction alone. All fields are
+// numbered by the undistributed mesh. Where the scene has a motion, u is what is left beside it.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/scene.hpp"
+#include "rbvi/rom/model/chebyshev.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// Entries of a full operator sampled on the cells that touch them. Entry k is the sum over its
+/// contributions of kernel value `local` of cell `cell`.
+struct SampleMesh {
+  struct Contribution {
+    int entry, cell, local;
+  };
+  Matrix vertices;                         ///< (cells * (dim + 1)) x dim reference coordinates
+  std::vector<Contribution> contributions; ///< ordered by entry
+};
+
+/// One operator as sum_q theta_q(mu) (reduced term q), with theta from empirical interpolation.
+struct AffineTerms {
+  Matrix reduced;       ///< (entries of the reduced operator) x J, see ReducedModel
+  Matrix interpolation; ///< J x J, lower triangular with unit diagonal (B.34)
+  SampleMesh sample;    ///< J entries
+  double error = 0;     ///< e_EIM reached (B.32)
+  int size() const { return static_cast<int>(interpolation.rows()); }
+};
+
+/// Error of one output over the validation set.
+struct OutputError {
+  std::string name;                           ///< OutputColumn::name
+  double mean = 0, max = 0;                   ///< absolute
+  double mean_of_range = 0, max_of_range = 0; ///< over the range of the high-fidelity values
+  double mean_of_value = 0, max_of_value = 0; ///< over each value
+};
+
+/// Errors measured by `rbvi verify`, relative, over the validation set; negative: not measured.
+struct ValidationErrors {
+  int count = 0;
+  double u_mean = -1, u_max = -1, lambda_mean = -1, lambda_max = -1;
+  double tangential_mean = -1, tangential_max = -1; ///< with friction; lambda is the normal part
+  std::vector<OutputError> outputs{};               ///< in the order of output_columns()
+};
+
+/// The largest value of a quantity over some queries, and where.
+struct Worst {
+  double value = 0;
+  Mu at{}; ///< free parameters; empty where there was no query
+};
+
+/// Queries that `rbvi offline` asked of the model that it had just made, random in its box.
+struct SelfCheck {
+  int queries = 0; ///< 0: none were asked
+  int unanswered = 0;
+  Mu unanswered_at{};      ///< the first one without an answer; empty where there is none
+  std::string reason = ""; ///< of that one
+  /// kkt_residual, max_penetration, and friction_violation over peak_pressure.
+  Worst residual{}, penetration{}, friction{};
+  /// All were answered, with residuals of round-off.
+  bool clean() const { return unanswered == 0 && residual.value <= 1e-10; }
+};
+
+/// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
+/// H(mu) = sum over t of coefficient_t(mu) terms_t. The terms come in blocks, one for each pair of
+/// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
+/// the grid at mu.
+struct CondensedOperator {
+  std::vector<ChebyshevAxis> axes; ///< of the free parameters that a depends on
+  Matrix shape;                    ///< J x grid points
+  Matrix terms;                    ///< m^2 x (blocks * J): symmetric matrices, column by column
+  double error = 0;                ///< of the interpolation over the grid, relative, estimated
+};
+
+/// What the multipliers of contact with a rigid support are combined from.
+enum class MultiplierReduction {
+  condensed,  ///< every node: the law of contact and friction is exact, the body is reduced
+  collocated, ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
+  cones,      ///< cones for lambda_n and for what is left to the bound of friction
+  joint       ///< modes of both together, by least squares on the law at collocation nodes
+};
+
+/// "condensed", "collocated", "cones", "joint".
+const std::vector<std::string> &multiplier_reduction_names();
+
+/// The functions of these reductions by their coefficients in the nodal dual basis, k nodes.
+struct MultiplierBasis {
+  Matrix normal;          ///< k x R: a cone; joint: k x modes
+  Matrix tangential;      ///< collocated: k x S modes; cones: k x M, a cone; joint: k x modes
+  Vector slip;            ///< cones: k, the direction of the slip at each node, -1 or 1
+  std::vector<int> nodes; ///< collocated, joint: the collocation nodes
+};
+
+/// Where B^n and B^tau, the rows of lambda_n and those of lambda_tau, are interpolated apart.
+struct TermsApart {
+  int normal = 0; ///< of b the first so many terms are of B^n, the others of B^tau; 0: all of both
+  double normal_error = 0, tangential_error = 0; ///< e_EIM reached of each (3.61)
+};
+
+/// Contact with a rigid support. The dual basis of the model is nodal: a column for every node of
+/// the curve, or pair of mirror images.
+struct SupportModel {
+  int vertices = 0; ///< of the contact curve
+  int normal = 0;   ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
+  MultiplierReduction reduction = MultiplierReduction::condensed;
+  MultiplierBasis basis;       ///< empty where reduction is condensed
+  CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
+  bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
+  TermsApart apart;
+  Matrix lift;      ///< dual dofs x b.size(): B e_y, term by term
+  Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
+                    ///< operator their multipliers), where a query starts from
+  Matrix starts_mu; ///< free parameters x P: where they are
+};
+
+/// How a model of Nitsche's method takes the integrals of contact and friction.
+enum class CurveRule {
+  empirical,   ///< at few Gauss points of the curve, with non-negative weights of their own
+  full,        ///< at all of them
+  interpolated ///< empirical interpolation over (mu, Newton step) (4.71)-(4.80)
+};
+
+/// "empirical", "full", "interpolated".
+const std::vector<std::string> &curve_rule_names();
+
+/// An operator on the contact layer by empirical interpolation (B.36): sum_q theta_q (term q), with
+/// theta from J of its entries.
+struct LayerTerms {
+  Matrix reduced;                 ///< n x J, or of a matrix: a packed lower triangle by columns x J
+  Matrix interpolation;           ///< J x J unit lower triangular
+  std::vector<int> rows, columns; ///< J dofs of the layer; a vector has no columns
+  double error = 0;               ///< e_EIM reached
+  Index size() const { return interpolation.rows(); }
+};
+
+/// Nitsche's method: the cells beside the contact curve, and what of them is integrated online.
+struct NitscheModel {
+  Matrix vertices;        ///< (3 * cells) x 2, reference, along the curve by increasing x
+  std::vector<int> edges; ///< cells: the one on the curve
+  std::vector<int> dofs;  ///< 12 * cells: rows of trace, see CurveCell
+  Matrix trace;           ///< dofs of the layer x n: primal basis
+  LayerTerms consistency; ///< a_gamma - a, a matrix
+  CurveRule rule = CurveRule::empirical;
+  std::vector<int> points;                     ///< empirical: 4 * cell + Gauss point
+  Vector factors;                              ///< empirical: of the weights of these points, > 0
+  LayerTerms contact_matrix, contact_vector;   ///< interpolated: B^n, Theta^n
+  LayerTerms friction_matrix, friction_vector; ///< interpolated: B^tau, Theta^tau
+  /// Where a query starts from: P_n, then P_tau of the training samples at the points.
+  /// Interpolated: their n coefficients.
+  Matrix starts;
+  Matrix starts_mu; ///< free parameters x P: where they are
+};
+
+struct ReducedModel {
+  std::string scene_name;
+  SceneOptions scene_options;
+  ParameterSpace parameters;
+  std::map<std::string, std::string> settings; ///< tolerances and options that made it
+  std::string mesh_fingerprint;
+
+  int modes = 0;       ///< N
+  int supremizers = 0; ///< S
+  int generators = 0;  ///< R
+  int free_modes = 0;  ///< the last of the R: their coefficients take either sign
+  /// V_N + S_R(mu) is made for each mu (2.17); the supremizers span S_R(mu) for every mu.
+  bool online_enriched = false;
+  int primal_size() const { return modes + supremizers; }
+
+  AffineTerms a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x J
+  AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
+  AffineTerms f; ///< n x J; J = 0: no load
+  AffineTerms g; ///< R x J
+
+  // The contact nodes: the dual dofs of an obstacle's region; of two bodies those of the slave
+  // curve, then those of the master curve, each by increasing x; on a support the vertices of its
+  // curve by increasing x, and there the dual dofs are those of lambda_n, then of lambda_tau.
+  int slave_nodes = 0;   ///< two bodies: number of nodes of the slave curve; 0: one body
+  Matrix dual_basis;     ///< dual dofs x R; entries >= 0 but for hybrid cones
+  Matrix contact_trace;  ///< contact nodes x n: primal basis there, of two bodies its vertical
+                         ///< part; on a support (contact nodes * components) x n
+  Matrix contact_points; ///< contact nodes x dim, reference coordinates
+  Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
+  bool two_bodies() const { return slave_nodes > 0; }
+  std::optional<SupportModel> support;
+  std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
+
+  // Full order, for reconstruction.
+  Matrix primal_basis;            ///< dofs x n, fixed dofs included
+  Matrix mesh_points;             ///< nodes x dim, reference coordinates
+  std::vector<int> mesh_cells;    ///< node numbers of each cell, nodes_per_cell of them
+  std::vector<int> contact_nodes; ///< mesh node of each contact node
+  std::vector<int> contact_cells; ///< one body: (dim + 1) contact nodes per cell of the region
+
+  ValidationErrors validation_enriched, validation_decorrelated;
+  SelfCheck self_check;
+  Matrix trained_mu; ///< free parameters x samples
+  Matrix failed_mu;  ///< free parameters x samples that have no high-fidelity answer
+  std::map<std::string, std::vector<double>> histories; ///< "pod/error", "cone/e_orth", ...
+  std::map<std::string, double> stage_seconds;
+};
+
+inline constexpr int model_schema = 7;
+
+/// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
+/// not finite (members that reconstruction alone needs may all be empty).
+void check_model(const ReducedModel &model);
+
+/// Throws failure (check_model, H5Writer::commit).
+void write_model(const ReducedModel &model, const std::filesystem::path &path);
+
+/// Throws bad_input (see H5Reader), also for a scene or an option that this build does not have, or
+/// parameters that are not those of the scene. `with_fields` false leaves out what reconstruction
+/// alone needs: primal_basis, mesh_points, mesh_cells.
+ReducedModel read_model(const std::filesystem::path &path, bool with_fields = true);
+
+/// The same model with the first n primal columns alone (n = modes: the decorrelated basis) and
+/// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
+/// that the model does not have.
+ReducedModel leading(const ReducedModel &model, int n, int r);
+
+/// The errors measured for this model: with supremizers if it has any.
+const ValidationErrors &expected_errors(const ReducedModel &model);
+
+/// The largest absolute error that was measured of each of its outputs; residuals and the like have
+/// none.
+ErrorOfOutput errors_of_outputs(const ReducedModel &model);
+
+/// Row `i` of contact_points or mesh_points as a point.
+Point point_of(const Matrix &points, Index i);
+
+/// The scene of the model, with its options and the model's free and fixed parameters.
+Scene scene_of(const ReducedModel &model);
+
+} // namespace rbvi

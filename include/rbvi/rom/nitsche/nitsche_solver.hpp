@@ -1,0 +1,73 @@
+// The online stage of Nitsche's method: Newton's method in the n coefficients of the reduced basis,
+//
+//   A_gamma u + (contact and friction at points of the curve) = f,
+//
+// A_gamma = A + the terms that keep the method consistent, both separated. The points are all
+// Gauss points of the curve or a few with weights of their own: a minimisation either way, convex
+// where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: Newton
+// steps, halved until the residual falls, and where they do not settle, bounds frozen in an outer
+// loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
+// printed, from neighbouring samples; where it does not converge, the derivative of its vectors,
+// with halved steps.
+#pragma once
+
+#include "rbvi/rom/nitsche/layer_terms.hpp"
+
+#include <memory>
+
+namespace rbvi {
+
+struct NitscheAnswer {
+  Vector u;            ///< n coefficients
+  double energy = 0;   ///< a(u, u) / 2 - f(u)
+  double residual = 0; ///< of the reduced system, relative
+  int iterations = 0;  ///< Newton steps
+};
+
+class ReducedNitsche {
+public:
+  /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
+  ReducedNitsche(const ReducedModel &model, const Scene &scene);
+  ~ReducedNitsche();
+  /// Starts from what the training samples predict; where there are none, from u = 0. Throws
+  /// failure, saying what to try, where Newton's method does not converge or the tangent is not
+  /// positive definite.
+  NitscheAnswer solve(const Mu &all_parameters);
+
+  /// Of the last answer: what each point adds to the residual, n x points, ...
+  Matrix point_residuals() const;
+  /// ... and the tangent, n x n.
+  Matrix tangent() const;
+
+  /// Stress and pressures along the whole curve.
+  CurveFields fields(const Mu &all_parameters, const Vector &u) const;
+  /// All that is measured but the energy. Pressures need u to a part in gamma, which few points do
+  /// not give between them: from u, Newton's method goes on over the whole curve, one or two steps,
+  /// and forces, widths and pressures are those of its answer. Throws failure where it does not
+  /// converge.
+  void outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
+
+private:
+  struct System;
+  struct Interpolated;
+
+  /// a(u, u) / 2 - f(u), and a_gamma.
+  struct Quadratic {
+    Matrix a, a_gamma; ///< n x n
+    Vector f;
+  };
+  Quadratic quadratic_at(const Mu &all_parameters) const;
+  Vector predicted(const Mu &all_parameters) const;
+  /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
+  Vector over_whole_curve(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  std::vector<CurveCell> cells_;
+  SampledLayer consistency_;
+  std::unique_ptr<System> system_;
+  std::unique_ptr<Interpolated> interpolated_;
+  mutable std::unique_ptr<System> whole_; ///< made by the first outputs of a model with few points
+};
+
+} // namespace rbvi

@@ -1,0 +1,60 @@
+// The law of contact and friction on fewer functions than nodes (MultiplierReduction): collocated,
+// cones, joint. Everything in coefficients of the nodal dual basis, m of them: k for lambda_n, and
+// k for lambda_tau but for collocated without friction.
+#pragma once
+
+#include "rbvi/law/friction/collocated_friction.hpp"
+#include "rbvi/law/friction/least_squares_friction.hpp"
+#include "rbvi/rom/support/reduced_stiffness.hpp"
+
+namespace rbvi {
+
+/// What the elastic body says at one mu.
+struct BodyAtMu {
+  Vector terms;                      ///< coefficient of each term of the condensed operator
+  Matrix b;                          ///< m x n, reduced; collocated alone
+  const ReducedStiffness *stiffness; ///< set to mu
+  Vector q;                          ///< m: the gap, and the slip, of no multipliers
+  Vector load;                       ///< half response to the load; empty without one
+  FrictionBound bound;
+};
+
+struct ReducedLawAnswer {
+  Vector x;            ///< m nodal coefficients
+  double residual = 0; ///< of the reduced law, relative
+  int iterations = 0;
+};
+
+/// Keeps the last answer as the next start.
+class ReducedLaw {
+public:
+  /// `support` must outlive it; its reduction is not `condensed`.
+  explicit ReducedLaw(const SupportModel &support);
+  /// Throws failure, saying what to try, where the reduced law is not solved.
+  ReducedLawAnswer solve(const BodyAtMu &body);
+
+private:
+  ReducedLawAnswer solve_cones(const BodyAtMu &body);
+  ReducedLawAnswer solve_joint(const BodyAtMu &body);
+
+  const SupportModel &support_;
+  std::vector<Matrix> terms_; ///< of the condensed operator: cones D^T H D, joint H Z at the nodes
+  std::vector<Vector> diagonals_;      ///< joint: of H at the nodes, n and then tau
+  Matrix functions_;                   ///< cones: D, m x (R + middle + M); joint: Z, m x k
+  Vector last_;                        ///< collocated
+  std::vector<Index> last_active_;     ///< cones
+  std::vector<SlipState> last_states_; ///< joint
+};
+
+/// The functions of `collocated` in coefficients of the nodal dual basis: m x (R + S).
+Matrix multiplier_coefficients(const MultiplierBasis &basis);
+
+/// The reduced problem of `collocated`; its rows are those of the collocation nodes.
+CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtMu &body);
+
+/// Largest of |x - P(x - w / H_jj)| over max |x|, P the projection of the law: zero where x solves
+/// it. `w` = H x + q, `diagonal`: H_jj; m entries each, the first `normal` of lambda_n.
+double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal, Index normal,
+                        const FrictionBound &bound);
+
+} // namespace rbvi

@@ -1,0 +1,71 @@
+// The online stage of contact with a rigid support: the condensed operator and the gap at mu, the
+// law of contact and friction at every node by solve_friction, then the displacement in V_N by
+// A_N u = F_N - B_N^T x. Where the multipliers are reduced further, the law is that of
+// rom/support/reduced_law.hpp; with the condensed operator its answer is checked at all nodes, and
+// mended by solve_friction, which starts from it, where it fails.
+#pragma once
+
+#include "rbvi/element/support.hpp"
+#include "rbvi/rom/support/reduced_law.hpp"
+
+namespace rbvi {
+
+/// What a query gives.
+struct SupportAnswer {
+  Vector u, x; ///< coefficients of the primal and of the dual basis
+  Vector theta_b;
+  double energy = 0; ///< a(u,u)/2 - f(u)
+  double residual =
+      0; ///< largest relative violation of the laws, at all nodes where they are known
+  int iterations = 0;
+  Vector start; ///< for a nearby query, as FrictionResult::start; empty where none is known
+};
+
+/// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
+/// query if that is far nearer.
+class SupportSolver {
+public:
+  /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
+  SupportSolver(const ReducedModel &model, const Scene &scene);
+  /// Throws failure, saying what to try, if the law is not met to 1e-8.
+  SupportAnswer solve(const Mu &all_parameters);
+  /// What the elastic body says at mu; valid until the next call of either.
+  BodyAtMu body_at(const Mu &all_parameters, const Vector &theta_b);
+  /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
+  /// operator.
+  Vector start_of(const Mu &all_parameters, const Vector &x);
+
+private:
+  /// What the condensed operator says of multipliers x.
+  struct AtAllNodes {
+    Vector w, diagonal; ///< H x + q, H_jj
+    Vector start;       ///< x - w / H_jj
+  };
+  AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x) const;
+  /// Whether its answer stands; if not, exact steps follow, from it if there is one.
+  bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
+  void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);
+  Vector start_at(const Vector &here) const;
+  Vector term_coefficients(const Mu &all_parameters, const Vector &theta_b) const;
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  std::optional<ReducedLaw> law_;
+  Matrix samples_;           ///< where the starts are, as parts of the box
+  Vector last_start_, last_; ///< of the last query, and where it was
+  ReducedStiffness stiffness_;
+};
+
+/// theta_q(mu) of b (`matrix`) or g: the sampled entries integrated again on their one or two
+/// edges, then the triangular solve (B.36).
+Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
+                            const Mu &all_parameters);
+
+/// Vertices and weights (integrals of the hat functions) of the mapped curve of a support.
+struct MappedCurve {
+  std::vector<Point> points;
+  Vector weights;
+};
+MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene, const Mu &all_parameters);
+
+} // namespace rbvi

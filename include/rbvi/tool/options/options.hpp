@@ -1,0 +1,88 @@
+// Options of the rbvi tool: read from PETSc's options database (command line over case file),
+// checked before any work starts.
+#pragma once
+
+#include "rbvi/io/overwrite.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/reduce.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+struct ToolOptions {
+  Scene scene; ///< with its parameters as freed, fixed and bounded by the options
+  MeshOptions mesh;
+  std::string train, valid; ///< as parse_set reads them
+  HfOptions hf;
+  ReduceOptions reduce;
+  int ranks_per_solve = 1;
+  double max_failures = 0.1;       ///< share of a set that may fail
+  std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
+  std::filesystem::path out;       ///< run directory; "" where none is given
+  std::string case_file;           ///< all options of the run, for its own case file (case_of_run)
+  std::vector<std::string> command_line;        ///< names of the options that stand there
+  std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
+  std::string mu, vtu, csv;
+  bool plan = false;
+  bool stability = true; ///< verify: inf-sup constants and bounds too
+};
+
+/// One option for -help.
+struct OptionHelp {
+  std::string name, default_value, help;
+};
+
+/// All options of rbvi that are not a scene's own.
+const std::vector<OptionHelp> &tool_options();
+
+/// "-name": a dash and a letter, as PETSc sees it.
+bool is_option(const std::string &word);
+
+/// "--name" becomes "-name"; what PETSc would take for itself stays. To be called before PETSc
+/// starts.
+std::vector<std::string> normalised_arguments(int argc, char **argv);
+
+/// Collective. Inserts the case file under the command line and reads everything. Throws bad_input
+/// for an unknown option (naming the nearest one), a missing or malformed case file, or a value
+/// that does not fit.
+ToolOptions read_options(MPI_Comm comm);
+
+/// The case file that a run leaves in its directory, read where no other is named.
+std::filesystem::path case_of_run(const std::filesystem::path &out);
+
+/// Collective. Throws bad_input if one of the files that a command will write is one that its
+/// options name as input, or another of them, or if the run's case file would replace the user's.
+void check_outputs(MPI_Comm comm, const ToolOptions &options,
+                   const std::vector<NamedFile> &outputs);
+
+/// How the options of PETSc objects of ours begin.
+const std::vector<std::string> &solver_prefixes();
+
+/// Collective on the communicator of `problem`. Throws bad_input if one of those was given that no
+/// PETSc object asks for, or whose value it refuses. Costs nothing where none is given, and one
+/// solve where the objects alone cannot tell.
+void check_solver_options(Problem &problem, const HfOptions &options);
+
+/// What a command solves with objects of SLEPc that take options.
+enum class EigenUse {
+  none,
+  supremizers, ///< offline: the projected greedy, prefix pga_
+  constants    ///< verify: inf-sup constants, prefix infsup_
+};
+
+/// Throws bad_input if one of their options was given that nothing of the run asks for, or whose
+/// value SLEPc refuses. Those of another command may stand in a case file, not on the command line.
+void check_eigen_options(const ToolOptions &options, EigenUse use);
+
+/// Prints the usage, the options above and those of the scenes; or, where one is named, options,
+/// parameters and mesh of that scene alone. Throws bad_input for an unknown scene.
+void print_help(const std::string &scene);
+
+/// Prints the names and facts that a mesh file for the scene must have.
+void print_mesh_contract(const Scene &scene);
+
+} // namespace rbvi

@@ -1,0 +1,105 @@
+#include "rbvi/element/cell_fields.hpp"
+
+#include "rbvi/element/lagrange.hpp"
+
+#include <map>
+#include <numeric>
+
+namespace rbvi {
+
+namespace {
+
+using Tensor = Eigen::Matrix3d;
+
+/// Rows and columns of the components, a plane body's first.
+constexpr std::array<std::array<int, 2>, 6> places{
+    {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}}};
+
+Index component_count(int dim) {
+  return dim == 2 ? 4 : 6;
+}
+
+Cell cell_of(const Scene &scene, const Mu &all_parameters, const Matrix &points, const int *nodes) {
+  Cell cell;
+  cell.dim = scene.dim;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(scene.dim); ++i)
+    for (Index k = 0; k < points.cols(); ++k)
+      cell.reference[i][static_cast<std::size_t>(k)] = points(nodes[i], k);
+  map_cell(scene, all_parameters, cell);
+  return cell;
+}
+
+/// sigma = lambda tr(eps) I + 2 shear eps, for the gradient of a displacement.
+Tensor stress(const Lame &material, const Tensor &gradient) {
+  const Tensor strain = (gradient + gradient.transpose()) / 2;
+  return material.lambda * strain.trace() * Tensor::Identity() + 2 * material.shear * strain;
+}
+
+/// The lowest node of a connected part; the path to it is shortened.
+int root_of(std::vector<int> &above, int node) {
+  while (above[static_cast<std::size_t>(node)] != node) {
+    int &parent = above[static_cast<std::size_t>(node)];
+    parent = above[static_cast<std::size_t>(parent)];
+    node = parent;
+  }
+  return node;
+}
+
+} // namespace
+
+std::vector<std::string> stress_components(int dim) {
+  static const std::vector<std::string> names{"sigma_xx", "sigma_yy", "sigma_zz",
+                                              "sigma_xy", "sigma_yz", "sigma_xz"};
+  return {names.begin(), names.begin() + component_count(dim)};
+}
+
+Matrix centre_stresses(const Scene &scene, const Mu &all_parameters, const Matrix &points,
+                       const std::vector<int> &cells, const Vector &displacement) {
+  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
+  const std::vector<double> centre(static_cast<std::size_t>(scene.dim) + 1, 1.0 / (scene.dim + 1));
+  std::array<std::array<double, 3>, most_nodes> gradients{};
+  Matrix result(static_cast<Index>(cells.size() / per_cell), component_count(scene.dim));
+  for (Index k = 0; k < result.rows(); ++k) {
+    const int *nodes = cells.data() + static_cast<std::size_t>(k) * per_cell;
+    const Cell cell = cell_of(scene, all_parameters, points, nodes);
+    lagrange_gradients(scene.dim, scene.degree, centre, simplex(scene.dim, cell.mapped), gradients);
+    Tensor gradient = Tensor::Zero();
+    for (std::size_t i = 0; i < per_cell; ++i)
+      gradient += displacement.segment<3>(3 * nodes[i]) *
+                  Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
+    const Tensor sigma = stress(scene.material(all_parameters, reference_centre(cell)), gradient);
+    for (Index c = 0; c < result.cols(); ++c) {
+      const auto [i, j] = places[static_cast<std::size_t>(c)];
+      result(k, c) = sigma(i, j);
+    }
+  }
+  return result;
+}
+
+Vector von_mises(const Matrix &stresses) {
+  const Vector mean = stresses.leftCols(3).rowwise().mean();
+  const Vector normal = (stresses.leftCols(3).colwise() - mean).rowwise().squaredNorm();
+  const Vector shear = stresses.rightCols(stresses.cols() - 3).rowwise().squaredNorm();
+  return (1.5 * (normal + 2 * shear)).cwiseSqrt();
+}
+
+Vector body_numbers(const std::vector<int> &cells, int per_cell, Index nodes, int first_node) {
+  std::vector<int> above(static_cast<std::size_t>(nodes));
+  std::iota(above.begin(), above.end(), 0);
+  const auto step = static_cast<std::size_t>(per_cell);
+  for (std::size_t k = 0; k < cells.size(); k += step)
+    for (std::size_t i = 1; i < step; ++i) {
+      const int a = root_of(above, cells[k]), b = root_of(above, cells[k + i]);
+      above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  std::map<int, int> numbers{{root_of(above, first_node), 1}};
+  Vector result(static_cast<Index>(cells.size() / step));
+  for (std::size_t k = 0; k < cells.size(); k += step) {
+    const int next = static_cast<int>(numbers.size()) + 1;
+    result[static_cast<Index>(k / step)] =
+        numbers.try_emplace(root_of(above, cells[k]), next).first->second;
+  }
+  return result;
+}
+
+} // namespace rbvi

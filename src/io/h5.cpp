@@ -1,0 +1,374 @@
+#include "rbvi/io/h5.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/checksum.hpp"
+#include "rbvi/io/write_atomically.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <hdf5.h>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+using Path = std::filesystem::path;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr std::size_t block_size = 512;
+constexpr std::size_t kind_at = 8, kind_size = 32, schema_at = 40, length_at = 48, payload_at = 56,
+                      header_at = 64, header_end = 72;
+const std::string magic = "rbvi\r\n\x1a\n";
+const std::string hdf5_signature = "\x89HDF\r\n\x1a\n";
+
+/// Owns one HDF5 identifier.
+class Id {
+public:
+  Id() = default;
+  Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Id(Id &&other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Id &operator=(Id &&other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  hid_t get() const { return id_; }
+
+private:
+  hid_t id_ = -1;
+  herr_t (*close_)(hid_t) = nullptr;
+};
+
+/// Errors of HDF5 come back as ours: it prints nothing itself.
+void silence_hdf5() {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+void put(std::string &block, std::size_t at, std::uint64_t value) {
+  for (std::size_t i = 0; i < 8; ++i)
+    block[at + i] = static_cast<char>((value >> (8 * i)) & 0xffU);
+}
+
+std::uint64_t get(const std::string &block, std::size_t at) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < 8; ++i)
+    value |= static_cast<std::uint64_t>(static_cast<unsigned char>(block[at + i])) << (8 * i);
+  return value;
+}
+
+std::string kind_field(const std::string &kind) {
+  if (kind.empty() || kind.size() >= kind_size) throw failure("file kind '" + kind + "' too long");
+  return kind + std::string(kind_size - kind.size(), '\0');
+}
+
+std::string seal(const std::string &payload, const std::string &kind, int schema) {
+  std::string block(block_size, '\0');
+  block.replace(0, magic.size(), magic);
+  block.replace(kind_at, kind_size, kind_field(kind));
+  put(block, schema_at, static_cast<std::uint64_t>(schema));
+  put(block, length_at, block_size + payload.size());
+  put(block, payload_at, fnv1a(payload.data(), payload.size()));
+  put(block, header_at, fnv1a(block.data(), header_at));
+  return block + payload;
+}
+
+void verify_seal(const std::string &bytes, const std::string &name, const std::string &kind,
+                 int schema) {
+  const std::string start = bytes.substr(0, magic.size());
+  if (start.empty()) throw DamagedFile(name + " is empty");
+  if (start == hdf5_signature)
+    throw DamagedFile(name + " is an HDF5 file, but not one written by rbvi");
+  if (start != magic.substr(0, start.size())) throw DamagedFile(name + " is not an rbvi file");
+  const auto truncated = [&](const std::string &full) {
+    return DamagedFile(name + " is truncated: " + std::to_string(bytes.size()) + " of " + full +
+                           " bytes",
+                       "; copy or make it again");
+  };
+  if (bytes.size() < block_size) throw truncated("at least " + std::to_string(block_size));
+  const auto damaged =
+      DamagedFile(name + " is damaged (its checksum does not match)", "; copy or make it again");
+  const bool rest_is_zero =
+      bytes.find_first_not_of('\0', header_end) >= std::min(block_size, bytes.size());
+  if (get(bytes, header_at) != fnv1a(bytes.data(), header_at) || !rest_is_zero) throw damaged;
+  const std::uint64_t length = get(bytes, length_at);
+  if (bytes.size() < length) throw truncated(std::to_string(length));
+  if (bytes.size() > length) throw damaged;
+  if (get(bytes, payload_at) != fnv1a(bytes.data() + block_size, bytes.size() - block_size))
+    throw damaged;
+  if (bytes.compare(kind_at, kind_size, kind_field(kind)) != 0)
+    throw DamagedFile(name + " is a " + std::string(bytes.c_str() + kind_at) + " file, not a " +
+                      kind + " file");
+  if (get(bytes, schema_at) != static_cast<std::uint64_t>(schema))
+    throw OtherVersion(name + " has schema version " + std::to_string(get(bytes, schema_at)) +
+                       "; this build reads version " + std::to_string(schema) + ": make it again");
+}
+
+std::string read_whole(const Path &path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw bad_input(path.string() + " does not exist");
+  if (std::filesystem::is_directory(path, ignored))
+    throw DamagedFile(path.string() + " is a directory, not an rbvi file");
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  const bool empty = in && in.peek() == EOF && !in.bad();
+  if (!empty && !(bytes << in.rdbuf()))
+    throw DamagedFile(path.string() + " cannot be read: " + std::strerror(errno));
+  return bytes.str();
+}
+
+Id text_type() {
+  Id type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  return type;
+}
+
+/// HDF5 takes two open files of one name for the same file, even in memory.
+std::string unused_name() {
+  static std::atomic<unsigned> count = 0;
+  return "rbvi-" + std::to_string(count++);
+}
+
+Id memory_access() {
+  Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false);
+  return access;
+}
+
+} // namespace
+
+struct H5Writer::Impl {
+  Id file;
+
+  /// An empty `shape` is a scalar.
+  void write(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk, hid_t memory,
+             const void *data) const {
+    const Id space(shape.empty()
+                       ? H5Screate(H5S_SCALAR)
+                       : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                   H5Sclose);
+    const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(link.get(), 1);
+    const Id create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(create.get(), false);
+    const Id set(H5Dcreate2(file.get(), name.c_str(), disk, space.get(), link.get(), create.get(),
+                            H5P_DEFAULT),
+                 H5Dclose);
+    // HDF5 wants an address even where there is nothing to write.
+    const double nothing = 0;
+    if (set.get() < 0 || H5Dwrite(set.get(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                                  data != nullptr ? data : &nothing) < 0)
+      throw failure("HDF5 cannot write the data set '" + name + "' (is the name taken?)");
+  }
+};
+
+H5Writer::H5Writer() : impl_(std::make_unique<Impl>()) {
+  silence_hdf5();
+  const Id create(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_userblock(create.get(), block_size);
+  const Id access = memory_access();
+  impl_->file =
+      Id(H5Fcreate(unused_name().c_str(), H5F_ACC_TRUNC, create.get(), access.get()), H5Fclose);
+  if (impl_->file.get() < 0) throw failure("HDF5 cannot make a file in memory");
+}
+
+H5Writer::~H5Writer() = default;
+H5Writer::H5Writer(H5Writer &&) noexcept = default;
+H5Writer &H5Writer::operator=(H5Writer &&) noexcept = default;
+
+void H5Writer::write(const std::string &name, const Matrix &value) {
+  const RowMajor rows = value;
+  impl_->write(name, {static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())},
+               H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rows.data());
+}
+
+void H5Writer::write(const std::string &name, const Vector &value) {
+  impl_->write(name, {static_cast<hsize_t>(value.size())}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+               value.data());
+}
+
+void H5Writer::write(const std::string &name, const std::vector<double> &value) {
+  impl_->write(name, {value.size()}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, value.data());
+}
+
+void H5Writer::write(const std::string &name, const std::vector<int> &value) {
+  impl_->write(name, {value.size()}, H5T_STD_I32LE, H5T_NATIVE_INT, value.data());
+}
+
+void H5Writer::write(const std::string &name, const std::vector<std::string> &value) {
+  std::vector<const char *> texts;
+  for (const std::string &text : value)
+    texts.push_back(text.c_str());
+  const Id type = text_type();
+  impl_->write(name, {texts.size()}, type.get(), type.get(), texts.data());
+}
+
+void H5Writer::write(const std::string &name, const std::string &value) {
+  const char *text = value.c_str();
+  const Id type = text_type();
+  impl_->write(name, {}, type.get(), type.get(), &text);
+}
+
+void H5Writer::write(const std::string &name, double value) {
+  impl_->write(name, {}, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+void H5Writer::write(const std::string &name, int value) {
+  impl_->write(name, {}, H5T_STD_I32LE, H5T_NATIVE_INT, &value);
+}
+
+void H5Writer::commit(const Path &path, const std::string &kind, int schema) {
+  const hid_t file = impl_->file.get();
+  const ssize_t size =
+      H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) throw failure("HDF5 cannot hand out the image of " + path.string());
+  std::string image(static_cast<std::size_t>(size), '\0');
+  H5Fget_file_image(file, image.data(), image.size());
+  // HDF5 1.10 leaves the user block out of the image; it is not documented whether others do.
+  const std::size_t start = image.find(hdf5_signature);
+  if (start != 0 && start != block_size)
+    throw failure("HDF5 handed out an image without its signature for " + path.string());
+  write_atomically(path, seal(image.substr(start), kind, schema));
+}
+
+struct H5Reader::Impl {
+  std::string path;
+  Id file;
+
+  Error wrong(const std::string &name, const std::string &what) const {
+    return bad_input(path + ": the data set '" + name + "' " + what);
+  }
+
+  bool has(const std::string &name) const {
+    for (std::size_t slash = 0; slash != std::string::npos;) {
+      slash = name.find('/', slash + 1);
+      if (H5Lexists(file.get(), name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+    }
+    return true;
+  }
+
+  Id open(const std::string &name) const {
+    if (!has(name)) throw wrong(name, "is missing");
+    Id set(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (set.get() < 0) throw wrong(name, "is a group");
+    return set;
+  }
+
+  /// The shape, after checks that it has `rank` dimensions and is of this class.
+  std::vector<hsize_t> shape(const std::string &name, hid_t set, std::size_t rank,
+                             H5T_class_t type) const {
+    const Id space(H5Dget_space(set), H5Sclose);
+    const Id stored(H5Dget_type(set), H5Tclose);
+    if (H5Tget_class(stored.get()) != type) throw wrong(name, "is of another type");
+    if (H5Sget_simple_extent_ndims(space.get()) != static_cast<int>(rank))
+      throw wrong(name, "has another shape");
+    std::vector<hsize_t> shape(rank);
+    H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr);
+    return shape;
+  }
+
+  void read(const std::string &name, hid_t set, hid_t memory, void *data) const {
+    double nothing = 0;
+    if (H5Dread(set, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, data != nullptr ? data : &nothing) < 0)
+      throw wrong(name, "cannot be read");
+  }
+
+  template <class Container>
+  Container list(const std::string &name, H5T_class_t type, hid_t memory) const {
+    const Id set = open(name);
+    const std::vector<hsize_t> size = shape(name, set.get(), 1, type);
+    Container values(static_cast<Container::size_type>(size[0]));
+    read(name, set.get(), memory, values.data());
+    return values;
+  }
+
+  template <class T> T scalar(const std::string &name, H5T_class_t type, hid_t memory) const {
+    const Id set = open(name);
+    shape(name, set.get(), 0, type);
+    T value{};
+    read(name, set.get(), memory, &value);
+    return value;
+  }
+};
+
+namespace {
+
+/// Copies what HDF5 allocated, and frees it.
+std::string take(char *text) {
+  std::string copy = text != nullptr ? text : "";
+  H5free_memory(text);
+  return copy;
+}
+
+} // namespace
+
+H5Reader::H5Reader(const Path &path, const std::string &kind, int schema)
+    : impl_(std::make_unique<Impl>()) {
+  silence_hdf5();
+  std::string bytes = read_whole(path);
+  verify_seal(bytes, path.string(), kind, schema);
+  const Id access = memory_access();
+  H5Pset_file_image(access.get(), bytes.data(), bytes.size());
+  impl_->path = path.string();
+  impl_->file = Id(H5Fopen(unused_name().c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (impl_->file.get() < 0)
+    throw bad_input(path.string() + ": this version of HDF5 cannot read it");
+}
+
+H5Reader::~H5Reader() = default;
+H5Reader::H5Reader(H5Reader &&) noexcept = default;
+H5Reader &H5Reader::operator=(H5Reader &&) noexcept = default;
+
+bool H5Reader::has(const std::string &name) const {
+  return impl_->has(name);
+}
+
+Matrix H5Reader::matrix(const std::string &name) const {
+  const Id set = impl_->open(name);
+  const std::vector<hsize_t> shape = impl_->shape(name, set.get(), 2, H5T_FLOAT);
+  RowMajor rows(static_cast<Index>(shape[0]), static_cast<Index>(shape[1]));
+  impl_->read(name, set.get(), H5T_NATIVE_DOUBLE, rows.data());
+  return rows;
+}
+
+Vector H5Reader::vector(const std::string &name) const {
+  const std::vector<double> values = doubles(name);
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
+std::vector<double> H5Reader::doubles(const std::string &name) const {
+  return impl_->list<std::vector<double>>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
+}
+
+std::vector<int> H5Reader::ints(const std::string &name) const {
+  return impl_->list<std::vector<int>>(name, H5T_INTEGER, H5T_NATIVE_INT);
+}
+
+std::vector<std::string> H5Reader::strings(const std::string &name) const {
+  std::vector<std::string> texts;
+  const Id type = text_type();
+  for (char *text : impl_->list<std::vector<char *>>(name, H5T_STRING, type.get()))
+    texts.push_back(take(text));
+  return texts;
+}
+
+std::string H5Reader::string(const std::string &name) const {
+  const Id type = text_type();
+  return take(impl_->scalar<char *>(name, H5T_STRING, type.get()));
+}
+
+double H5Reader::number(const std::string &name) const {
+  return impl_->scalar<double>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
+}
+
+int H5Reader::integer(const std::string &name) const {
+  return impl_->scalar<int>(name, H5T_INTEGER, H5T_NATIVE_INT);
+}
+
+} // namespace rbvi

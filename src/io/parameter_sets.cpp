@@ -1,0 +1,206 @@
+#include "rbvi/io/parameter_sets.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/io/csv.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+namespace rbvi {
+
+namespace {
+
+using Generator = std::function<std::optional<Mu>()>;
+
+constexpr double largest_set = 1e7;
+
+int parse_count(const std::string &text, const std::string &what) {
+  const double value = parse_number(text, what);
+  if (value < 1 || value > largest_set || value != std::floor(value))
+    throw bad_input(what + " is " + trimmed(text) + ": it must be a positive whole number");
+  return static_cast<int>(value);
+}
+
+/// The fraction t of the way through the box; fused, so that every machine rounds it alike.
+double at_fraction(const Parameter &p, double t) {
+  return t >= 1 ? p.upper : std::fma(t, p.upper - p.lower, p.lower);
+}
+
+Generator grid(const ParameterSpace &space, const std::string &text) {
+  const std::vector<std::string> entries = split(text, ',');
+  if (static_cast<int>(entries.size()) != space.size())
+    throw bad_input("grid:" + text + " has " + std::to_string(entries.size()) + " counts for " +
+                    std::to_string(space.size()) + " free parameters (" + names_of(space) + ")");
+  std::vector<int> counts;
+  double total = 1;
+  for (int i = 0; i < space.size(); ++i) {
+    counts.push_back(
+        parse_count(entries[static_cast<std::size_t>(i)], "grid count of " + space.at(i).name));
+    total *= counts.back();
+  }
+  if (total > largest_set)
+    throw bad_input("grid:" + text + " has more than " +
+                    std::to_string(static_cast<long>(largest_set)) + " points");
+  return [&space, counts, k = 0L, end = static_cast<long>(total)]() mutable -> std::optional<Mu> {
+    if (k == end) return std::nullopt;
+    Mu mu(counts.size());
+    long rest = k++;
+    for (std::size_t i = counts.size(); i-- > 0; rest /= counts[i])
+      mu[i] = at_fraction(space.at(static_cast<int>(i)),
+                          counts[i] == 1 ? 0.5 : double(rest % counts[i]) / (counts[i] - 1));
+    return mu;
+  };
+}
+
+/// splitmix64 (Steele, Lea, Flood 2014): a counter, mixed; the standard library's distributions
+/// differ between machines.
+std::uint64_t next_random(std::uint64_t &state) {
+  std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+  return z ^ (z >> 31);
+}
+
+Generator random_set(const ParameterSpace &space, const std::string &text) {
+  const std::vector<std::string> entries = split(text, ':');
+  if (entries.size() != 2) throw bad_input("'random:" + text + "': write random:COUNT:SEED");
+  const int count = parse_count(entries[0], "count of random points");
+  const double seed = parse_number(entries[1], "random seed");
+  if (seed < 0 || seed > 9e15 || seed != std::floor(seed))
+    throw bad_input("random seed " + trimmed(entries[1]) + ": it must be a whole number >= 0");
+  return [&space, left = count,
+          state = static_cast<std::uint64_t>(seed)]() mutable -> std::optional<Mu> {
+    if (left-- <= 0) return std::nullopt;
+    Mu mu;
+    for (int i = 0; i < space.size(); ++i)
+      mu.push_back(
+          at_fraction(space.at(i), static_cast<double>(next_random(state) >> 11) * 0x1p-53));
+    return mu;
+  };
+}
+
+/// A CSV table on a stream.
+class CsvRows {
+public:
+  CsvRows(const ParameterSpace &space, std::string name, std::istream &in, bool allow_outside)
+      : space_(space), name_(std::move(name)), in_(in), allow_outside_(allow_outside) {
+    std::string line;
+    if (!next_line(line)) throw no_rows();
+    while_doing(reading(), [&] { read_header(line); });
+  }
+  std::optional<Mu> next() {
+    std::string line;
+    if (!next_line(line)) {
+      if (rows_ == 0) throw no_rows();
+      return std::nullopt;
+    }
+    ++rows_;
+    return while_doing(reading(), [&] {
+      Mu mu = read_row(line);
+      check_mu(space_, mu, allow_outside_);
+      return mu;
+    });
+  }
+
+private:
+  std::string reading() const { return "reading line " + std::to_string(line_) + " of " + name_; }
+  Error no_rows() const {
+    return bad_input(name_ + " has no rows under a header of " + names_of(space_));
+  }
+  /// The next line that is not blank.
+  bool next_line(std::string &line) {
+    while (std::getline(in_, line)) {
+      if (++line_ == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3); // byte order mark
+      if (!trimmed(line).empty()) return true;
+    }
+    if (in_.bad()) throw failure("cannot read " + name_ + " behind line " + std::to_string(line_));
+    return false;
+  }
+  void read_header(const std::string &line) {
+    std::vector<bool> found(static_cast<std::size_t>(space_.size()), false);
+    for (const std::string &field : csv_fields(line)) {
+      const std::string name = trimmed(field);
+      const std::optional<std::size_t> i = find_free(space_, name);
+      if (!i && !is_table_column(name)) throw unknown_parameter(space_, name);
+      if (i && found[*i]) throw bad_input("two columns are named '" + name + "'");
+      if (i) found[*i] = true;
+      columns_.push_back(i);
+    }
+    if (std::find(found.begin(), found.end(), false) != found.end())
+      throw bad_input("the header must name every free parameter: " + names_of(space_));
+  }
+  Mu read_row(const std::string &line) const {
+    const std::vector<std::string> entries = csv_fields(line);
+    if (entries.size() != columns_.size())
+      throw bad_input(std::to_string(entries.size()) + " entries under " +
+                      std::to_string(columns_.size()) + " columns");
+    Mu mu(static_cast<std::size_t>(space_.size()));
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      if (columns_[k])
+        mu[*columns_[k]] =
+            parse_number(entries[k], "parameter " + space_.at(static_cast<int>(*columns_[k])).name);
+    return mu;
+  }
+
+  const ParameterSpace &space_;
+  std::string name_;
+  std::istream &in_;
+  bool allow_outside_;
+  std::vector<std::optional<std::size_t>> columns_; ///< free parameter of each column, if any
+  long line_ = 0, rows_ = 0;
+};
+
+Generator csv_file(const ParameterSpace &space, const std::string &name, bool allow_outside) {
+  auto file = std::make_shared<std::ifstream>();
+  if (name != "-") {
+    file->open(name);
+    const bool empty = *file && file->peek() == EOF && !file->bad();
+    if (!*file && !empty)
+      throw bad_input("cannot read '" + name + "' (a set is grid:5,5, random:200:1 or a CSV file)");
+    if (empty) throw bad_input(name + " has no rows under a header of " + names_of(space));
+  }
+  auto rows = std::make_shared<CsvRows>(space, name == "-" ? "standard input" : name,
+                                        name == "-" ? std::cin : *file, allow_outside);
+  return [file, rows] { return rows->next(); };
+}
+
+} // namespace
+
+ParameterReader::ParameterReader(const ParameterSpace &space, const std::string &text,
+                                 bool allow_outside) {
+  if (text.starts_with("grid:"))
+    next_ = grid(space, text.substr(5));
+  else if (text.starts_with("random:"))
+    next_ = random_set(space, text.substr(7));
+  else if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos)
+    next_ = random_set(space, text + ":1");
+  else
+    next_ = csv_file(space, text, allow_outside);
+}
+
+std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
+                          bool allow_outside) {
+  if (text == "-") throw bad_input("a set cannot come from standard input here: name a CSV file");
+  ParameterReader reader(space, text, allow_outside);
+  std::vector<Mu> set;
+  while (std::optional<Mu> mu = reader.next())
+    set.push_back(std::move(*mu));
+  return set;
+}
+
+bool is_stream(const std::string &set) {
+  std::error_code error;
+  const auto status = std::filesystem::status(set, error);
+  return set == "-" ||
+         (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+          !std::filesystem::is_directory(status));
+}
+
+} // namespace rbvi

@@ -1,0 +1,191 @@
+#include "rbvi/io/vtu.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/write_atomically.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+namespace rbvi {
+
+namespace {
+
+constexpr Index most_ascii_nodes = 2000;
+
+template <class Number> const char *vtk_type() {
+  if constexpr (std::is_same_v<Number, double>) return "Float64";
+  if constexpr (std::is_same_v<Number, std::int32_t>) return "Int32";
+  if constexpr (std::is_same_v<Number, std::int64_t>) return "Int64";
+  return "UInt8";
+}
+
+template <class Number> void append_number(std::string &text, Number value, char separator) {
+  char digits[32];
+  char *const end = digits + sizeof digits;
+  if constexpr (sizeof(Number) == 1)
+    text.append(digits, std::to_chars(digits, end, static_cast<int>(value)).ptr);
+  else
+    text.append(digits, std::to_chars(digits, end, value).ptr);
+  text += separator;
+}
+
+template <class Number> void append_bytes(std::string &bytes, std::span<const Number> values) {
+  bytes.append(reinterpret_cast<const char *>(values.data()), values.size_bytes());
+}
+
+/// XML and, behind it, the blocks of raw numbers that it points into.
+class Writer {
+public:
+  explicit Writer(VtuFormat format) : format_(format) {}
+
+  void line(const std::string &xml) { xml_ += xml + "\n"; }
+
+  template <class Number>
+  void array(const std::string &name, std::span<const Number> values, std::size_t components) {
+    open(vtk_type<Number>(), name, "NumberOfComponents", components);
+    if (format_ == VtuFormat::appended) {
+      line(" format=\"appended\" offset=\"" + std::to_string(raw_.size()) + "\"/>");
+      const std::uint64_t bytes = values.size_bytes();
+      append_bytes(raw_, std::span(&bytes, 1));
+      append_bytes(raw_, values);
+      return;
+    }
+    line(" format=\"ascii\">");
+    for (std::size_t i = 0; i < values.size(); ++i)
+      append_number(xml_, values[i], (i + 1) % components == 0 ? '\n' : ' ');
+    line("</DataArray>");
+  }
+
+  /// Field data, always in ASCII.
+  void numbers(const Field &field) {
+    open("Float64", field.name, "NumberOfTuples", static_cast<std::size_t>(field.values.size()));
+    line(" format=\"ascii\">");
+    for (const double value : field.values)
+      append_number(xml_, value, '\n');
+    line("</DataArray>");
+  }
+  /// Each text as the codes of its characters and a zero, as VTK has it.
+  void texts(const std::string &name, const std::vector<std::string> &values) {
+    open("String", name, "NumberOfTuples", values.size());
+    line(" format=\"ascii\">");
+    for (const std::string &value : values) {
+      for (const char letter : value)
+        append_number(xml_, static_cast<unsigned char>(letter), ' ');
+      line("0");
+    }
+    line("</DataArray>");
+  }
+
+  std::string finished() const {
+    std::string all = xml_;
+    if (format_ == VtuFormat::appended)
+      all += "<AppendedData encoding=\"raw\">\n_" + raw_ + "\n</AppendedData>\n";
+    return all + "</VTKFile>\n";
+  }
+
+private:
+  void open(const std::string &type, const std::string &name, const std::string &counted,
+            std::size_t count) {
+    xml_ += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" " + counted + "=\"" +
+            std::to_string(count) + "\"";
+  }
+
+  VtuFormat format_;
+  std::string xml_, raw_;
+};
+
+std::uint8_t vtk_cell_type(int per_cell) {
+  if (per_cell == 2) return 3;
+  if (per_cell == 3) return 5;
+  if (per_cell == 4) return 10;
+  if (per_cell == 6) return 22;
+  if (per_cell == 10) return 24;
+  throw failure("no VTU cell type has " + std::to_string(per_cell) + " nodes");
+}
+
+void write_points(Writer &out, const Matrix &points) {
+  std::vector<double> coordinates;
+  coordinates.reserve(3 * static_cast<std::size_t>(points.rows()));
+  for (Index i = 0; i < points.rows(); ++i) {
+    const Point point = point_of(points, i);
+    coordinates.insert(coordinates.end(), point.begin(), point.end());
+  }
+  out.line("<Points>");
+  out.array("points", std::span<const double>(coordinates), 3);
+  out.line("</Points>");
+}
+
+void write_cells(Writer &out, const Grid &grid, std::size_t count) {
+  const auto per_cell = static_cast<std::size_t>(grid.per_cell);
+  const std::vector<std::int32_t> nodes(grid.cells.begin(), grid.cells.end());
+  std::vector<std::int64_t> ends;
+  for (std::size_t i = 1; i <= count; ++i)
+    ends.push_back(static_cast<std::int64_t>(i * per_cell));
+  const std::vector<std::uint8_t> types(count, vtk_cell_type(grid.per_cell));
+  out.line("<Cells>");
+  out.array("connectivity", std::span<const std::int32_t>(nodes), 1);
+  out.array("offsets", std::span<const std::int64_t>(ends), 1);
+  out.array("types", std::span<const std::uint8_t>(types), 1);
+  out.line("</Cells>");
+}
+
+void write_fields(Writer &out, const std::string &where, const std::vector<Field> &fields,
+                  Index count) {
+  out.line("<" + where + ">");
+  for (const Field &field : fields) {
+    if (count == 0 || field.values.size() == 0 || field.values.size() % count != 0)
+      throw failure("field " + field.name + " has " + std::to_string(field.values.size()) +
+                    " values for " + std::to_string(count) + " nodes or cells");
+    const std::span values(field.values.data(), static_cast<std::size_t>(field.values.size()));
+    out.array(field.name, std::span<const double>(values),
+              static_cast<std::size_t>(field.values.size() / count));
+  }
+  out.line("</" + where + ">");
+}
+
+void write_field_data(Writer &out, const Grid &grid) {
+  std::vector<std::string> units{"points: m"};
+  for (const auto *fields : {&grid.of_nodes, &grid.of_cells, &grid.of_all})
+    for (const Field &field : *fields) {
+      const std::string line = field.name + ": " + (field.unit.empty() ? "-" : field.unit);
+      if (std::find(units.begin(), units.end(), line) == units.end()) units.push_back(line);
+    }
+  out.line("<FieldData>");
+  if (!grid.scene.empty()) out.texts("scene", {grid.scene});
+  out.texts("units", units);
+  for (const Field &field : grid.of_all)
+    out.numbers(field);
+  out.line("</FieldData>");
+}
+
+} // namespace
+
+VtuFormat vtu_format(const Grid &grid) {
+  return grid.points.rows() > most_ascii_nodes ? VtuFormat::appended : VtuFormat::ascii;
+}
+
+void write_vtu(const std::filesystem::path &path, const Grid &grid, VtuFormat format) {
+  const std::size_t cells = grid.cells.size() / static_cast<std::size_t>(grid.per_cell);
+  const bool little = std::endian::native == std::endian::little;
+  Writer out(format);
+  out.line("<?xml version=\"1.0\"?>");
+  out.line("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" +
+           std::string(little ? "LittleEndian" : "BigEndian") + "\" header_type=\"UInt64\">");
+  out.line("<UnstructuredGrid>");
+  write_field_data(out, grid);
+  out.line("<Piece NumberOfPoints=\"" + std::to_string(grid.points.rows()) + "\" NumberOfCells=\"" +
+           std::to_string(cells) + "\">");
+  write_points(out, grid.points);
+  write_cells(out, grid, cells);
+  write_fields(out, "PointData", grid.of_nodes, grid.points.rows());
+  write_fields(out, "CellData", grid.of_cells, static_cast<Index>(cells));
+  out.line("</Piece>");
+  out.line("</UnstructuredGrid>");
+  write_atomically(path, out.finished());
+}
+
+} // namespace rbvi

@@ -1,0 +1,258 @@
+#include "rbvi/law/friction/collocated_friction.hpp"
+
+#include "collocated_face.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace rbvi {
+
+namespace {
+
+using namespace collocated;
+
+void check(const CollocatedProblem &p, const Vector &start) {
+  const Index r = p.normal_rows.cols(), s = p.tangential_rows.cols();
+  const bool fits = p.h.rows() == p.q.size() && p.h.cols() == p.q.size() && r + s == p.q.size() &&
+                    p.normal_rows.rows() == p.tangential_rows.rows();
+  if (!fits) throw failure("collocated friction: the sizes of H, q, N and T do not fit");
+  if (start.size() != 0 && start.size() != p.q.size())
+    throw failure("collocated friction: the first guess has " + std::to_string(start.size()) +
+                  " entries instead of " + std::to_string(p.q.size()));
+  const bool finite = p.h.allFinite() && p.q.allFinite() && p.normal_rows.allFinite() &&
+                      p.tangential_rows.allFinite() && start.allFinite();
+  if (!finite) throw failure("collocated friction: the problem or the first guess is not finite");
+  const FrictionBound &b = p.bound;
+  const bool valid = std::isfinite(b.coefficient) && std::isfinite(b.threshold) &&
+                     b.coefficient >= 0 && b.threshold >= 0;
+  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+  if (p.normal_rows.size() > 0 &&
+      p.normal_rows.minCoeff() < -accuracy * p.normal_rows.cwiseAbs().maxCoeff())
+    throw failure("collocated friction: a row of N has a negative entry: clip the generators");
+  if (p.h.size() > 0 && !(p.h.diagonal().minCoeff() > 0)) throw dependent();
+}
+
+double smaller(double a, double b) {
+  return std::max(0.0, std::min(a, b));
+}
+
+/// The largest relative violation of the definition at a point whose x and delta are given.
+class Judge {
+public:
+  explicit Judge(const Scaled &p) : p_(p) {}
+
+  void operator()(Point &point) {
+    point.residual = infinity;
+    if (!point.x.allFinite() || !point.delta.allFinite()) return;
+    point.w = p_.h * point.x + p_.q;
+    point.terms = p_.h.cwiseAbs() * point.x.cwiseAbs() + p_.q.cwiseAbs();
+    point.bounds = p_.bounds(point.x);
+    point.traction = p_.tangential * point.x.tail(p_.modes());
+    largest_ = point.x.size() > 0 ? point.x.cwiseAbs().maxCoeff() : 0;
+    worst_ = 0;
+    for (Index i = 0; i < p_.generators(); ++i)
+      generator(point, i);
+    modes(point);
+    for (Index j = 0; j < p_.nodes(); ++j)
+      node(point, j);
+    point.residual = worst_;
+  }
+  /// What a violation of the bound of node j is relative to.
+  double scale(const Point &point, Index j) const {
+    return std::max(point.bounds[j], point.x.cwiseAbs().maxCoeff() * p_.size.maxCoeff());
+  }
+
+private:
+  void violated(double amount, double terms) {
+    if (amount > 0) worst_ = std::max(worst_, amount / terms);
+  }
+  void generator(const Point &point, Index i) {
+    const double a = point.x[i], w = point.w[i], terms = point.terms[i];
+    violated(-a, largest_);
+    violated(-w, terms);
+    if (a > 0 && w > 0) violated(smaller(a / largest_, w / terms), 1);
+  }
+  void modes(const Point &point) {
+    const Index s = p_.modes();
+    const Vector left = point.w.tail(s) + p_.tangential.transpose() * point.delta;
+    const Vector terms =
+        point.terms.tail(s) + p_.tangential.cwiseAbs().transpose() * point.delta.cwiseAbs();
+    for (Index k = 0; k < s; ++k)
+      violated(std::abs(left[k]), terms[k]);
+    loads_ = s > 0 ? terms.maxCoeff() : 0;
+  }
+  void node(const Point &point, Index j) {
+    const double s = point.bounds[j], delta = point.delta[j], all = scale(point, j);
+    violated(std::abs(point.traction[j]) - s, all);
+    if (delta == 0) return;
+    const double slack = s - std::copysign(point.traction[j], delta * point.traction[j]);
+    if (slack != 0)
+      violated(smaller(std::abs(slack) / all, std::abs(delta) * p_.size[j] / loads_), 1);
+  }
+
+  const Scaled &p_;
+  double largest_ = 0, loads_ = 0, worst_ = 0;
+};
+
+class Solver {
+public:
+  explicit Solver(const Scaled &p) : p_(p), judge_(p) {}
+
+  void run(const Vector &start) {
+    Sets sets(p_);
+    if (start.size() > 0) {
+      sets = sets_at(start);
+      return iterate(sets, p_.bounds(start));
+    }
+    const Scaled free{.unit = p_.unit,
+                      .q = p_.q,
+                      .size = Vector(0),
+                      .h = p_.h,
+                      .normal = Matrix(0, p_.generators()),
+                      .tangential = Matrix(0, p_.modes()),
+                      .bound = p_.bound};
+    const Point unbounded = Face(free, {}).frozen(Vector(0), sets);
+    sets.side.assign(at(p_.nodes()), 0);
+    iterate(sets, p_.bounds(unbounded.x));
+  }
+  int sweeps() const { return sweeps_; }
+  const Point &best() const { return best_; }
+
+private:
+  /// Sweeps with the bounds of Newton's point where that is the better one, else with those of the
+  /// last sweep; where sets return, with smaller and smaller steps of the bounds.
+  void iterate(Sets sets, Vector s) {
+    constexpr int limit = 200;
+    std::set<Sets> seen;
+    bool cycles = false;
+    Vector damping = Vector::Ones(p_.nodes()), last = Vector::Zero(p_.nodes());
+    while (sweeps_ < limit) {
+      ++sweeps_;
+      std::vector<char> closed(at(p_.nodes()));
+      for (Index j = 0; j < p_.nodes(); ++j)
+        closed[at(j)] = s[j] == 0;
+      const Point point = judged(face(closed).frozen(s, sets));
+      if (best_.residual <= round_off) return;
+      const bool known = !seen.insert(sets).second;
+      if (!known && newton(sets, seen)) return;
+      if (known && best_.residual <= accuracy) return;
+      const Vector step = p_.bounds(point.x) - s;
+      for (Index j = 0; j < p_.nodes() && cycles; ++j)
+        damping[j] = step[j] * last[j] < 0 ? 0.5 * damping[j] : std::min(1.0, 1.3 * damping[j]);
+      cycles = cycles || known;
+      last = step;
+      if (!known && best_.residual < point.residual)
+        s = best_.bounds;
+      else
+        s += damping.cwiseProduct(step);
+    }
+  }
+
+  /// Semismooth Newton from `sets` until they return or a few steps bring nothing.
+  bool newton(Sets sets, std::set<Sets> &seen) {
+    constexpr int patience = 8;
+    double least = infinity;
+    for (int unrewarded = 0; unrewarded <= patience; ++unrewarded) {
+      const Point point = judged(face(untouched(sets)).newton(sets));
+      if (point.residual <= round_off) return true;
+      if (point.residual == infinity) return false;
+      if (point.residual < least) unrewarded = 0;
+      least = std::min(least, point.residual);
+      Sets next = corrected(sets, point);
+      if (next == sets && point.residual <= accuracy) return true;
+      if (!seen.insert(next).second) return false;
+      sets = std::move(next);
+    }
+    return false;
+  }
+
+  Face &face(const std::vector<char> &closed) {
+    if (!face_ || !face_->is(closed)) face_ = std::make_unique<Face>(p_, closed);
+    return *face_;
+  }
+
+  /// Nodes whose bound is zero whatever the pressures of the free generators.
+  std::vector<char> untouched(const Sets &sets) const {
+    std::vector<char> closed(at(p_.nodes()), p_.threshold(0) == 0);
+    const bool idle = p_.bound.coefficient == 0 && p_.bound.threshold == 0;
+    for (Index i = 0; i < p_.generators() && !idle; ++i)
+      for (Index j = 0; j < p_.nodes() && sets.free[at(i)] != 0; ++j)
+        if (p_.normal(j, i) > 0) closed[at(j)] = 0;
+    return closed;
+  }
+
+  Point judged(Point point) {
+    judge_(point);
+    if (point.residual < best_.residual || best_.x.size() == 0) best_ = point;
+    return point;
+  }
+
+  Sets corrected(Sets sets, const Point &point) const {
+    for (Index i = 0; i < p_.generators(); ++i) {
+      char &free = sets.free[at(i)];
+      free = free != 0 ? point.x[i] > 0 : point.w[i] < -round_off * point.terms[i];
+    }
+    for (Index j = 0; j < p_.nodes(); ++j) {
+      signed char &side = sets.side[at(j)];
+      const double traction = point.traction[j], s = point.bounds[j];
+      if (s == 0) {
+        side = sign(point.delta[j]);
+      } else if (side != 0) {
+        if (point.delta[j] * side < 0) side = 0;
+      } else if (std::abs(traction) - s > round_off * judge_.scale(point, j)) {
+        side = traction > 0 ? 1 : -1;
+      }
+    }
+    return sets;
+  }
+
+  Sets sets_at(const Vector &x) const {
+    constexpr double near = 1e-9;
+    Sets sets(p_);
+    const double largest = x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
+    for (Index i = 0; i < p_.generators(); ++i)
+      sets.free[at(i)] = x[i] > round_off * largest;
+    const Vector s = p_.bounds(x), traction = p_.tangential * x.tail(p_.modes());
+    for (Index j = 0; j < p_.nodes(); ++j)
+      if (s[j] > 0 && std::abs(traction[j]) >= s[j] * (1 - near))
+        sets.side[at(j)] = traction[j] > 0 ? 1 : -1;
+    return sets;
+  }
+
+  const Scaled &p_;
+  Judge judge_;
+  std::unique_ptr<Face> face_;
+  Point best_;
+  int sweeps_ = 0;
+};
+
+} // namespace
+
+CollocatedResult solve_collocated(const CollocatedProblem &problem, const Vector &start) {
+  // The sweeps aim at `accuracy`. Where the generators of a greedy cone nearly depend on each
+  // other, round-off leaves a few 1e-11 however many sweeps follow, far below what such a cone
+  // misses.
+  constexpr double accepted = 1e-10;
+  check(problem, start);
+  const Scaled p = scaled(problem);
+  Solver solver(p);
+  solver.run(start.size() > 0 ? Vector(start.cwiseQuotient(p.unit)) : start);
+  CollocatedResult result;
+  result.x = p.unit.cwiseProduct(solver.best().x);
+  result.w = problem.h * result.x + problem.q;
+  result.iterations = solver.sweeps();
+  result.residual = solver.best().residual;
+  result.converged = result.residual <= accepted;
+  result.reason =
+      result.converged
+          ? "the laws hold to " + short_number(result.residual)
+          : "the bounds of friction did not settle within " + std::to_string(result.iterations) +
+                " steps (" + short_number(result.residual) +
+                " is left): a smaller coefficient of friction or other collocation nodes may help";
+  return result;
+}
+
+} // namespace rbvi

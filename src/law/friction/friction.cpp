@@ -1,0 +1,284 @@
+#include "rbvi/law/friction/friction.hpp"
+
+#include "friction_convex.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace rbvi {
+
+namespace {
+
+using namespace friction;
+
+void check(const Vector &q, int dim, const FrictionBound &bound, const Vector &start) {
+  if (dim < 1 || dim > 3) throw failure("friction: the dimension is not 1, 2 or 3");
+  if (q.size() % dim != 0)
+    throw failure("friction: the right-hand side has " + std::to_string(q.size()) +
+                  " entries, which is not a multiple of the dimension");
+  if (start.size() != 0 && start.size() != q.size())
+    throw failure("friction: the first guess has " + std::to_string(start.size()) +
+                  " entries instead of " + std::to_string(q.size()));
+  if (!q.allFinite()) throw failure("friction: the right-hand side is not finite");
+  if (!start.allFinite()) throw failure("friction: the first guess is not finite");
+  const bool valid = std::isfinite(bound.coefficient) && std::isfinite(bound.threshold) &&
+                     bound.coefficient >= 0 && bound.threshold >= 0;
+  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+}
+
+/// What the states and the list of nodes in contact say of x.
+void describe(FrictionResult &result, const Laws &laws, const Sets &sets) {
+  result.active.clear();
+  result.states.assign(static_cast<std::size_t>(laws.nodes), NodeState::open);
+  for (Index i = 0; i < laws.nodes; ++i) {
+    if (!(result.x[i] > 0)) continue;
+    result.active.push_back(i);
+    result.states[static_cast<std::size_t>(i)] =
+        sets.of(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
+  }
+}
+
+/// The largest violation, relative to the terms of its row, of the normal laws.
+double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
+  double worst = 0;
+  for (Index i = 0; i < x.size(); ++i)
+    if (x[i] > 0 || w[i] < 0) worst = std::max(worst, std::abs(w[i]) / terms[i]);
+  return worst;
+}
+
+/// FrictionResult::start. `diagonal(j)`: H_jj, 0 where it is not known. The tangential entries of a
+/// node share their mean: with rho of their own x_tau - rho w_tau would turn.
+template <class Diagonal>
+Vector start_of(const Laws &laws, const Vector &x, const Vector &w, const Diagonal &diagonal) {
+  Vector result = Vector::NullaryExpr(x.size(), diagonal);
+  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i)
+    result.segment(laws.tangent(i), 2).setConstant(result.segment(laws.tangent(i), 2).mean());
+  const Index known = (result.array() > 0).count();
+  const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
+  for (Index j = 0; j < x.size(); ++j)
+    result[j] = x[j] - w[j] / (result[j] > 0 ? result[j] : mean);
+  return result;
+}
+
+FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
+                                const Vector &start, const FrictionOptions &options) {
+  const Index nodes = laws.nodes;
+  std::vector<Index> order, guess;
+  Matrix known(q.size(), 0);
+  const ColumnSource normals = [&](const std::vector<Index> &which) {
+    const Matrix received = columns(which);
+    if (received.rows() != q.size() || received.cols() != static_cast<Index>(which.size()))
+      throw failure("the source of the columns of H returned a matrix of the wrong size");
+    known.conservativeResize(Eigen::NoChange, known.cols() + received.cols());
+    known.rightCols(received.cols()) = received;
+    order.insert(order.end(), which.begin(), which.end());
+    return Matrix(received.topRows(nodes));
+  };
+  for (Index i = 0; i < nodes && start.size() > 0; ++i)
+    if (start[i] > 0) guess.push_back(i);
+  LcpResult normal =
+      solve_lcp(normals, q.head(nodes), guess,
+                {.tolerance = options.tolerance, .max_iterations = options.max_iterations});
+  FrictionResult result;
+  result.iterations = normal.iterations;
+  result.columns = normal.columns;
+  result.backup_steps = normal.backup_steps;
+  result.converged = normal.converged;
+  result.reason = std::move(normal.reason);
+  if (normal.x.size() != nodes) return result; // H is not positive definite
+  const Vector pressures = normal.x(order);
+  const Vector terms = known.cwiseAbs() * pressures.cwiseAbs() + q.cwiseAbs();
+  result.x = Vector::Zero(q.size());
+  result.x.head(nodes) = normal.x;
+  result.w = known * pressures + q;
+  result.residual = normal_residual(normal.x, result.w.head(nodes), terms.head(nodes));
+  Vector diagonal = Vector::Zero(q.size());
+  for (std::size_t k = 0; k < order.size(); ++k)
+    diagonal[order[k]] = known(order[k], static_cast<Index>(k));
+  result.start = start_of(laws, result.x, result.w, [&](Index j) { return diagonal[j]; });
+  describe(result, laws, Sets(nodes, laws.dim));
+  return result;
+}
+
+class Solver {
+public:
+  Solver(const ColumnSource &columns, const Vector &q, const Laws &laws,
+         const FrictionOptions &options)
+      : h_(columns, q.size()), q_(q), laws_(laws), options_(options),
+        best_sets_(laws.nodes, laws.dim), left_(options.max_iterations) {}
+
+  FrictionResult run(const Vector &start) {
+    Outcome outcome;
+    if (start.size() > 0) {
+      best_.x = laws_.feasible(start);
+      result_.residual = std::numeric_limits<double>::infinity();
+      Point point;
+      outcome = newton_from(laws_, sets_from(h_, laws_, start), point);
+    } else {
+      prepare(laws_, Vector::Zero(q_.size()));
+      Point point = evaluate(h_, q_, Vector::Zero(q_.size()));
+      outcome = newton(laws_, point);
+    }
+    if (outcome == Outcome::cycles) outcome = backup(evaluate(h_, q_, laws_.feasible(best_.x)));
+    return finish(outcome);
+  }
+
+private:
+  enum class Outcome { converged, cycles, indefinite, limit };
+
+  /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
+  void prepare(const Laws &laws, const Vector &x) {
+    Sets sets = sets_of(laws, x);
+    for (Index i = 0; i < laws.nodes; ++i)
+      if (laws.carries(i, sets.is_active(i)))
+        sets.tangent[static_cast<std::size_t>(i)] = Tangent::stick;
+    h_.require(sets.support(laws));
+  }
+
+  Outcome newton(const Laws &laws, Point &point) {
+    const Sets sets = sets_of(laws, point.x);
+    Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
+    keep(laws, point, sets, verdict);
+    return newton_from(laws, std::move(verdict.next), point);
+  }
+
+  /// From the sets of the first step until the laws hold, sets return, or ten steps bring nothing.
+  Outcome newton_from(const Laws &laws, Sets sets, Point &point) {
+    constexpr int patience = 10;
+    std::set<std::string> seen;
+    double least = std::numeric_limits<double>::infinity();
+    for (int unrewarded = 0; unrewarded <= patience; ++unrewarded) {
+      if (laws.dim == 2 && !seen.insert(sets.key()).second) return Outcome::cycles;
+      if (left_ <= 0) return Outcome::limit;
+      --left_;
+      h_.require(sets.support(laws));
+      const Solved solved = step(h_, q_, laws, sets, point);
+      if (solved == Solved::indefinite) return Outcome::indefinite;
+      if (solved == Solved::singular) return Outcome::cycles;
+      Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
+      keep(laws, point, sets, verdict);
+      if (settled(verdict, least)) return Outcome::converged;
+      if (verdict.residual < least) unrewarded = 0;
+      least = std::min(least, verdict.residual);
+      sets = std::move(verdict.next);
+    }
+    return Outcome::cycles;
+  }
+
+  /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
+  /// in two dimensions what a repeated step would give again, in three what it did not improve.
+  bool settled(const Verdict &verdict, double least) const {
+    constexpr double round_off = 1e-11;
+    if (verdict.changed) return false;
+    if (verdict.residual <= options_.tolerance) return true;
+    return verdict.residual <= round_off && (laws_.dim == 2 || verdict.residual >= 0.5 * least);
+  }
+
+  /// The fixed point of the bounds, frozen in turn, with shorter steps where it does not contract;
+  /// and Newton whenever they settle. `point` is feasible.
+  Outcome backup(Point point) {
+    double near = 0.1, part = 1, before = std::numeric_limits<double>::infinity();
+    Laws frozen = laws_;
+    frozen.coefficient = 0;
+    frozen.only_in_contact = false;
+    frozen.threshold = laws_.bounds(point.x);
+    while (left_ > 0) {
+      ++result_.backup_steps;
+      if (!solve_frozen(frozen, 1e-2 * near, point)) return Outcome::indefinite;
+      const Vector bounds = laws_.bounds(point.x);
+      const double change = (bounds - frozen.threshold).cwiseAbs().maxCoeff();
+      if (change <= near * bounds.maxCoeff()) {
+        near *= 0.1;
+        Point trial = evaluate(h_, q_, laws_.feasible(point.x));
+        const Outcome outcome = newton(laws_, trial);
+        if (outcome != Outcome::cycles) return outcome;
+      }
+      if (change > 0.8 * before) part = std::max(0.1, 0.5 * part);
+      before = change;
+      frozen.threshold += part * (bounds - frozen.threshold);
+      point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
+    }
+    return Outcome::limit;
+  }
+
+  bool solve_frozen(const Laws &frozen, double tolerance, Point &point) {
+    prepare(frozen, point.x);
+    Point trial = point;
+    const Outcome outcome = newton(frozen, trial);
+    if (outcome != Outcome::converged)
+      return outcome != Outcome::indefinite && minimise(h_, q_, frozen, tolerance, left_, point);
+    point = std::move(trial);
+    return true;
+  }
+
+  void keep(const Laws &laws, const Point &point, const Sets &sets, const Verdict &verdict) {
+    if (&laws != &laws_) return;
+    if (best_.x.size() > 0 && verdict.changed && verdict.residual >= result_.residual) return;
+    best_ = point;
+    best_sets_ = sets;
+    result_.residual = verdict.residual;
+  }
+
+  FrictionResult finish(Outcome outcome) {
+    FrictionResult result = std::move(result_);
+    result.iterations = options_.max_iterations - left_;
+    result.columns = h_.count();
+    result.converged = outcome == Outcome::converged;
+    best_.x = laws_.feasible(std::move(best_.x));
+    if (!result.converged) {
+      best_ = evaluate(h_, q_, std::move(best_.x));
+      result.residual = judge(h_, laws_, best_, best_sets_, options_.tolerance).residual;
+    }
+    result.x = std::move(best_.x);
+    result.w = std::move(best_.w);
+    result.start = start_of(laws_, result.x, result.w,
+                            [this](Index j) { return h_.has(j) ? h_.diagonal(j) : 0; });
+    describe(result, laws_, best_sets_);
+    result.reason = reason(outcome, result);
+    return result;
+  }
+
+  std::string reason(Outcome outcome, const FrictionResult &result) const {
+    if (outcome == Outcome::converged) return "no violation left";
+    if (outcome == Outcome::indefinite)
+      return "the block of H of the nodes in contact is not positive definite: dependent "
+             "constraints or an inexact H";
+    const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
+    const std::string remedy = "start closer to the solution (a smaller change of the load or of "
+                               "the coefficient of friction)";
+    if (result.backup_steps == 0)
+      return "the laws of friction are still violated" + after + "raise the limit, or " + remedy;
+    return "neither Newton's method nor the fixed point of the friction bounds has settled" +
+           after + remedy + ", lower the coefficient, or raise the limit";
+  }
+
+  LazyColumns h_;
+  const Vector &q_;
+  const Laws &laws_;
+  const FrictionOptions &options_;
+  Point best_; ///< the solution, or the point of the least residual
+  Sets best_sets_;
+  FrictionResult result_;
+  int left_; ///< linear systems
+};
+
+} // namespace
+
+FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
+                              const FrictionBound &bound, const Vector &start,
+                              const FrictionOptions &options) {
+  check(q, dim, bound, start);
+  const Laws laws{.nodes = q.size() / dim,
+                  .dim = dim,
+                  .coefficient = bound.coefficient,
+                  .threshold = Vector::Constant(q.size() / dim, bound.threshold),
+                  .only_in_contact = bound.only_in_contact};
+  if (dim == 1 || (bound.coefficient == 0 && bound.threshold == 0))
+    return without_friction(columns, q, laws, start, options);
+  return Solver(columns, q, laws, options).run(start);
+}
+
+} // namespace rbvi

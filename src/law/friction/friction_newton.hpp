@@ -1,0 +1,86 @@
+// One Newton step for contact with friction, and what a vector x says about the laws.
+//
+// A node that slips has x_tau = s e, |e| = 1, s = c x_n + t: in two dimensions e is a sign and
+// x_tau is eliminated; in three the turn z of e is an unknown, x_tau = s e + z e', e' orthogonal to
+// e, with the row  e' . w_tau + kappa z = 0,  kappa = (|y| - s) / (rho s),  y = x_tau - rho w_tau:
+// that is the derivative of the projection on the disk, and kappa >= 0. After the step x_tau is
+// brought back to the circle.
+#pragma once
+
+#include "../lazy_columns.hpp"
+#include "rbvi/law/friction/friction.hpp"
+
+#include <string>
+
+namespace rbvi::friction {
+
+/// |x_tau,i| <= c x_n,i + t_i.
+struct Laws {
+  Index nodes = 0;
+  int dim = 2;
+  double coefficient = 0;
+  Vector threshold; ///< of every node
+  bool only_in_contact = false;
+
+  Index tangent(Index i) const { return nodes + i * (dim - 1); }
+  /// Whether x_tau of the node can differ from zero.
+  bool carries(Index i, bool active) const {
+    return threshold[i] > 0 ? active || !only_in_contact : active && coefficient > 0;
+  }
+  double bound(Index i, double normal) const {
+    return coefficient * std::max(normal, 0.0) +
+           (normal > 0 || !only_in_contact ? threshold[i] : 0.0);
+  }
+  Vector bounds(const Vector &x) const;
+  /// The nearest x that keeps the signs, and then the bounds.
+  Vector feasible(Vector x) const;
+};
+
+/// What x_tau of a node is: zero, free, or of a given direction.
+enum class Tangent : char { none, stick, slip };
+
+struct Sets {
+  std::vector<char> active;
+  std::vector<Tangent> tangent;
+  Matrix direction; ///< e of the nodes that slip, dim - 1 x nodes
+  Vector curvature; ///< kappa of those nodes; negative: no turn
+
+  Sets(Index nodes, int dim);
+  bool is_active(Index i) const { return active[static_cast<std::size_t>(i)] != 0; }
+  Tangent of(Index i) const { return tangent[static_cast<std::size_t>(i)]; }
+  /// The entries of x that need not be zero.
+  std::vector<Index> support(const Laws &laws) const;
+  /// Equal for sets with the same linear system, in two dimensions.
+  std::string key() const;
+};
+
+struct Point {
+  Vector x, w;
+  Vector terms; ///< the sum of the sizes of the terms of every row of w
+};
+
+/// The point of x, whose support has its columns.
+Point evaluate(const LazyColumns &h, const Vector &q, Vector x);
+
+struct Verdict {
+  Sets next;            ///< the sets that x - rho w predicts
+  bool changed = false; ///< next differs from the sets of the point
+  double residual = 0;  ///< largest relative violation of the laws
+};
+
+/// `sets`: of the step that gave the point (they decide where the difference is below tolerance).
+Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
+              double tolerance);
+/// The sets to judge a point by that no step gave.
+Sets sets_of(const Laws &laws, const Vector &x);
+/// The sets that y = x - w / H_jj tells; the columns of their support are asked for.
+Sets sets_from(LazyColumns &h, const Laws &laws, const Vector &y);
+
+/// With friction a singular matrix need not be a fault of H.
+enum class Solved { yes, singular, indefinite };
+
+/// Solves the linear system of the sets, whose columns are there; otherwise `point` is unchanged.
+Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, const Sets &sets,
+            Point &point);
+
+} // namespace rbvi::friction

@@ -1,0 +1,190 @@
+#include "cone_tools.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/par/small_svd.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <tuple>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double open_below = 1e-10; ///< of the largest multiplier: at or below it a node is open
+
+/// From the triangular factor of the coordinates, not from the Gram matrix: squares would lose
+/// half of the digits.
+double condition(const Matrix &triangular) {
+  if (triangular.rows() < triangular.cols()) return std::numeric_limits<double>::infinity();
+  const Vector values = singular_values(triangular);
+  const double ratio = values[0] / values[values.size() - 1];
+  return ratio * ratio;
+}
+
+Matrix triangular_factor(const Matrix &coordinates) {
+  const Index rows = std::min(coordinates.rows(), coordinates.cols());
+  const Eigen::HouseholderQR<Matrix> qr(coordinates);
+  return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+}
+
+} // namespace
+
+Matrix checked(const Matrix &snapshots, const SparseMatrix &product) {
+  if (snapshots.size() == 0) throw failure("no multiplier snapshot to build a cone from");
+  if (product.rows() != snapshots.rows() || product.cols() != snapshots.rows())
+    throw failure("the multiplier snapshots and their inner product differ in size");
+  if (!snapshots.allFinite()) throw failure("a multiplier snapshot is not finite");
+  const double largest = snapshots.cwiseAbs().maxCoeff();
+  if (largest == 0)
+    throw failure("all multiplier snapshots are zero: nothing is in contact in the training set");
+  Index row = 0, column = 0;
+  if (snapshots.minCoeff(&row, &column) < -1e-12 * largest)
+    throw failure("multiplier snapshot " + std::to_string(column) +
+                  " is negative: the high-fidelity solve is not converged");
+  return snapshots.cwiseMax(0.0);
+}
+
+double gram_condition(const Matrix &coordinates) {
+  return condition(triangular_factor(coordinates));
+}
+
+std::vector<double> gram_conditions(const Matrix &coordinates, Index smallest) {
+  const Matrix triangular = triangular_factor(coordinates);
+  std::vector<double> result;
+  for (Index r = smallest; r <= coordinates.cols(); ++r)
+    result.push_back(condition(triangular.topLeftCorner(std::min(r, triangular.rows()), r)));
+  return result;
+}
+
+Distances::Distances(const Matrix &targets)
+    : targets_(targets), value_(targets.colwise().norm()), norm_(value_),
+      seen_(static_cast<std::size_t>(targets.cols()), 0),
+      qp_(seen_.size(), NonnegativeQp(targets.rows())) {}
+
+Distances::Distances(const Matrix &targets, const Matrix &coordinates, const Matrix &coefficients)
+    : Distances(targets) {
+  value_ = (targets - coordinates * coefficients).colwise().norm();
+  for (Index p = 0; p < targets.cols(); ++p) {
+    std::vector<Index> active;
+    for (Index k = 0; k < coefficients.rows(); ++k)
+      if (coefficients(k, p) > 0) active.push_back(k);
+    qp_[static_cast<std::size_t>(p)].start_from(std::move(active));
+  }
+}
+
+std::pair<Index, double> Distances::largest(const Eigen::Ref<const Matrix> &coordinates) {
+  std::vector<Index> order(seen_.size());
+  for (Index p = 0; p < value_.size(); ++p)
+    order[static_cast<std::size_t>(p)] = p;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return value_[a] > value_[b]; });
+  double best = 0;
+  std::size_t fresh = 0;
+  for (; fresh < order.size() && value_[order[fresh]] >= (1 - tie) * best; ++fresh)
+    best = std::max(best, update(order[fresh], coordinates));
+  Index index = value_.size();
+  for (std::size_t k = 0; k < fresh; ++k)
+    if (value_[order[k]] >= (1 - tie) * best) index = std::min(index, order[k]);
+  return {index, best};
+}
+
+double Distances::update(Index p, const Eigen::Ref<const Matrix> &coordinates) {
+  auto &seen = seen_[static_cast<std::size_t>(p)];
+  auto &qp = qp_[static_cast<std::size_t>(p)];
+  const Index fresh = coordinates.cols() - seen;
+  const auto residual = [&] { return seen == 0 ? Vector(targets_.col(p)) : qp.residual(); };
+  // A generator that makes no acute angle with the residual leaves the projection as it is.
+  const bool improves =
+      fresh > 0 &&
+      (coordinates.rightCols(fresh).transpose() * residual()).maxCoeff() > 1e-13 * norm_[p];
+  if (!improves) return value_[p];
+  if (!qp.solve(coordinates, targets_.col(p)).converged)
+    throw failure("the projection of multiplier snapshot " + std::to_string(p) +
+                  " onto the cone did not converge; try a larger -cone_tolerance");
+  seen = coordinates.cols();
+  value_[p] = std::min(value_[p], qp.residual().norm());
+  return value_[p];
+}
+
+Matrix span_coordinates(const Matrix &snapshots, const SparseMatrix &product) {
+  const Matrix factor = product_factor(product);
+  if (snapshots.cols() >= snapshots.rows()) return factor;
+  const Eigen::HouseholderQR<Matrix> qr(factor * snapshots);
+  const Matrix span = qr.householderQ() * Matrix::Identity(snapshots.rows(), snapshots.cols());
+  return span.transpose() * factor;
+}
+
+GreedyCone::GreedyCone(const Matrix &snapshots, Matrix map, const ConeOptions &options)
+    : map_(std::move(map)), targets_(map_ * snapshots), distances_(targets_),
+      tolerance_(options.tolerance) {
+  const Index bound =
+      options.max_size > 0 ? std::min<Index>(options.max_size, snapshots.cols()) : snapshots.cols();
+  generators_.resize(snapshots.rows(), bound);
+  coordinates_.resize(map_.rows(), bound);
+  std::tie(farthest_, distance_) = distances_.largest(coordinates());
+  scale_ = distance_;
+  cone_.history.size.push_back(0);
+  cone_.history.error.push_back(1);
+}
+
+bool GreedyCone::finished() {
+  ConeHistory &history = cone_.history;
+  if (!history.reason.empty()) return true;
+  if (size_ > 0 && history.error.back() <= tolerance_)
+    history.reason = "tolerance reached";
+  else if (history.error.back() <= round_off)
+    history.reason = "round-off reached";
+  else if (size_ == generators_.cols())
+    history.reason = "size reached";
+  return !history.reason.empty();
+}
+
+void GreedyCone::add(const Vector &direction, Index snapshot) {
+  const Vector image = map_ * direction;
+  if (!(image.norm() > 0)) return stagnate();
+  generators_.col(size_) = direction / image.norm();
+  coordinates_.col(size_) = image / image.norm();
+  NonnegativeQp projection(map_.rows());
+  if (!projection.solve(coordinates(), coordinates_.col(size_)).converged)
+    throw failure("the projection of generator " + std::to_string(size_) + " did not converge");
+  cone_.history.e_orth.push_back(projection.residual().norm());
+  cone_.history.selected.push_back(static_cast<int>(snapshot));
+  ++size_;
+  if (snapshot == farthest_ && distances_.update(snapshot, coordinates()) > 0.99 * distance_)
+    stagnate();
+  std::tie(farthest_, distance_) = distances_.largest(coordinates());
+  cone_.history.size.push_back(static_cast<int>(size_));
+  cone_.history.error.push_back(distance_ / scale_);
+}
+
+Cone GreedyCone::take() {
+  cone_.basis.generators = generators();
+  cone_.history.gram_condition = gram_conditions(coordinates());
+  return std::move(cone_);
+}
+
+std::vector<bool> ever_in_contact(const Matrix &snapshots) {
+  std::vector<bool> result;
+  for (const double largest : Vector(snapshots.rowwise().maxCoeff()))
+    result.push_back(largest > open_below * snapshots.maxCoeff());
+  return result;
+}
+
+std::vector<bool> ever_open(const Matrix &snapshots) {
+  std::vector<bool> result;
+  for (const double least : Vector(snapshots.rowwise().minCoeff()))
+    result.push_back(least <= open_below * snapshots.maxCoeff());
+  return result;
+}
+
+void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product) {
+  const std::vector<bool> before = inside;
+  for (Index i = 0; i < product.outerSize(); ++i)
+    for (SparseMatrix::InnerIterator entry(product, i); entry; ++entry)
+      if (before[static_cast<std::size_t>(i)]) inside[static_cast<std::size_t>(entry.col())] = true;
+}
+
+} // namespace rbvi

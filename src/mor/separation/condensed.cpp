@@ -1,0 +1,191 @@
+#include "rbvi/mor/separation/condensed.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/par/small_svd.hpp"
+#include "rbvi/solve/replicated.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace rbvi {
+
+namespace {
+
+bool mirrored(const SupportCurve &curve) {
+  const auto count = static_cast<std::size_t>(curve.vertices);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Point &x = curve.points[i], &y = curve.points[count - 1 - i];
+    if (std::hypot(x[0] + y[0], x[1] - y[1]) > 1e-12) return false;
+  }
+  return true;
+}
+
+/// lambda_n even, lambda_tau odd about the middle, to 1e-8 of the largest.
+bool symmetric(const Matrix &snapshots, Index vertices) {
+  for (Index first = 0; first < snapshots.rows(); first += vertices) {
+    const Matrix part = snapshots.middleRows(first, vertices);
+    const double sign = first == 0 ? 1 : -1;
+    const double defect = (part - sign * part.colwise().reverse()).cwiseAbs().maxCoeff();
+    if (defect > 1e-8 * snapshots.cwiseAbs().maxCoeff()) return false;
+  }
+  return true;
+}
+
+bool contains(const std::vector<int> &list, int i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
+
+/// The parameters of a that are free, each with so many points.
+std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
+  std::vector<ChebyshevAxis> axes;
+  for (const int i : scene.parameters.free) {
+    if (scene.a_parameters && !contains(*scene.a_parameters, i)) continue;
+    const Parameter &p = scene.parameters.all[static_cast<std::size_t>(i)];
+    const auto found = scene.a_coordinates.find(i);
+    const bool own = found != scene.a_coordinates.end();
+    const double lower = own ? found->second.of(p.lower) : p.lower;
+    const double upper = own ? found->second.of(p.upper) : p.upper;
+    axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});
+  }
+  return axes;
+}
+
+/// The terms of b on the basis, side by side: contact dofs x (multipliers * terms).
+Matrix loads_of(Problem &problem, const AffineOperators &affine, const std::vector<Mu> &training,
+                const Matrix &basis) {
+  const Index m = basis.cols();
+  Matrix loads = Matrix::Zero(problem.trace().size, m * affine.b_size());
+  Operators op;
+  int first = 0;
+  for (const RowsOfB &rows : rows_of_b(affine, problem)) {
+    for (int i = 0; i < rows.eim.size(); ++i) {
+      const int snapshot = rows.eim.snapshots[static_cast<std::size_t>(i)];
+      problem.assemble_contact(training[static_cast<std::size_t>(snapshot)], op);
+      const Matrix at_snapshot = op.b.middleRows(rows.first, rows.count).transpose() *
+                                 basis.middleRows(rows.first, rows.count);
+      for (int p = i; p < rows.eim.size(); ++p)
+        loads.middleCols((first + p) * m, m) += rows.eim.combination(i, p) * at_snapshot;
+    }
+    first += rows.eim.size();
+  }
+  return loads;
+}
+
+/// The blocks of H = `loads`^T A^-1 `loads`, below each other: column by column, m^2 entries each.
+Vector blocks_of(const Matrix &h, Index m) {
+  const Index terms = h.cols() / m;
+  Vector blocks(terms * (terms + 1) / 2 * m * m);
+  Index at = 0;
+  for (Index p = 0; p < terms; ++p)
+    for (Index q = p; q < terms; ++q, at += m * m) {
+      const Matrix block = h.block(p * m, q * m, m, m);
+      const double share = p == q ? 0.5 : 1;
+      blocks.segment(at, m * m) = (share * (block + block.transpose())).reshaped();
+    }
+  return blocks;
+}
+
+/// As few terms as hold the values at all grid points to the tolerance. `values`: (blocks *
+/// `square`) x grid points.
+void compress(const Matrix &values, Index square, double tolerance, CondensedOperator &condensed) {
+  const Index points = values.cols(), blocks = values.rows() / square;
+  const Eigen::HouseholderQR<Matrix> qr(values);
+  const SmallSvd svd = small_svd(qr.matrixQR().topRows(points).triangularView<Eigen::Upper>());
+  Index count = 1;
+  while (count < points && svd.values[count] > 0.1 * tolerance * svd.values[0])
+    ++count;
+  condensed.shape = svd.values.head(count).asDiagonal() * svd.right.leftCols(count).transpose();
+  Matrix left = Matrix::Zero(values.rows(), count);
+  left.topRows(points) = svd.left.leftCols(count);
+  left.applyOnTheLeft(qr.householderQ());
+  condensed.terms.resize(square, blocks * count);
+  for (Index block = 0; block < blocks; ++block)
+    condensed.terms.middleCols(block * count, count) = left.middleRows(block * square, square);
+}
+
+/// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
+std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                          const Mu &all_parameters) {
+  std::vector<Mu> result;
+  for (const Mu &point : grid_points(scene, axes, all_parameters)) {
+    Mu mu;
+    for (const int i : scene.parameters.free)
+      mu.push_back(point[static_cast<std::size_t>(i)]);
+    result.push_back(std::move(mu));
+  }
+  return result;
+}
+
+} // namespace
+
+Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots) {
+  const SupportCurve &curve = problem.support().curve;
+  const Index vertices = curve.vertices, parts = problem.dual_size() / vertices;
+  if (!problem.scene().symmetric || !mirrored(curve) || !symmetric(snapshots, vertices))
+    return Matrix::Identity(problem.dual_size(), problem.dual_size());
+  const Index half = (vertices + 1) / 2;
+  Matrix basis = Matrix::Zero(parts * vertices, parts * half);
+  for (Index part = 0; part < parts; ++part)
+    for (Index i = 0; i < half; ++i) {
+      basis(part * vertices + vertices - 1 - i, part * half + i) = part == 0 ? 1 : -1;
+      basis(part * vertices + i, part * half + i) = 1;
+    }
+  return basis;
+}
+
+Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers) {
+  return basis.colwise().squaredNorm().cwiseInverse().asDiagonal() *
+         (basis.transpose() * multipliers);
+}
+
+Condensation condense(Problem &problem, const AffineOperators &affine,
+                      const std::vector<Mu> &training, const Matrix &basis,
+                      const CondensedOptions &options, LinearBasis *modes) {
+  const Scene &scene = problem.scene();
+  const Mu all = expand(scene.parameters, training.front());
+  const Matrix loads = loads_of(problem, affine, training, basis);
+  const bool appends = modes != nullptr && affine.b_size() == 1 && options.responses > 0;
+  const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all);
+  Condensation result;
+  CondensedOperator &condensed = result.condensed;
+
+  /// H of one A, factorised once.
+  const auto blocks_at = [&](const Mu &mu) {
+    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
+    if (!appends || std::find(ends.begin(), ends.end(), mu) == ends.end())
+      return blocks_of(loads.transpose() * solver.responses(loads), basis.cols());
+    const Handle<Mat> fields = solver.fields(loads);
+    const double least = result.responses == 0 ? 1e-8 : options.responses;
+    const Vector blocks =
+        blocks_of(loads.transpose() * restrict_to(problem.trace(), fields.get()), basis.cols());
+    result.responses +=
+        static_cast<int>(append_orthonormalised(*modes, fields.get(), least).size());
+    return blocks;
+  };
+  std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
+  Matrix values;
+  for (int points = 5;; points = 2 * points - 1) {
+    condensed.axes = axes_of(scene, points);
+    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
+    for (const Mu &mu : grid)
+      if (!known.contains(mu)) known.emplace(mu, blocks_at(mu));
+    values.resize(known.begin()->second.size(), static_cast<Index>(grid.size()));
+    for (std::size_t k = 0; k < grid.size(); ++k)
+      values.col(static_cast<Index>(k)) = known.at(grid[k]);
+    condensed.error = chebyshev_tail(condensed.axes, values);
+    if (condensed.error <= options.tolerance) break;
+    if (2 * points - 1 > options.max_points)
+      throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
+                    " only by " + std::to_string(points) +
+                    " points along each parameter of the stiffness: narrow their bounds, or raise "
+                    "-condensed_tolerance");
+  }
+  compress(values, basis.cols() * basis.cols(), options.tolerance, condensed);
+  return result;
+}
+
+} // namespace rbvi

@@ -1,0 +1,60 @@
+#include "rbvi/mor/separation/operator_entries.hpp"
+
+namespace rbvi {
+
+namespace {
+
+std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
+  std::vector<PetscInt> natural(static_cast<std::size_t>(dofs.total_free), 0);
+  for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
+    natural[static_cast<std::size_t>(dofs.first_free) + i] = dofs.natural_owned[i];
+  MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPIU_INT, MPI_SUM,
+                dofs.comm);
+  return natural;
+}
+
+} // namespace
+
+LowerTriangle::LowerTriangle(Mat a, const Dofs &dofs) {
+  const std::vector<PetscInt> natural = natural_of_rows(dofs);
+  visit_entries(a, [&](PetscInt row, PetscInt column, double) {
+    const EntryKey key{natural[static_cast<std::size_t>(row)],
+                       natural[static_cast<std::size_t>(column)]};
+    taken_.push_back(key.row >= key.column);
+    if (taken_.back()) keys_.push_back(key);
+  });
+}
+
+Vector LowerTriangle::values(Mat a) const {
+  Vector result(static_cast<Index>(keys_.size()));
+  auto taken = taken_.begin();
+  Index next = 0;
+  visit_entries(a, [&](PetscInt, PetscInt, double value) {
+    if (*taken++) result[next++] = value;
+  });
+  return result;
+}
+
+Vector local_values(Vec vector) {
+  PetscInt size = 0;
+  const PetscScalar *values = nullptr;
+  RBVI_CALL(VecGetLocalSize(vector, &size));
+  RBVI_CALL(VecGetArrayRead(vector, &values));
+  Vector result = Eigen::Map<const Vector>(values, size);
+  RBVI_CALL(VecRestoreArrayRead(vector, &values));
+  return result;
+}
+
+std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix) {
+  std::vector<EntryKey> keys;
+  for (Index row = 0; row < matrix.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(matrix, row); entry; ++entry)
+      keys.push_back({static_cast<PetscInt>(row), static_cast<PetscInt>(entry.col())});
+  return keys;
+}
+
+Vector nonzero_values(const SparseMatrix &matrix) {
+  return Eigen::Map<const Vector>(matrix.valuePtr(), matrix.nonZeros());
+}
+
+} // namespace rbvi

@@ -1,0 +1,79 @@
+#include "rbvi/mor/stability/high_fidelity_pair.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/par/small_svd.hpp"
+#include "rbvi/par/turns.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double round_off = 1e-10; ///< of a singular value, relative to the largest
+constexpr Index dense_multipliers = 1000;
+constexpr double largest_tolerance = 0.999; ///< sigma never exceeds 1
+
+/// Multipliers whose support has a partner everywhere; of one body all.
+std::vector<Index> covered_multipliers(const Problem &problem, const Operators &op) {
+  const Vector whole = problem.w_product() * Vector::Ones(problem.dual_size());
+  std::vector<Index> rows;
+  for (Index i = 0; i < whole.size(); ++i)
+    if (!problem.two_bodies() || op.weights[i] > (1 - 1e-9) * whole[i]) rows.push_back(i);
+  return rows;
+}
+
+/// What takes these rows of a matrix of `size` rows.
+SparseMatrix rows_of_identity(const std::vector<Index> &rows, Index size) {
+  SparseMatrix chosen(static_cast<Index>(rows.size()), size);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    chosen.insert(static_cast<Index>(i), rows[i]) = 1;
+  chosen.makeCompressed();
+  return chosen;
+}
+
+} // namespace
+
+std::optional<SparseInfSup> sparse_infsup(Problem &problem) {
+  if (problem.dual_size() <= dense_multipliers) return std::nullopt;
+  return SparseInfSup(problem.v_product(), problem.trace());
+}
+
+PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space,
+                                 const Operators &op, const std::optional<SparseInfSup> &sparse) {
+  const std::vector<Index> rows = covered_multipliers(problem, op);
+  if (rows.empty()) throw failure("no multiplier has a partner: there is no inf-sup constant");
+  if (sparse) {
+    const SparseMatrix chosen = rows_of_identity(rows, problem.dual_size());
+    const SparseMatrix b = chosen * op.b,
+                       w = chosen * SparseMatrix(problem.w_product() * chosen.transpose());
+    return {sparse->constant(b, w), largest_stretch(space.factor, b, w)};
+  }
+  const Eigen::LLT<Matrix> w(Matrix(problem.w_product())(rows, rows));
+  if (w.info() != Eigen::Success) throw failure("the W product is not positive definite");
+  Matrix x = Matrix::Zero(problem.dual_size(), static_cast<Index>(rows.size()));
+  x(rows, Eigen::all) = Matrix(w.matrixU().solve(Matrix::Identity(x.cols(), x.cols())));
+  const Vector stretch = singular_values(supremizer_coordinates(space, op.b, x));
+  const bool enough = stretch.size() == x.cols(); // else V holds fewer directions than W
+  return {enough ? stretch(stretch.size() - 1) : 0, stretch(0)};
+}
+
+double infsup_tolerance(MPI_Comm comm, Problem &problem, const RieszSpace &space,
+                        const std::vector<Mu> &set) {
+  double smallest = largest_tolerance;
+  const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
+  Operators op;
+  take_turns(comm, set.size(), [&](std::size_t p) {
+    problem.assemble_contact(set[p], op);
+    const PairConstants pair = high_fidelity_pair(problem, space, op, sparse);
+    if (!(pair.beta > round_off * pair.c))
+      throw failure("beta_HF is " + short_number(pair.beta) +
+                    ", zero to round-off: give -pga_tolerance a number");
+    smallest = std::min(smallest, pair.beta / pair.c);
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
+  return smallest;
+}
+
+} // namespace rbvi

@@ -1,0 +1,212 @@
+#include "rbvi/mor/stability/stability.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/par/small_svd.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double range_tolerance = 1e-12;
+
+/// All that inf-sup constants, c and sigma are read off.
+Vector stretches(const Matrix &matrix) {
+  return singular_values(matrix, "infsup_");
+}
+
+Matrix lower_cholesky(const Matrix &matrix, const char *what) {
+  const Eigen::LLT<Matrix> cholesky(matrix);
+  if (!matrix.allFinite() || cholesky.info() != Eigen::Success)
+    throw failure(std::string(what) + " is not positive definite");
+  return cholesky.matrixL();
+}
+
+} // namespace
+
+RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs) {
+  RieszSpace space;
+  space.dofs = dofs;
+  space.trace = dofs.empty() ? trace : part_of(trace, dofs);
+  space.solver = std::make_shared<ReplicatedSolver>(product, space.trace, "v_");
+  const Matrix traces =
+      space.solver->responses(Matrix::Identity(space.trace.size, space.trace.size));
+  space.factor = lower_cholesky((traces + traces.transpose()) / 2,
+                                "the inverse V product on the contact dofs");
+  return space;
+}
+
+Handle<Mat> representer_fields(const RieszSpace &space, const Matrix &representers) {
+  return space.solver->fields(representers);
+}
+
+Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
+  const PetscInt count = modes.size();
+  const Index contact = space.trace.size;
+  Matrix coordinates = Matrix::Zero(contact + count, count);
+  if (count == 0) return coordinates;
+  Mat columns = nullptr;
+  RBVI_CALL(BVGetMat(modes.columns.get(), &columns));
+  Matrix top = restrict_to(space.trace, columns);
+  RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
+  space.factor.triangularView<Eigen::Lower>().solveInPlace(top);
+  const Eigen::SelfAdjointEigenSolver<Matrix> rest(Matrix::Identity(count, count) -
+                                                   top.transpose() * top);
+  if (rest.info() != Eigen::Success || !(rest.eigenvalues()(0) > -1e-8))
+    throw failure("the primal basis is not orthonormal in the V product of the supremizers");
+  const Vector roots = rest.eigenvalues().cwiseMax(0).cwiseSqrt();
+  coordinates.topRows(contact) = top;
+  coordinates.bottomRows(count) = roots.asDiagonal() * rest.eigenvectors().transpose();
+  return coordinates;
+}
+
+Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
+                              double tolerance) {
+  const auto squares = [&](const Matrix &x) -> Vector {
+    return x.cwiseProduct(w_product * x).colwise().sum().transpose().cwiseMax(0);
+  };
+  const Vector norms = squares(generators).cwiseSqrt();
+  Matrix remainders = generators;
+  for (Index r = 0; r < remainders.cols(); ++r)
+    if (norms(r) > 0) remainders.col(r) /= norms(r);
+  Matrix basis(generators.rows(), generators.cols());
+  Index rank = 0;
+  for (; rank < generators.cols(); ++rank) {
+    Index next = 0;
+    if (std::sqrt(squares(remainders).maxCoeff(&next)) <= tolerance) break;
+    Vector column = remainders.col(next);
+    Vector image = w_product * column;
+    const auto known = basis.leftCols(rank);
+    column -= known * (known.transpose() * image);
+    image = w_product * column;
+    const double norm = std::sqrt(column.dot(image));
+    basis.col(rank) = column / norm;
+    remainders -= basis.col(rank) * ((image / norm).transpose() * remainders).eval();
+    remainders.col(next).setZero();
+  }
+  return basis.leftCols(rank);
+}
+
+Matrix orthonormal_range(const Matrix &vectors) {
+  const Index size = std::min(vectors.rows(), vectors.cols());
+  if (!vectors.allFinite()) throw failure("supremizers with entries that are not finite");
+  if (size == 0) return Matrix(vectors.rows(), 0);
+  // Blocked, then pivoted on the small factor: pivoting the tall matrix costs several times more.
+  const Eigen::HouseholderQR<Matrix> qr(vectors);
+  const Matrix triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+  Eigen::ColPivHouseholderQR<Matrix> small(triangle);
+  small.setThreshold(range_tolerance);
+  const Index rank = small.maxPivot() > 0 ? small.rank() : 0;
+  Matrix basis = Matrix::Zero(vectors.rows(), rank);
+  if (rank == size)
+    basis.topRows(size).setIdentity();
+  else
+    basis.topRows(size) = small.householderQ() * Matrix::Identity(size, rank);
+  basis.applyOnTheLeft(qr.householderQ());
+  return basis;
+}
+
+Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const Matrix &x) {
+  Matrix forces = b_contact.transpose() * x;
+  if (!space.dofs.empty()) forces = forces(space.dofs, Eigen::all).eval();
+  return space.factor.transpose().triangularView<Eigen::Upper>() * forces;
+}
+
+double infsup_constant(const Matrix &primal, const Matrix &supremizers) {
+  if (supremizers.cols() == 0) return std::numeric_limits<double>::infinity();
+  if (primal.cols() < supremizers.cols()) return 0;
+  const Matrix pairing = primal.topRows(supremizers.rows()).transpose() * supremizers;
+  return stretches(pairing)(supremizers.cols() - 1);
+}
+
+namespace {
+
+// T(mu) eta lies in V_N + S_R(mu), so the supremum over that space is the norm of T(mu) eta.
+double smallest_stretch(const Matrix &supremizers) {
+  if (supremizers.cols() == 0) return std::numeric_limits<double>::infinity();
+  if (supremizers.rows() < supremizers.cols()) return 0;
+  return stretches(supremizers)(supremizers.cols() - 1);
+}
+
+/// The triangular factor of a matrix that gets more rows.
+void add_rows(Matrix &factor, const Matrix &rows) {
+  Matrix stacked(factor.rows() + rows.rows(), rows.cols());
+  stacked << factor, rows;
+  if (stacked.rows() <= stacked.cols()) {
+    factor = stacked;
+    return;
+  }
+  const Eigen::HouseholderQR<Matrix> qr(stacked);
+  factor = qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+}
+
+} // namespace
+
+double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
+                              const SparseMatrix &w_product) {
+  Matrix x = lower_cholesky(Matrix(w_product), "the W product");
+  x = Matrix(
+      x.transpose().triangularView<Eigen::Upper>().solve(Matrix::Identity(x.rows(), x.cols())));
+  return smallest_stretch(supremizer_coordinates(space, b_contact, x));
+}
+
+InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, const Matrix &modes,
+                        const Matrix &enriched, const Matrix &x) {
+  const Matrix supremizers = supremizer_coordinates(space, b_contact, x);
+  return {.hf = std::numeric_limits<double>::quiet_NaN(),
+          .dec = infsup_constant(modes, supremizers),
+          .on = smallest_stretch(supremizers),
+          .off = infsup_constant(enriched, supremizers)};
+}
+
+StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers) {
+  const Vector stretch = stretches(supremizers);
+  const Matrix range = orthonormal_range(supremizers);
+  Matrix rest = Matrix::Zero(enriched.rows(), range.cols());
+  rest.topRows(range.rows()) = range;
+  rest -= enriched * (enriched.topRows(range.rows()).transpose() * range);
+  StabilityBound bound{};
+  bound.sigma = range.cols() > 0 ? std::min(stretches(rest)(0), 1.0) : 0;
+  bound.c = stretch.size() > 0 ? stretch(0) : 0;
+  bound.on = smallest_stretch(supremizers);
+  // The smallest cosine between S_R(mu) and the space is sqrt(1 - sigma^2), without cancellation.
+  bound.sharp = std::min(infsup_constant(enriched, range), 1.0) * bound.on;
+  bound.classic = (bound.on - bound.c * bound.sigma) / (1 + bound.sigma);
+  return bound;
+}
+
+std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes,
+                                          const std::vector<int> &counts,
+                                          const Matrix &supremizers) {
+  const Matrix range = orthonormal_range(supremizers);
+  const auto contact = coordinates.topRows(supremizers.rows());
+  const Matrix work = contact.transpose() * supremizers, cosines = contact.transpose() * range;
+  const Vector stretch = stretches(supremizers);
+  const double on = smallest_stretch(supremizers);
+  Matrix work_factor(0, work.cols()), cosine_factor(0, range.cols());
+  Index seen = 0;
+  std::vector<StabilityStep> steps;
+  for (const int count : counts) {
+    const Index fresh = modes + count - seen;
+    add_rows(work_factor, work.middleRows(seen, fresh));
+    add_rows(cosine_factor, cosines.middleRows(seen, fresh));
+    seen += fresh;
+    const double cosine = std::min(smallest_stretch(cosine_factor), 1.0);
+    StabilityStep step{};
+    step.off = smallest_stretch(work_factor);
+    step.bound.sigma = std::sqrt((1 - cosine) * (1 + cosine));
+    step.bound.c = stretch.size() > 0 ? stretch(0) : 0;
+    step.bound.on = on;
+    step.bound.sharp = cosine * on;
+    step.bound.classic = (on - step.bound.c * step.bound.sigma) / (1 + step.bound.sigma);
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+} // namespace rbvi

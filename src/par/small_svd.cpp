@@ -1,0 +1,117 @@
+#include "rbvi/par/small_svd.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace rbvi {
+
+namespace {
+
+std::map<std::string, Handle<SVD>> objects; // one for each prefix, until PETSc ends
+
+PetscErrorCode forget_objects() {
+  objects.clear();
+  return 0;
+}
+
+SVD object_of(const char *prefix) {
+  Handle<SVD> &svd = objects[prefix];
+  if (!svd) {
+    if (objects.size() == 1) RBVI_CALL(PetscRegisterFinalize(forget_objects));
+    svd = make_small_svd(prefix);
+  }
+  return svd.get();
+}
+
+void solve(SVD svd, const Matrix &matrix, const std::string &prefix) {
+  const auto wanted = static_cast<PetscInt>(std::min(matrix.rows(), matrix.cols()));
+  RBVI_CALL(SVDSetOperators(svd, sequential_dense(matrix).get(), nullptr));
+  RBVI_CALL(SVDSetDimensions(svd, wanted, PETSC_DEFAULT, PETSC_DEFAULT));
+  RBVI_CALL(SVDSolve(svd));
+  PetscInt converged = 0;
+  RBVI_CALL(SVDGetConverged(svd, &converged));
+  if (converged < wanted)
+    throw failure("SLEPc returned " + std::to_string(converged) + " of " + std::to_string(wanted) +
+                  " singular values of a dense matrix: check the scaling of its entries" +
+                  (prefix.empty() ? "" : ", and leave out -" + prefix + "svd_type"));
+}
+
+/// The object of the prefix with all triplets of `matrix`.
+SVD solved(const Matrix &matrix, const char *prefix) {
+  if (!matrix.allFinite()) throw failure("singular values of a matrix with entries not finite");
+  SVD svd = object_of(prefix);
+  try {
+    solve(svd, matrix, prefix);
+  } catch (const Error &) {
+    objects.erase(prefix); // what it was in the middle of
+    throw;
+  }
+  return svd;
+}
+
+Handle<Vec> wrapped_column(Matrix &matrix, Index column) {
+  Handle<Vec> vector;
+  RBVI_CALL(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, static_cast<PetscInt>(matrix.rows()),
+                                  matrix.col(column).data(), vector.put()));
+  return vector;
+}
+
+/// A square matrix with the same singular values: LAPACK's SVD forms vectors of full length.
+Matrix triangular_factor(const Matrix &matrix) {
+  if (matrix.rows() <= matrix.cols()) return matrix;
+  const Eigen::HouseholderQR<Matrix> qr(matrix);
+  return qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
+}
+
+} // namespace
+
+Handle<SVD> make_small_svd(const char *prefix) {
+  Handle<SVD> svd;
+  RBVI_CALL(SVDCreate(PETSC_COMM_SELF, svd.put()));
+  RBVI_CALL(SVDSetType(svd.get(), SVDLAPACK));
+  if (*prefix == '\0') return svd;
+  RBVI_CALL(SVDSetOptionsPrefix(svd.get(), prefix));
+  RBVI_CALL(SVDSetFromOptions(svd.get()));
+  return svd;
+}
+
+Handle<Mat> sequential_dense(const Matrix &matrix) {
+  Handle<Mat> copy;
+  RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, static_cast<PetscInt>(matrix.rows()),
+                              static_cast<PetscInt>(matrix.cols()), nullptr, copy.put()));
+  double *entries = nullptr;
+  RBVI_CALL(MatDenseGetArrayWrite(copy.get(), &entries));
+  std::copy_n(matrix.data(), matrix.size(), entries);
+  RBVI_CALL(MatDenseRestoreArrayWrite(copy.get(), &entries));
+  RBVI_CALL(MatAssemblyBegin(copy.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(copy.get(), MAT_FINAL_ASSEMBLY));
+  return copy;
+}
+
+SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
+  const Index count = std::min(matrix.rows(), matrix.cols());
+  SmallSvd result{Vector(count), Matrix(matrix.rows(), count), Matrix(matrix.cols(), count)};
+  if (count == 0) return result;
+  SVD svd = solved(matrix, prefix);
+  for (Index k = 0; k < count; ++k) {
+    const Handle<Vec> left = wrapped_column(result.left, k);
+    const Handle<Vec> right = wrapped_column(result.right, k);
+    RBVI_CALL(SVDGetSingularTriplet(svd, static_cast<PetscInt>(k), &result.values(k), left.get(),
+                                    right.get()));
+  }
+  return result;
+}
+
+Vector singular_values(const Matrix &matrix, const char *prefix) {
+  Vector values(std::min(matrix.rows(), matrix.cols()));
+  if (values.size() == 0) return values;
+  SVD svd = solved(triangular_factor(matrix), prefix);
+  for (Index k = 0; k < values.size(); ++k)
+    RBVI_CALL(SVDGetSingularTriplet(svd, static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
+  return values;
+}
+
+} // namespace rbvi

@@ -1,0 +1,299 @@
+#include "rbvi/rom/model/model.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
+#include "rbvi/element/lagrange.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// Offset of column j of a packed lower triangle of order n.
+Index packed_column(Index n, Index j) {
+  return j * n - j * (j - 1) / 2;
+}
+
+Matrix leading_triangle(const Matrix &packed, Index n, Index size) {
+  Matrix result(size * (size + 1) / 2, packed.cols());
+  for (Index j = 0; j < size; ++j)
+    result.middleRows(packed_column(size, j), size - j) =
+        packed.middleRows(packed_column(n, j), size - j);
+  return result;
+}
+
+Matrix leading_block(const Matrix &packed, Index rows, Index r, Index n) {
+  Matrix result(r * n, packed.cols());
+  for (Index j = 0; j < n; ++j)
+    result.middleRows(j * r, r) = packed.middleRows(j * rows, r);
+  return result;
+}
+
+void require(bool holds, const std::string &what) {
+  if (!holds) throw failure("the reduced model is inconsistent: " + what);
+}
+
+void require_shape(const Matrix &matrix, Index rows, Index cols, const std::string &name) {
+  require(matrix.rows() == rows && matrix.cols() == cols,
+          name + " is " + std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) +
+              " instead of " + std::to_string(rows) + " x " + std::to_string(cols));
+  require(matrix.allFinite(), name + " has an entry that is not finite");
+}
+
+void require_indices(const std::vector<int> &indices, Index bound, const std::string &name) {
+  require(std::all_of(indices.begin(), indices.end(), [&](int i) { return i >= 0 && i < bound; }),
+          name + " points outside 0.." + std::to_string(bound - 1));
+}
+
+/// `corners`: vertices of a sampled cell, 2 of an edge of a support.
+void check_terms(const AffineTerms &terms, Index rows, int dim, int corners,
+                 const std::string &name) {
+  const Index size = terms.interpolation.rows();
+  require_shape(terms.interpolation, size, size, name + "/interpolation");
+  require_shape(terms.reduced, size == 0 ? terms.reduced.rows() : rows, size, name + "/reduced");
+  const Matrix &vertices = terms.sample.vertices;
+  require(vertices.rows() % corners == 0, name + "/vertices is not a list of cells");
+  require_shape(vertices, vertices.rows(), size == 0 ? vertices.cols() : dim, name + "/vertices");
+  int previous = 0;
+  for (const SampleMesh::Contribution &c : terms.sample.contributions) {
+    require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
+                c.cell < vertices.rows() / corners,
+            name + "/contributions point nowhere or are not ordered by entry");
+    previous = c.entry;
+  }
+}
+
+void check_fields(const ReducedModel &model, int dim) {
+  const Index nodes = model.mesh_points.rows();
+  if (nodes == 0 && model.primal_basis.rows() == 0) return;
+  require_shape(model.mesh_points, nodes, dim, "fields/points");
+  require(nodes > 0 && model.primal_basis.rows() % nodes == 0,
+          "fields/primal_basis has no whole number of rows per node");
+  require_shape(model.primal_basis, model.primal_basis.rows(), model.primal_size(),
+                "fields/primal_basis");
+  require_indices(model.contact_nodes, nodes, "contact/nodes");
+  require_indices(model.mesh_cells, nodes, "fields/cells");
+  const bool on_support = model.support || model.nitsche;
+  const int degree = on_support ? make_scene(model.scene_name, model.scene_options).degree : 1;
+  require(model.mesh_cells.size() % static_cast<std::size_t>(nodes_per_cell(dim, degree)) == 0,
+          "fields/cells is not a list of cells");
+}
+
+void check_support(const ReducedModel &model, const SupportModel &support) {
+  const CondensedOperator &condensed = support.condensed;
+  const Index m = model.generators, blocks = Index{model.b.size()} * (model.b.size() + 1) / 2;
+  require(support.vertices == model.contact_points.rows(), "support/vertices does not fit");
+  require(support.normal > 0 && m % support.normal == 0, "support/normal does not fit");
+  require(support.reduction >= MultiplierReduction::condensed &&
+              support.reduction <= MultiplierReduction::joint,
+          "support/reduction is none that this build has");
+  for (const ChebyshevAxis &axis : condensed.axes)
+    require(axis.points > 0 && axis.lower < axis.upper && axis.parameter >= 0 &&
+                axis.parameter < static_cast<int>(model.parameters.all.size()),
+            "support/axes do not fit");
+  if (condensed.terms.size() > 0) {
+    require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes),
+                  "support/shape");
+    require_shape(condensed.terms, m * m, blocks * condensed.shape.rows(), "support/terms");
+  } else {
+    require(support.reduction == MultiplierReduction::collocated, "it has no condensed operator");
+  }
+  if (support.reduction != MultiplierReduction::condensed) {
+    const MultiplierBasis &basis = support.basis;
+    require(m == 2 * support.normal || support.reduction == MultiplierReduction::collocated,
+            "support/basis is for contact with friction");
+    require_shape(basis.normal, support.normal, basis.normal.cols(), "support/basis/normal");
+    require_shape(basis.tangential, m - support.normal, basis.tangential.cols(),
+                  "support/basis/tangential");
+    if (support.reduction == MultiplierReduction::cones)
+      require_shape(basis.slip, support.normal, 1, "support/basis/slip");
+    require_indices(basis.nodes, support.normal, "support/basis/nodes");
+  }
+  const int apart = support.apart.normal, all = model.b.size();
+  require(apart >= 0 && (apart == 0 || (apart < all && m > support.normal)),
+          "support/apart does not fit");
+  require(model.b.interpolation.bottomLeftCorner(all - apart, apart).isZero(0),
+          "b/interpolation mixes terms of B^n and of B^tau");
+  require_shape(support.lift, model.dual_basis.rows(), model.b.size(), "support/lift");
+  require_shape(support.starts, m, support.starts.cols(), "support/starts");
+  require_shape(support.starts_mu, model.parameters.size(), support.starts.cols(),
+                "support/starts_mu");
+}
+
+/// `entries`: of the reduced operator.
+void check_layer_terms(const LayerTerms &terms, Index entries, Index dofs,
+                       const std::string &name) {
+  require_shape(terms.interpolation, terms.size(), terms.size(), name + "/interpolation");
+  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : entries, terms.size(),
+                name + "/reduced");
+  require(static_cast<Index>(terms.rows.size()) == terms.size() &&
+              (terms.columns.empty() || terms.columns.size() == terms.rows.size()),
+          name + "/rows does not fit");
+  require_indices(terms.rows, dofs, name + "/rows");
+  require_indices(terms.columns, dofs, name + "/columns");
+}
+
+void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
+  const auto cells = static_cast<Index>(nitsche.edges.size());
+  const Index n = model.primal_size(), packed = n * (n + 1) / 2, dofs = nitsche.trace.rows();
+  require(cells + 1 == model.contact_points.rows(), "nitsche/edges does not fit contact/points");
+  require_indices(nitsche.edges, 3, "nitsche/edges");
+  require_shape(nitsche.vertices, 3 * cells, 2, "nitsche/vertices");
+  require_shape(nitsche.trace, dofs, n, "nitsche/trace");
+  require(static_cast<Index>(nitsche.dofs.size()) == 12 * cells &&
+              std::all_of(nitsche.dofs.begin(), nitsche.dofs.end(),
+                          [&](int dof) { return dof >= -1 && dof < dofs; }),
+          "nitsche/dofs does not fit");
+  check_layer_terms(nitsche.consistency, packed, dofs, "nitsche/consistency");
+  check_layer_terms(nitsche.contact_matrix, packed, dofs, "nitsche/contact_matrix");
+  check_layer_terms(nitsche.contact_vector, n, dofs, "nitsche/contact_vector");
+  check_layer_terms(nitsche.friction_matrix, packed, dofs, "nitsche/friction_matrix");
+  check_layer_terms(nitsche.friction_vector, n, dofs, "nitsche/friction_vector");
+  require(nitsche.rule >= CurveRule::empirical && nitsche.rule <= CurveRule::interpolated,
+          "nitsche/rule is none that this build has");
+  require_indices(nitsche.points, 4 * cells, "nitsche/points");
+  require(std::is_sorted(nitsche.points.begin(), nitsche.points.end()),
+          "nitsche/points are not in order");
+  require_shape(nitsche.factors, static_cast<Index>(nitsche.points.size()), 1, "nitsche/factors");
+  require(nitsche.rule != CurveRule::interpolated || nitsche.starts.rows() == n,
+          "nitsche/starts does not fit");
+  require_shape(nitsche.starts_mu, model.parameters.size(), nitsche.starts.cols(),
+                "nitsche/starts_mu");
+}
+
+/// Of the first `size` of n columns.
+LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
+  LayerTerms result = terms;
+  if (terms.size() == 0) return result;
+  result.reduced = terms.columns.empty() ? Matrix(terms.reduced.topRows(size))
+                                         : leading_triangle(terms.reduced, n, size);
+  return result;
+}
+
+NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
+  NitscheModel result = nitsche;
+  result.trace = nitsche.trace.leftCols(size);
+  if (nitsche.rule == CurveRule::interpolated) result.starts = nitsche.starts.topRows(size);
+  for (LayerTerms NitscheModel::*terms :
+       {&NitscheModel::consistency, &NitscheModel::contact_matrix, &NitscheModel::contact_vector,
+        &NitscheModel::friction_matrix, &NitscheModel::friction_vector})
+    result.*terms = leading_terms(nitsche.*terms, n, size);
+  return result;
+}
+
+} // namespace
+
+void check_model(const ReducedModel &model) {
+  const int dim = static_cast<int>(model.contact_points.cols());
+  const Index n = model.primal_size(), r = model.generators, dual = model.dual_basis.rows(),
+              contact = model.contact_points.rows();
+  require(dim == 2 || dim == 3, "contact/points has neither 2 nor 3 columns");
+  require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || model.nitsche),
+          "it has no modes or no generators");
+  require(model.a.size() > 0, "a has no terms");
+  require(model.slave_nodes >= 0 && model.slave_nodes <= contact,
+          "contact/slave_nodes does not fit");
+  require(model.two_bodies() || model.nitsche ? model.b.size() + model.g.size() == 0
+                                              : model.b.size() > 0,
+          "b has no terms, or two bodies have some, or Nitsche's method");
+  require(model.two_bodies() || contact == dual ||
+              ((model.support || model.nitsche) && dual % contact == 0 && dual / contact <= dim),
+          "contact/points does not fit contact/dual_basis");
+  const int corners = model.support ? dim : dim + 1;
+  check_terms(model.a, n * (n + 1) / 2, dim, dim + 1, "a");
+  check_terms(model.b, r * n, dim, corners, "b");
+  check_terms(model.f, n, dim, dim + 1, "f");
+  check_terms(model.g, r, dim, corners, "g");
+  if (model.support) check_support(model, *model.support);
+  if (model.nitsche) check_nitsche(model, *model.nitsche);
+  require_shape(model.dual_basis, dual, r, "contact/dual_basis");
+  require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
+  require_shape(model.contact_trace, model.support || model.nitsche ? contact * dim : contact, n,
+                "contact/trace");
+  require(static_cast<Index>(model.contact_nodes.size()) == contact,
+          "contact/nodes does not fit contact/points");
+  require_shape(model.contact_points, contact, dim, "contact/points");
+  require_indices(model.contact_cells, contact, "fields/contact_cells");
+  require(model.contact_cells.size() % static_cast<std::size_t>(dim + 1) == 0,
+          "fields/contact_cells is not a list of cells");
+  if (!model.support && !model.nitsche)
+    require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
+  const Index free = model.parameters.size();
+  for (const auto &[mu, name] :
+       {std::pair{&model.trained_mu, "training/mu"}, {&model.failed_mu, "training/failed"}})
+    require_shape(*mu, mu->cols() == 0 ? mu->rows() : free, mu->cols(), name);
+  check_fields(model, dim);
+}
+
+const std::vector<std::string> &multiplier_reduction_names() {
+  static const std::vector<std::string> names{"condensed", "collocated", "cones", "joint"};
+  return names;
+}
+
+const std::vector<std::string> &curve_rule_names() {
+  static const std::vector<std::string> names{"empirical", "full", "interpolated"};
+  return names;
+}
+
+ReducedModel leading(const ReducedModel &model, int n, int r) {
+  if (n < 1 || n > model.primal_size() || (r < 1 && !model.nitsche) || r > model.generators)
+    throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
+                    " dual functions in a model of " + std::to_string(model.primal_size()) +
+                    " and " + std::to_string(model.generators));
+  if (model.support && r != model.generators)
+    throw bad_input("a model of contact with a support has no part with fewer multipliers");
+  ReducedModel result = model;
+  result.modes = std::min(n, model.modes);
+  result.supremizers = n - result.modes;
+  result.online_enriched = model.online_enriched && result.supremizers > 0;
+  result.generators = r;
+  result.free_modes = std::max(0, r - (model.generators - model.free_modes));
+  result.a.reduced = leading_triangle(model.a.reduced, model.primal_size(), n);
+  if (model.b.size() > 0) result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
+  if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);
+  if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
+  result.dual_basis = model.dual_basis.leftCols(r);
+  result.contact_trace = model.contact_trace.leftCols(n);
+  if (model.nitsche) result.nitsche = leading_curve(*model.nitsche, model.primal_size(), n);
+  if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
+  if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
+  if (r != model.generators || n != model.primal_size()) result.self_check = {};
+  if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};
+  return result;
+}
+
+const ValidationErrors &expected_errors(const ReducedModel &model) {
+  const bool plain = model.supremizers == 0 && model.validation_decorrelated.count > 0;
+  return plain ? model.validation_decorrelated : model.validation_enriched;
+}
+
+ErrorOfOutput errors_of_outputs(const ReducedModel &model) {
+  ErrorOfOutput errors;
+  for (const OutputError &error : expected_errors(model).outputs)
+    if (output_column(error.name).kind != OutputKind::check) errors[error.name] = error.max;
+  return errors;
+}
+
+Point point_of(const Matrix &points, Index i) {
+  Point point{};
+  for (Index k = 0; k < points.cols(); ++k)
+    point[static_cast<std::size_t>(k)] = points(i, k);
+  return point;
+}
+
+Scene scene_of(const ReducedModel &model) {
+  Scene scene = make_scene(model.scene_name, model.scene_options);
+  const auto same = [](const Parameter &p, const Parameter &q) { return p.name == q.name; };
+  if (!std::equal(scene.parameters.all.begin(), scene.parameters.all.end(),
+                  model.parameters.all.begin(), model.parameters.all.end(), same))
+    throw bad_input("the parameters of the model are not those of scene " + model.scene_name +
+                    " in this build");
+  const ParameterSpace of_scene = std::exchange(scene.parameters, model.parameters);
+  for (std::size_t i = 0; i < of_scene.all.size(); ++i)
+    scene.parameters.all[i].valid = of_scene.all[i].valid;
+  check_box(scene);
+  return scene;
+}
+
+} // namespace rbvi

@@ -1,0 +1,440 @@
+// Layout of model.h5 (schema 7). n = modes + supremizers, R generators, c = dual dofs of the
+// contact region, d = dimension; every term set T = a, b, f, g has its own J.
+//
+//   scene/name, scene/options/{names,values}          text
+//   parameters/{names,units}                          text, all parameters in order
+//   parameters/{lower,upper,value}                    bounds; value while fixed
+//   parameters/free                                   indices of the free ones
+//   settings/{names,values}, mesh/fingerprint         text
+//   size/{modes,supremizers,generators,free_modes}    integers
+//   size/online_enriched                              1: V_N + S_R(mu) is made online
+//   T/reduced                                         entries x J: a packed lower triangle by
+//                                                     columns, b R x n by columns, f n, g R
+//   T/interpolation                                   J x J unit lower triangular (B.34)
+//   T/vertices                                        (sample cells (d + 1)) x d; b, g of a
+//   support:
+//                                                     sampled edges, (edges * 2) x d
+//   T/contributions                                   triples entry, cell, local
+//   T/error                                           e_EIM reached (B.32)
+//   contact/{dual_basis,lumped_weights}               c x R, c x J of b
+//   contact/{trace,points,nodes}                      k x n, k x d, k: at the k contact nodes
+//   contact/slave_nodes                               of two bodies; 0: one body, k = c
+//   support/vertices                                  of the contact curve; 0: no rigid support
+//   support/{normal,axes,error}                       columns for lambda_n; parameter, lower,
+//   upper, support/{shape,terms,lift}                        points of each axis; see SupportModel
+//   support/apart                                     see TermsApart
+//   support/{reduction,mended}                        0 condensed, 1 collocated, 2 cones, 3 joint
+//   support/basis/{normal,tangential,slip,nodes}      see MultiplierBasis
+//   support/{starts,starts_mu}                        m x P, free parameters x P
+//   nitsche/edges                                     of the curve's cells; none: no such model
+//   nitsche/{vertices,dofs,trace}                     see NitscheModel
+//   nitsche/{rule,points,factors,starts,starts_mu}    0 empirical, 1 full, 2 interpolated
+//   nitsche/T/{reduced,interpolation,rows,columns,error}
+//                                                     T = consistency, {contact,friction}_matrix,
+//                                                     {contact,friction}_vector: see LayerTerms
+//   fields/primal_basis                               dofs x n
+//   fields/{points,cells,contact_cells}               nodes x d; lists of numbers per cell
+//   validation/{enriched,decorrelated}                count, then mean and max error of u, lambda,
+//                                                     lambda_tau
+//   validation/{enriched,decorrelated}_outputs/{names,values}
+//                                                     a row of 6 for each: see OutputError
+//   self_check/{counts,reason,unanswered_at}          queries, unanswered; see SelfCheck
+//   self_check/{residual,penetration,friction}{,_at}  the largest, and its free parameters
+//   histories/names, histories/values/<name>          convergence histories
+//   stages/{names,seconds}                            wall time of each offline stage
+//   training/{mu,failed}                              free parameters x samples: those that made
+//                                                     it, those without a high-fidelity answer
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/h5.hpp"
+#include "rbvi/rom/model/model.hpp"
+
+#include <array>
+
+namespace rbvi {
+
+namespace {
+
+template <class Value>
+void keys_and_values(const std::map<std::string, Value> &map, std::vector<std::string> &keys,
+                     std::vector<Value> &values) {
+  for (const auto &[key, value] : map) {
+    keys.push_back(key);
+    values.push_back(value);
+  }
+}
+
+void write_texts(H5Writer &file, const std::string &group,
+                 const std::map<std::string, std::string> &map) {
+  std::vector<std::string> keys, values;
+  keys_and_values(map, keys, values);
+  file.write(group + "/names", keys);
+  file.write(group + "/values", values);
+}
+
+template <class Value>
+std::map<std::string, Value> zip(const std::string &what, const std::vector<std::string> &keys,
+                                 const std::vector<Value> &values) {
+  if (keys.size() != values.size()) throw bad_input(what + ": names without values");
+  std::map<std::string, Value> map;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    map[keys[i]] = values[i];
+  return map;
+}
+
+std::map<std::string, std::string> read_texts(const H5Reader &file, const std::string &group) {
+  return zip(group, file.strings(group + "/names"), file.strings(group + "/values"));
+}
+
+void write_parameters(H5Writer &file, const ParameterSpace &space) {
+  std::vector<std::string> names, units;
+  std::vector<double> lower, upper, value;
+  for (const Parameter &p : space.all) {
+    names.push_back(p.name);
+    units.push_back(p.unit);
+    lower.push_back(p.lower);
+    upper.push_back(p.upper);
+    value.push_back(p.value);
+  }
+  file.write("parameters/names", names);
+  file.write("parameters/units", units);
+  file.write("parameters/lower", lower);
+  file.write("parameters/upper", upper);
+  file.write("parameters/value", value);
+  file.write("parameters/free", space.free);
+}
+
+ParameterSpace read_parameters(const H5Reader &file) {
+  const std::vector<std::string> names = file.strings("parameters/names");
+  const std::vector<std::string> units = file.strings("parameters/units");
+  const std::vector<double> lower = file.doubles("parameters/lower");
+  const std::vector<double> upper = file.doubles("parameters/upper");
+  const std::vector<double> value = file.doubles("parameters/value");
+  const std::size_t count = names.size();
+  if (units.size() != count || lower.size() != count || upper.size() != count ||
+      value.size() != count)
+    throw bad_input("the parameters are incomplete");
+  ParameterSpace space;
+  for (std::size_t i = 0; i < count; ++i)
+    space.all.push_back({names[i], units[i], lower[i], upper[i], value[i]});
+  space.free = file.ints("parameters/free");
+  for (const int i : space.free)
+    if (i < 0 || static_cast<std::size_t>(i) >= count)
+      throw bad_input("a free parameter does not exist");
+  return space;
+}
+
+void write_terms(H5Writer &file, const std::string &group, const AffineTerms &terms) {
+  std::vector<int> triples;
+  for (const SampleMesh::Contribution &c : terms.sample.contributions)
+    triples.insert(triples.end(), {c.entry, c.cell, c.local});
+  file.write(group + "/reduced", terms.reduced);
+  file.write(group + "/interpolation", terms.interpolation);
+  file.write(group + "/vertices", terms.sample.vertices);
+  file.write(group + "/contributions", triples);
+  file.write(group + "/error", terms.error);
+}
+
+AffineTerms read_terms(const H5Reader &file, const std::string &group) {
+  AffineTerms terms;
+  terms.reduced = file.matrix(group + "/reduced");
+  terms.interpolation = file.matrix(group + "/interpolation");
+  terms.sample.vertices = file.matrix(group + "/vertices");
+  terms.error = file.number(group + "/error");
+  const std::vector<int> triples = file.ints(group + "/contributions");
+  if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
+  for (std::size_t i = 0; i < triples.size(); i += 3)
+    terms.sample.contributions.push_back({triples[i], triples[i + 1], triples[i + 2]});
+  return terms;
+}
+
+void write_validation(H5Writer &file, const std::string &name, const ValidationErrors &errors) {
+  file.write(name, std::vector<double>{static_cast<double>(errors.count), errors.u_mean,
+                                       errors.u_max, errors.lambda_mean, errors.lambda_max,
+                                       errors.tangential_mean, errors.tangential_max});
+  std::vector<std::string> names;
+  Matrix values(static_cast<Index>(errors.outputs.size()), 6);
+  for (const OutputError &e : errors.outputs) {
+    values.row(static_cast<Index>(names.size())) << e.mean, e.max, e.mean_of_range, e.max_of_range,
+        e.mean_of_value, e.max_of_value;
+    names.push_back(e.name);
+  }
+  file.write(name + "_outputs/names", names);
+  file.write(name + "_outputs/values", values);
+}
+
+ValidationErrors read_validation(const H5Reader &file, const std::string &name) {
+  const std::vector<double> values = file.doubles(name);
+  if (values.size() != 7) throw bad_input(name + " has not 7 entries");
+  ValidationErrors errors{static_cast<int>(values[0]),
+                          values[1],
+                          values[2],
+                          values[3],
+                          values[4],
+                          values[5],
+                          values[6]};
+  const std::vector<std::string> names = file.strings(name + "_outputs/names");
+  const Matrix rows = file.matrix(name + "_outputs/values");
+  if (rows.rows() != static_cast<Index>(names.size()) || (rows.size() > 0 && rows.cols() != 6))
+    throw bad_input(name + "_outputs: names without six values each");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto row = rows.row(static_cast<Index>(i));
+    errors.outputs.push_back({names[i], row[0], row[1], row[2], row[3], row[4], row[5]});
+  }
+  return errors;
+}
+
+constexpr std::array worst_of_check{std::pair{"self_check/residual", &SelfCheck::residual},
+                                    std::pair{"self_check/penetration", &SelfCheck::penetration},
+                                    std::pair{"self_check/friction", &SelfCheck::friction}};
+
+void write_self_check(H5Writer &file, const SelfCheck &check) {
+  file.write("self_check/counts", std::vector<int>{check.queries, check.unanswered});
+  file.write("self_check/unanswered_at", check.unanswered_at);
+  file.write("self_check/reason", check.reason);
+  for (const auto &[name, worst] : worst_of_check) {
+    file.write(name, (check.*worst).value);
+    file.write(std::string(name) + "_at", (check.*worst).at);
+  }
+}
+
+SelfCheck read_self_check(const H5Reader &file) {
+  SelfCheck check;
+  const std::vector<int> counts = file.ints("self_check/counts");
+  if (counts.size() != 2) throw bad_input("self_check/counts has not 2 entries");
+  check.queries = counts[0];
+  check.unanswered = counts[1];
+  check.unanswered_at = file.doubles("self_check/unanswered_at");
+  check.reason = file.string("self_check/reason");
+  for (const auto &[name, worst] : worst_of_check)
+    check.*worst = {file.number(name), file.doubles(std::string(name) + "_at")};
+  return check;
+}
+
+void write_history(H5Writer &file, const ReducedModel &model) {
+  std::vector<std::string> names, stages;
+  std::vector<std::vector<double>> histories;
+  std::vector<double> seconds;
+  keys_and_values(model.histories, names, histories);
+  keys_and_values(model.stage_seconds, stages, seconds);
+  file.write("histories/names", names);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    file.write("histories/values/" + names[i], histories[i]);
+  file.write("stages/names", stages);
+  file.write("stages/seconds", seconds);
+  file.write("training/mu", model.trained_mu);
+  file.write("training/failed", model.failed_mu);
+  write_validation(file, "validation/enriched", model.validation_enriched);
+  write_validation(file, "validation/decorrelated", model.validation_decorrelated);
+  write_self_check(file, model.self_check);
+}
+
+void read_history(const H5Reader &file, ReducedModel &model) {
+  for (const std::string &name : file.strings("histories/names"))
+    model.histories[name] = file.doubles("histories/values/" + name);
+  model.stage_seconds = zip("stages", file.strings("stages/names"), file.doubles("stages/seconds"));
+  model.trained_mu = file.matrix("training/mu");
+  model.failed_mu = file.matrix("training/failed");
+  model.validation_enriched = read_validation(file, "validation/enriched");
+  model.validation_decorrelated = read_validation(file, "validation/decorrelated");
+  model.self_check = read_self_check(file);
+}
+
+void write_support(H5Writer &file, const std::optional<SupportModel> &support) {
+  file.write("support/vertices", support ? support->vertices : 0);
+  if (!support) return;
+  std::vector<double> axes;
+  for (const ChebyshevAxis &axis : support->condensed.axes)
+    axes.insert(axes.end(), {static_cast<double>(axis.parameter), axis.lower, axis.upper,
+                             static_cast<double>(axis.points)});
+  file.write("support/normal", support->normal);
+  file.write("support/axes", axes);
+  file.write("support/error", support->condensed.error);
+  file.write("support/shape", support->condensed.shape);
+  file.write("support/terms", support->condensed.terms);
+  file.write("support/lift", support->lift);
+  const TermsApart &apart = support->apart;
+  file.write("support/apart", std::vector<double>{static_cast<double>(apart.normal),
+                                                  apart.normal_error, apart.tangential_error});
+  file.write("support/reduction", static_cast<int>(support->reduction));
+  file.write("support/mended", support->mended ? 1 : 0);
+  file.write("support/basis/normal", support->basis.normal);
+  file.write("support/basis/tangential", support->basis.tangential);
+  file.write("support/basis/slip", support->basis.slip);
+  file.write("support/basis/nodes", support->basis.nodes);
+  file.write("support/starts", support->starts);
+  file.write("support/starts_mu", support->starts_mu);
+}
+
+std::optional<SupportModel> read_support(const H5Reader &file) {
+  SupportModel support;
+  support.vertices = file.integer("support/vertices");
+  if (support.vertices == 0) return std::nullopt;
+  support.normal = file.integer("support/normal");
+  const std::vector<double> axes = file.doubles("support/axes");
+  if (axes.size() % 4 != 0) throw bad_input("support/axes are not groups of four");
+  for (std::size_t i = 0; i < axes.size(); i += 4)
+    support.condensed.axes.push_back(
+        {static_cast<int>(axes[i]), axes[i + 1], axes[i + 2], static_cast<int>(axes[i + 3])});
+  support.condensed.error = file.number("support/error");
+  support.condensed.shape = file.matrix("support/shape");
+  support.condensed.terms = file.matrix("support/terms");
+  support.lift = file.matrix("support/lift");
+  const std::vector<double> apart = file.doubles("support/apart");
+  if (apart.size() != 3) throw bad_input("support/apart has not 3 entries");
+  support.apart = {static_cast<int>(apart[0]), apart[1], apart[2]};
+  support.reduction = static_cast<MultiplierReduction>(file.integer("support/reduction"));
+  support.mended = file.integer("support/mended") != 0;
+  support.basis.normal = file.matrix("support/basis/normal");
+  support.basis.tangential = file.matrix("support/basis/tangential");
+  support.basis.slip = file.vector("support/basis/slip");
+  support.basis.nodes = file.ints("support/basis/nodes");
+  support.starts = file.matrix("support/starts");
+  support.starts_mu = file.matrix("support/starts_mu");
+  return support;
+}
+
+struct NamedTerms {
+  const char *name;
+  LayerTerms NitscheModel::*terms;
+};
+constexpr NamedTerms layer_terms[] = {{"nitsche/consistency", &NitscheModel::consistency},
+                                      {"nitsche/contact_matrix", &NitscheModel::contact_matrix},
+                                      {"nitsche/contact_vector", &NitscheModel::contact_vector},
+                                      {"nitsche/friction_matrix", &NitscheModel::friction_matrix},
+                                      {"nitsche/friction_vector", &NitscheModel::friction_vector}};
+
+void write_nitsche(H5Writer &file, const std::optional<NitscheModel> &nitsche) {
+  file.write("nitsche/edges", nitsche ? nitsche->edges : std::vector<int>{});
+  if (!nitsche) return;
+  file.write("nitsche/vertices", nitsche->vertices);
+  file.write("nitsche/dofs", nitsche->dofs);
+  file.write("nitsche/trace", nitsche->trace);
+  file.write("nitsche/rule", static_cast<int>(nitsche->rule));
+  file.write("nitsche/points", nitsche->points);
+  file.write("nitsche/factors", nitsche->factors);
+  file.write("nitsche/starts", nitsche->starts);
+  file.write("nitsche/starts_mu", nitsche->starts_mu);
+  for (const auto &[name, member] : layer_terms) {
+    const LayerTerms &terms = (*nitsche).*member;
+    const std::string group = name;
+    file.write(group + "/reduced", terms.reduced);
+    file.write(group + "/interpolation", terms.interpolation);
+    file.write(group + "/rows", terms.rows);
+    file.write(group + "/columns", terms.columns);
+    file.write(group + "/error", terms.error);
+  }
+}
+
+std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
+  NitscheModel nitsche;
+  nitsche.edges = file.ints("nitsche/edges");
+  if (nitsche.edges.empty()) return std::nullopt;
+  nitsche.vertices = file.matrix("nitsche/vertices");
+  nitsche.dofs = file.ints("nitsche/dofs");
+  nitsche.trace = file.matrix("nitsche/trace");
+  nitsche.rule = static_cast<CurveRule>(file.integer("nitsche/rule"));
+  nitsche.points = file.ints("nitsche/points");
+  nitsche.factors = file.vector("nitsche/factors");
+  nitsche.starts = file.matrix("nitsche/starts");
+  nitsche.starts_mu = file.matrix("nitsche/starts_mu");
+  for (const auto &[name, member] : layer_terms) {
+    LayerTerms &terms = nitsche.*member;
+    const std::string group = name;
+    terms.reduced = file.matrix(group + "/reduced");
+    terms.interpolation = file.matrix(group + "/interpolation");
+    terms.rows = file.ints(group + "/rows");
+    terms.columns = file.ints(group + "/columns");
+    terms.error = file.number(group + "/error");
+  }
+  return nitsche;
+}
+
+void write_fields(H5Writer &file, const ReducedModel &model) {
+  file.write("contact/dual_basis", model.dual_basis);
+  file.write("contact/trace", model.contact_trace);
+  file.write("contact/points", model.contact_points);
+  file.write("contact/lumped_weights", model.lumped_weights);
+  file.write("contact/nodes", model.contact_nodes);
+  file.write("contact/slave_nodes", model.slave_nodes);
+  file.write("fields/primal_basis", model.primal_basis);
+  file.write("fields/points", model.mesh_points);
+  file.write("fields/cells", model.mesh_cells);
+  file.write("fields/contact_cells", model.contact_cells);
+}
+
+void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
+  model.dual_basis = file.matrix("contact/dual_basis");
+  model.contact_trace = file.matrix("contact/trace");
+  model.contact_points = file.matrix("contact/points");
+  model.lumped_weights = file.matrix("contact/lumped_weights");
+  model.contact_nodes = file.ints("contact/nodes");
+  model.slave_nodes = file.integer("contact/slave_nodes");
+  model.contact_cells = file.ints("fields/contact_cells");
+  if (!all) return;
+  model.primal_basis = file.matrix("fields/primal_basis");
+  model.mesh_points = file.matrix("fields/points");
+  model.mesh_cells = file.ints("fields/cells");
+}
+
+ReducedModel read_members(const H5Reader &file, bool with_fields) {
+  ReducedModel model;
+  model.scene_name = file.string("scene/name");
+  model.scene_options = read_texts(file, "scene/options");
+  model.parameters = read_parameters(file);
+  model.settings = read_texts(file, "settings");
+  model.mesh_fingerprint = file.string("mesh/fingerprint");
+  model.modes = file.integer("size/modes");
+  model.supremizers = file.integer("size/supremizers");
+  model.generators = file.integer("size/generators");
+  model.free_modes = file.integer("size/free_modes");
+  model.online_enriched = file.integer("size/online_enriched") != 0;
+  model.a = read_terms(file, "a");
+  model.b = read_terms(file, "b");
+  model.f = read_terms(file, "f");
+  model.g = read_terms(file, "g");
+  model.support = read_support(file);
+  model.nitsche = read_nitsche(file);
+  read_fields(file, with_fields, model);
+  read_history(file, model);
+  return model;
+}
+
+} // namespace
+
+void write_model(const ReducedModel &model, const std::filesystem::path &path) {
+  check_model(model);
+  H5Writer file;
+  file.write("scene/name", model.scene_name);
+  write_texts(file, "scene/options", model.scene_options);
+  write_parameters(file, model.parameters);
+  write_texts(file, "settings", model.settings);
+  file.write("mesh/fingerprint", model.mesh_fingerprint);
+  file.write("size/modes", model.modes);
+  file.write("size/supremizers", model.supremizers);
+  file.write("size/generators", model.generators);
+  file.write("size/free_modes", model.free_modes);
+  file.write("size/online_enriched", model.online_enriched ? 1 : 0);
+  write_terms(file, "a", model.a);
+  write_terms(file, "b", model.b);
+  write_terms(file, "f", model.f);
+  write_terms(file, "g", model.g);
+  write_support(file, model.support);
+  write_nitsche(file, model.nitsche);
+  write_fields(file, model);
+  write_history(file, model);
+  file.commit(path, "model", model_schema);
+}
+
+ReducedModel read_model(const std::filesystem::path &path, bool with_fields) {
+  const H5Reader file(path, "model", model_schema);
+  try {
+    ReducedModel model = read_members(file, with_fields);
+    check_model(model);
+    (void)scene_of(model);
+    return model;
+  } catch (const Error &error) {
+    throw bad_input(std::string(error.what()) + ", while reading " + path.string());
+  }
+}
+
+} // namespace rbvi

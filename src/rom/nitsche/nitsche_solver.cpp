@@ -1,0 +1,146 @@
+#include "rbvi/rom/nitsche/nitsche_solver.hpp"
+
+#include "nitsche_interpolated.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/local_fit.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/rom/model/packed.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+const NitscheModel &checked(const ReducedModel &model, const Scene &scene) {
+  if (!scene.nitsche || !model.nitsche)
+    throw bad_input("the model and its scene in this build differ in the formulation of contact");
+  return *model.nitsche;
+}
+
+using ChosenPoints = std::vector<std::pair<int, double>>;
+
+/// The points that the model integrates at; none where it interpolates.
+ChosenPoints points_of(const NitscheModel &nitsche) {
+  ChosenPoints chosen;
+  if (nitsche.rule == CurveRule::empirical)
+    for (std::size_t k = 0; k < nitsche.points.size(); ++k)
+      chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
+  else if (nitsche.rule == CurveRule::full)
+    for (int k = 0; k < 4 * static_cast<int>(nitsche.edges.size()); ++k)
+      chosen.emplace_back(k, 1.0);
+  return chosen;
+}
+
+/// All points of the curve. Where scene and mesh are symmetric, so that the points of the model lie
+/// on one half, which stands for both: those of that half, which count twice.
+ChosenPoints whole_curve(const Scene &scene, const NitscheModel &nitsche,
+                         const std::vector<CurveCell> &cells) {
+  const Vector x = point_abscissae(cells);
+  const bool half = scene.symmetric && nitsche.rule == CurveRule::empirical &&
+                    std::all_of(nitsche.points.begin(), nitsche.points.end(),
+                                [&](int point) { return x[point] < 0; });
+  ChosenPoints chosen;
+  for (Index point = 0; point < x.size(); ++point)
+    if (!half || x[point] < 0) chosen.emplace_back(static_cast<int>(point), half ? 2.0 : 1.0);
+  return chosen;
+}
+
+} // namespace
+
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, const Scene &scene)
+    : model_(model), scene_(scene), cells_(curve_cells(checked(model, scene))),
+      consistency_(model.nitsche->consistency, cells_) {
+  system_ = std::make_unique<System>(model, cells_, points_of(*model.nitsche));
+  if (model.nitsche->rule == CurveRule::interpolated)
+    interpolated_ = std::make_unique<Interpolated>(*model.nitsche, cells_);
+}
+
+ReducedNitsche::~ReducedNitsche() = default;
+
+ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const Mu &all_parameters) const {
+  const Index n = model_.primal_size();
+  Quadratic result;
+  result.a = unpacked(
+      model_.a.reduced * affine_coefficients(model_.a, scene_.a, scene_, all_parameters), n);
+  result.f = Vector::Zero(n);
+  if (model_.f.size() > 0)
+    result.f = model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
+  const std::vector<NitscheFace> faces =
+      nitsche_faces(scene_, all_parameters, selected(cells_, consistency_.cells()));
+  const bool friction = scene_.support->friction.law != FrictionLaw::none;
+  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, friction));
+  result.a_gamma = result.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
+  return result;
+}
+
+Vector ReducedNitsche::predicted(const Mu &all_parameters) const {
+  const NitscheModel &nitsche = *model_.nitsche;
+  if (nitsche.starts.cols() == 0) return {};
+  return local_fit(nitsche.starts, parts_of_box(scene_.parameters, nitsche.starts_mu),
+                   parts_of_box(scene_.parameters, all_parameters));
+}
+
+NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
+  System &system = *system_;
+  system.law = nitsche_law(scene_.support->friction, all_parameters);
+  system.quadratic = quadratic_at(all_parameters);
+  NitscheAnswer answer;
+  if (interpolated_) {
+    answer.iterations =
+        interpolated_->solve(scene_, all_parameters, predicted(all_parameters), system);
+  } else {
+    system.set_points(scene_, all_parameters, cells_);
+    system.predict(predicted(all_parameters));
+    answer.iterations = system.settle();
+  }
+  answer.u = system.u;
+  answer.residual = system.relative;
+  answer.energy =
+      0.5 * answer.u.dot(system.quadratic.a * answer.u) - system.quadratic.f.dot(answer.u);
+  return answer;
+}
+
+Matrix ReducedNitsche::point_residuals() const {
+  const System &system = *system_;
+  const Vector slopes = system.weighted(&PointTerm::slope, system.pressures);
+  Matrix result =
+      system.functionals.leftCols(system.points) * slopes.head(system.points).asDiagonal();
+  if (system.bounds.size() > 0)
+    result += system.functionals.rightCols(system.points) * slopes.tail(system.points).asDiagonal();
+  return result;
+}
+
+Matrix ReducedNitsche::tangent() const {
+  return system_->tangent_at(system_->pressures);
+}
+
+CurveFields ReducedNitsche::fields(const Mu &all_parameters, const Vector &u) const {
+  return nitsche_fields(scene_, all_parameters, cells_, model_.nitsche->trace * u);
+}
+
+Vector ReducedNitsche::over_whole_curve(const Mu &all_parameters, const Vector &u,
+                                        Outputs &outputs) const {
+  if (model_.nitsche->rule == CurveRule::full) return u;
+  if (!whole_)
+    whole_ = std::make_unique<System>(model_, cells_, whole_curve(scene_, *model_.nitsche, cells_));
+  whole_->law = nitsche_law(scene_.support->friction, all_parameters);
+  whole_->quadratic = quadratic_at(all_parameters);
+  whole_->set_points(scene_, all_parameters, cells_);
+  whole_->set(u);
+  whole_->bounds = nitsche_bounds(whole_->pressures, whole_->law);
+  (void)whole_->residual();
+  outputs.quadrature_residual = whole_->relative;
+  (void)whole_->settle();
+  return whole_->u;
+}
+
+void ReducedNitsche::outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const {
+  const Vector layer = model_.nitsche->trace * over_whole_curve(all_parameters, u, outputs);
+  const std::vector<NitscheFace> faces = nitsche_faces(scene_, all_parameters, cells_);
+  nitsche_outputs(faces, nitsche_pressures(faces, layer),
+                  nitsche_fields(scene_, all_parameters, cells_, layer),
+                  nitsche_law(scene_.support->friction, all_parameters), outputs);
+}
+
+} // namespace rbvi

@@ -1,0 +1,55 @@
+// The reduced system of Nitsche's method at one mu: a quadratic part and pressures that are affine
+// in the coefficients.
+#pragma once
+
+#include "rbvi/rom/nitsche/nitsche_solver.hpp"
+
+#include <optional>
+
+namespace rbvi {
+
+constexpr const char *tangent_not_definite = "the reduced tangent is not positive definite: raise "
+                                             "-nitsche_gamma0, or reduce again with more "
+                                             "training parameters";
+
+struct ReducedNitsche::System {
+  /// A cell with some of its points.
+  struct Part {
+    int cell;
+    std::vector<std::pair<int, double>> points; ///< Gauss point, factor of its weight
+    Matrix basis;                               ///< n x 12
+  };
+  std::vector<Part> parts;
+  Index points = 0;
+
+  // At mu.
+  Quadratic quadratic;
+  NitscheLaw law;
+  Matrix functionals; ///< n x 2 points: of P_n, then of P_tau
+  Vector offsets;     ///< 2 points
+  Vector weights, gamma;
+
+  // The last iterate.
+  Vector u;
+  Matrix pressures; ///< points x 2
+  Vector bounds;
+  double relative = 0; ///< residual
+
+  /// Points of the curve (4 * cell + Gauss point, in order) with factors of their weights.
+  using ChosenPoints = std::vector<std::pair<int, double>>;
+  System(const ReducedModel &model, const std::vector<CurveCell> &cells,
+         const ChosenPoints &chosen);
+  void set_points(const Scene &scene, const Mu &all_parameters,
+                  const std::vector<CurveCell> &cells);
+  void set(const Vector &coefficients);
+  /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.
+  Vector weighted(double PointTerm::*part, const Matrix &at) const;
+  Vector residual();
+  Matrix tangent_at(const Matrix &at) const;
+  void predict(const Vector &start);
+  int minimise();
+  std::optional<int> follow_bound();
+  int settle();
+};
+
+} // namespace rbvi

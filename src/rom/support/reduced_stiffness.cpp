@@ -1,0 +1,132 @@
+#include "rbvi/rom/support/reduced_stiffness.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/rom/model/packed.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <utility>
+
+namespace rbvi {
+
+namespace {
+
+Mu corner(const ParameterSpace &space, double Parameter::*bound) {
+  Mu mu;
+  for (int i = 0; i < space.size(); ++i)
+    mu.push_back(space.at(i).*bound);
+  return expand(space, mu);
+}
+
+[[noreturn]] void not_definite() {
+  throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
+                "-eim_tolerance, or stay closer to the training set");
+}
+
+} // namespace
+
+Matrix enriched_subspace(const Matrix &b, Index modes) {
+  const Index n = b.cols(), added = std::min(n - modes, b.rows());
+  const Eigen::HouseholderQR<Matrix> qr(b.rightCols(n - modes).transpose());
+  Matrix subspace = Matrix::Zero(n, modes + added);
+  subspace.topLeftCorner(modes, modes).setIdentity();
+  subspace.bottomRightCorner(n - modes, added) =
+      qr.householderQ() * Matrix::Identity(n - modes, added);
+  return subspace;
+}
+
+ReducedStiffness::ReducedStiffness(const ReducedModel &model, const Scene &scene)
+    : model_(model), scene_(scene) {
+  if (model.a.size() <= 2 && !model.online_enriched) find_common_eigenvectors();
+}
+
+/// Of A_N at two corners of the box, or of its only term.
+void ReducedStiffness::find_common_eigenvectors() {
+  const AffineTerms &a = model_.a;
+  const Index n = model_.primal_size();
+  const auto stiffness_at = [&](const Mu &mu) {
+    return unpacked(a.reduced * affine_coefficients(a, scene_.a, scene_, mu), n);
+  };
+  const Matrix first = stiffness_at(corner(scene_.parameters, &Parameter::lower));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(
+      a.size() == 1 ? first : stiffness_at(corner(scene_.parameters, &Parameter::upper)),
+      a.size() == 1 ? Matrix(Matrix::Identity(n, n)) : first);
+  if (solver.info() != Eigen::Success) return;
+  Matrix eigenvalues(n, a.size());
+  for (Index q = 0; q < a.size(); ++q) {
+    Matrix term =
+        solver.eigenvectors().transpose() *
+        (unpacked(a.reduced.col(q), n).selfadjointView<Eigen::Lower>() * solver.eigenvectors());
+    eigenvalues.col(q) = term.diagonal();
+    term.diagonal().setZero();
+    if (!(term.cwiseAbs().maxCoeff() <= 1e-10 * eigenvalues.col(q).cwiseAbs().maxCoeff())) return;
+  }
+  eigenvectors_ = solver.eigenvectors();
+  eigenvalues_ = std::move(eigenvalues);
+  b_.resize(model_.generators, n * model_.b.size());
+  for (Index p = 0; p < model_.b.size(); ++p)
+    b_.middleCols(p * n, n) =
+        model_.b.reduced.col(p).reshaped(model_.generators, n) * eigenvectors_;
+}
+
+bool ReducedStiffness::depends_on_change(const Mu &all_parameters) const {
+  if (at_.empty()) return true;
+  if (!scene_.a_parameters) return at_ != all_parameters;
+  return std::any_of(scene_.a_parameters->begin(), scene_.a_parameters->end(), [&](int i) {
+    return at_[static_cast<std::size_t>(i)] != all_parameters[static_cast<std::size_t>(i)];
+  });
+}
+
+void ReducedStiffness::set(const Mu &all_parameters) {
+  if (!depends_on_change(all_parameters)) return;
+  const Vector theta = affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
+  if (eigenvectors_.size() > 0) {
+    diagonal_ = eigenvalues_ * theta;
+    if (!(diagonal_.minCoeff() > 0)) not_definite();
+  } else {
+    a_ = unpacked(model_.a.reduced * theta, model_.primal_size());
+    if (!model_.online_enriched) factorise(a_);
+  }
+  at_ = all_parameters;
+}
+
+void ReducedStiffness::factorise(const Matrix &stiffness) {
+  factor_.compute(stiffness);
+  if (factor_.info() != Eigen::Success) not_definite();
+}
+
+void ReducedStiffness::restrict_to(Matrix subspace) {
+  subspace_ = std::move(subspace);
+  factorise(subspace_.transpose() * (a_.selfadjointView<Eigen::Lower>() * subspace_));
+}
+
+Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const {
+  const Index n = model_.primal_size();
+  const bool turned = eigenvectors_.size() > 0;
+  Vector load = Vector::Zero(n);
+  for (Index p = 0; p < theta_b.size(); ++p) {
+    const double *values = turned ? b_.data() + p * n * b_.rows() : model_.b.reduced.col(p).data();
+    load.noalias() +=
+        theta_b[p] * (Eigen::Map<const Matrix>(values, model_.generators, n).transpose() * x);
+  }
+  if (model_.online_enriched) return subspace_ * factor_.solve(subspace_.transpose() * load);
+  if (!turned) return factor_.solve(load);
+  return eigenvectors_ * load.cwiseQuotient(diagonal_);
+}
+
+Matrix ReducedStiffness::half_response(const Matrix &loads) const {
+  if (model_.online_enriched) return factor_.matrixL().solve(subspace_.transpose() * loads);
+  if (eigenvectors_.size() == 0) return factor_.matrixL().solve(loads);
+  return diagonal_.cwiseSqrt().cwiseInverse().asDiagonal() * (eigenvectors_.transpose() * loads);
+}
+
+Vector ReducedStiffness::transposed_half_response(const Vector &half) const {
+  if (model_.online_enriched) return subspace_ * factor_.matrixU().solve(half);
+  if (eigenvectors_.size() == 0) return factor_.matrixU().solve(half);
+  return eigenvectors_ * half.cwiseQuotient(diagonal_.cwiseSqrt());
+}
+
+} // namespace rbvi
