@@ -30,7 +30,7 @@ constexpr double farthest = 0.38;
 constexpr Range radii{0.02, farthest}, centres{0.02 - farthest, farthest - 0.02};
 
 /// Outside the disc: carry the circle's motion to zero at distance `transition`.
-Point map_outside(const Mu &mu, const Point &x, double rho) {
+Point map_outside(const FullMu &mu, const Point &x, double rho) {
   const double s = std::clamp((rho - reference_radius) / transition, 0.0, 1.0);
   const double phi = (1 - s) * (1 - s) * (1 + 2 * s);
   const double stretch = 1 + phi * (mu[0] - reference_radius) / rho;
@@ -38,7 +38,7 @@ Point map_outside(const Mu &mu, const Point &x, double rho) {
 }
 
 /// x -> c + (r / 0.2) x on the disc.
-Point similarity(const Mu &mu, const Point &x) {
+Point similarity(const FullMu &mu, const Point &x) {
   const double rho = std::hypot(x[0], x[1]);
   if (rho > reference_radius) return map_outside(mu, x, rho);
   const double scale = mu[0] / reference_radius;
@@ -47,7 +47,7 @@ Point similarity(const Mu &mu, const Point &x) {
 
 /// The same disc, graded along its radii by an amount that depends on mu and on the direction:
 /// not a similarity, so that the mass matrix of the disc does not separate.
-Point graded(const Mu &mu, const Point &x) {
+Point graded(const FullMu &mu, const Point &x) {
   const double rho = std::hypot(x[0], x[1]);
   if (rho > reference_radius) return map_outside(mu, x, rho);
   const double s = rho / reference_radius;
@@ -57,7 +57,7 @@ Point graded(const Mu &mu, const Point &x) {
   return {mu[1] + scale * x[0], mu[2] + scale * x[1], 0};
 }
 
-double obstacle(const Mu &mu, const Point &x) {
+double obstacle(const FullMu &mu, const Point &x) {
   const double dx = x[0] - mu[1], dy = x[1] - mu[2];
   return -1.25 * (dx * dx + dy * dy) / (mu[0] * mu[0]);
 }
@@ -84,7 +84,7 @@ int circle_edges(const SceneOptions &options, bool lumped) {
 
 /// Throws bad_input unless the disc of radius all[0] about (all[1], all[2]) is far enough from the
 /// edge of the square for the ring around it not to fold.
-void check_disc_in_square(const Mu &all) {
+void check_disc_in_square(const FullMu &all) {
   const double reach = all[0] + std::hypot(all[1], all[2]);
   if (reach > farthest + 1e-12)
     throw bad_input("the disc reaches " + short_number(reach) +

@@ -75,18 +75,18 @@ Scene make_two(const SceneOptions &options) {
   set_elastic_pair(options, scene);
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain}}});
   scene.mesh = mesh_of_two();
-  scene.map = [](const Mu &, const Point &x) -> Point {
+  scene.map = [](const FullMu &, const Point &x) -> Point {
     return {x[0], x[1] - (x[1] > 0 ? apart : -apart), 0};
   };
   scene.fixed = {{"sides", {0}}, {"top", {}}, {"bottom", {}}};
-  scene.motion = [](const Mu &mu, const Point &x) -> Point {
+  scene.motion = [](const FullMu &mu, const Point &x) -> Point {
     return {0, x[1] > 0 ? -mu[indentation] : 0, 0};
   };
   return scene;
 }
 
 /// The exact stress on the right side: (sigma_xx, sigma_xy); on the left one its opposite.
-Point side_traction(const Lame &material, bool frictionless, const Mu &mu) {
+Point side_traction(const Lame &material, bool frictionless, const FullMu &mu) {
   const double strain = mu[indentation] / height;
   const double pressure = (material.lambda + 2 * material.shear) * strain;
   const double most = frictionless ? 0 : mu[friction] * pressure;
@@ -96,7 +96,7 @@ Point side_traction(const Lame &material, bool frictionless, const Mu &mu) {
 
 /// int t . v over the edges of the cells on the sides x = 0 and x = 1.
 Form side_load(const Lame &material, bool frictionless, int degree) {
-  return {"", [=](const Mu &mu, const Cell &cell, double *values) {
+  return {"", [=](const FullMu &mu, const Cell &cell, double *values) {
             const Point t = side_traction(material, frictionless, mu);
             std::fill_n(values, 2 * nodes_per_cell(2, degree), 0.0);
             for (std::size_t e = 0; e < 3; ++e) {
@@ -126,21 +126,21 @@ Scene make_one(const SceneOptions &options) {
   scene.degree = options.at("degree") == "2" ? 2 : 1;
   scene.support = SupportRecipe{};
   scene.support->boundary = "contact";
-  scene.support->normal = [](const Mu &, const Point &) -> Point { return {0, -1, 0}; };
-  scene.support->gap = [](const Mu &, const Point &) { return 0.0; };
+  scene.support->normal = [](const FullMu &, const Point &) -> Point { return {0, -1, 0}; };
+  scene.support->gap = [](const FullMu &, const Point &) { return 0.0; };
   scene.support->friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
-  scene.support->friction.value = [](const Mu &mu) { return mu[friction]; };
+  scene.support->friction.value = [](const FullMu &mu) { return mu[friction]; };
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain * height}},
                                {"shear", "m", 0, 0.2, 0.02, {-height / 2, height / 2}},
                                {"friction_coefficient", "", 0, 1, 0.3, friction_range}});
   scene.parameters.free = {indentation};
   scene.nitsche = nitsche_recipe(options);
   scene.lumped = options.at("lumped") == "yes";
-  scene.material = [material](const Mu &, const Point &) { return material; };
+  scene.material = [material](const FullMu &, const Point &) { return material; };
   scene.mesh = mesh_of_one();
-  scene.map = [](const Mu &, const Point &x) { return x; };
+  scene.map = [](const FullMu &, const Point &x) { return x; };
   scene.fixed = {{"top", {}}};
-  scene.motion = [](const Mu &mu, const Point &) -> Point {
+  scene.motion = [](const FullMu &mu, const Point &) -> Point {
     return {mu[shear], -mu[indentation], 0};
   };
   scene.a = elasticity("", material, scene.degree);

@@ -37,22 +37,22 @@ double norm(const Point &x) {
 }
 
 /// Point of the exact arc.
-Point on_arc(const Mu &mu, const Point &x) {
+Point on_arc(const FullMu &mu, const Point &x) {
   const double scale = mu[radius] / norm(x);
   return {scale * x[0], scale * x[1], 0};
 }
 
 /// From the centre of the rigid disk, (0, -R - initial_gap - 1), to a point.
-Point from_support(const Mu &mu, const Point &x) {
+Point from_support(const FullMu &mu, const Point &x) {
   return {x[0], x[1] + mu[radius] + initial_gap + 1, 0};
 }
 
-Point radial_normal(const Mu &, const Point &x) {
+Point radial_normal(const FullMu &, const Point &x) {
   return {x[0] / norm(x), x[1] / norm(x), 0};
 }
 
 /// Normal of the rigid disk at the point next to x, towards it.
-Point rigid_normal(const Mu &mu, const Point &x) {
+Point rigid_normal(const FullMu &mu, const Point &x) {
   const Point p = from_support(mu, on_arc(mu, x));
   return {-p[0] / norm(p), -p[1] / norm(p), 0};
 }
@@ -65,13 +65,13 @@ double gap_along(const Point &p, const Point &n) {
   return -half - std::sqrt(root);
 }
 
-using Normal = Point (*)(const Mu &, const Point &);
+using Normal = Point (*)(const FullMu &, const Point &);
 
 /// (phi(x) - x) . n, phi(x) the partner of x on the rigid disk (3.4).
 /// `from_arc`: of the point of the exact arc beside x.
-std::function<double(const Mu &, const Point &)> gap_function(const std::string &kind,
-                                                              bool from_arc, Normal normal) {
-  return [=](const Mu &mu, const Point &x) {
+std::function<double(const FullMu &, const Point &)> gap_function(const std::string &kind,
+                                                                  bool from_arc, Normal normal) {
+  return [=](const FullMu &mu, const Point &x) {
     const Point at = from_arc ? on_arc(mu, x) : Point{mu[radius] * x[0], mu[radius] * x[1], 0};
     const Point p = from_support(mu, at), n = normal(mu, x);
     if (kind == "ray") return gap_along(p, n);
@@ -86,7 +86,7 @@ std::function<double(const Mu &, const Point &)> gap_function(const std::string 
 Friction friction_of(const SceneOptions &options) {
   const std::string &law = options.at("friction");
   Friction result;
-  result.value = [](const Mu &mu) { return mu[friction]; };
+  result.value = [](const FullMu &mu) { return mu[friction]; };
   result.only_in_contact = options.at("friction_bound") == "contact";
   result.law = law == "coulomb"  ? FrictionLaw::coulomb
                : law == "tresca" ? FrictionLaw::tresca
@@ -134,7 +134,7 @@ int arc_edges(const SceneOptions &options) {
 
 /// Throws bad_input unless the indentation all[1] is small enough beside the radius all[0] for
 /// contact to stay on the arc.
-void check_indentation(const Mu &all) {
+void check_indentation(const FullMu &all) {
   if (all[indentation] > deepest * all[radius] * (1 + 1e-12))
     throw bad_input("an indentation of " + short_number(all[indentation]) + " is above " +
                     short_number(deepest) + " of the radius " + short_number(all[radius]) +
@@ -151,7 +151,7 @@ Scene make(const SceneOptions &options) {
   const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
   scene.support->normal = normal;
   scene.support->gap = gap_function(options.at("gap"), options.at("gap_from") == "arc", normal);
-  scene.material = [young](const Mu &mu, const Point &centre) {
+  scene.material = [young](const FullMu &mu, const Point &centre) {
     const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
     return lame(stiffness * young, mu[poisson_ratio]);
   };
@@ -165,12 +165,12 @@ Scene make(const SceneOptions &options) {
   scene.training = "grid:61";
   scene.validation = "random:30:1";
   scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges);
-  scene.map = [](const Mu &mu, const Point &x) -> Point {
+  scene.map = [](const FullMu &mu, const Point &x) -> Point {
     return {mu[radius] * x[0], mu[radius] * x[1], 0};
   };
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
-  scene.motion = [](const Mu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
+  scene.motion = [](const FullMu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
   scene.a = elasticity("", scene.material, 2);
   scene.a_parameters = {core_stiffness, poisson_ratio};
   scene.part_stiffness = core_stiffness;

@@ -100,10 +100,10 @@ Scene make(const SceneOptions &options) {
   const double indentation = number_in(options, "indentation");
   const Range radii{std::max(0.1, indentation / deepest), 10};
   scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1, radii}});
-  scene.map = [gap](const Mu &mu, const Point &x) { return placed(gap, mu[0], x); };
+  scene.map = [gap](const FullMu &mu, const Point &x) { return placed(gap, mu[0], x); };
   scene.snap = on_circle;
   scene.fixed = {{"axis", {0}}, {"top", {}}, {"bottom", {}}};
-  scene.motion = [indentation](const Mu &, const Point &x) -> Point {
+  scene.motion = [indentation](const FullMu &, const Point &x) -> Point {
     return {0, x[1] > 0 ? -indentation : indentation, 0};
   };
   scene.mirror_images = 2;

@@ -90,13 +90,6 @@ void add_outputs(double weight, const Outputs &outputs, Outputs &sum) {
       sum.*column.value = (sum.*column.value).value_or(0) + weight * *value;
 }
 
-std::vector<Mu> parameters_of(const std::vector<Sample> &samples) {
-  std::vector<Mu> set;
-  for (const Sample &sample : samples)
-    set.push_back(sample.mu);
-  return set;
-}
-
 } // namespace
 
 std::vector<double> seconds_each(const std::vector<Mu> &set,

@@ -99,7 +99,7 @@ std::optional<ReducedSolution> answer_at(OnlineSolver &solver, const Truths &tru
 double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
   const Scene &scene = problem.scene();
   const Mesh &mesh = problem.mesh();
-  const Mu all = expand(scene.parameters, mu);
+  const FullMu all = expand(scene.parameters, mu);
   const Index nodes = nodes_per_cell(mesh.dim, mesh.degree), count = nodes * scene.components;
   Matrix product_of_cell(count, count);
   Vector local(count);

@@ -17,12 +17,12 @@ struct Separated {
   std::string name;
   Index terms;
   std::function<Vector(const Operators &)> values; ///< this rank's entries
-  std::function<Vector(const Mu &)> theta;         ///< at all parameters, of a query
+  std::function<Vector(const FullMu &)> theta;     ///< at all parameters, of a query
 };
 
 /// Of b: all rows, or B^n and B^tau, by the first entries of its terms and of its values.
 void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Separated> &parts) {
-  const auto theta = [&model, &scene](const Mu &all) {
+  const auto theta = [&model, &scene](const FullMu &all) {
     return model.support ? support_coefficients(model.b, true, scene, all)
                          : affine_coefficients(model.b, scene.b, scene, all);
   };
@@ -40,12 +40,12 @@ void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Sepa
                    [=](const Operators &op) -> Vector {
                      return nonzero_values(op.b).head(entries_of_normal(op));
                    },
-                   [=](const Mu &all) -> Vector { return theta(all).head(normal); }});
+                   [=](const FullMu &all) -> Vector { return theta(all).head(normal); }});
   parts.push_back({"b_tangential", tangential,
                    [=](const Operators &op) -> Vector {
                      return nonzero_values(op.b).tail(op.b.nonZeros() - entries_of_normal(op));
                    },
-                   [=](const Mu &all) -> Vector { return theta(all).tail(tangential); }});
+                   [=](const FullMu &all) -> Vector { return theta(all).tail(tangential); }});
 }
 
 /// Those with terms. `triangle`, `scene` and `model` must outlive them.
@@ -54,13 +54,13 @@ std::vector<Separated> separated(const LowerTriangle &triangle, const Scene &sce
   std::vector<Separated> parts;
   parts.push_back(
       {"a", model.a.size(), [&triangle](const Operators &op) { return triangle.values(op.a); },
-       [&](const Mu &all) { return affine_coefficients(model.a, scene.a, scene, all); }});
+       [&](const FullMu &all) { return affine_coefficients(model.a, scene.a, scene, all); }});
   add_contact(model, scene, parts);
   parts.push_back(
       {"f", model.f.size(), [](const Operators &op) { return local_values(op.f); },
-       [&](const Mu &all) { return affine_coefficients(model.f, scene.f, scene, all); }});
+       [&](const FullMu &all) { return affine_coefficients(model.f, scene.f, scene, all); }});
   parts.push_back({"g", model.g.size(), [](const Operators &op) { return op.g; },
-                   [&](const Mu &all) {
+                   [&](const FullMu &all) {
                      return model.support ? support_coefficients(model.g, false, scene, all)
                                           : affine_coefficients(model.g, scene.g, scene, all);
                    }});

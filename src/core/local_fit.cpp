@@ -8,7 +8,7 @@
 
 namespace rbvi {
 
-Vector parts_of_box(const ParameterSpace &space, const Mu &all_parameters) {
+Vector parts_of_box(const ParameterSpace &space, const FullMu &all_parameters) {
   Vector values(space.size());
   for (int i = 0; i < space.size(); ++i)
     values[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])];

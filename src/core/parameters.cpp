@@ -110,8 +110,8 @@ ParameterSpace free_only(const ParameterSpace &space, const std::string &names) 
   return result;
 }
 
-Mu expand(const ParameterSpace &space, const Mu &mu) {
-  Mu values;
+FullMu expand(const ParameterSpace &space, const Mu &mu) {
+  FullMu values;
   for (const Parameter &parameter : space.all)
     values.push_back(parameter.value);
   for (std::size_t i = 0; i < space.free.size(); ++i)
@@ -166,10 +166,14 @@ Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_out
 }
 
 std::string describe(const ParameterSpace &space, const Mu &mu) {
-  std::string text;
+  std::vector<std::string> parts;
   for (std::size_t i = 0; i < mu.size(); ++i)
-    text += (i > 0 ? " " : "") + space.at(static_cast<int>(i)).name + "=" + shortest_number(mu[i]);
-  return text;
+    parts.push_back(space.at(static_cast<int>(i)).name + "=" + shortest_number(mu[i]));
+  return joined(parts, " ");
+}
+
+std::string describe(const ParameterSpace &space, const FullMu &mu) {
+  return describe(all_free(space.all), Mu(mu));
 }
 
 } // namespace rbvi

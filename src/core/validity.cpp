@@ -37,7 +37,7 @@ void check_range(const Range &range, double value, const std::string &what) {
                     describe(range));
 }
 
-void check_together(const Scene &scene, const Mu &all) {
+void check_together(const Scene &scene, const FullMu &all) {
   if (scene.check_parameters) scene.check_parameters(all);
 }
 

@@ -19,7 +19,8 @@ Index component_count(int dim) {
   return dim == 2 ? 4 : 6;
 }
 
-Cell cell_of(const Scene &scene, const Mu &all_parameters, const Matrix &points, const int *nodes) {
+Cell cell_of(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
+             const int *nodes) {
   Cell cell;
   cell.dim = scene.dim;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(scene.dim); ++i)
@@ -53,7 +54,7 @@ std::vector<std::string> stress_components(int dim) {
   return {names.begin(), names.begin() + component_count(dim)};
 }
 
-Matrix centre_stresses(const Scene &scene, const Mu &all_parameters, const Matrix &points,
+Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
                        const std::vector<int> &cells, const Vector &displacement) {
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
   const std::vector<double> centre(static_cast<std::size_t>(scene.dim) + 1, 1.0 / (scene.dim + 1));

@@ -329,7 +329,7 @@ PairOperators couple(const std::vector<Point> &slave_nodes, const std::vector<Po
   return result;
 }
 
-PairOperators couple_at(const Scene &scene, const Mu &all_parameters,
+PairOperators couple_at(const Scene &scene, const FullMu &all_parameters,
                         const std::vector<Point> &points, Index slave_nodes) {
   std::vector<Point> mapped;
   mapped.reserve(points.size());
@@ -342,7 +342,7 @@ PairOperators couple_at(const Scene &scene, const Mu &all_parameters,
                   scene.pair.value().discretisation, scene.degree);
   } catch (const Error &error) { // of this mu, not of the input
     throw failure(std::string(error.what()) + ", mapped at " +
-                  describe(all_free(scene.parameters.all), all_parameters));
+                  describe(scene.parameters, all_parameters));
   }
   if (!scene.motion) return pair;
   Vector motion(static_cast<Index>(points.size()));

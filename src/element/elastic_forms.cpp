@@ -59,12 +59,12 @@ template <class Material>
 Form elasticity_of(const std::string &region, const Material &material, int degree) {
   check_degree(degree);
   if (degree == 1)
-    return {region, [material](const Mu &mu, const Cell &cell, double *values) {
+    return {region, [material](const FullMu &mu, const Cell &cell, double *values) {
               linear_stiffness(cell, material(mu, cell), values);
             }};
   return {region,
-          [material, triangle = positive_quadrature(2),
-           tetrahedron = positive_quadrature(3)](const Mu &mu, const Cell &cell, double *values) {
+          [material, triangle = positive_quadrature(2), tetrahedron = positive_quadrature(3)](
+              const FullMu &mu, const Cell &cell, double *values) {
             if (cell.dim == 2)
               quadratic_stiffness<2>(cell, material(mu, cell), triangle, values);
             else
@@ -83,14 +83,16 @@ Lame lame(double young, double poisson) {
 
 Form elasticity(const std::string &region, const Lame &material, int degree) {
   return elasticity_of(
-      region, [material](const Mu &, const Cell &) { return material; }, degree);
+      region, [material](const FullMu &, const Cell &) { return material; }, degree);
 }
 
 Form elasticity(const std::string &region,
-                const std::function<Lame(const Mu &, const Point &)> &material, int degree) {
+                const std::function<Lame(const FullMu &, const Point &)> &material, int degree) {
   return elasticity_of(
       region,
-      [material](const Mu &mu, const Cell &cell) { return material(mu, reference_centre(cell)); },
+      [material](const FullMu &mu, const Cell &cell) {
+        return material(mu, reference_centre(cell));
+      },
       degree);
 }
 

@@ -48,15 +48,15 @@ Point reference_centre(const Cell &cell) {
   return sum;
 }
 
-void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell) {
+void check_orientation(const Scene &scene, const FullMu &mu, const Cell &cell) {
   const double volume = simplex(cell.dim, cell.mapped).volume;
   if (!(volume > 1e-12 * std::pow(longest_edge(cell.dim, cell.mapped), cell.dim)))
     throw failure("the geometric map of scene " + scene.name +
-                  " inverts a cell at mu = " + describe(all_free(scene.parameters.all), mu) +
+                  " inverts a cell at mu = " + describe(scene.parameters, mu) +
                   ": use a smaller parameter box or a finer mesh");
 }
 
-void map_cell(const Scene &scene, const Mu &mu, Cell &cell) {
+void map_cell(const Scene &scene, const FullMu &mu, Cell &cell) {
   for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
     cell.mapped[i] = scene.map(mu, cell.reference[i]);
   check_orientation(scene, mu, cell);

@@ -52,8 +52,8 @@ double coulomb_bound(double p, double coefficient) {
   return coefficient * std::max(-p, 0.0);
 }
 
-NitschePoint nitsche_point(const Scene &scene, const Mu &all_parameters, const Cell &cell, int edge,
-                           const Lame &material, double s) {
+NitschePoint nitsche_point(const Scene &scene, const FullMu &all_parameters, const Cell &cell,
+                           int edge, const Lame &material, double s) {
   const Simplex geometry = simplex(2, cell.mapped);
   const auto [first, second] = simplex_edges[static_cast<std::size_t>(edge)];
   const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(second);
@@ -81,7 +81,7 @@ NitschePoint nitsche_point(const Scene &scene, const Mu &all_parameters, const C
   return point;
 }
 
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Mu &all_parameters,
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const FullMu &all_parameters,
                                            const Cell &cell, int edge, const Lame &material) {
   check_orientation(scene, all_parameters, cell);
   std::array<NitschePoint, 4> points;

@@ -75,7 +75,8 @@ double edge_length(const std::array<Point, 4> &vertices, int edge) {
 
 } // namespace
 
-CurveCellAtMu curve_cell_at(const Scene &scene, const Mu &all_parameters, const CurveCell &beside) {
+CurveCellAtMu curve_cell_at(const Scene &scene, const FullMu &all_parameters,
+                            const CurveCell &beside) {
   CurveCellAtMu result{beside.cell, scene.material(all_parameters, reference_centre(beside.cell)),
                        0};
   for (std::size_t v = 0; v < 3; ++v)
@@ -85,7 +86,7 @@ CurveCellAtMu curve_cell_at(const Scene &scene, const Mu &all_parameters, const 
   return result;
 }
 
-std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_parameters,
+std::vector<NitscheFace> nitsche_faces(const Scene &scene, const FullMu &all_parameters,
                                        const std::vector<CurveCell> &cells) {
   std::vector<NitscheFace> faces;
   faces.reserve(cells.size());
@@ -97,7 +98,7 @@ std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_paramet
   return faces;
 }
 
-NitscheLaw nitsche_law(const Friction &friction, const Mu &all_parameters) {
+NitscheLaw nitsche_law(const Friction &friction, const FullMu &all_parameters) {
   if (friction.law == FrictionLaw::none) return {};
   const FrictionBound bound = friction_bound(friction, all_parameters); // of one kind
   return {friction.law, bound.coefficient + bound.threshold, bound.only_in_contact};
@@ -236,7 +237,7 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line) {
   return low > 0 ? low : high;
 }
 
-CurveFields nitsche_fields(const Scene &scene, const Mu &all_parameters,
+CurveFields nitsche_fields(const Scene &scene, const FullMu &all_parameters,
                            const std::vector<CurveCell> &cells, const Vector &u) {
   const auto count = static_cast<Index>(cells.size()) + 1;
   CurveFields fields;

@@ -63,7 +63,7 @@ CellMatrix stiffness(const ScalarCell &cell, const Simplex &geometry) {
 } // namespace
 
 Form laplace(const std::string &region) {
-  return {region, [](const Mu &, const Cell &cell, double *values) {
+  return {region, [](const FullMu &, const Cell &cell, double *values) {
             const Simplex s = simplex(cell.dim, cell.mapped);
             for (int i = 0; i <= cell.dim; ++i)
               for (int j = 0; j <= cell.dim; ++j)
@@ -72,7 +72,7 @@ Form laplace(const std::string &region) {
 }
 
 Form mass(const std::string &region, Domain domain, double factor, bool lumped) {
-  return {region, [domain, factor, lumped](const Mu &, const Cell &cell, double *values) {
+  return {region, [domain, factor, lumped](const FullMu &, const Cell &cell, double *values) {
             const int dim = cell.dim;
             const double scale = factor * simplex(dim, vertices(cell, domain)).volume;
             for (int i = 0; i <= dim; ++i)
@@ -86,7 +86,7 @@ Form h1_product(double length, int components, int degree) {
   check_degree(degree);
   return {
       "", [length, components, cells = std::array{scalar_cell(2, degree), scalar_cell(3, degree)}](
-              const Mu &, const Cell &cell, double *values) {
+              const FullMu &, const Cell &cell, double *values) {
         const ScalarCell &scalar = cells[static_cast<std::size_t>(cell.dim) - 2];
         const Simplex s = simplex(cell.dim, cell.reference);
         const CellMatrix gradients = stiffness(scalar, s);
@@ -102,7 +102,7 @@ Form h1_product(double length, int components, int degree) {
 }
 
 Form constant_load(const std::string &region, double value) {
-  return {region, [value](const Mu &, const Cell &cell, double *values) {
+  return {region, [value](const FullMu &, const Cell &cell, double *values) {
             const double share = value * simplex(cell.dim, cell.mapped).volume / (cell.dim + 1);
             for (int i = 0; i <= cell.dim; ++i)
               *values++ = share;
@@ -110,16 +110,16 @@ Form constant_load(const std::string &region, double value) {
 }
 
 Form function_load(const std::string &region, double factor,
-                   const std::function<double(const Mu &, const Point &)> &psi, bool lumped) {
+                   const std::function<double(const FullMu &, const Point &)> &psi, bool lumped) {
   if (lumped)
-    return {region, [factor, psi](const Mu &mu, const Cell &cell, double *values) {
+    return {region, [factor, psi](const FullMu &mu, const Cell &cell, double *values) {
               const double share = factor * simplex(cell.dim, cell.mapped).volume / (cell.dim + 1);
               for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
                 values[i] = share * psi(mu, cell.mapped[i]);
             }};
   return {region,
           [factor, psi, rule = std::array{simplex_quadrature(2, 5), simplex_quadrature(3, 5)}](
-              const Mu &mu, const Cell &cell, double *values) {
+              const FullMu &mu, const Cell &cell, double *values) {
             const auto count = static_cast<std::size_t>(cell.dim) + 1;
             const double scale = factor * simplex(cell.dim, cell.mapped).volume;
             std::fill_n(values, count, 0.0);

@@ -94,7 +94,8 @@ double distance(const Point &x, const Point &y) {
   return std::sqrt(dx * dx + dy * dy);
 }
 
-std::vector<double> mapped_lengths(const Scene &scene, const Mu &mu, const SupportCurve &curve) {
+std::vector<double> mapped_lengths(const Scene &scene, const FullMu &mu,
+                                   const SupportCurve &curve) {
   std::vector<double> lengths(static_cast<std::size_t>(curve.vertices) - 1);
   Point begin = scene.map(mu, curve.points[0]);
   for (std::size_t edge = 0; edge < lengths.size(); ++edge) {
@@ -106,7 +107,7 @@ std::vector<double> mapped_lengths(const Scene &scene, const Mu &mu, const Suppo
   for (std::size_t edge = 0; edge < lengths.size(); ++edge)
     if (!(lengths[edge] > 1e-12 * longest))
       throw failure("edge " + std::to_string(edge) + " of the support's boundary has no length, " +
-                    "mapped at " + describe(all_free(scene.parameters.all), mu));
+                    "mapped at " + describe(scene.parameters, mu));
   return lengths;
 }
 
@@ -166,8 +167,8 @@ void set_tangential_rows(SparseMatrix &b) {
 }
 
 /// All but what is nodal.
-void integrate(const Scene &scene, const Mu &mu, const SupportCurve &curve, const Pattern &pattern,
-               SupportOperators &result) {
+void integrate(const Scene &scene, const FullMu &mu, const SupportCurve &curve,
+               const Pattern &pattern, SupportOperators &result) {
   const SupportRecipe &support = scene.support.value();
   const bool friction = support.friction.law != FrictionLaw::none;
   const std::vector<double> lengths = mapped_lengths(scene, mu, curve);
@@ -202,8 +203,8 @@ void integrate(const Scene &scene, const Mu &mu, const SupportCurve &curve, cons
   if (friction) set_tangential_rows(result.b);
 }
 
-void collocate(const Scene &scene, const Mu &mu, const SupportCurve &curve, const Pattern &pattern,
-               SupportOperators &result) {
+void collocate(const Scene &scene, const FullMu &mu, const SupportCurve &curve,
+               const Pattern &pattern, SupportOperators &result) {
   const auto vertices = static_cast<Index>(pattern.vertices);
   SparseMatrix b(vertices, static_cast<Index>(pattern.columns()));
   b.resizeNonZeros(2 * vertices);
@@ -228,7 +229,7 @@ Index multiplier_count(const SupportCurve &curve, const SupportRecipe &support) 
   return support.friction.law == FrictionLaw::none ? curve.vertices : 2 * curve.vertices;
 }
 
-SupportOperators couple_with_support(const Scene &scene, const Mu &all_parameters,
+SupportOperators couple_with_support(const Scene &scene, const FullMu &all_parameters,
                                      const SupportCurve &curve) {
   const Pattern pattern = pattern_of(curve, scene.degree);
   SupportOperators result;

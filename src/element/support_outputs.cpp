@@ -29,7 +29,7 @@ bool sticks(double tangential, double bound, double violation) {
 
 } // namespace
 
-FrictionBound friction_bound(const Friction &friction, const Mu &all_parameters) {
+FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters) {
   FrictionBound bound;
   if (friction.law == FrictionLaw::none) return bound;
   const double value = friction.value(all_parameters);

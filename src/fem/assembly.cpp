@@ -39,7 +39,7 @@ MappedCells reference_cells(const Mesh &mesh) {
   return result;
 }
 
-void map_cells(const Scene &scene, const Mu &mu, const Mesh &mesh, MappedCells &cells) {
+void map_cells(const Scene &scene, const FullMu &mu, const Mesh &mesh, MappedCells &cells) {
   collectively(mesh.comm, [&] {
     std::vector<Point> mapped;
     mapped.reserve(mesh.points.size());
@@ -80,7 +80,7 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &r
   return matrix;
 }
 
-void assemble_matrix(const Form &form, const Mu &mu, const Mesh &mesh, const Dofs &dofs,
+void assemble_matrix(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
                      const MappedCells &cells, Mat matrix) {
   const auto count =
       static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
@@ -94,7 +94,7 @@ void assemble_matrix(const Form &form, const Mu &mu, const Mesh &mesh, const Dof
   RBVI_CALL(MatSetValuesCOO(matrix, values.data(), INSERT_VALUES));
 }
 
-void assemble_vector(const Form &form, const Mu &mu, const Mesh &mesh, const Dofs &dofs,
+void assemble_vector(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
                      const MappedCells &cells, Vec vector) {
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));

@@ -90,7 +90,7 @@ std::vector<int> flat_cells(const ContactRegion &region) {
 }
 
 std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene,
-                                       const Mu &mu) {
+                                       const FullMu &mu) {
   std::vector<Point> mapped;
   mapped.reserve(region.points.size());
   for (const Point &x : region.points)
@@ -133,7 +133,7 @@ ContactMatrix::ContactMatrix(const ContactRegion &region, Columns columns) {
     position_.push_back(column < 0 ? -1 : &matrix_.coeffRef(row, column) - matrix_.valuePtr());
 }
 
-const SparseMatrix &ContactMatrix::assemble(const Form &form, const Mu &mu,
+const SparseMatrix &ContactMatrix::assemble(const Form &form, const FullMu &mu,
                                             const std::vector<Cell> &cells) {
   std::vector<double> values(per_cell_);
   std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
@@ -148,7 +148,7 @@ const SparseMatrix &ContactMatrix::assemble(const Form &form, const Mu &mu,
   return matrix_;
 }
 
-Vector contact_vector(const ContactRegion &region, const Form &form, const Mu &mu,
+Vector contact_vector(const ContactRegion &region, const Form &form, const FullMu &mu,
                       const std::vector<Cell> &cells) {
   Vector result = Vector::Zero(region.dual_size());
   std::array<double, 4> values{};

@@ -110,10 +110,9 @@ std::uint8_t vtk_cell_type(int per_cell) {
 void write_points(Writer &out, const Matrix &points) {
   std::vector<double> coordinates;
   coordinates.reserve(3 * static_cast<std::size_t>(points.rows()));
-  for (Index i = 0; i < points.rows(); ++i) {
-    const Point point = point_of(points, i);
-    coordinates.insert(coordinates.end(), point.begin(), point.end());
-  }
+  for (Index i = 0; i < points.rows(); ++i)
+    for (Index k = 0; k < 3; ++k)
+      coordinates.push_back(k < points.cols() ? points(i, k) : 0);
   out.line("<Points>");
   out.array("points", std::span<const double>(coordinates), 3);
   out.line("</Points>");

@@ -195,9 +195,7 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
     bases.cone = build_dual_basis(problem, reference, multipliers, options.cone);
   }
   if (options.enrichment == Enrichment::decorrelated) return bases;
-  std::vector<Mu> training;
-  for (const Sample &sample : samples)
-    training.push_back(sample.mu);
+  std::vector<Mu> training = parameters_of(samples);
   if (b_is_scaled) training.resize(1);
   add_supremizers(problem, training, reference, options, bases.cone.all(), bases, times);
   return bases;
@@ -334,9 +332,7 @@ std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
 
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
                  StageTimes &times) {
-  std::vector<Mu> training;
-  for (const Sample &sample : samples)
-    training.push_back(sample.mu);
+  const std::vector<Mu> training = parameters_of(samples);
   Reduction result;
   {
     const Stage stage("interpolation", times);

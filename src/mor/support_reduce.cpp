@@ -46,9 +46,7 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   check_support_reduction(scene, options);
   const MultiplierOptions &choice = options.multipliers;
   const bool collocated = choice.reduction == MultiplierReduction::collocated;
-  std::vector<Mu> training;
-  for (const Sample &sample : samples)
-    training.push_back(sample.mu);
+  std::vector<Mu> training = parameters_of(samples);
   ReducedBases bases;
   bases.reduction = choice.reduction;
   bases.mended = choice.exact;
@@ -97,7 +95,7 @@ Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample
   const Matrix coefficients = nodal_coefficients(nodal, multipliers_of(samples));
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    const Mu all = expand(scene.parameters, samples[p].mu);
+    const FullMu all = expand(scene.parameters, samples[p].mu);
     const BodyAtMu body = solver.body_at(all, support_coefficients(model.b, true, scene, all));
     CollocatedProblem reduced = collocated_problem(support.basis, body);
     problems.push_back({std::move(reduced.h), std::move(reduced.q), body.bound,

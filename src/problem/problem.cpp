@@ -104,18 +104,18 @@ const Trace &Problem::trace() const {
   return support_ ? support_->trace : curves_ ? curves_->trace : contact_->trace;
 }
 
-Mu Problem::stiffness_values(const Mu &all_parameters) const {
+std::vector<double> Problem::stiffness_values(const FullMu &all_parameters) const {
   if (!scene_.a_parameters) return all_parameters;
-  Mu values;
+  std::vector<double> values;
   for (const int i : *scene_.a_parameters)
     values.push_back(all_parameters[static_cast<std::size_t>(i)]);
   return values;
 }
 
 const Operators &Problem::assemble(const Mu &mu) {
-  const Mu all = expand(scene_.parameters, mu);
+  const FullMu all = expand(scene_.parameters, mu);
   assemble_contact(mu, operators_);
-  const Mu values = stiffness_values(all);
+  const std::vector<double> values = stiffness_values(all);
   const bool new_a = a_made_at_ != values;
   if (new_a || scene_.f) map_cells(scene_, all, mesh_, cells_);
   if (new_a) {

@@ -40,7 +40,7 @@ void check_kernel(const AffineTerms &terms, const Form &form, const std::string 
 
 } // namespace
 
-Vector normal_gap(const Scene &scene, const Mu &all_parameters, const Matrix &contact_points,
+Vector normal_gap(const Scene &scene, const FullMu &all_parameters, const Matrix &contact_points,
                   const Vector &displacement) {
   Vector gap(contact_points.rows());
   for (Index i = 0; i < gap.size(); ++i) {
@@ -106,7 +106,7 @@ void OnlineSolver::enrich() {
   b_ = (b_ * enrichment_).eval();
 }
 
-void OnlineSolver::assemble_pair(const Mu &all_parameters, ReducedSolution &solution) {
+void OnlineSolver::assemble_pair(const FullMu &all_parameters, ReducedSolution &solution) {
   solution.pair = couple_at(scene_, all_parameters, curves_, model_.slave_nodes);
   const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
   const Matrix traces = solution.pair.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
@@ -201,7 +201,7 @@ void OnlineSolver::check(ReducedSolution &solution) {
                     .str());
 }
 
-ReducedSolution OnlineSolver::solve_at(const Mu &all_parameters) {
+ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
   const auto theta = [&](const AffineTerms &terms, const Form &form) {
     return affine_coefficients(terms, form, scene_, all_parameters);
   };
@@ -256,7 +256,7 @@ Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
 Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) const {
   const Vector trace = model_.contact_trace * solution.u;
   if (model_.two_bodies()) return solution.pair.nodal_gap - solution.pair.nodal_b * trace;
-  const Mu all = expand(scene_.parameters, mu);
+  const FullMu all = expand(scene_.parameters, mu);
   if (support_ || nitsche_) return normal_gap(scene_, all, model_.contact_points, trace);
   Vector gap = trace;
   for (Index i = 0; i < gap.size(); ++i)
@@ -270,7 +270,7 @@ Vector OnlineSolver::field(const ReducedSolution &solution) const {
   return model_.primal_basis * solution.u;
 }
 
-void OnlineSolver::support_outputs_of(const Mu &all_parameters, const ReducedSolution &solution,
+void OnlineSolver::support_outputs_of(const FullMu &all_parameters, const ReducedSolution &solution,
                                       Outputs &outputs) const {
   const Vector lambda = multiplier(solution), lift = model_.support->lift * solution.theta_b;
   const FrictionBound bound = friction_bound(scene_.support->friction, all_parameters);

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/output_table.hpp"
 #include "rbvi/io/overwrite.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/rom/model/training_samples.hpp"

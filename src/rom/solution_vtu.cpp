@@ -12,7 +12,7 @@ namespace {
 /// A solution at one mu.
 struct State {
   const Scene &scene;
-  const Mu &mu; ///< all parameters
+  const FullMu &mu; ///< all parameters
   const ReducedModel &model;
   const Vector &u, &lambda;
   Vector moved; ///< motion + u at the mesh nodes; vectors with three components
@@ -29,7 +29,7 @@ Matrix mapped(const State &state, const Matrix &points) {
 }
 
 /// ParaView warps by vectors with three components.
-Vector displacement(const Scene &scene, const Mu &mu, const Matrix &points, const Vector &u) {
+Vector displacement(const Scene &scene, const FullMu &mu, const Matrix &points, const Vector &u) {
   const Index components = scene.components;
   if (components == 1) return u;
   Vector result = Vector::Zero(3 * points.rows());
@@ -159,7 +159,7 @@ std::filesystem::path contact_file(const std::filesystem::path &path) {
 }
 
 std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,
-                                             const Mu &all, const ReducedModel &model,
+                                             const FullMu &all, const ReducedModel &model,
                                              const Vector &u, const Vector &lambda) {
   const State state{scene, all, model, u, lambda, displacement(scene, all, model.mesh_points, u)};
   const Grid whole = bodies(state);

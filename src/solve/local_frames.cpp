@@ -29,7 +29,7 @@ LocalFrames::LocalFrames(const Problem &problem, std::size_t nodes) : problem_(p
                          1, nullptr, q_.put()));
 }
 
-void LocalFrames::set(const Mu &all_parameters) {
+void LocalFrames::set(const FullMu &all_parameters) {
   const Scene &scene = problem_.scene();
   PetscInt first = 0, last = 0;
   RBVI_CALL(MatGetOwnershipRange(q_.get(), &first, &last));

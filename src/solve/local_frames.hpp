@@ -16,7 +16,7 @@ public:
   /// `problem` must outlive it.
   LocalFrames(const Problem &problem, std::size_t nodes);
   /// The mu of what follows. Collective.
-  void set(const Mu &all_parameters);
+  void set(const FullMu &all_parameters);
   Handle<Mat> turned(Mat a) const;      ///< Q^T A Q
   Handle<Vec> turned(Vec f) const;      ///< Q^T f
   Handle<Vec> turned_back(Vec v) const; ///< Q v

@@ -76,7 +76,7 @@ Settings settings_in(const H5Reader &file) {
 }
 
 Sample sample_in(const H5Reader &file) {
-  Sample sample{file.doubles("mu"), file.vector("u"), file.vector("lambda"), {}};
+  Sample sample{Mu(file.doubles("mu")), file.vector("u"), file.vector("lambda"), {}};
   const std::vector<double> outputs = file.doubles("outputs");
   if (outputs.size() != stored_outputs.size()) throw bad_input("another number of outputs");
   for (std::size_t i = 0; i < stored_outputs.size(); ++i)

@@ -243,6 +243,13 @@ double median_seconds(const std::vector<Sample> &samples, const std::vector<Mu> 
 
 } // namespace
 
+std::vector<Mu> parameters_of(const std::vector<Sample> &samples) {
+  std::vector<Mu> set;
+  for (const Sample &sample : samples)
+    set.push_back(sample.mu);
+  return set;
+}
+
 Settings sample_settings(const Problem &problem, const HfOptions &options) {
   const Scene &scene = problem.scene();
   Settings settings{{"scene", scene.name}, {"mesh", problem.mesh().fingerprint}};

@@ -1,6 +1,7 @@
 // rbvi bench: run time against error, on one rank, over the validation set.
 #include "rbvi/check/bench.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
@@ -54,10 +55,8 @@ std::vector<std::string> cells(const BenchRow &row, double best) {
 }
 
 std::string line(const std::vector<std::string> &parts, const std::string &begin,
-                 const std::string &between,
-                 const std::string &end){return begin + joined(parts, between) + end +
-                                                "
-                                                ";
+                 const std::string &between, const std::string &end) {
+  return begin + joined(parts, between) + end + "\n";
 }
 
 std::string markdown(const std::vector<BenchRow> &rows, double best) {

@@ -65,15 +65,18 @@ inline double value_of(const std::string &text, const std::string &name) {
   return line.empty() ? 0 : parse_number(value, name);
 }
 
-/// `name` tells apart commands that run at the same time. A command that hangs ends after a minute
-/// with status 124.
+/// `name` tells apart commands that run at the same time; each has a directory of its own for Open
+/// MPI's files, over which they could trip. A command that hangs ends after a minute with status
+/// 124.
 inline Finished shell(const std::string &command, const std::string &name = "last") {
   const std::string out = name + ".stdout", err = name + ".stderr";
-  const int status =
-      std::system(("timeout 60 " + command + " >" + out + " 2>" + err + " </dev/null").c_str());
+  const fs::path mpi = fs::temp_directory_path() / (name + "-" + std::to_string(getpid()));
+  const std::string line = "OMPI_MCA_orte_tmpdir_base=" + mpi.string() + " timeout 60 " + command +
+                           " >" + out + " 2>" + err + " </dev/null";
+  const int status = std::system(line.c_str());
   Finished run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(out), slurp(err)};
-  fs::remove(out);
-  fs::remove(err);
+  for (const fs::path &left : {fs::path(out), fs::path(err), mpi})
+    fs::remove_all(left);
   return run;
 }
 

@@ -94,7 +94,7 @@ Scene identity_scene(double share) {
     p.lower = p.value - share * (p.value - p.lower);
     p.upper = p.value + share * (p.upper - p.value);
   }
-  scene.map = [](const Mu &, const Point &x) { return x; };
+  scene.map = [](const FullMu &, const Point &x) { return x; };
   return scene;
 }
 

@@ -86,8 +86,8 @@ std::string disc_mesh(int rings) {
 Scene radial_scene(bool lumped) {
   Scene scene = make_scene("membrane_obstacle", {{"lumped", lumped ? "yes" : "no"}});
   scene.mesh.facts.clear(); // a disc in place of the square
-  scene.map = [](const Mu &, const Point &x) { return x; };
-  scene.obstacle = [](const Mu &, const Point &x) {
+  scene.map = [](const FullMu &, const Point &x) { return x; };
+  scene.obstacle = [](const FullMu &, const Point &x) {
     return -curvature * (x[0] * x[0] + x[1] * x[1]);
   };
   scene.g = function_load("obstacle", -1, scene.obstacle, scene.lumped);

@@ -209,7 +209,7 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   Operators op;
   for (std::size_t p = 0; p < set.size(); ++p) {
     r.problem.assemble_contact(set[p], op);
-    const Mu all = expand(r.problem.scene().parameters, set[p]);
+    const FullMu all = expand(r.problem.scene().parameters, set[p]);
     const Vector theta = support_coefficients(r.model.b, true, r.problem.scene(), all);
     const Matrix b =
         coefficients.transpose() *

@@ -106,7 +106,7 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
   Operators op;
   for (const double radius : {0.77, 1.19}) {
     r.problem.assemble_contact({radius}, op);
-    const Mu all = expand(r.problem.scene().parameters, {radius});
+    const FullMu all = expand(r.problem.scene().parameters, {radius});
     const Vector theta = support_coefficients(model.b, true, r.problem.scene(), all);
     const Matrix found = (model.b.reduced * theta).reshaped(model.generators, model.primal_size());
     const Matrix exact =

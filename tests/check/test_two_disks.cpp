@@ -194,7 +194,7 @@ TEST(ReducedDisks, AGreedyStopsAtTheRankOfItsSnapshots) {
 /// The blocks of the patch test, drawn apart by 0.04: below that indentation nothing touches.
 Scene blocks_apart() {
   Scene scene = make_scene("patch");
-  scene.map = [touching = scene.map](const Mu &mu, const Point &x) {
+  scene.map = [touching = scene.map](const FullMu &mu, const Point &x) {
     Point image = touching(mu, x);
     if (x[1] > 0) image[1] += 0.04;
     return image;

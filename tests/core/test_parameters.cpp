@@ -180,9 +180,9 @@ TEST_F(CsvSet, RefusesWhatIsWrong) {
 }
 
 TEST(Describe, ReadsBackExactly) {
-  EXPECT_EQ(describe(space(), {0.18, -0.02}), "radius=0.18 x=-0.02");
+  EXPECT_EQ(describe(space(), Mu{0.18, -0.02}), "radius=0.18 x=-0.02");
   const double third = 0.17 + 0.01 / 3;
-  const std::string text = describe(only_x(), {third});
+  const std::string text = describe(only_x(), Mu{third});
   EXPECT_EQ(parse_number(text.substr(2), "x"), third);
 }
 

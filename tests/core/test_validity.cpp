@@ -81,7 +81,7 @@ TEST(Validity, ABoxThatLeavesItsRangeIsRefused) {
 /// wherever radius and centre are valid together, and close to zero where they are not.
 TEST(Validity, TheRingAroundTheDiscFoldsJustBeyondTheRange) {
   const Scene scene = make_scene("membrane_obstacle");
-  const auto smallest_stretch = [&](const Mu &mu) {
+  const auto smallest_stretch = [&](const FullMu &mu) {
     double smallest = 1e300;
     for (double rho = 0.2; rho < 0.5; rho += 1e-3) {
       const Point inner = scene.map(mu, {-rho, 0, 0}), outer = scene.map(mu, {-rho - 1e-6, 0, 0});

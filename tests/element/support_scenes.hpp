@@ -45,11 +45,11 @@ inline Scene support_scene(int degree, const Point &normal = {0, -1, 0}) {
   scene.components = 2;
   scene.degree = degree;
   scene.parameters.all = {{"size", "", 0, 2, 1}};
-  scene.map = [](const Mu &, const Point &x) { return x; };
+  scene.map = [](const FullMu &, const Point &x) { return x; };
   scene.support = SupportRecipe{"support",
-                                [normal](const Mu &, const Point &) { return normal; },
-                                [](const Mu &, const Point &) { return 0.0; },
-                                {FrictionLaw::coulomb, [](const Mu &) { return 0.3; }}};
+                                [normal](const FullMu &, const Point &) { return normal; },
+                                [](const FullMu &, const Point &) { return 0.0; },
+                                {FrictionLaw::coulomb, [](const FullMu &) { return 0.3; }}};
   return scene;
 }
 
@@ -64,7 +64,7 @@ inline Curve arc(Index edges, double half_angle) {
   return curve;
 }
 
-inline Point radial(const Mu &, const Point &x) {
+inline Point radial(const FullMu &, const Point &x) {
   const double r = std::hypot(x[0], x[1]);
   return {x[0] / r, x[1] / r, 0};
 }
@@ -72,9 +72,9 @@ inline Point radial(const Mu &, const Point &x) {
 /// A half disk of radius mu[0] above the line y = -mu[0].
 inline Scene hertz(int degree) {
   Scene scene = support_scene(degree);
-  scene.map = [](const Mu &mu, const Point &x) { return Point{mu[0] * x[0], mu[0] * x[1], 0}; };
+  scene.map = [](const FullMu &mu, const Point &x) { return Point{mu[0] * x[0], mu[0] * x[1], 0}; };
   scene.support->normal = radial;
-  scene.support->gap = [](const Mu &mu, const Point &x) {
+  scene.support->gap = [](const FullMu &mu, const Point &x) {
     const double r = std::hypot(x[0], x[1]);
     return mu[0] * (r / -x[1] - 1);
   };
@@ -84,15 +84,15 @@ inline Scene hertz(int degree) {
 /// Nothing is constant.
 inline Scene crooked(int degree) {
   Scene scene = support_scene(degree);
-  scene.map = [](const Mu &mu, const Point &x) {
+  scene.map = [](const FullMu &mu, const Point &x) {
     return Point{mu[0] * x[0] + 0.2 * x[1], x[1] + 0.3 * std::sin(2 * x[0]), 0};
   };
-  scene.support->normal = [](const Mu &mu, const Point &x) {
+  scene.support->normal = [](const FullMu &mu, const Point &x) {
     const double angle = mu[0] + x[0] * x[1];
     return Point{std::cos(angle), std::sin(angle), 0};
   };
-  scene.support->gap = [](const Mu &, const Point &x) { return 0.1 + std::cos(x[0]); };
-  scene.motion = [](const Mu &mu, const Point &x) {
+  scene.support->gap = [](const FullMu &, const Point &x) { return 0.1 + std::cos(x[0]); };
+  scene.motion = [](const FullMu &mu, const Point &x) {
     return Point{std::sin(x[0]), mu[0] * std::exp(x[1]), 0};
   };
   return scene;

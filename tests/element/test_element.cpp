@@ -91,7 +91,7 @@ TEST(Forms, RepresentPolynomialsExactly) {
     mass("", Domain::mapped, -1).kernel({}, cell, m.data());
     double exact = 0;
     Vector load(k);
-    const auto psi = [](const Mu &, const Point &x) { return (x[0] + 2 * x[1]) * x[1]; };
+    const auto psi = [](const FullMu &, const Point &x) { return (x[0] + 2 * x[1]) * x[1]; };
     double exact_load = 0;
     for (const auto &q : simplex_quadrature(dim, 5)) {
       double uq = 0, vq = 0, y = 0;
@@ -116,7 +116,7 @@ TEST(Forms, RepresentPolynomialsExactly) {
 }
 
 TEST(MembraneScene, MapsMoveTheDiscAndLeaveTheBoundary) {
-  const Mu mu{0.24, 0.05, -0.05};
+  const FullMu mu{0.24, 0.05, -0.05};
   for (const char *kind : {"similarity", "graded"}) {
     const Scene scene = make_scene("membrane_obstacle", {{"disc_map", kind}});
     for (double angle = 0; angle < 6.3; angle += 0.1) {
@@ -143,7 +143,7 @@ TEST(MembraneScene, RefusesUnknownNames) {
 
 TEST(MapCell, RefusesAnInvertedCell) {
   Scene scene = make_scene("membrane_obstacle");
-  scene.map = [](const Mu &, const Point &x) { return Point{-x[0], x[1], 0}; };
+  scene.map = [](const FullMu &, const Point &x) { return Point{-x[0], x[1], 0}; };
   Cell cell{2, {Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{}}, {}};
   EXPECT_THROW(map_cell(scene, {0.2, 0, 0}, cell), Error);
 }

@@ -59,7 +59,7 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
   Random random(3);
   const Scene scene = crooked(GetParam());
   const Lame material = lame(15, 0.3);
-  const Mu mu{0.4};
+  const FullMu mu{0.4};
   int cells = 0;
   for (int edge = 0; edge < 3; ++edge) {
     Cell cell{2, random_cell(2, random), {}};

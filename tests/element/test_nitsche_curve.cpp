@@ -48,7 +48,7 @@ Strip strip(int degree, const Curve &curve, Side side = Side::above) {
 }
 
 /// Displacements of the nodes by a field of the mapped domain.
-Vector nodal(const Scene &scene, const Mu &mu, const Strip &s, const Field &field) {
+Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const Field &field) {
   Vector u(2 * static_cast<Index>(s.nodes.size()));
   for (std::size_t i = 0; i < s.nodes.size(); ++i) {
     const Point value = field(scene.map(mu, s.nodes[i]));
@@ -60,9 +60,9 @@ Vector nodal(const Scene &scene, const Mu &mu, const Strip &s, const Field &fiel
 /// A half disk, stiffer on the right, that is pushed down.
 Scene half_disk(int degree) {
   Scene scene = hertz(degree);
-  scene.motion = [](const Mu &, const Point &) { return Point{0.02, -0.1, 0}; };
+  scene.motion = [](const FullMu &, const Point &) { return Point{0.02, -0.1, 0}; };
   scene.nitsche = NitscheRecipe{0.3};
-  scene.material = [](const Mu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; };
+  scene.material = [](const FullMu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; };
   return scene;
 }
 
@@ -268,7 +268,7 @@ TEST(NitscheLaws, BoundsAreThoseOfTheLaw) {
 }
 
 TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
-  const auto value = [](const Mu &mu) { return mu[0]; };
+  const auto value = [](const FullMu &mu) { return mu[0]; };
   const NitscheLaw none = nitsche_law({FrictionLaw::none, value}, {-1});
   EXPECT_EQ(none.law, FrictionLaw::none);
   EXPECT_FALSE(none.moves());
@@ -289,10 +289,10 @@ INSTANTIATE_TEST_SUITE_P(DegreeAndSide, NitscheFieldsOf,
 /// u = m x: the same stress in every cell, whichever way its edge is listed.
 TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   const auto [degree, side] = GetParam();
-  const Mu mu{1.1};
+  const FullMu mu{1.1};
   const Lame material{9, 4};
   Scene scene = half_disk(degree);
-  scene.material = [=](const Mu &, const Point &) { return material; };
+  scene.material = [=](const FullMu &, const Point &) { return material; };
   const Curve curve = arc(7, 0.5);
   const Strip s = strip(degree, curve, side);
   Eigen::Matrix2d m;
@@ -326,10 +326,10 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
 /// Where the material jumps.
 TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
   Scene scene = half_disk(2);
-  scene.material = [](const Mu &, const Point &x) { return x[0] < 0 ? Lame{9, 4} : Lame{18, 8}; };
+  scene.material = [](const FullMu &, const Point &x) { return x[0] < 0 ? Lame{9, 4} : Lame{18, 8}; };
   const Strip s = strip(2, line(2, -0.5, 0.5, -1));
-  scene.support->normal = [](const Mu &, const Point &) { return Point{0, -1, 0}; };
-  const Mu mu{1};
+  scene.support->normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
+  const FullMu mu{1};
   const Vector u = nodal(scene, mu, s, [](const Point &x) { return Point{0, 0.1 * x[1], 0}; });
   const CurveFields fields = nitsche_fields(scene, mu, s.cells, u);
   EXPECT_NEAR(fields.sigma_n[0], 1.7, 1e-13);

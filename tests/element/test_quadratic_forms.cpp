@@ -196,11 +196,11 @@ TEST(QuadraticElasticity, DoesNotDependOnTheScaleIn2DAndGrowsWithItIn3D) {
 
 TEST(Elasticity, MaterialMayDependOnTheCellAndTheParameters) {
   Random random(6);
-  const Mu mu{0.25};
+  const FullMu mu{0.25};
   for (int dim : {2, 3})
     for (int degree : {1, 2}) {
       const Form piecewise = elasticity(
-          "", [](const Mu &at, const Point &centre) { return centre[0] < at[0] ? steel : rubber; },
+          "", [](const FullMu &at, const Point &centre) { return centre[0] < at[0] ? steel : rubber; },
           degree);
       int rubbers = 0;
       for (int repeat = 0; repeat < 20; ++repeat) {
@@ -263,7 +263,7 @@ TEST(QuadraticH1Product, IntegratesProductsOfQuadraticFields) {
 }
 
 TEST(QuadraticForms, RefuseOtherDegrees) {
-  const auto material = [](const Mu &, const Point &) { return steel; };
+  const auto material = [](const FullMu &, const Point &) { return steel; };
   for (int degree : {0, 3}) {
     EXPECT_THROW(elasticity("", steel, degree), Error);
     EXPECT_THROW(elasticity("", material, degree), Error);

@@ -45,7 +45,7 @@ struct Dense {
 };
 
 /// By the middles of equal parts of each edge: the error is a multiple of 1 / parts^2.
-Dense midpoint_sum(const Scene &scene, const Mu &mu, const SupportCurve &curve, int parts) {
+Dense midpoint_sum(const Scene &scene, const FullMu &mu, const SupportCurve &curve, int parts) {
   const Index count = curve.vertices;
   Dense sum{Matrix::Zero(2 * count, 2 * size(curve.points)), Vector::Zero(2 * count),
             Vector::Zero(count)};
@@ -86,7 +86,7 @@ TEST(Support, AgreesWithAFineSumOnACurvedBoundary) {
   for (int degree : {1, 2}) {
     const SupportCurve curve = support_curve(random_curve(random, 20, -0.5, 0.8, -0.3), degree);
     const Scene scene = crooked(degree);
-    const Mu mu{0.8};
+    const FullMu mu{0.8};
     const SupportOperators got = couple_with_support(scene, mu, curve);
     const Dense coarse = midpoint_sum(scene, mu, curve, 100),
                 fine = midpoint_sum(scene, mu, curve, 200);
@@ -99,7 +99,7 @@ TEST(Support, AgreesWithAFineSumOnACurvedBoundary) {
 }
 
 TEST(Support, WeightsSumToTheMappedLengthAndRowsToTheForce) {
-  const Mu mu{1.7};
+  const FullMu mu{1.7};
   for (int degree : {1, 2}) {
     const Curve vertices = arc(9, 0.6);
     const SupportCurve curve = support_curve(vertices, degree);
@@ -153,7 +153,7 @@ TEST(Support, ATranslationIsSplitIntoItsNormalAndItsTangentialPart) {
 
 TEST(Support, MotionIsADisplacementOnTheOtherSide) {
   Random random(5);
-  const Mu mu{0.8};
+  const FullMu mu{0.8};
   for (int degree : {1, 2}) {
     const SupportCurve curve = support_curve(random_curve(random, 6, -0.5, 0.8, -0.3), degree);
     Scene scene = crooked(degree);
@@ -166,7 +166,7 @@ TEST(Support, MotionIsADisplacementOnTheOtherSide) {
                                 Field([](const Point &x) {
                                   return Point{x[1], 1 - x[0], 0};
                                 })}) {
-      scene.motion = [&motion](const Mu &, const Point &x) { return motion(x); };
+      scene.motion = [&motion](const FullMu &, const Point &x) { return motion(x); };
       const SupportOperators of = couple_with_support(scene, mu, curve);
       const Vector at_nodes = nodal(curve, motion);
       EXPECT_LT((of.g - (still.g - still.b * at_nodes)).norm(), 1e-14);
@@ -183,7 +183,7 @@ TEST(Support, MirrorImagesHaveEqualNormalAndOppositeTangentialRows) {
     for (Index edges : {1, 6, 7}) {
       const SupportCurve curve = support_curve(arc(edges, 0.7), degree);
       Scene scene = hertz(degree);
-      scene.motion = [](const Mu &, const Point &x) {
+      scene.motion = [](const FullMu &, const Point &x) {
         return Point{0.2 * x[0], -0.1 - x[0] * x[0], 0};
       };
       const SupportOperators of = couple_with_support(scene, {1.3}, curve);
@@ -203,7 +203,7 @@ TEST(Support, MirrorImagesHaveEqualNormalAndOppositeTangentialRows) {
 
 TEST(Support, NodalOperatorsAreThoseOfTheVertices) {
   Random random(6);
-  const Mu mu{0.8};
+  const FullMu mu{0.8};
   for (int degree : {1, 2}) {
     const SupportCurve curve = support_curve(random_curve(random, 6, -0.5, 0.8, -0.3), degree);
     const Scene scene = crooked(degree);
@@ -309,7 +309,7 @@ TEST(Support, NamesTheParameterWhoseMapLeavesNoEdge) {
                            Field([](const Point &) {
                              return Point{std::nan(""), 0, 0};
                            })}) {
-    scene.map = [&map](const Mu &, const Point &x) { return map(x); };
+    scene.map = [&map](const FullMu &, const Point &x) { return map(x); };
     const std::string text = message(Status::failed, scene, curve);
     EXPECT_NE(text.find("edge 0"), std::string::npos) << text;
     EXPECT_NE(text.find("size=0.8"), std::string::npos) << text;
@@ -321,7 +321,7 @@ TEST(Support, VertexQuadratureIsNodal) {
   for (int degree : {1, 2}) {
     const SupportCurve curve = support_curve(arc(9, 0.4), degree);
     Scene scene = crooked(degree);
-    const Mu mu{0.8};
+    const FullMu mu{0.8};
     const SupportOperators whole = couple_with_support(scene, mu, curve);
     scene.lumped = true;
     const SupportOperators of = couple_with_support(scene, mu, curve);

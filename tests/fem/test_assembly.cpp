@@ -81,7 +81,7 @@ TEST(Assembly, ASecondFillOverwritesTheFirst) {
   const Membrane m;
   MappedCells cells = reference_cells(m.mesh);
   const Handle<Mat> a = make_matrix(m.mesh, m.dofs, "");
-  const Mu one{0.2, 0, 0}, other{0.23, 0.03, -0.04};
+  const FullMu one{0.2, 0, 0}, other{0.23, 0.03, -0.04};
   map_cells(m.scene, one, m.mesh, cells);
   assemble_matrix(m.scene.a, one, m.mesh, m.dofs, cells, a.get());
   const double first = quadratic(m, a.get(), bubble, bubble);
@@ -96,7 +96,7 @@ TEST(Assembly, ASecondFillOverwritesTheFirst) {
 TEST(Assembly, TheMapKeepsEnergiesOfMappedFunctions) {
   // a(mu; u, u) of a field given on the mapped nodes does not depend on the map but for O(h^2).
   const Membrane m;
-  const Mu mu{0.24, 0.05, 0.05};
+  const FullMu mu{0.24, 0.05, 0.05};
   MappedCells cells = reference_cells(m.mesh);
   const Handle<Mat> a = make_matrix(m.mesh, m.dofs, "");
   map_cells(m.scene, mu, m.mesh, cells);
@@ -107,7 +107,7 @@ TEST(Assembly, TheMapKeepsEnergiesOfMappedFunctions) {
 
 TEST(Assembly, AnInvertedCellOnOneRankFailsOnAll) {
   Membrane m;
-  m.scene.map = [](const Mu &, const Point &x) {
+  m.scene.map = [](const FullMu &, const Point &x) {
     return x[0] > 0.48 ? Point{0.9 - x[0], x[1], 0} : x;
   };
   MappedCells cells = reference_cells(m.mesh);
@@ -121,7 +121,7 @@ TEST(ContactRegion, IsTheWholeDiscOnEveryRank) {
   EXPECT_EQ(region.trace.size, 631);
   for (const Point &x : region.points)
     EXPECT_LE(std::hypot(x[0], x[1]), 0.2 + 1e-12);
-  const Mu mu{0.16, 0.05, 0};
+  const FullMu mu{0.16, 0.05, 0};
   const auto cells = mapped_contact_cells(region, m.scene, mu);
   ContactMatrix b(region, ContactMatrix::Columns::contact_dofs);
   const double area = std::numbers::pi * mu[0] * mu[0];

@@ -47,12 +47,12 @@ struct Calls {
   std::shared_ptr<int> kernel = std::make_shared<int>(0), map = std::make_shared<int>(0);
 
   Scene counted(Scene scene) const {
-    scene.a.kernel = [count = kernel, inner = scene.a.kernel](const Mu &mu, const Cell &cell,
+    scene.a.kernel = [count = kernel, inner = scene.a.kernel](const FullMu &mu, const Cell &cell,
                                                               double *values) {
       ++*count;
       inner(mu, cell, values);
     };
-    scene.map = [count = map, inner = scene.map](const Mu &mu, const Point &x) {
+    scene.map = [count = map, inner = scene.map](const FullMu &mu, const Point &x) {
       ++*count;
       return inner(mu, x);
     };

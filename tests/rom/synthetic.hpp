@@ -139,9 +139,9 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed) {
 using Value = double (*)(int form, int i, const Mu &mu);
 template <Value value> Scene toy_scene() {
   Scene scene = make_scene("membrane_obstacle");
-  scene.map = [](const Mu &, const Point &x) { return x; };
+  scene.map = [](const FullMu &, const Point &x) { return x; };
   const auto filled = [](int form, int count) {
-    return [form, count](const Mu &mu, const Cell &, double *values) {
+    return [form, count](const FullMu &mu, const Cell &, double *values) {
       for (int i = 0; i < count; ++i)
         values[i] = value(form, i, mu);
     };

@@ -172,10 +172,10 @@ struct OneCell {
   OneCell(int dim, int degree) {
     scene.dim = scene.components = dim;
     scene.degree = degree;
-    scene.map = [](const Mu &mu, const Point &x) -> Point {
+    scene.map = [](const FullMu &mu, const Point &x) -> Point {
       return {mu[0] * x[0] + 0.3 * x[1], x[1] - 0.1 * x[2], 1.1 * x[2]};
     };
-    scene.material = [](const Mu &mu, const Point &centre) {
+    scene.material = [](const FullMu &mu, const Point &centre) {
       return centre[0] < 1 ? Lame{mu[0] * lambda, mu[0] * shear} : Lame{0, 0};
     };
     points = Matrix::Zero(dim + 1, dim);

@@ -106,7 +106,7 @@ TEST(Patch, UzawaFindsTheSame) {
 TEST(Patch, ContactBeginsWhenTheGapIsClosed) {
   Scene scene = make_scene("patch");
   constexpr double gap = 0.04;
-  scene.map = [blocks_touching = scene.map](const Mu &mu, const Point &x) {
+  scene.map = [blocks_touching = scene.map](const FullMu &mu, const Point &x) {
     Point image = blocks_touching(mu, x);
     if (x[1] > 0) image[1] += gap;
     return image;

@@ -57,7 +57,7 @@ TEST(ScaledPart, MayReachWhereContactIs) {
   Scene scene = disk("radius,core_stiffness");
   scene.a = elasticity(
       "",
-      [](const Mu &mu, const Point &centre) {
+      [](const FullMu &mu, const Point &centre) {
         return lame(centre[1] < -0.8 ? 15 * mu[3] : 15, mu[4]); // what lies below y = -0.8
       },
       2);

@@ -66,7 +66,7 @@ TEST(DisksFullyPressed, EveryMultiplierWithAPartnerIsActive) {
     for (const double radius : {0.7, 1.0, 1.3}) {
       SCOPED_TRACE(multiplier + " " + std::to_string(radius));
       Scene scene = make_scene("two_disks", {{"multiplier", multiplier}});
-      scene.motion = [](const Mu &, const Point &x) -> Point {
+      scene.motion = [](const FullMu &, const Point &x) -> Point {
         return {0, x[1] > 0 ? -1.0 : 1.0, 0};
       };
       Problem problem(PETSC_COMM_SELF, scene, {});

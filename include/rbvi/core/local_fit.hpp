@@ -7,7 +7,7 @@
 namespace rbvi {
 
 /// The free parameters among all, as parts of the width of their box: coordinates of like size.
-Vector parts_of_box(const ParameterSpace &space, const Mu &all_parameters);
+Vector parts_of_box(const ParameterSpace &space, const FullMu &all_parameters);
 /// The same of columns of free parameters, d x P.
 Matrix parts_of_box(const ParameterSpace &space, Matrix free);
 

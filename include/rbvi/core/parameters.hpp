@@ -6,12 +6,22 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rbvi {
 
-/// One value per parameter, in the order of the ParameterSpace it belongs to.
-using Mu = std::vector<double>;
+/// A point of the box: one value for each free parameter of a ParameterSpace. What users give, what
+/// training sets and files hold.
+struct Mu : std::vector<double> {
+  using std::vector<double>::vector;
+  explicit Mu(std::vector<double> values) : std::vector<double>(std::move(values)) {}
+};
+
+/// One value for each parameter, free or fixed: what the functions of a scene get (see expand).
+struct FullMu : std::vector<double> {
+  using std::vector<double>::vector;
+};
 
 /// A closed interval; by default all numbers.
 struct Range {
@@ -27,8 +37,7 @@ struct Parameter {
   Range valid{};    ///< where the scene makes sense: no box and no value may leave it
 };
 
-/// All parameters of a scene, and which of them are free. A `mu` given by a user, in a training
-/// set or in a file has one entry per free parameter; scene functions get one per parameter.
+/// All parameters of a scene, and which of them are free.
 struct ParameterSpace {
   std::vector<Parameter> all;
   std::vector<int> free; ///< indices into `all`, increasing
@@ -46,7 +55,7 @@ ParameterSpace all_free(std::vector<Parameter> parameters);
 ParameterSpace free_only(const ParameterSpace &space, const std::string &names);
 
 /// The values of all parameters: `mu` for the free ones, `value` for the others.
-Mu expand(const ParameterSpace &space, const Mu &mu);
+FullMu expand(const ParameterSpace &space, const Mu &mu);
 
 /// Whether each value lies in the box, to 1e-12 of its width.
 bool in_box(const ParameterSpace &space, const Mu &mu);
@@ -70,6 +79,7 @@ Error unknown_parameter(const ParameterSpace &space, const std::string &name);
 
 /// "radius=0.18 center_x=0.02": for messages.
 std::string describe(const ParameterSpace &space, const Mu &mu);
+std::string describe(const ParameterSpace &space, const FullMu &mu);
 
 /// A finite decimal number that fills the whole text. Throws bad_input, naming `what`.
 double parse_number(const std::string &text, const std::string &what);

@@ -34,7 +34,7 @@ struct Cell {
 /// the middles of its edges (0,1), (1,2), (2,0) and, of a tetrahedron, (0,3), (1,3), (2,3).
 struct Form {
   std::string region; ///< "" for the whole domain
-  std::function<void(const Mu &mu, const Cell &cell, double *values)> kernel;
+  std::function<void(const FullMu &mu, const Cell &cell, double *values)> kernel;
   explicit operator bool() const { return static_cast<bool>(kernel); }
 };
 
@@ -119,8 +119,8 @@ enum class FrictionLaw { none, tresca, coulomb };
 /// pressure.
 struct Friction {
   FrictionLaw law = FrictionLaw::none;
-  std::function<double(const Mu &)> value; ///< threshold or coefficient, >= 0
-  bool only_in_contact = false;            ///< Tresca: zero where a node carries no pressure
+  std::function<double(const FullMu &)> value; ///< threshold or coefficient, >= 0
+  bool only_in_contact = false;                ///< Tresca: zero where a node carries no pressure
 };
 
 /// Contact with a rigid support along a boundary. Multipliers are continuous and linear on its
@@ -128,9 +128,9 @@ struct Friction {
 struct SupportRecipe {
   std::string boundary;
   /// Unit normal at a point of the reference boundary, out of the mapped body.
-  std::function<Point(const Mu &, const Point &)> normal;
+  std::function<Point(const FullMu &, const Point &)> normal;
   /// Gap along it: u . n <= gap.
-  std::function<double(const Mu &, const Point &)> gap;
+  std::function<double(const FullMu &, const Point &)> gap;
   Friction friction;
 };
 
@@ -164,12 +164,12 @@ struct Scene {
   ParameterSpace parameters;
   /// Throws bad_input where values of all parameters that are valid one by one make no sense
   /// together; empty: they always do.
-  std::function<void(const Mu &)> check_parameters;
+  std::function<void(const FullMu &)> check_parameters;
   std::string training = "", validation = ""; ///< default sets, as parse_set reads them
   MeshRecipe mesh;
 
   /// h(mu), from the reference to the mapped domain.
-  std::function<Point(const Mu &, const Point &)> map;
+  std::function<Point(const FullMu &, const Point &)> map;
   /// Brings a refined vertex of the interface of the contact region, or of the curved boundary,
   /// back onto the exact curve.
   std::function<Point(const Point &)> snap;
@@ -178,7 +178,7 @@ struct Scene {
   /// Rigid motion of each body at a point of the reference domain, which the displacement is
   /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
   /// empty: zero.
-  std::function<Point(const Mu &, const Point &)> motion;
+  std::function<Point(const FullMu &, const Point &)> motion;
   /// The data are symmetric about x = 0, and so are the solutions on a mesh that is.
   bool symmetric = false;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
@@ -192,7 +192,7 @@ struct Scene {
 
   /// Of an elastic body at the centre of a reference cell, constant on the cell; in 2D plane
   /// strain. Empty: not elastic (a membrane), then there are no stresses.
-  std::function<Lame(const Mu &, const Point &centre)> material;
+  std::function<Lame(const FullMu &, const Point &centre)> material;
 
   Form a;
   /// Parameters (indices into parameters.all) that a depends on; unset: all.
@@ -208,7 +208,7 @@ struct Scene {
   bool lumped = false; ///< b, g by vertex quadrature: the constraint is a bound at each node
 
   /// psi(mu) at a point of the mapped domain: u >= psi in the contact region.
-  std::function<double(const Mu &, const Point &)> obstacle;
+  std::function<double(const FullMu &, const Point &)> obstacle;
 };
 
 struct SceneEntry {

@@ -13,7 +13,7 @@ void check_range(const Range &range, double value, const std::string &what);
 
 /// Throws bad_input where parameters that are valid one by one make no sense together.
 /// `all`: the values of all parameters.
-void check_together(const Scene &scene, const Mu &all);
+void check_together(const Scene &scene, const FullMu &all);
 
 /// Throws bad_input unless mu (the free parameters) is in the box, or with `allow_outside` in the
 /// range of validity.

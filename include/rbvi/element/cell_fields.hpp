@@ -16,7 +16,7 @@ std::vector<std::string> stress_components(int dim);
 /// nodes x dim, reference coordinates; `cells`: nodes_per_cell(dim, degree) node numbers each;
 /// `displacement`: three components per node. Needs scene.material. Throws failure for a cell that
 /// the map inverts.
-Matrix centre_stresses(const Scene &scene, const Mu &all_parameters, const Matrix &points,
+Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
                        const std::vector<int> &cells, const Vector &displacement);
 
 /// sqrt(3/2 s : s), s the deviator, of each row of centre_stresses().

@@ -48,7 +48,7 @@ PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &
 /// The same for a scene with a pair: its curves mapped by h(mu), its motion taken into both gaps.
 /// `points`: reference nodes of the slave curve, then of the master curve. Throws failure, naming
 /// mu, if the map leaves no curve.
-PairOperators couple_at(const Scene &scene, const Mu &all_parameters,
+PairOperators couple_at(const Scene &scene, const FullMu &all_parameters,
                         const std::vector<Point> &points, Index slave_nodes);
 
 /// Gram matrix of the multipliers in L2 of the slave polygon; an entry (possibly zero) for every

@@ -23,6 +23,7 @@ Form elasticity(const std::string &region, const Lame &material, int degree = 1)
 /// The same with a material that is constant on each cell: `material(mu, centre)`, the centre that
 /// of the reference cell.
 Form elasticity(const std::string &region,
-                const std::function<Lame(const Mu &mu, const Point &centre)> &material, int degree);
+                const std::function<Lame(const FullMu &mu, const Point &centre)> &material,
+                int degree);
 
 } // namespace rbvi

@@ -20,10 +20,10 @@ Point reference_centre(const Cell &cell);
 
 /// Throws failure, naming mu, if the mapped simplex is inverted or degenerate (volume <= 1e-12
 /// times its longest edge to the power dim).
-void check_orientation(const Scene &scene, const Mu &mu, const Cell &cell);
+void check_orientation(const Scene &scene, const FullMu &mu, const Cell &cell);
 
 /// Fills Cell::mapped by h(mu) and checks its orientation.
-void map_cell(const Scene &scene, const Mu &mu, Cell &cell);
+void map_cell(const Scene &scene, const FullMu &mu, Cell &cell);
 
 /// Longest edge over inradius, scaled to 1 for the regular simplex; dim = 2 or 3.
 double aspect_ratio(int dim, const std::array<Point, 4> &vertices);

@@ -47,12 +47,12 @@ struct NitschePoint {
 /// What point s of [0, 1] on edge `edge` (Lagrange order) of a triangle sees, of degree
 /// scene.degree; weight: the length of the mapped edge. Normal and gap are the scene's at the
 /// reference point, in u_n, sigma_n and the gap alike; edges are straight.
-NitschePoint nitsche_point(const Scene &scene, const Mu &all_parameters, const Cell &cell, int edge,
-                           const Lame &material, double s);
+NitschePoint nitsche_point(const Scene &scene, const FullMu &all_parameters, const Cell &cell,
+                           int edge, const Lame &material, double s);
 
 /// The Gauss points of the edge, with their weights. Throws failure, naming mu, for an inverted
 /// cell.
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Mu &all_parameters,
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const FullMu &all_parameters,
                                            const Cell &cell, int edge, const Lame &material);
 
 } // namespace rbvi

@@ -35,10 +35,11 @@ struct CurveCellAtMu {
   Lame material;
   double gamma;
 };
-CurveCellAtMu curve_cell_at(const Scene &scene, const Mu &all_parameters, const CurveCell &cell);
+CurveCellAtMu curve_cell_at(const Scene &scene, const FullMu &all_parameters,
+                            const CurveCell &cell);
 
 /// All faces at mu, in the order of the cells. Throws failure, naming mu, for an inverted cell.
-std::vector<NitscheFace> nitsche_faces(const Scene &scene, const Mu &all_parameters,
+std::vector<NitscheFace> nitsche_faces(const Scene &scene, const FullMu &all_parameters,
                                        const std::vector<CurveCell> &cells);
 
 /// Friction::law with its threshold or coefficient at one mu.
@@ -51,7 +52,7 @@ struct NitscheLaw {
 };
 
 /// Throws failure, naming the value, for a negative one.
-NitscheLaw nitsche_law(const Friction &friction, const Mu &all_parameters);
+NitscheLaw nitsche_law(const Friction &friction, const FullMu &all_parameters);
 
 /// P_n (4.19a) and P_tau (4.35) at every point, face by face: 4 * faces rows, 2 columns.
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u);
@@ -104,7 +105,7 @@ struct CurveFields {
   Vector sigma_n, sigma_tau, p_n, p_tau, excess;
   Vector arc_length; ///< from the middle, mapped
 };
-CurveFields nitsche_fields(const Scene &scene, const Mu &all_parameters,
+CurveFields nitsche_fields(const Scene &scene, const FullMu &all_parameters,
                            const std::vector<CurveCell> &cells, const Vector &u);
 
 /// -sigma_n, then with friction -sigma_tau at the vertices: what stands for the multipliers of the

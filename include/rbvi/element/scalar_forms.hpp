@@ -26,7 +26,7 @@ Form constant_load(const std::string &region, double value);
 /// factor * int psi v over the mapped cells (2.40b), psi(mu, x) at the quadrature points of degree
 /// 5; lumped: vertex quadrature.
 Form function_load(const std::string &region, double factor,
-                   const std::function<double(const Mu &, const Point &)> &psi,
+                   const std::function<double(const FullMu &, const Point &)> &psi,
                    bool lumped = false);
 
 } // namespace rbvi

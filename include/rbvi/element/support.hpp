@@ -5,8 +5,8 @@
 // Multipliers are continuous and linear on the edges, those of the normal constraint first, then
 // those of the slip. Displacements are those of the nodes of the curve, of degree 1 or 2; column =
 // node * 2 + component. Everything is integrated on the mapped straight edges with four Gauss
-// points, or (Scene::lumped) with their two vertices, which makes the constraint one at each vertex;
-// normal and gap are the scene's, at the points of the reference edges.
+// points, or (Scene::lumped) with their two vertices, which makes the constraint one at each
+// vertex; normal and gap are the scene's, at the points of the reference edges.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -36,7 +36,7 @@ Index multiplier_count(const SupportCurve &curve, const SupportRecipe &support);
 
 /// Throws bad_input where there is no edge, an edge does not go to larger abscissae, or the points
 /// do not fit the degree; throws failure, naming mu, if the mapped curve has an edge of no length.
-SupportOperators couple_with_support(const Scene &scene, const Mu &all_parameters,
+SupportOperators couple_with_support(const Scene &scene, const FullMu &all_parameters,
                                      const SupportCurve &curve);
 
 /// Gram matrix of the multipliers in L2 of the reference curve: block diagonal with friction, an

@@ -8,7 +8,7 @@
 namespace rbvi {
 
 /// The bound at one mu. Throws failure, naming the value, for a negative one.
-FrictionBound friction_bound(const Friction &friction, const Mu &all_parameters);
+FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters);
 
 /// Bound of the tangential multipliers at each node: c lambda_n + t.
 Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n);

@@ -26,7 +26,7 @@ std::vector<int> flat_cells(const ContactRegion &region);
 
 /// Not collective. The region's cells, `mapped` filled by h(mu).
 std::vector<Cell> mapped_contact_cells(const ContactRegion &region, const Scene &scene,
-                                       const Mu &mu);
+                                       const FullMu &mu);
 
 /// Assembles dual x contact-dof matrices (or dual x dual ones) with one pattern. Not collective.
 class ContactMatrix {
@@ -34,7 +34,7 @@ public:
   /// `columns`: contact dofs, or dual dofs (for products of W).
   enum class Columns { contact_dofs, dual_dofs };
   ContactMatrix(const ContactRegion &region, Columns columns);
-  const SparseMatrix &assemble(const Form &form, const Mu &mu, const std::vector<Cell> &cells);
+  const SparseMatrix &assemble(const Form &form, const FullMu &mu, const std::vector<Cell> &cells);
 
 private:
   SparseMatrix matrix_;
@@ -43,7 +43,7 @@ private:
 };
 
 /// Dual vector of a linear form. Not collective.
-Vector contact_vector(const ContactRegion &region, const Form &form, const Mu &mu,
+Vector contact_vector(const ContactRegion &region, const Form &form, const FullMu &mu,
                       const std::vector<Cell> &cells);
 
 } // namespace rbvi

@@ -23,7 +23,7 @@ namespace rbvi {
 
 /// Valid until the problem is assembled at another mu.
 struct Operators {
-  Mu mu; ///< all parameters
+  FullMu mu;
   Mat a = nullptr;
   Vec f = nullptr;  ///< zero where the scene has no load
   SparseMatrix b;   ///< dual x contact dofs
@@ -61,7 +61,7 @@ public:
   void assemble_contact(const Mu &mu, Operators &operators);
 
   /// Values of the parameters that a depends on.
-  Mu stiffness_values(const Mu &all_parameters) const;
+  std::vector<double> stiffness_values(const FullMu &all_parameters) const;
 
   Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
   const SparseMatrix &w_product() const { return w_product_; } ///< dual x dual
@@ -79,7 +79,7 @@ private:
   std::optional<ContactSupport> support_;
   MappedCells cells_;
   Handle<Mat> a_, v_product_;
-  std::optional<Mu> a_made_at_; ///< stiffness_values
+  std::optional<std::vector<double>> a_made_at_; ///< stiffness_values
   Handle<Vec> f_;
   std::optional<ContactMatrix> b_; ///< an obstacle
   SparseMatrix w_product_;

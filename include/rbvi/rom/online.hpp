@@ -22,7 +22,7 @@
 namespace rbvi {
 
 struct ReducedSolution {
-  Mu mu;                   ///< all parameters
+  FullMu mu;
   Vector u;                ///< n coefficients
   Vector x;                ///< R coefficients, >= 0 but for those of the free modes
   Vector theta_b;          ///< coefficients of b at this mu; two bodies: none
@@ -59,13 +59,13 @@ public:
   const Scene &scene() const { return scene_; }
 
 private:
-  ReducedSolution solve_at(const Mu &all_parameters);
-  void assemble_pair(const Mu &all_parameters, ReducedSolution &solution);
+  ReducedSolution solve_at(const FullMu &all_parameters);
+  void assemble_pair(const FullMu &all_parameters, ReducedSolution &solution);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
   void enrich();
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
-  void support_outputs_of(const Mu &all_parameters, const ReducedSolution &solution,
+  void support_outputs_of(const FullMu &all_parameters, const ReducedSolution &solution,
                           Outputs &outputs) const;
 
   const ReducedModel &model_;
@@ -91,7 +91,7 @@ std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene);
 
 /// Gap that is left to a rigid support along its normal, at points of the reference boundary;
 /// `displacement`: components at each, without the motion.
-Vector normal_gap(const Scene &scene, const Mu &all_parameters, const Matrix &contact_points,
+Vector normal_gap(const Scene &scene, const FullMu &all_parameters, const Matrix &contact_points,
                   const Vector &displacement);
 
 /// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of

@@ -17,7 +17,8 @@ std::filesystem::path contact_file(const std::filesystem::path &path);
 /// the edges beside them weighted by length. Field data: "mu_NAME" of every parameter. Returns the
 /// files written. Throws failure if the model was read without its fields.
 std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,
-                                             const Mu &all_parameters, const ReducedModel &model,
-                                             const Vector &u, const Vector &lambda);
+                                             const FullMu &all_parameters,
+                                             const ReducedModel &model, const Vector &u,
+                                             const Vector &lambda);
 
 } // namespace rbvi

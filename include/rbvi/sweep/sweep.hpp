@@ -24,6 +24,9 @@ struct Sample {
   Outputs outputs;
 };
 
+/// Their parameters.
+std::vector<Mu> parameters_of(const std::vector<Sample> &samples);
+
 /// Everything that a sample depends on beside mu: name -> value.
 using Settings = std::map<std::string, std::string>;
 

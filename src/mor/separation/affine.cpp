@@ -148,7 +148,7 @@ SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &en
 
 /// The first mu of the set with each value of the parameters that a depends on, by number.
 std::vector<int> different_stiffness(const Problem &problem, const std::vector<Mu> &set) {
-  std::set<Mu> seen;
+  std::set<std::vector<double>> seen;
   std::vector<int> result;
   for (std::size_t p = 0; p < set.size(); ++p)
     if (seen.insert(problem.stiffness_values(expand(problem.scene().parameters, set[p]))).second)

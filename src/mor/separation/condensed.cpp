@@ -109,9 +109,9 @@ void compress(const Matrix &values, Index square, double tolerance, CondensedOpe
 
 /// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
 std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
-                          const Mu &all_parameters) {
+                          const FullMu &all_parameters) {
   std::vector<Mu> result;
-  for (const Mu &point : grid_points(scene, axes, all_parameters)) {
+  for (const FullMu &point : grid_points(scene, axes, all_parameters)) {
     Mu mu;
     for (const int i : scene.parameters.free)
       mu.push_back(point[static_cast<std::size_t>(i)]);
@@ -146,7 +146,7 @@ Condensation condense(Problem &problem, const AffineOperators &affine,
                       const std::vector<Mu> &training, const Matrix &basis,
                       const CondensedOptions &options, LinearBasis *modes) {
   const Scene &scene = problem.scene();
-  const Mu all = expand(scene.parameters, training.front());
+  const FullMu all = expand(scene.parameters, training.front());
   const Matrix loads = loads_of(problem, affine, training, basis);
   const bool appends = modes != nullptr && affine.b_size() == 1 && options.responses > 0;
   const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all);

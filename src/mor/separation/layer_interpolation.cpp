@@ -168,9 +168,7 @@ void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
   const bool friction = problem.scene().support->friction.law != FrictionLaw::none;
   NitscheSolver solver(problem, {.full_steps = !friction});
   const LayerPattern pattern(solver.layer().cells);
-  std::vector<Mu> training;
-  for (const Sample &sample : samples)
-    training.push_back(sample.mu);
+  const std::vector<Mu> training = parameters_of(samples);
   const States states = states_at(problem, solver, pattern, training);
   const States others = states_at(problem, solver, pattern, options.eim_validation);
   report.states = static_cast<int>(states.values[0].size());

@@ -19,7 +19,7 @@ Cell sample_cell(const SampleMesh &sample, int dim, int number) {
 } // namespace
 
 Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
-                           const Mu &all_parameters) {
+                           const FullMu &all_parameters) {
   Vector theta = Vector::Zero(terms.size());
   if (terms.size() == 0) return theta;
   const int dim = static_cast<int>(terms.sample.vertices.cols());

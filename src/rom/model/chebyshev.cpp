@@ -60,12 +60,12 @@ Index grid_size(const std::vector<ChebyshevAxis> &axes) {
   return size;
 }
 
-std::vector<Mu> grid_points(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
-                            const Mu &all_parameters) {
-  std::vector<Mu> points{all_parameters};
+std::vector<FullMu> grid_points(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                                const FullMu &all_parameters) {
+  std::vector<FullMu> points{all_parameters};
   for (const ChebyshevAxis &axis : axes) {
-    std::vector<Mu> finer;
-    for (const Mu &mu : points)
+    std::vector<FullMu> finer;
+    for (const FullMu &mu : points)
       for (int k = 0; k < axis.points; ++k) {
         finer.push_back(mu);
         finer.back()[static_cast<std::size_t>(axis.parameter)] = value_at(scene, axis, k);
@@ -76,7 +76,7 @@ std::vector<Mu> grid_points(const Scene &scene, const std::vector<ChebyshevAxis>
 }
 
 Vector grid_weights(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
-                    const Mu &all_parameters) {
+                    const FullMu &all_parameters) {
   Vector weights = Vector::Ones(1);
   for (const ChebyshevAxis &axis : axes) {
     const Vector own =

@@ -203,10 +203,10 @@ SelfCheck read_self_check(const H5Reader &file) {
   if (counts.size() != 2) throw bad_input("self_check/counts has not 2 entries");
   check.queries = counts[0];
   check.unanswered = counts[1];
-  check.unanswered_at = file.doubles("self_check/unanswered_at");
+  check.unanswered_at = Mu(file.doubles("self_check/unanswered_at"));
   check.reason = file.string("self_check/reason");
   for (const auto &[name, worst] : worst_of_check)
-    check.*worst = {file.number(name), file.doubles(std::string(name) + "_at")};
+    check.*worst = {file.number(name), Mu(file.doubles(std::string(name) + "_at"))};
   return check;
 }
 

@@ -114,7 +114,7 @@ Matrix ReducedNitsche::Interpolated::times_trace(const std::vector<FaceBlock> &b
   return result;
 }
 
-int ReducedNitsche::Interpolated::solve(const Scene &scene, const Mu &all_parameters,
+int ReducedNitsche::Interpolated::solve(const Scene &scene, const FullMu &all_parameters,
                                         const Vector &near, System &system) {
   const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
   int steps = 0;

@@ -15,7 +15,7 @@ struct ReducedNitsche::Interpolated {
   /// From the coefficients `near`, by (4.79); where that does not converge (its matrix is not the
   /// derivative of its vectors), by the derivative, with halved steps. Into system.u. Returns the
   /// steps.
-  int solve(const Scene &scene, const Mu &all_parameters, const Vector &near, System &system);
+  int solve(const Scene &scene, const FullMu &all_parameters, const Vector &near, System &system);
 
 private:
   /// The interpolated terms at one iterate.

@@ -58,7 +58,7 @@ ReducedNitsche::ReducedNitsche(const ReducedModel &model, const Scene &scene)
 
 ReducedNitsche::~ReducedNitsche() = default;
 
-ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const Mu &all_parameters) const {
+ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_parameters) const {
   const Index n = model_.primal_size();
   Quadratic result;
   result.a = unpacked(
@@ -74,14 +74,14 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const Mu &all_parameters)
   return result;
 }
 
-Vector ReducedNitsche::predicted(const Mu &all_parameters) const {
+Vector ReducedNitsche::predicted(const FullMu &all_parameters) const {
   const NitscheModel &nitsche = *model_.nitsche;
   if (nitsche.starts.cols() == 0) return {};
   return local_fit(nitsche.starts, parts_of_box(scene_.parameters, nitsche.starts_mu),
                    parts_of_box(scene_.parameters, all_parameters));
 }
 
-NitscheAnswer ReducedNitsche::solve(const Mu &all_parameters) {
+NitscheAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
   system.law = nitsche_law(scene_.support->friction, all_parameters);
   system.quadratic = quadratic_at(all_parameters);
@@ -115,11 +115,11 @@ Matrix ReducedNitsche::tangent() const {
   return system_->tangent_at(system_->pressures);
 }
 
-CurveFields ReducedNitsche::fields(const Mu &all_parameters, const Vector &u) const {
+CurveFields ReducedNitsche::fields(const FullMu &all_parameters, const Vector &u) const {
   return nitsche_fields(scene_, all_parameters, cells_, model_.nitsche->trace * u);
 }
 
-Vector ReducedNitsche::over_whole_curve(const Mu &all_parameters, const Vector &u,
+Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vector &u,
                                         Outputs &outputs) const {
   if (model_.nitsche->rule == CurveRule::full) return u;
   if (!whole_)
@@ -135,7 +135,8 @@ Vector ReducedNitsche::over_whole_curve(const Mu &all_parameters, const Vector &
   return whole_->u;
 }
 
-void ReducedNitsche::outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const {
+void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
+                             Outputs &outputs) const {
   const Vector layer = model_.nitsche->trace * over_whole_curve(all_parameters, u, outputs);
   const std::vector<NitscheFace> faces = nitsche_faces(scene_, all_parameters, cells_);
   nitsche_outputs(faces, nitsche_pressures(faces, layer),

@@ -43,7 +43,7 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
   u = Vector::Zero(model.primal_size());
 }
 
-void ReducedNitsche::System::set_points(const Scene &scene, const Mu &all_parameters,
+void ReducedNitsche::System::set_points(const Scene &scene, const FullMu &all_parameters,
                                         const std::vector<CurveCell> &cells) {
   const bool friction = law.law != FrictionLaw::none;
   functionals.resize(u.size(), friction ? 2 * points : points);

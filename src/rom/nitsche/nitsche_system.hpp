@@ -39,7 +39,7 @@ struct ReducedNitsche::System {
   using ChosenPoints = std::vector<std::pair<int, double>>;
   System(const ReducedModel &model, const std::vector<CurveCell> &cells,
          const ChosenPoints &chosen);
-  void set_points(const Scene &scene, const Mu &all_parameters,
+  void set_points(const Scene &scene, const FullMu &all_parameters,
                   const std::vector<CurveCell> &cells);
   void set(const Vector &coefficients);
   /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.

@@ -14,7 +14,7 @@ namespace rbvi {
 
 namespace {
 
-Mu corner(const ParameterSpace &space, double Parameter::*bound) {
+FullMu corner(const ParameterSpace &space, double Parameter::*bound) {
   Mu mu;
   for (int i = 0; i < space.size(); ++i)
     mu.push_back(space.at(i).*bound);
@@ -47,7 +47,7 @@ ReducedStiffness::ReducedStiffness(const ReducedModel &model, const Scene &scene
 void ReducedStiffness::find_common_eigenvectors() {
   const AffineTerms &a = model_.a;
   const Index n = model_.primal_size();
-  const auto stiffness_at = [&](const Mu &mu) {
+  const auto stiffness_at = [&](const FullMu &mu) {
     return unpacked(a.reduced * affine_coefficients(a, scene_.a, scene_, mu), n);
   };
   const Matrix first = stiffness_at(corner(scene_.parameters, &Parameter::lower));
@@ -72,7 +72,7 @@ void ReducedStiffness::find_common_eigenvectors() {
         model_.b.reduced.col(p).reshaped(model_.generators, n) * eigenvectors_;
 }
 
-bool ReducedStiffness::depends_on_change(const Mu &all_parameters) const {
+bool ReducedStiffness::depends_on_change(const FullMu &all_parameters) const {
   if (at_.empty()) return true;
   if (!scene_.a_parameters) return at_ != all_parameters;
   return std::any_of(scene_.a_parameters->begin(), scene_.a_parameters->end(), [&](int i) {
@@ -80,7 +80,7 @@ bool ReducedStiffness::depends_on_change(const Mu &all_parameters) const {
   });
 }
 
-void ReducedStiffness::set(const Mu &all_parameters) {
+void ReducedStiffness::set(const FullMu &all_parameters) {
   if (!depends_on_change(all_parameters)) return;
   const Vector theta = affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
   if (eigenvectors_.size() > 0) {

@@ -28,7 +28,7 @@ SupportCurve sample_edge(const SampleMesh &sample, Index number, int degree) {
 } // namespace
 
 Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
-                            const Mu &all_parameters) {
+                            const FullMu &all_parameters) {
   Vector theta = Vector::Zero(terms.size());
   const Index edges = terms.sample.vertices.rows() / 2;
   std::vector<Vector> values;
@@ -43,7 +43,8 @@ Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &
   return theta;
 }
 
-MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene, const Mu &all_parameters) {
+MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene,
+                         const FullMu &all_parameters) {
   MappedCurve curve;
   const Index count = model.contact_points.rows();
   for (Index i = 0; i < count; ++i)
@@ -81,7 +82,7 @@ Vector SupportSolver::start_at(const Vector &here) const {
   return local_fit(model_.support->starts, samples_, here);
 }
 
-Vector SupportSolver::term_coefficients(const Mu &all_parameters, const Vector &theta_b) const {
+Vector SupportSolver::term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const {
   const CondensedOperator &condensed = model_.support->condensed;
   const Vector shape = condensed.shape * grid_weights(scene_, condensed.axes, all_parameters);
   Vector result(condensed.terms.cols());
@@ -92,7 +93,7 @@ Vector SupportSolver::term_coefficients(const Mu &all_parameters, const Vector &
   return result;
 }
 
-BodyAtMu SupportSolver::body_at(const Mu &all_parameters, const Vector &theta_b) {
+BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, const Vector &theta_b) {
   const SupportModel &support = *model_.support;
   BodyAtMu body;
   if (support.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
@@ -121,7 +122,7 @@ SupportSolver::AtAllNodes SupportSolver::at_all_nodes(const BodyAtMu &body, cons
   return result;
 }
 
-Vector SupportSolver::start_of(const Mu &all_parameters, const Vector &x) {
+Vector SupportSolver::start_of(const FullMu &all_parameters, const Vector &x) {
   const BodyAtMu body =
       body_at(all_parameters, support_coefficients(model_.b, true, scene_, all_parameters));
   return at_all_nodes(body, x).start;
@@ -148,7 +149,7 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
   return !mends || answer.residual <= mended_above;
 }
 
-void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,
+void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters,
                               SupportAnswer &answer) {
   if (law_ && solve_reduced_law(body, answer)) return;
   const Index m = model_.generators;
@@ -174,7 +175,7 @@ void SupportSolver::solve_law(const BodyAtMu &body, const Mu &all_parameters,
   answer.start = std::move(found.start);
 }
 
-SupportAnswer SupportSolver::solve(const Mu &all_parameters) {
+SupportAnswer SupportSolver::solve(const FullMu &all_parameters) {
   SupportAnswer answer;
   answer.theta_b = support_coefficients(model_.b, true, scene_, all_parameters);
   const BodyAtMu body = body_at(all_parameters, answer.theta_b);

@@ -7,6 +7,6 @@ namespace rbvi {
 
 /// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
 Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
-                           const Mu &all_parameters);
+                           const FullMu &all_parameters);
 
 } // namespace rbvi

@@ -21,12 +21,12 @@ Index grid_size(const std::vector<ChebyshevAxis> &axes);
 
 /// All parameters at each point of the grid, the last axis fastest; those without an axis as in
 /// `all_parameters`.
-std::vector<Mu> grid_points(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
-                            const Mu &all_parameters);
+std::vector<FullMu> grid_points(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                                const FullMu &all_parameters);
 
 /// Weights of the values at the grid points, by the barycentric formula; they sum to 1.
 Vector grid_weights(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
-                    const Mu &all_parameters);
+                    const FullMu &all_parameters);
 
 /// Size of the last two Chebyshev coefficients along the axes relative to the largest: what the
 /// interpolant still misses. `values`: entries x grid points.

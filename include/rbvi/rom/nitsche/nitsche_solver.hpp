@@ -32,7 +32,7 @@ public:
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
   /// positive definite.
-  NitscheAnswer solve(const Mu &all_parameters);
+  NitscheAnswer solve(const FullMu &all_parameters);
 
   /// Of the last answer: what each point adds to the residual, n x points, ...
   Matrix point_residuals() const;
@@ -40,12 +40,12 @@ public:
   Matrix tangent() const;
 
   /// Stress and pressures along the whole curve.
-  CurveFields fields(const Mu &all_parameters, const Vector &u) const;
+  CurveFields fields(const FullMu &all_parameters, const Vector &u) const;
   /// All that is measured but the energy. Pressures need u to a part in gamma, which few points do
   /// not give between them: from u, Newton's method goes on over the whole curve, one or two steps,
   /// and forces, widths and pressures are those of its answer. Throws failure where it does not
   /// converge.
-  void outputs(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
+  void outputs(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
 
 private:
   struct System;
@@ -56,10 +56,10 @@ private:
     Matrix a, a_gamma; ///< n x n
     Vector f;
   };
-  Quadratic quadratic_at(const Mu &all_parameters) const;
-  Vector predicted(const Mu &all_parameters) const;
+  Quadratic quadratic_at(const FullMu &all_parameters) const;
+  Vector predicted(const FullMu &all_parameters) const;
   /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
-  Vector over_whole_curve(const Mu &all_parameters, const Vector &u, Outputs &outputs) const;
+  Vector over_whole_curve(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
 
   const ReducedModel &model_;
   const Scene &scene_;

@@ -19,7 +19,7 @@ public:
   /// `model` and `scene` must outlive it.
   ReducedStiffness(const ReducedModel &model, const Scene &scene);
   /// The mu of the next calls. Throws failure where A_N is not positive definite.
-  void set(const Mu &all_parameters);
+  void set(const FullMu &all_parameters);
   /// Restricts A_N to the columns of `subspace` (n x any number) until the next call; a model that
   /// is enriched online needs that after every set(). Throws likewise.
   void restrict_to(Matrix subspace);
@@ -32,13 +32,13 @@ public:
   Vector transposed_half_response(const Vector &half) const;
 
 private:
-  bool depends_on_change(const Mu &all_parameters) const;
+  bool depends_on_change(const FullMu &all_parameters) const;
   void factorise(const Matrix &stiffness);
   void find_common_eigenvectors();
 
   const ReducedModel &model_;
   const Scene &scene_;
-  Mu at_; ///< all parameters
+  FullMu at_; ///< all parameters
 
   Matrix eigenvectors_; ///< n x n; empty: A_N is factorised
   Matrix eigenvalues_;  ///< n x J: the diagonal of each term

@@ -28,12 +28,12 @@ public:
   /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
   SupportSolver(const ReducedModel &model, const Scene &scene);
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
-  SupportAnswer solve(const Mu &all_parameters);
+  SupportAnswer solve(const FullMu &all_parameters);
   /// What the elastic body says at mu; valid until the next call of either.
-  BodyAtMu body_at(const Mu &all_parameters, const Vector &theta_b);
+  BodyAtMu body_at(const FullMu &all_parameters, const Vector &theta_b);
   /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
   /// operator.
-  Vector start_of(const Mu &all_parameters, const Vector &x);
+  Vector start_of(const FullMu &all_parameters, const Vector &x);
 
 private:
   /// What the condensed operator says of multipliers x.
@@ -44,9 +44,9 @@ private:
   AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x) const;
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
-  void solve_law(const BodyAtMu &body, const Mu &all_parameters, SupportAnswer &answer);
+  void solve_law(const BodyAtMu &body, const FullMu &all_parameters, SupportAnswer &answer);
   Vector start_at(const Vector &here) const;
-  Vector term_coefficients(const Mu &all_parameters, const Vector &theta_b) const;
+  Vector term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const;
 
   const ReducedModel &model_;
   const Scene &scene_;
@@ -59,13 +59,14 @@ private:
 /// theta_q(mu) of b (`matrix`) or g: the sampled entries integrated again on their one or two
 /// edges, then the triangular solve (B.36).
 Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
-                            const Mu &all_parameters);
+                            const FullMu &all_parameters);
 
 /// Vertices and weights (integrals of the hat functions) of the mapped curve of a support.
 struct MappedCurve {
   std::vector<Point> points;
   Vector weights;
 };
-MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene, const Mu &all_parameters);
+MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene,
+                         const FullMu &all_parameters);
 
 } // namespace rbvi
