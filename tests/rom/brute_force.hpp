@@ -8,11 +8,11 @@
 namespace rbvi::brute {
 
 /// Positive for every form but, on the left half of the box, b: signs change with mu.
-inline double smooth(int form, int i, const Mu &mu) {
+inline double smooth(int form, int i, const FullMu &mu) {
   return 1 + 0.3 * form + 0.5 * i * (mu[0] - 0.16) / 0.08 + 0.2 * mu[1] / 0.05;
 }
 
-inline double flipping(int form, int i, const Mu &mu) {
+inline double flipping(int form, int i, const FullMu &mu) {
   const double value = smooth(form, i, mu);
   return form == 1 && mu[1] < 0 ? -value : value;
 }
@@ -22,16 +22,17 @@ struct Operators {
   Vector f, g;
 };
 
-inline Vector combine(const AffineTerms &terms, int form, double (*value)(int, int, const Mu &),
-                      const Mu &mu) {
+inline Vector combine(const AffineTerms &terms, int form, double (*value)(int, int, const FullMu &),
+                      const FullMu &mu) {
   Vector sum = Vector::Zero(terms.reduced.rows());
   for (int q = 0; q < terms.size(); ++q)
     sum += value(form, q, mu) * terms.reduced.col(q);
   return sum;
 }
 
-inline Operators assemble(const ReducedModel &model, double (*value)(int, int, const Mu &),
-                          const Mu &mu) {
+inline Operators assemble(const ReducedModel &model, double (*value)(int, int, const FullMu &),
+                          const Mu &free) {
+  const FullMu mu = expand(model.parameters, free);
   const Index n = model.primal_size(), r = model.generators;
   Operators result;
   const Vector a = combine(model.a, 0, value, mu), b = combine(model.b, 1, value, mu);

@@ -77,7 +77,7 @@ inline void sample_one_cell(AffineTerms &terms) {
 
 /// Divides each term by its theta in the middle of the box, so that all weigh alike there.
 inline void scale_terms(AffineTerms &terms, const Form &form, const Scene &scene) {
-  Mu middle;
+  FullMu middle;
   for (const Parameter &p : scene.parameters.all)
     middle.push_back(0.5 * (p.lower + p.upper));
   const Vector theta = affine_coefficients(terms, form, scene, middle);
@@ -136,7 +136,7 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed) {
 
 /// A scene on the identity map whose forms fill their values from mu alone: value i of form k is
 /// value(k, i, mu).
-using Value = double (*)(int form, int i, const Mu &mu);
+using Value = double (*)(int form, int i, const FullMu &mu);
 template <Value value> Scene toy_scene() {
   Scene scene = make_scene("membrane_obstacle");
   scene.map = [](const FullMu &, const Point &x) { return x; };

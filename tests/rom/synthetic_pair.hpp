@@ -77,7 +77,8 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
 /// The reduced operators computed another way: the curves mapped here, coupled, the motion taken
 /// into the gap by hand, projected densely.
 inline brute::Operators pair_operators(const ReducedModel &model, const Scene &scene,
-                                       const Mu &mu) {
+                                       const Mu &free) {
+  const FullMu mu = expand(scene.parameters, free);
   std::vector<Point> slave, master;
   Vector motion(model.contact_points.rows());
   for (Index i = 0; i < motion.size(); ++i) {

@@ -24,7 +24,7 @@ std::vector<ChebyshevAxis> axes(int x_points, int y_points) {
 /// One row: the function at the grid points.
 Matrix values_of(const Scene &scene, const std::vector<ChebyshevAxis> &grid,
                  double (*f)(double, double)) {
-  const std::vector<Mu> points = grid_points(scene, grid, {0, 1});
+  const std::vector<FullMu> points = grid_points(scene, grid, {0, 1});
   Matrix values(1, static_cast<Index>(points.size()));
   for (std::size_t k = 0; k < points.size(); ++k)
     values(0, static_cast<Index>(k)) = f(points[k][0], points[k][1]);
@@ -53,7 +53,7 @@ TEST(Chebyshev, PolynomialsInTheCoordinatesAreExact) {
 TEST(Chebyshev, WeightsSumToOneAndAreThoseOfAPointAtThePoint) {
   const Scene scene = two_parameters();
   const auto grid = axes(5, 4);
-  const std::vector<Mu> points = grid_points(scene, grid, {0, 1});
+  const std::vector<FullMu> points = grid_points(scene, grid, {0, 1});
   ASSERT_EQ(static_cast<Index>(points.size()), grid_size(grid));
   EXPECT_NEAR(grid_weights(scene, grid, {0.3, 1.7}).sum(), 1, 1e-14);
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -79,7 +79,7 @@ TEST(Chebyshev, SmoothFunctionsConvergeExponentiallyAndTheTailSaysHowFar) {
 TEST(Chebyshev, NoAxisIsOnePointOfWeightOne) {
   const Scene scene = two_parameters();
   EXPECT_EQ(grid_size({}), 1);
-  EXPECT_EQ(grid_points(scene, {}, {0.5, 2}), std::vector<Mu>({{0.5, 2}}));
+  EXPECT_EQ(grid_points(scene, {}, {0.5, 2}), std::vector<FullMu>({{0.5, 2}}));
   EXPECT_EQ(grid_weights(scene, {}, {0.5, 2}), Vector::Ones(1));
   EXPECT_EQ(chebyshev_tail({}, Matrix::Ones(3, 1)), 0);
 }

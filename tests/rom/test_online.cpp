@@ -119,7 +119,7 @@ TEST(AffineCoefficients, ReassembleTheSampledEntries) {
   AffineTerms terms = synthetic::random_terms(random, 1, 4, 3);
   terms.interpolation = synthetic::random_matrix(random, 4, 4).triangularView<Eigen::UnitLower>();
   terms.interpolation.triangularView<Eigen::StrictlyUpper>().setZero();
-  const Mu mu{0.23, 0.04, -0.03};
+  const FullMu mu{0.23, 0.04, -0.03};
   const Vector theta = affine_coefficients(terms, scene.a, scene, mu);
   for (int entry = 0; entry < 4; ++entry) {
     double expected = 0;

@@ -14,7 +14,7 @@ namespace {
 using namespace synthetic;
 
 /// Positive, and of different shapes in mu for different i.
-double value(int, int i, const Mu &mu) {
+double value(int, int i, const FullMu &mu) {
   return i == 0 ? 1 : std::exp(i * mu[0]) + i * mu[1] * mu[1];
 }
 
@@ -27,7 +27,7 @@ Matrix full(const Vector &packed, Index n) {
   return a;
 }
 
-Vector theta(const Mu &mu, int terms) {
+Vector theta(const FullMu &mu, int terms) {
   return Vector::NullaryExpr(terms, [&](Index q) { return value(0, static_cast<int>(q), mu); });
 }
 
@@ -42,7 +42,7 @@ TEST_P(PerTerms, IsThatOfTheSumOfItsTerms) {
   std::mt19937 random(3);
   const Index n = model.primal_size();
   for (const double t : {0.1, 0.9, 0.5}) {
-    Mu mu;
+    FullMu mu;
     for (const Parameter &p : scene.parameters.all)
       mu.push_back(p.lower + t * (p.upper - p.lower));
     stiffness.set(mu);
@@ -62,7 +62,7 @@ TEST_P(PerTerms, AnIndefiniteOneIsSaid) {
   ReducedModel model = random_model({.a = GetParam()}, 5, scene, true);
   model.a.reduced *= -1;
   ReducedStiffness stiffness(model, scene);
-  Mu mu;
+  FullMu mu;
   for (const Parameter &p : scene.parameters.all)
     mu.push_back(p.upper);
   EXPECT_THROW(stiffness.set(mu), Error);
@@ -70,7 +70,7 @@ TEST_P(PerTerms, AnIndefiniteOneIsSaid) {
 
 /// Two terms whose coefficients keep their ratio at both corners of the box have no common
 /// eigenvectors that the corners show: A_N is factorised then.
-double same_at_corners(int, int i, const Mu &mu) {
+double same_at_corners(int, int i, const FullMu &mu) {
   const double middle = (mu[0] - 0.5) * (mu[0] - 0.5);
   return i == 0 ? 1 : 1 + middle;
 }

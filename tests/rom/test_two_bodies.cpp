@@ -120,11 +120,12 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
   for (const Mu &mu : radii) {
     const ReducedSolution solution = solver.solve(mu);
     const Vector w = solver.field(solution), gap = solver.contact_gap(mu, solution);
+    const FullMu all = expand(p0.parameters, mu);
     std::vector<Point> slave, master;
     for (Index i = 0; i < model.contact_points.rows(); ++i) {
       const Point x = point_of(model.contact_points, i);
-      Point moved = p0.map(mu, x);
-      moved[1] += p0.motion(mu, x)[1] + w[2 * model.contact_nodes[std::size_t(i)] + 1];
+      Point moved = p0.map(all, x);
+      moved[1] += p0.motion(all, x)[1] + w[2 * model.contact_nodes[std::size_t(i)] + 1];
       (i < model.slave_nodes ? slave : master).push_back(moved);
     }
     ASSERT_EQ(gap.size(), static_cast<Index>(solution.pair.paired.size()));
@@ -293,7 +294,7 @@ struct PairVtu : PairFile {
                    solver.multiplier(solution),
                    solver.contact_gap(mu, solution),
                    solution.pair.paired};
-    write_vtu(directory / "u.vtu", scene, mu, model, result.w, result.lambda);
+    write_vtu(directory / "u.vtu", scene, solution.mu, model, result.w, result.lambda);
     result.bodies = slurp(directory / "u.vtu");
     result.contact = slurp(directory / "u_contact.vtu");
     return result;
@@ -310,7 +311,7 @@ TEST_F(PairVtu, ShowsBothBodiesWithTheirMotion) {
   ASSERT_EQ(points.size(), static_cast<std::size_t>(3 * nodes));
   ASSERT_EQ(u.size(), points.size());
   for (Index i = 0; i < nodes; ++i) {
-    const Point x = point_of(model.mesh_points, i), image = p0.map(mu, x);
+    const Point x = point_of(model.mesh_points, i), image = p0.map(expand(p0.parameters, mu), x);
     const auto k = static_cast<std::size_t>(3 * i);
     EXPECT_EQ(points[k], image[0]);
     EXPECT_EQ(points[k + 1], image[1]);

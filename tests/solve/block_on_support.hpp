@@ -39,9 +39,10 @@ struct Exact {
 inline double displacement_error(const Problem &problem, const Mu &mu, const Exact &exact,
                                  const HfSolution &s) {
   const Mesh &mesh = problem.mesh();
+  const FullMu all = expand(problem.scene().parameters, mu);
   double worst = 0;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    const Point &x = mesh.points[v], motion = problem.scene().motion(mu, x);
+    const Point &x = mesh.points[v], motion = problem.scene().motion(all, x);
     const Index dof = 2 * mesh.natural_node[v];
     const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
     worst = std::max({worst, std::abs(across - exact.slip - (mu[1] - exact.slip) * x[1] / height),

@@ -133,7 +133,7 @@ TEST(TwoDisks, PressureScalesWithYoungsModulus) {
 }
 
 /// Vertical force that the elements exert on the nodes of a flat side.
-double reaction(const Problem &problem, const Mu &mu, const HfSolution &s, double side) {
+double reaction(const Problem &problem, const FullMu &mu, const HfSolution &s, double side) {
   const Mesh &mesh = problem.mesh();
   MappedCells cells = reference_cells(mesh);
   map_cells(problem.scene(), mu, mesh, cells);
