@@ -80,12 +80,15 @@ TEST(SmallEigen, follows_its_options) {
             std::string::npos);
 }
 
+/// Lanczos without reorthogonalisation meets the same eigenvalue again and again.
 TEST(SmallEigen, fewer_pairs_than_asked_for_is_a_failure_that_says_what_to_do) {
   const Matrix matrix = with_eigenvalues(Vector::LinSpaced(30, 2, 1.9), 3);
-  RBVI_CALL(PetscOptionsSetValue(nullptr, "-few_eps_type", "gd"));
-  const std::string message =
-      failure_with("-few_eps_max_it", "1", [&] { SmallEigen("few_").values(matrix); });
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-few_eps_type", "lanczos"));
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-few_eps_max_it", "1"));
+  const std::string message = failure_with("-few_eps_lanczos_reorthog", "local",
+                                           [&] { SmallEigen("few_").values(matrix); });
   RBVI_CALL(PetscOptionsClearValue(nullptr, "-few_eps_type"));
+  RBVI_CALL(PetscOptionsClearValue(nullptr, "-few_eps_max_it"));
   EXPECT_NE(message.find("of 30 eigenvalues"), std::string::npos) << message;
   EXPECT_NE(message.find("leave out -few_eps_type"), std::string::npos) << message;
 }
