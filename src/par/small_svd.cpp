@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace rbvi {
 
@@ -39,17 +41,29 @@ void solve(SVD svd, const Matrix &matrix, const std::string &prefix) {
                   (prefix.empty() ? "" : ", and leave out -" + prefix + "svd_type"));
 }
 
-/// The object of the prefix with all triplets of `matrix`.
-SVD solved(const Matrix &matrix, const char *prefix) {
+/// LAPACK's divide and conquer gives up on some matrices, on others with another BLAS.
+bool lapack_gave_up(const Error &error) {
+  return std::string_view(error.what()).find("LAPACK subroutine gesdd") != std::string_view::npos;
+}
+
+/// The object of the prefix with all triplets of `matrix`; nothing where LAPACK gives up.
+std::optional<SVD> solved(const Matrix &matrix, const char *prefix) {
   if (!matrix.allFinite()) throw failure("singular values of a matrix with entries not finite");
   SVD svd = object_of(prefix);
   try {
     solve(svd, matrix, prefix);
-  } catch (const Error &) {
+  } catch (const Error &error) {
     objects.erase(prefix); // what it was in the middle of
+    if (lapack_gave_up(error)) return std::nullopt;
     throw;
   }
   return svd;
+}
+
+/// By Jacobi's rotations: slower, and they always converge.
+SmallSvd by_rotations(const Matrix &matrix) {
+  const Eigen::JacobiSVD<Matrix> svd(matrix, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  return {svd.singularValues(), svd.matrixU(), svd.matrixV()};
 }
 
 Handle<Vec> wrapped_column(Matrix &matrix, Index column) {
@@ -95,11 +109,12 @@ SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
   const Index count = std::min(matrix.rows(), matrix.cols());
   SmallSvd result{Vector(count), Matrix(matrix.rows(), count), Matrix(matrix.cols(), count)};
   if (count == 0) return result;
-  SVD svd = solved(matrix, prefix);
+  const std::optional<SVD> svd = solved(matrix, prefix);
+  if (!svd) return by_rotations(matrix);
   for (Index k = 0; k < count; ++k) {
     const Handle<Vec> left = wrapped_column(result.left, k);
     const Handle<Vec> right = wrapped_column(result.right, k);
-    RBVI_CALL(SVDGetSingularTriplet(svd, static_cast<PetscInt>(k), &result.values(k), left.get(),
+    RBVI_CALL(SVDGetSingularTriplet(*svd, static_cast<PetscInt>(k), &result.values(k), left.get(),
                                     right.get()));
   }
   return result;
@@ -108,9 +123,11 @@ SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
 Vector singular_values(const Matrix &matrix, const char *prefix) {
   Vector values(std::min(matrix.rows(), matrix.cols()));
   if (values.size() == 0) return values;
-  SVD svd = solved(triangular_factor(matrix), prefix);
+  const Matrix factor = triangular_factor(matrix);
+  const std::optional<SVD> svd = solved(factor, prefix);
+  if (!svd) return by_rotations(factor).values;
   for (Index k = 0; k < values.size(); ++k)
-    RBVI_CALL(SVDGetSingularTriplet(svd, static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
+    RBVI_CALL(SVDGetSingularTriplet(*svd, static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
   return values;
 }
 

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <slepc/private/svdimpl.h>
+
 #include <limits>
 
 namespace rbvi {
@@ -91,6 +93,34 @@ TEST(SmallEigen, fewer_pairs_than_asked_for_is_a_failure_that_says_what_to_do) {
   RBVI_CALL(PetscOptionsClearValue(nullptr, "-few_eps_max_it"));
   EXPECT_NE(message.find("of 30 eigenvalues"), std::string::npos) << message;
   EXPECT_NE(message.find("leave out -few_eps_type"), std::string::npos) << message;
+}
+
+PetscErrorCode give_up(SVD) {
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "Error in LAPACK subroutine gesdd: info=1");
+}
+
+PetscErrorCode create_unlucky(SVD svd) {
+  svd->ops->solve = give_up;
+  return 0;
+}
+
+/// LAPACK's divide and conquer does not converge for some matrices, which depend on the BLAS.
+TEST(SmallSvdObject, answers_where_lapack_gives_up) {
+  const Matrix matrix = with_eigenvalues(Vector::LinSpaced(30, 2, 1.9), 3).leftCols(7);
+  const SmallSvd expected = small_svd(matrix);
+  const ErrorRecorder quiet;
+  RBVI_CALL(SVDRegister("unlucky", create_unlucky));
+  SmallSvd found;
+  EXPECT_EQ(failure_with("-few_svd_type", "unlucky",
+                         [&] {
+                           found = small_svd(matrix, "few_");
+                           EXPECT_LE((singular_values(matrix, "few_") - expected.values).norm(),
+                                     1e-13);
+                         }),
+            "");
+  EXPECT_LE((found.values - expected.values).norm(), 1e-13);
+  EXPECT_LE((found.left * found.values.asDiagonal() * found.right.transpose() - matrix).norm(),
+            1e-13);
 }
 
 TEST(SmallSvdObject, reads_its_options_and_is_made_anew_after_a_failure) {
