@@ -5,6 +5,7 @@
 #include "rbvi/solve/whole.hpp"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -42,7 +43,7 @@ double largest_eigenvalue(Index rows, Operator a, const std::string &of) {
   Handle<Mat> shell;
   RBVI_CALL(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &a, shell.put()));
   RBVI_CALL(MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply)));
-  const Handle<EPS> eps = make_infsup_eps();
+  const Handle<EPS> eps = make_infsup_eps(size);
   RBVI_CALL(EPSSetOperators(eps.get(), shell.get(), nullptr));
   RBVI_CALL(EPSSolve(eps.get()));
   PetscInt converged = 0;
@@ -130,7 +131,7 @@ Handle<KSP> factorised(Mat matrix) {
 
 } // namespace
 
-Handle<EPS> make_infsup_eps() {
+Handle<EPS> make_infsup_eps(PetscInt size) {
   constexpr double tolerance = 1e-12; // relative, of 1 / beta^2 and c^2
   constexpr PetscInt most_restarts = 200;
   Handle<EPS> eps;
@@ -139,7 +140,8 @@ Handle<EPS> make_infsup_eps() {
   RBVI_CALL(EPSSetProblemType(eps.get(), EPS_HEP));
   RBVI_CALL(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
   RBVI_CALL(EPSSetTolerances(eps.get(), tolerance, most_restarts));
-  RBVI_CALL(EPSSetDimensions(eps.get(), 1, PETSC_DEFAULT, PETSC_DEFAULT));
+  // Of two bodies the values cluster: 16 vectors, the default, do not suffice.
+  RBVI_CALL(EPSSetDimensions(eps.get(), 1, std::min<PetscInt>(size, 64), PETSC_DEFAULT));
   RBVI_CALL(EPSSetFromOptions(eps.get()));
   RBVI_CALL(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_REAL));
   return eps;

@@ -11,8 +11,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr double round_off = 1e-10; ///< of a singular value, relative to the largest
-constexpr Index dense_multipliers = 1000;
+constexpr double round_off = 1e-10;         ///< of a singular value, relative to the largest
 constexpr double largest_tolerance = 0.999; ///< sigma never exceeds 1
 
 /// Multipliers whose support has a partner everywhere; of one body all.
@@ -36,7 +35,10 @@ SparseMatrix rows_of_identity(const std::vector<Index> &rows, Index size) {
 } // namespace
 
 std::optional<SparseInfSup> sparse_infsup(Problem &problem) {
-  if (problem.dual_size() <= dense_multipliers) return std::nullopt;
+  // Measured, in seconds on one core: dense 4e-10 m^3, iterated 4e-5 n (membrane, two_disks).
+  constexpr double break_even = 1e5;
+  const auto m = static_cast<double>(problem.dual_size());
+  if (m * m * m <= break_even * static_cast<double>(problem.dofs().total)) return std::nullopt;
   return SparseInfSup(problem.v_product(), problem.trace());
 }
 

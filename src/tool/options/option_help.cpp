@@ -135,7 +135,7 @@ void print_help(const std::string &scene) {
       "\nPETSc options: -hf_ksp_*, -hf_pc_* (stiffness), -vi_snes_* (vi), -v_ksp_*, -v_pc_*\n"
       "(Riesz representers), -nitsche_snes_*, -nitsche_ksp_*, -nitsche_pc_*, -log_view, ...\n"
       "SLEPc options: -pga_eps_*, -pga_svd_* (offline: the projected greedy), -infsup_svd_*,\n"
-      "-infsup_eps_* (verify: inf-sup constants; eps: beta_HF of more than 1000 multipliers)\n"
+      "-infsup_eps_* (verify: inf-sup constants; eps: beta_HF of many multipliers)\n"
       "Exit status: 0 done, 1 it failed or some samples did, 2 the input is wrong (nothing is\n"
       "written), 128 + signal it was stopped: the same command goes on.\n");
 }

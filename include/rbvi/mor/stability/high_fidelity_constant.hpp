@@ -35,7 +35,8 @@ private:
 double largest_stretch(const Matrix &riesz_factor, const SparseMatrix &b_contact,
                        const SparseMatrix &w_product);
 
-/// The EPS of both, its options read. Throws failure for a value that SLEPc refuses.
-Handle<EPS> make_infsup_eps();
+/// The EPS of both for an operator of `size` rows, its options read. Throws failure for a value
+/// that SLEPc refuses.
+Handle<EPS> make_infsup_eps(PetscInt size = 64);
 
 } // namespace rbvi

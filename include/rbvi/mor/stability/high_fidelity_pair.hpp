@@ -16,8 +16,9 @@ struct PairConstants {
   double beta, c;
 };
 
-/// What takes the place of dense matrices where a problem has more than 1000 multipliers; with
-/// fewer nothing. Collective on the problem's communicator.
+/// What takes the place of dense matrices where it is faster: m^3 > 1e5 n for m multipliers and n
+/// displacement dofs (a region of more than some 700 nodes; on a curve hardly ever). Else nothing.
+/// Collective on the problem's communicator.
 std::optional<SparseInfSup> sparse_infsup(Problem &problem);
 
 /// `op`: the contact operators at one mu; `space`: of all contact dofs. Of two bodies over the
