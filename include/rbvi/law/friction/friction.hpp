@@ -15,13 +15,26 @@
 
 #include "rbvi/law/lcp.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
-/// The bound of every node.
+/// The bound s = c x_n + t of |x_tau| at every node.
 struct FrictionBound {
   double coefficient = 0;       ///< c >= 0
   double threshold = 0;         ///< t >= 0
   bool only_in_contact = false; ///< t = 0 at nodes that carry no pressure
+
+  double threshold_at(double x_n) const { return x_n > 0 || !only_in_contact ? threshold : 0.0; }
+  /// s; a negative x_n counts as zero.
+  double value(double x_n) const { return coefficient * std::max(x_n, 0.0) + threshold_at(x_n); }
+  /// Whether t appears only when the node touches, so that s is not continuous.
+  bool jumps() const { return only_in_contact && threshold > 0; }
+  /// Whether x_tau of a node can differ from zero.
+  bool carries_traction(bool in_contact) const {
+    if (threshold > 0) return in_contact || !only_in_contact;
+    return in_contact && coefficient > 0;
+  }
 };
 
 /// Where a node is: apart or together, sticking or slipping.

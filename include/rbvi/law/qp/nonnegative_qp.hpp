@@ -102,7 +102,7 @@ private:
   Vector gains_;              ///< minus the gradient, per unit column
   double banned_gain_ = 0;    ///< largest gain, relative to its scale, of a banned column
   Vector x_, residual_, column_;
-  std::vector<char> out_;           ///< 0: may enter, 1: active, 2: banned until the next progress
+  std::vector<char> status_;        ///< 0: may enter, 1: active, 2: banned until the next progress
   std::vector<std::uint64_t> seen_; ///< hashes of the active sets whose minimum was reached
 };
 
