@@ -2,7 +2,6 @@
 
 #include "../pivoting.hpp"
 #include "collocated_steps.hpp"
-#include "friction_bound.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -26,7 +25,7 @@ void check(const CollocatedProblem &p, const Vector &start) {
   const bool finite = p.h.allFinite() && p.q.allFinite() && p.normal_rows.allFinite() &&
                       p.tangential_rows.allFinite() && start.allFinite();
   if (!finite) throw failure("collocated friction: the problem or the first guess is not finite");
-  friction::check(p.bound);
+  p.bound.check();
   if (p.normal_rows.size() > 0 &&
       p.normal_rows.minCoeff() < -accuracy * p.normal_rows.cwiseAbs().maxCoeff())
     throw failure("collocated friction: a row of N has a negative entry: clip the generators");
@@ -105,14 +104,11 @@ public:
       sets = sets_at(start);
       return iterate(sets, p_.bounds(start));
     }
-    const ScaledProblem free{.unit = p_.unit,
-                             .q = p_.q,
-                             .size = Vector(0),
-                             .h = p_.h,
-                             .normal = Matrix(0, p_.generators()),
-                             .tangential = Matrix(0, p_.modes()),
-                             .bound = p_.bound};
-    const Point unbounded = ZeroBoundElimination(free, {}).frozen(Vector(0), sets);
+    ScaledProblem without_bounds = p_;
+    without_bounds.size.resize(0);
+    without_bounds.normal.resize(0, Eigen::NoChange);
+    without_bounds.tangential.resize(0, Eigen::NoChange);
+    const Point unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
     sets.side.assign(at(p_.nodes()), 0);
     iterate(sets, p_.bounds(unbounded.x));
   }

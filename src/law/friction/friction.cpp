@@ -24,7 +24,7 @@ void check(const Vector &q, int dim, const FrictionBound &bound, const Vector &s
                   " entries instead of " + std::to_string(q.size()));
   if (!q.allFinite()) throw failure("friction: the right-hand side is not finite");
   if (!start.allFinite()) throw failure("friction: the first guess is not finite");
-  friction::check(bound);
+  bound.check();
 }
 
 /// What the states and the list of nodes in contact say of x.
@@ -256,6 +256,12 @@ private:
 };
 
 } // namespace
+
+void FrictionBound::check() const {
+  const bool valid =
+      std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 && threshold >= 0;
+  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+}
 
 FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
                               const FrictionBound &bound, const Vector &start,

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "../lazy_columns.hpp"
-#include "friction_bound.hpp"
+#include "rbvi/law/friction/friction.hpp"
 
 #include <string>
 
@@ -32,6 +32,9 @@ struct Laws {
   /// The nearest x that keeps the signs, and then the bounds.
   Vector feasible(Vector x) const;
 };
+
+/// What x_tau of a node is: zero, free, or of a given direction.
+enum class Tangent : char { none, stick, slip };
 
 /// What makes the laws linear equations: which nodes are in contact, and what x_tau of each is.
 struct ActiveSets {

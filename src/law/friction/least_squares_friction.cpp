@@ -1,7 +1,7 @@
 #include "rbvi/law/friction/least_squares_friction.hpp"
 
 #include "../pivoting.hpp"
-#include "friction_bound.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
@@ -12,11 +12,11 @@ namespace rbvi {
 
 namespace {
 
-using friction::Tangent;
-using pivoting::Exchange;
-
 constexpr double tolerance = 1e-13;
 constexpr double coarse = 0.1; ///< the residual of a basis that hardly describes the solution
+
+/// The tangential equation of a node: x_tau = 0, w_tau = 0, or x_tau = direction * bound.
+enum class Tangent { none, stick, slip };
 
 /// What the coefficients say at the nodes.
 struct Values {
@@ -49,7 +49,6 @@ public:
     return nodes() > 0 ? std::max(gap_.cwiseAbs().maxCoeff(), slip_.cwiseAbs().maxCoeff()) : 0.0;
   }
   const FrictionBound &law() const { return bound_; }
-  /// The tangential equation of a node: x_tau = 0, w_tau = 0, or x_tau = direction * bound.
   Tangent tangent(const SlipState &state) const {
     const bool together = state.state != NodeState::open;
     if (!bound_.carries_traction(together)) return Tangent::none;
@@ -282,7 +281,7 @@ private:
     std::string key;
     for (const SlipState &s : states)
       key.push_back(static_cast<char>(static_cast<int>(s.state) + 4 * (s.direction + 1)));
-    if (policy_.after(key, changes.size()) == Exchange::block) return true;
+    if (policy_.after(key, changes.size()) == pivoting::Exchange::block) return true;
     changes = beyond(verdict, verdict.misfit);
     if (changes.empty()) return false;
     changes.erase(changes.begin() + 1, changes.end());
@@ -347,7 +346,7 @@ void check(const LeastSquaresProblem &p, const std::vector<SlipState> &start) {
   if (!start.empty() && start.size() != at(nodes))
     throw failure("least squares: the first guess has " + std::to_string(start.size()) +
                   " states instead of " + std::to_string(nodes));
-  friction::check(p.bound);
+  p.bound.check();
 }
 
 } // namespace

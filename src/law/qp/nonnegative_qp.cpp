@@ -88,9 +88,8 @@ void NonnegativeQp::minimise(const Eigen::Ref<const Vector> &c) {
   const Index count = qr_.size();
   auto image = image_.head(count);
   auto minimiser = minimiser_.head(count);
+  minimiser = linear_(active_);
   const auto upper = qr_.r().triangularView<Eigen::Upper>();
-  for (Index k = 0; k < count; ++k)
-    minimiser[k] = linear_[active_[at(k)]];
   if (!minimiser.isZero(0)) upper.transpose().solveInPlace(minimiser);
   image = -minimiser;
   image.noalias() += qr_.q().transpose() * c;
@@ -104,6 +103,24 @@ void NonnegativeQp::drop(Index position) {
   status_[at(active_[at(position)])] = may_enter;
   active_.erase(active_.begin() + position);
   qr_.remove(position);
+}
+
+/// Active columns without a positive value leave, and with them the one that blocks.
+void NonnegativeQp::drop_zeros(Index blocking) {
+  values_[blocking] = 0;
+  for (Index k = qr_.size() - 1; k >= 0; --k) {
+    if (values_[k] > 0) continue;
+    drop(k);
+    ++report_.iterations;
+  }
+}
+
+/// The column that has just been appended to the QR becomes active.
+void NonnegativeQp::take(Index column, double value) {
+  values_[qr_.size() - 1] = value;
+  active_.push_back(column);
+  status_[at(column)] = in_set;
+  ++report_.iterations;
 }
 
 /// Makes any set a valid start: columns with a negative minimiser leave until none is left.
@@ -135,11 +152,7 @@ void NonnegativeQp::settle(const Eigen::Ref<const Vector> &c) {
     if (blocking < 0) break;
     auto values = values_.head(qr_.size());
     values += step * (minimiser_.head(qr_.size()) - values);
-    for (Index k = qr_.size() - 1; k >= 0; --k) {
-      if (k != blocking && values_[k] > 0) continue;
-      drop(k);
-      ++report_.iterations;
-    }
+    drop_zeros(blocking);
   }
   values_.head(qr_.size()) = minimiser_.head(qr_.size());
 }
@@ -172,10 +185,7 @@ bool NonnegativeQp::enter(const Columns &y, Index column) {
   if (norms_[column] == 0) return false;
   column_ = y.col(column) / norms_[column];
   if (!qr_.append(column_, options_.dependence)) return exchange(column);
-  values_[qr_.size() - 1] = 0;
-  active_.push_back(column);
-  status_[at(column)] = in_set;
-  ++report_.iterations;
+  take(column, 0);
   return true;
 }
 
@@ -191,8 +201,7 @@ bool NonnegativeQp::exchange(Index column) {
     slope -= term;
     scale += std::abs(term);
   }
-  auto &state = status_[at(column)];
-  state = banned;
+  status_[at(column)] = banned;
   if (!(slope < -options_.dependence * scale)) return true;
 
   const double least = options_.dependence * std::max(1.0, a.cwiseAbs().maxCoeff());
@@ -205,17 +214,9 @@ bool NonnegativeQp::exchange(Index column) {
   }
   if (blocking < 0) return false;
   values_.head(count) -= step * a;
-  values_[blocking] = 0;
-  for (Index k = count - 1; k >= 0; --k) {
-    if (values_[k] > 0) continue;
-    drop(k);
-    ++report_.iterations;
-  }
+  drop_zeros(blocking);
   if (!qr_.append(column_, options_.dependence)) return true;
-  values_[qr_.size() - 1] = step;
-  active_.push_back(column);
-  state = in_set;
-  ++report_.iterations;
+  take(column, step);
   return true;
 }
 
@@ -259,10 +260,7 @@ NonnegativeQpReport NonnegativeQp::solve(const Columns &y, const Eigen::Ref<cons
     if (changed) settle(c);
   }
   x_.setZero();
-  for (Index k = 0; k < qr_.size(); ++k) {
-    const Index j = active_[at(k)];
-    x_[j] = values_[k] / norms_[j];
-  }
+  x_(active_) = values_.head(qr_.size()).cwiseQuotient(norms_(active_));
   return report_;
 }
 

@@ -35,6 +35,8 @@ struct FrictionBound {
     if (threshold > 0) return in_contact || !only_in_contact;
     return in_contact && coefficient > 0;
   }
+  /// Throws bad_input for a coefficient or a threshold that is negative or not finite.
+  void check() const;
 };
 
 /// Where a node is: apart or together, sticking or slipping.

@@ -82,6 +82,8 @@ private:
   void factorise(const Columns &y);
   void minimise(const Eigen::Ref<const Vector> &c);
   void drop(Index position);
+  void drop_zeros(Index blocking);
+  void take(Index column, double value);
   void drop_negative(const Eigen::Ref<const Vector> &c);
   void settle(const Eigen::Ref<const Vector> &c);
   Index best_column(const Columns &y, const Eigen::Ref<const Vector> &c);
