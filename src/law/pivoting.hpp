@@ -22,7 +22,7 @@
 
 namespace rbvi::pivoting {
 
-/// What to exchange next: all violated entries, or what the solver falls back on.
+/// The next exchange: all violated entries, or the solver's own fallback.
 enum class Exchange { block, fallback };
 
 /// `Basis`: ordered by <. `Violation`: how many entries violate the law, or by how much.
@@ -70,8 +70,8 @@ private:
 /// One basis of  x >= 0,  w >= 0,  x . w = 0:  x = 0 outside the active set, w = 0 inside.
 struct BasicSolution {
   std::vector<Index> active;   ///< increasing
-  Vector x;                    ///< of the active entries
-  Vector w;                    ///< of all entries
+  Vector x;                    ///< values of the active entries
+  Vector w;                    ///< values of all entries
   std::vector<Index> violated; ///< increasing: entries of either kind that are negative
   bool regular = true; ///< the active block can be factorised; otherwise nothing else is filled
 };

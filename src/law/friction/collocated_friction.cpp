@@ -57,7 +57,7 @@ public:
       node(point, j);
     point.residual = worst_;
   }
-  /// What a violation of the bound of node j is relative to.
+  /// The size that a violation of the bound of node j is relative to.
   double scale(const Point &point, Index j) const {
     return std::max(point.bounds[j], point.x.cwiseAbs().maxCoeff() * p_.size.maxCoeff());
   }

@@ -32,7 +32,7 @@ Point newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   for (Index k = 0; k < m; ++k) {
     const Index j = held[at(k)];
     const double side = sets.side[at(j)], size = p.size[j];
-    double reach = 0; // of the free generators: in contact by these sets
+    double reach = 0; // largest entry of the free generators: in contact by these sets
     for (Index i = 0; i < pressures; ++i) {
       const double value = p.normal(j, unknowns[at(i)]);
       system(n + k, i) = -p.bound.coefficient * value / size;

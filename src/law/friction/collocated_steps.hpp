@@ -14,7 +14,7 @@
 
 namespace rbvi::collocated {
 
-inline constexpr double accuracy = 1e-12; ///< of a solution
+inline constexpr double accuracy = 1e-12; ///< largest residual of a solution
 inline constexpr double round_off =
     1e-13; ///< nothing is violated, a row of T says nothing, below it
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -60,7 +60,7 @@ struct ActiveSets {
 /// A point and its multipliers, w_tau + T^T delta = 0; delta has the sign of T b.
 struct Point {
   Vector x, delta;
-  Vector w, terms, bounds, traction; ///< of judge: w, |H| |x| + |q|, s, T b
+  Vector w, terms, bounds, traction; ///< filled by Judge: w, |H| |x| + |q|, s, T b
   double residual = infinity;
 };
 
@@ -91,7 +91,7 @@ private:
   const ScaledProblem &p_;
   ScaledProblem reduced_;
   std::vector<Index> zero_, nodes_;       ///< E, the others
-  Eigen::ColPivHouseholderQR<Matrix> qr_; ///< of T_E^T
+  Eigen::ColPivHouseholderQR<Matrix> qr_; ///< QR of T_E^T
   Matrix z_;
   std::unique_ptr<FrozenBounds> qp_;
 };

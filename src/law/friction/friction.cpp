@@ -27,7 +27,7 @@ void check(const Vector &q, int dim, const FrictionBound &bound, const Vector &s
   bound.check();
 }
 
-/// What the states and the list of nodes in contact say of x.
+/// Fills in the list of nodes in contact and the states of all nodes.
 void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets) {
   result.active.clear();
   result.states.assign(at(laws.nodes), NodeState::open);
@@ -110,7 +110,7 @@ public:
       best_.x = laws_.feasible(start);
       result_.residual = std::numeric_limits<double>::infinity();
       Point point;
-      outcome = newton_from(laws_, sets_from(h_, laws_, start), point);
+      outcome = newton_from(laws_, predicted_sets(h_, laws_, start), point);
     } else {
       prepare(laws_, Vector::Zero(q_.size()));
       Point point = evaluate(h_, q_, Vector::Zero(q_.size()));
@@ -125,14 +125,14 @@ private:
 
   /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
   void prepare(const Laws &laws, const Vector &x) {
-    ActiveSets sets = sets_of(laws, x);
+    ActiveSets sets = contact_sets(laws, x);
     for (Index i = 0; i < laws.nodes; ++i)
       if (laws.at_node(i).carries_traction(sets.is_active(i))) sets.tangent[at(i)] = Tangent::stick;
     h_.require(sets.support(laws));
   }
 
   Outcome newton(const Laws &laws, Point &point) {
-    const ActiveSets sets = sets_of(laws, point.x);
+    const ActiveSets sets = contact_sets(laws, point.x);
     Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
     return newton_from(laws, std::move(verdict.next), point);

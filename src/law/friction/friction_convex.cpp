@@ -42,7 +42,7 @@ double shorten(const Point &point, const Point &aim) {
 
 bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolerance, int &steps,
               Point &point) {
-  ActiveSets sets = sets_of(frozen, point.x);
+  ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
     Verdict verdict = judge(h, frozen, point, sets, tolerance);
     if (verdict.residual <= tolerance || steps <= 0) return true;

@@ -115,7 +115,7 @@ Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknow
   return x;
 }
 
-/// What judges one node.
+/// The verdict on a point, node by node.
 class Judge {
 public:
   Judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
@@ -215,7 +215,7 @@ private:
   const Point &point_;
   const ActiveSets &sets_;
   double tolerance_;
-  double largest_ = 0; ///< of x in the scaling in which H has a unit diagonal
+  double largest_ = 0; ///< largest x in the scaling in which H has a unit diagonal
   Verdict verdict_;
 };
 
@@ -267,14 +267,14 @@ Point evaluate(const LazyColumns &h, const Vector &q, Vector x) {
   return {std::move(x), product + q, terms + q.cwiseAbs()};
 }
 
-ActiveSets sets_of(const Laws &laws, const Vector &x) {
+ActiveSets contact_sets(const Laws &laws, const Vector &x) {
   ActiveSets result(laws.nodes, laws.dim);
   for (Index i = 0; i < laws.nodes; ++i)
     result.active[at(i)] = x[i] > 0;
   return result;
 }
 
-ActiveSets sets_from(LazyColumns &h, const Laws &laws, const Vector &y) {
+ActiveSets predicted_sets(LazyColumns &h, const Laws &laws, const Vector &y) {
   constexpr double round_off = 1e-10; // x itself is on its bound where it slips
   ActiveSets result(laws.nodes, laws.dim);
   Vector size(laws.nodes);

@@ -19,7 +19,7 @@ struct Laws {
   Index nodes = 0;
   int dim = 2;
   double coefficient = 0;
-  Vector threshold; ///< of every node
+  Vector threshold; ///< t of every node
   bool only_in_contact = false;
 
   Index tangent(Index i) const { return nodes + i * (dim - 1); }
@@ -33,10 +33,11 @@ struct Laws {
   Vector feasible(Vector x) const;
 };
 
-/// What x_tau of a node is: zero, free, or of a given direction.
+/// The kind of x_tau at a node: zero, free, or of a given direction.
 enum class Tangent : char { none, stick, slip };
 
-/// What makes the laws linear equations: which nodes are in contact, and what x_tau of each is.
+/// The active sets: nodes in contact, and the kind of x_tau at every node. They make the laws
+/// linear equations.
 struct ActiveSets {
   std::vector<char> active;
   std::vector<Tangent> tangent;
@@ -70,9 +71,9 @@ struct Verdict {
 Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
               double tolerance);
 /// The sets to judge a point by that no step gave.
-ActiveSets sets_of(const Laws &laws, const Vector &x);
+ActiveSets contact_sets(const Laws &laws, const Vector &x);
 /// The sets that y = x - w / H_jj tells; the columns of their support are asked for.
-ActiveSets sets_from(LazyColumns &h, const Laws &laws, const Vector &y);
+ActiveSets predicted_sets(LazyColumns &h, const Laws &laws, const Vector &y);
 
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite };

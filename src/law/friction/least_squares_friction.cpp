@@ -18,7 +18,7 @@ constexpr double coarse = 0.1; ///< the residual of a basis that hardly describe
 /// The tangential equation of a node: x_tau = 0, w_tau = 0, or x_tau = direction * bound.
 enum class Tangent { none, stick, slip };
 
-/// What the coefficients say at the nodes.
+/// Multipliers, gaps and slips at the nodes.
 struct Values {
   Vector x_n, x_t, w_n, w_t;
   Vector noise_n, noise_t; ///< round-off of x - w
@@ -124,7 +124,7 @@ private:
   Eigen::HouseholderQR<Matrix> qr_;
 };
 
-/// What the laws make of the values.
+/// The states that the laws predict from the values, and how far the values violate them.
 struct Verdict {
   std::vector<SlipState> next;
   Vector change;        ///< how far a node is beyond the edge of its state, where the next differs

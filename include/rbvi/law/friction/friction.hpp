@@ -48,18 +48,18 @@ struct FrictionOptions {
 };
 
 struct FrictionResult {
-  Vector x, w;
+  Vector x, w;  ///< m * dim entries each
   Vector start; ///< x - w / H_jj (the mean of a node's tangential H_jj; where they were not asked
                 ///< for, of all others): its signs and its sizes against the bound tell every
                 ///< state. Smooth where x and w are not: start nearby problems from it, or from
                 ///< interpolants of several
   std::vector<Index> active;     ///< nodes with x_n > 0, increasing
-  std::vector<NodeState> states; ///< of every node; an open node can slip or stick by Tresca: its
-                                 ///< state is open all the same
-  int iterations = 0;            ///< linear systems solved
-  int columns = 0;               ///< of H that were asked for
-  int backup_steps = 0;          ///< fixed-point steps after a cycle
-  double residual = 0;           ///< largest relative violation of the three laws
+  std::vector<NodeState> states; ///< state of every node; an open one can slip or stick by Tresca:
+                                 ///< its state is open all the same
+  int iterations = 0;   ///< linear systems solved
+  int columns = 0;      ///< columns of H that were asked for
+  int backup_steps = 0; ///< fixed-point steps after a cycle
+  double residual = 0;  ///< largest relative violation of the three laws
   bool converged = false;
   std::string reason; ///< why it stopped; not converged: what to try
 };
