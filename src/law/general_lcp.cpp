@@ -70,7 +70,7 @@ BasicSolution solve_basis(const ScaledLcp &problem, std::vector<Index> active) {
 
 /// Block exchange from the active set of `basic`; true: nothing is violated any more.
 bool block_pivoting(const ScaledLcp &problem, BasicSolution &basic, int &iterations) {
-  Policy<std::vector<Index>, std::size_t> policy(10);
+  Policy<std::vector<Index>, std::size_t> policy(/*patience=*/10);
   for (;;) {
     basic = solve_basis(problem, std::move(basic.active));
     ++iterations;

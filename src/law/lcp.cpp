@@ -52,7 +52,7 @@ LcpResult solve_lcp(const ColumnSource &columns, const Vector &q, const std::vec
   std::vector<Index> active = checked_guess(start, q.size());
   const int limit =
       options.max_iterations > 0 ? options.max_iterations : 50 + 10 * static_cast<int>(q.size());
-  Policy<std::vector<Index>, std::size_t> policy(11);
+  Policy<std::vector<Index>, std::size_t> policy(/*patience=*/11);
   for (;;) {
     const BasicSolution basic = solve_basis(h, q, active, options.tolerance);
     ++result.iterations;

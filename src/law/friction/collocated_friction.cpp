@@ -217,7 +217,7 @@ private:
   Judge judge_;
   std::unique_ptr<ZeroBoundElimination> elimination_;
   Point best_;
-  pivoting::Policy<ActiveSets, double> policy_{8};
+  pivoting::Policy<ActiveSets, double> policy_{/*patience=*/8};
   int sweeps_ = 0;
 };
 

@@ -141,7 +141,7 @@ private:
   /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
   /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
   Outcome newton_from(const Laws &laws, ActiveSets sets, Point &point) {
-    pivoting::Policy<std::string, double> policy(10);
+    pivoting::Policy<std::string, double> policy(/*patience=*/10);
     for (;;) {
       if (laws.dim == 2 && policy.returns(sets.key())) return Outcome::cycles;
       if (systems_left_ <= 0) return Outcome::limit;

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <set>
 
 namespace rbvi {
 
@@ -318,7 +318,7 @@ private:
 
   Equations equations_;
   Candidate best_;
-  pivoting::Policy<std::string, std::size_t> policy_{11};
+  pivoting::Policy<std::string, std::size_t> policy_{/*patience=*/11};
   std::set<std::string> visited_alone_; ///< from where a single node was changed
 };
 
