@@ -1,26 +1,24 @@
 #include "rbvi/law/general_lcp.hpp"
 
+#include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <utility>
 
 namespace rbvi {
 
 namespace {
 
-constexpr double tolerance = 1e-13;
+using namespace pivoting;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr double tolerance = 1e-13;
 
 /// The problem of unit * z: its matrix has diagonal entries between 1/2 and 2 where that of M is
 /// not zero. Powers of two, so that nothing is rounded.
-struct Scaled {
+struct ScaledLcp {
   Matrix m;
   Vector q, unit;
 };
@@ -37,35 +35,13 @@ Vector units(const Matrix &m) {
   return unit;
 }
 
-Scaled scaled(const Matrix &m, const Vector &q) {
+ScaledLcp scaled(const Matrix &m, const Vector &q) {
   const Vector unit = units(m), inverse = unit.cwiseInverse();
   return {inverse.asDiagonal() * m * inverse.asDiagonal(), inverse.cwiseProduct(q), unit};
 }
 
-/// Basic solution of one active set: z = 0 outside, w = 0 inside.
-struct Basic {
-  std::vector<Index> active;
-  Vector z; ///< of the active entries
-  Vector w; ///< of all entries
-  std::vector<Index> violated;
-  bool regular = true;
-};
-
-void find_violations(Basic &basic, const Vector &terms) {
-  const double largest = basic.z.size() > 0 ? basic.z.cwiseAbs().maxCoeff() : 0.0;
-  std::vector<char> inside(at(basic.w.size()), 0);
-  for (Index k = 0; k < basic.z.size(); ++k) {
-    const Index i = basic.active[at(k)];
-    inside[at(i)] = 1;
-    if (basic.z[k] < -tolerance * largest) basic.violated.push_back(i);
-  }
-  for (Index i = 0; i < basic.w.size(); ++i)
-    if (inside[at(i)] == 0 && basic.w[i] < -tolerance * terms[i]) basic.violated.push_back(i);
-  std::sort(basic.violated.begin(), basic.violated.end());
-}
-
-Basic solve_basic(const Scaled &problem, std::vector<Index> active) {
-  Basic basic;
+BasicSolution solve_basis(const ScaledLcp &problem, std::vector<Index> active) {
+  BasicSolution basic;
   basic.active = std::move(active);
   basic.w = problem.q;
   Vector terms = problem.q.cwiseAbs();
@@ -78,42 +54,31 @@ Basic solve_basic(const Scaled &problem, std::vector<Index> active) {
         std::numeric_limits<double>::epsilon() * static_cast<double>(pivots.size());
     basic.regular = pivots.minCoeff() > noise * pivots.maxCoeff();
     if (!basic.regular) return basic;
-    basic.z = -lu.solve(right);
-    basic.z -= lu.solve(Vector(block * basic.z + right));
-    basic.regular = basic.z.allFinite();
+    basic.x = -lu.solve(right);
+    basic.x -= lu.solve(Vector(block * basic.x + right));
+    basic.regular = basic.x.allFinite();
     if (!basic.regular) return basic;
   }
-  for (Index k = 0; k < basic.z.size(); ++k) {
+  for (Index k = 0; k < basic.x.size(); ++k) {
     const auto column = problem.m.col(basic.active[at(k)]);
-    basic.w += basic.z[k] * column;
-    terms += std::abs(basic.z[k]) * column.cwiseAbs();
+    basic.w += basic.x[k] * column;
+    terms += std::abs(basic.x[k]) * column.cwiseAbs();
   }
-  find_violations(basic, terms);
+  find_violations(basic, basic.x, terms, tolerance);
   return basic;
 }
 
-/// Exchanges all violated entries, until none is left (true), an active set returns, ten steps
-/// bring no new least number of violations, or a block is singular.
-bool block_pivoting(const Scaled &problem, Basic &basic, int &iterations) {
-  constexpr int patience = 10;
-  std::set<std::vector<Index>> seen;
-  std::size_t fewest = at(problem.q.size()) + 1;
-  for (int unrewarded = 0; unrewarded <= patience; ++unrewarded) {
-    basic = solve_basic(problem, std::move(basic.active));
+/// Block exchange from the active set of `basic`; true: nothing is violated any more.
+bool block_pivoting(const ScaledLcp &problem, BasicSolution &basic, int &iterations) {
+  Policy<std::vector<Index>, std::size_t> policy(/*patience=*/10);
+  for (;;) {
+    basic = solve_basis(problem, std::move(basic.active));
     ++iterations;
     if (!basic.regular) return false;
     if (basic.violated.empty()) return true;
-    if (basic.violated.size() < fewest) {
-      fewest = basic.violated.size();
-      unrewarded = 0;
-    }
-    if (!seen.insert(basic.active).second) return false;
-    std::vector<Index> next;
-    std::set_symmetric_difference(basic.active.begin(), basic.active.end(), basic.violated.begin(),
-                                  basic.violated.end(), std::back_inserter(next));
-    basic.active = std::move(next);
+    if (policy.after(basic.active, basic.violated.size()) == Exchange::fallback) return false;
+    basic.active = exchanged(basic.active, basic.violated);
   }
-  return false;
 }
 
 /// Almost complementary bases of  w - M z - 1 z0 = q,  with the inverse of the basis kept: its rows
@@ -122,7 +87,7 @@ class Lemke {
 public:
   enum class End { solved, ray, limit };
 
-  explicit Lemke(const Scaled &problem)
+  explicit Lemke(const ScaledLcp &problem)
       : problem_(problem), n_(problem.q.size()), inverse_(Matrix::Identity(n_, n_)) {
     for (Index i = 0; i < n_; ++i)
       basis_.push_back(i);
@@ -205,24 +170,19 @@ private:
     return false;
   }
 
-  const Scaled &problem_;
+  const ScaledLcp &problem_;
   Index n_;
   Matrix inverse_;
   std::vector<Index> basis_; ///< the variable of every row
 };
 
-std::vector<Index> checked(const Matrix &m, const Vector &q, std::vector<Index> start) {
+void check(const Matrix &m, const Vector &q) {
   if (m.rows() != q.size() || m.cols() != q.size())
     throw failure("LCP: the matrix is " + std::to_string(m.rows()) + " x " +
                   std::to_string(m.cols()) + ", but the right-hand side has " +
                   std::to_string(q.size()) + " entries");
   if (!m.allFinite() || !q.allFinite())
     throw failure("LCP: the matrix or the right-hand side is not finite");
-  std::sort(start.begin(), start.end());
-  start.erase(std::unique(start.begin(), start.end()), start.end());
-  if (!start.empty() && (start.front() < 0 || start.back() >= q.size()))
-    throw failure("LCP: the first guess names an entry that does not exist");
-  return start;
 }
 
 std::string failed(Lemke::End end) {
@@ -240,9 +200,10 @@ std::string failed(Lemke::End end) {
 GeneralLcpResult solve_general_lcp(const Matrix &m, const Vector &q,
                                    const std::vector<Index> &start) {
   GeneralLcpResult result;
-  Basic basic;
-  basic.active = checked(m, q, start);
-  const Scaled problem = scaled(m, q);
+  check(m, q);
+  BasicSolution basic;
+  basic.active = checked_guess(start, q.size());
+  const ScaledLcp problem = scaled(m, q);
   result.converged = block_pivoting(problem, basic, result.iterations);
   if (!result.converged) {
     Lemke lemke(problem);
@@ -257,8 +218,8 @@ GeneralLcpResult solve_general_lcp(const Matrix &m, const Vector &q,
   if (!result.converged) return result;
   result.reason = "no violation left";
   result.active = basic.active;
-  if (basic.z.size() > 0)
-    result.z(basic.active) = basic.z.cwiseMax(0.0).cwiseQuotient(problem.unit(basic.active));
+  if (basic.x.size() > 0)
+    result.z(basic.active) = basic.x.cwiseMax(0.0).cwiseQuotient(problem.unit(basic.active));
   result.w = basic.w.cwiseProduct(problem.unit);
   return result;
 }

@@ -1,48 +1,20 @@
 #include "rbvi/law/lcp.hpp"
 
 #include "lazy_columns.hpp"
+#include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <set>
 
 namespace rbvi {
 
 namespace {
 
-/// Basic solution of one active set: x = 0 outside, w = 0 inside.
-struct Basic {
-  std::vector<Index> active;
-  Vector x; ///< of the active entries
-  Vector w; ///< of all entries
-  std::vector<Index> violated;
-  bool regular = true; ///< the active block is positive definite
-};
+using namespace pivoting;
 
 /// Violations are relative to the terms of their own row, and to the largest x in the scaling in
 /// which H has a unit diagonal, so that neither units nor the sizes of basis functions matter.
-void find_violations(Basic &basic, const Vector &diagonal, const Vector &scale, double tolerance) {
-  const Index count = static_cast<Index>(basic.active.size());
-  const Vector scaled = basic.x.cwiseProduct(diagonal.cwiseSqrt());
-  const double largest = count > 0 ? scaled.cwiseAbs().maxCoeff() : 0.0;
-  std::vector<char> inside(static_cast<std::size_t>(basic.w.size()), 0);
-  basic.violated.clear();
-  for (Index k = 0; k < count; ++k) {
-    const Index i = basic.active[static_cast<std::size_t>(k)];
-    inside[static_cast<std::size_t>(i)] = 1;
-    if (scaled[k] < -tolerance * largest) basic.violated.push_back(i);
-  }
-  for (Index i = 0; i < basic.w.size(); ++i)
-    if (inside[static_cast<std::size_t>(i)] == 0 && basic.w[i] < -tolerance * scale[i])
-      basic.violated.push_back(i);
-  std::sort(basic.violated.begin(), basic.violated.end());
-}
-
-/// One step of refinement on the residual that the test for violations needs anyway.
-Basic solve_basic(LazyColumns &columns, const Vector &q, std::vector<Index> active,
-                  double tolerance) {
-  Basic basic;
+BasicSolution solve_basis(LazyColumns &columns, const Vector &q, std::vector<Index> active,
+                          double tolerance) {
+  BasicSolution basic;
   basic.active = std::move(active);
   columns.require(basic.active);
   const Matrix block = columns.block(basic.active);
@@ -57,27 +29,12 @@ Basic solve_basic(LazyColumns &columns, const Vector &q, std::vector<Index> acti
   }
   auto [product, sizes] = columns.multiply(basic.active, basic.x);
   basic.w = product + q;
-  find_violations(basic, diagonal, sizes + q.cwiseAbs(), tolerance);
+  const Vector scaled = basic.x.cwiseProduct(diagonal.cwiseSqrt());
+  find_violations(basic, scaled, sizes + q.cwiseAbs(), tolerance);
   return basic;
 }
 
-std::vector<Index> exchanged(const Basic &basic, const std::vector<Index> &which) {
-  std::vector<Index> result;
-  std::set_symmetric_difference(basic.active.begin(), basic.active.end(), which.begin(),
-                                which.end(), std::back_inserter(result));
-  return result;
-}
-
-std::vector<Index> checked(const Vector &q, std::vector<Index> start) {
-  if (!q.allFinite()) throw failure("LCP: the right-hand side is not finite");
-  std::sort(start.begin(), start.end());
-  start.erase(std::unique(start.begin(), start.end()), start.end());
-  if (!start.empty() && (start.front() < 0 || start.back() >= q.size()))
-    throw failure("LCP: the first guess names an entry that does not exist");
-  return start;
-}
-
-LcpResult finish(const Basic &basic, const Vector &q, LcpResult result) {
+LcpResult finish(const BasicSolution &basic, const Vector &q, LcpResult result) {
   result.active = basic.active;
   result.x = Vector::Zero(q.size());
   result.w = basic.w;
@@ -89,19 +46,15 @@ LcpResult finish(const Basic &basic, const Vector &q, LcpResult result) {
 
 LcpResult solve_lcp(const ColumnSource &columns, const Vector &q, const std::vector<Index> &start,
                     const LcpOptions &options) {
-  // Block steps without a new least number of violations before single pivots take over.
-  constexpr int patience = 10;
+  if (!q.allFinite()) throw failure("LCP: the right-hand side is not finite");
   LazyColumns h(columns, q.size());
   LcpResult result;
-  std::vector<Index> active = checked(q, start);
+  std::vector<Index> active = checked_guess(start, q.size());
   const int limit =
       options.max_iterations > 0 ? options.max_iterations : 50 + 10 * static_cast<int>(q.size());
-  std::set<std::vector<Index>> seen;
-  std::size_t fewest = static_cast<std::size_t>(q.size()) + 1;
-  int unrewarded = 0;
-  bool single = false;
+  Policy<std::vector<Index>, std::size_t> policy(/*patience=*/11);
   for (;;) {
-    const Basic basic = solve_basic(h, q, active, options.tolerance);
+    const BasicSolution basic = solve_basis(h, q, active, options.tolerance);
     ++result.iterations;
     result.columns = h.count();
     if (!basic.regular) {
@@ -121,18 +74,12 @@ LcpResult solve_lcp(const ColumnSource &columns, const Vector &q, const std::vec
                       " steps: raise the limit or the tolerance, or start closer to the solution";
       return finish(basic, q, std::move(result));
     }
-    if (basic.violated.size() < fewest) {
-      fewest = basic.violated.size();
-      unrewarded = 0;
-      single = false;
-    } else if (!single) {
-      single = seen.contains(active) || ++unrewarded > patience;
-    }
-    if (single)
+    if (policy.after(active, basic.violated.size()) == Exchange::block) {
+      active = exchanged(active, basic.violated);
+    } else {
       ++result.backup_steps;
-    else
-      seen.insert(active);
-    active = exchanged(basic, single ? std::vector<Index>{basic.violated.front()} : basic.violated);
+      active = exchanged(active, {basic.violated.front()});
+    }
   }
 }
 

@@ -2,7 +2,7 @@
 //
 //   z >= 0,   w = M z + q >= 0,   z . w = 0          M: n x n
 //
-// Block pivoting as in lcp.hpp (a semismooth Newton method); where active sets return, Lemke's
+// Block exchange as in lcp.hpp (a semismooth Newton method); where it runs in circles, Lemke's
 // method (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.4) with a
 // lexicographic ratio test.
 #pragma once
@@ -15,7 +15,7 @@
 namespace rbvi {
 
 struct GeneralLcpResult {
-  Vector z, w;
+  Vector z, w;               ///< n each
   std::vector<Index> active; ///< increasing
   int iterations = 0;        ///< linear systems, and pivots of Lemke's method
   bool converged = false;

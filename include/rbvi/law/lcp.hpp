@@ -3,9 +3,10 @@
 //   x >= 0,   w = H x + q >= 0,   x . w = 0               H: n x n, symmetric positive definite
 //
 // (H = B A^-1 B^T, q = g - B A^-1 f, x = lambda, w = g - B u: a semismooth Newton method.)
-// Columns of H are asked for only when a node enters the active set for the first time. A repeated
-// active set is detected; single pivots by lowest index (Murty), which end for every such H, then
-// take over until the number of violations falls again.
+// Columns of H are asked for only when a node enters the active set for the first time. Block
+// exchange of all violated entries; where it runs in circles, single exchanges by lowest index
+// (Murty), which end for every such H, until the number of violations falls again.
+// src/law/README.md says which solver serves whom.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -25,11 +26,11 @@ struct LcpOptions {
 };
 
 struct LcpResult {
-  Vector x, w;
+  Vector x, w;               ///< n each
   std::vector<Index> active; ///< increasing
   int iterations = 0;
-  int columns = 0;      ///< of H that were asked for
-  int backup_steps = 0; ///< single pivots after a repeated active set
+  int columns = 0;      ///< columns of H that were asked for
+  int backup_steps = 0; ///< single exchanges, where block exchange gave up
   bool converged = false;
   std::string reason; ///< why it stopped
 };

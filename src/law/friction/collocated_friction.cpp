@@ -1,12 +1,12 @@
 #include "rbvi/law/friction/collocated_friction.hpp"
 
-#include "collocated_face.hpp"
+#include "../pivoting.hpp"
+#include "collocated_steps.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace rbvi {
 
@@ -25,14 +25,11 @@ void check(const CollocatedProblem &p, const Vector &start) {
   const bool finite = p.h.allFinite() && p.q.allFinite() && p.normal_rows.allFinite() &&
                       p.tangential_rows.allFinite() && start.allFinite();
   if (!finite) throw failure("collocated friction: the problem or the first guess is not finite");
-  const FrictionBound &b = p.bound;
-  const bool valid = std::isfinite(b.coefficient) && std::isfinite(b.threshold) &&
-                     b.coefficient >= 0 && b.threshold >= 0;
-  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+  p.bound.check();
   if (p.normal_rows.size() > 0 &&
       p.normal_rows.minCoeff() < -accuracy * p.normal_rows.cwiseAbs().maxCoeff())
     throw failure("collocated friction: a row of N has a negative entry: clip the generators");
-  if (p.h.size() > 0 && !(p.h.diagonal().minCoeff() > 0)) throw dependent();
+  if (p.h.size() > 0 && !(p.h.diagonal().minCoeff() > 0)) throw not_positive_definite();
 }
 
 double smaller(double a, double b) {
@@ -42,7 +39,7 @@ double smaller(double a, double b) {
 /// The largest relative violation of the definition at a point whose x and delta are given.
 class Judge {
 public:
-  explicit Judge(const Scaled &p) : p_(p) {}
+  explicit Judge(const ScaledProblem &p) : p_(p) {}
 
   void operator()(Point &point) {
     point.residual = infinity;
@@ -60,7 +57,7 @@ public:
       node(point, j);
     point.residual = worst_;
   }
-  /// What a violation of the bound of node j is relative to.
+  /// The size that a violation of the bound of node j is relative to.
   double scale(const Point &point, Index j) const {
     return std::max(point.bounds[j], point.x.cwiseAbs().maxCoeff() * p_.size.maxCoeff());
   }
@@ -93,28 +90,25 @@ private:
       violated(smaller(std::abs(slack) / all, std::abs(delta) * p_.size[j] / loads_), 1);
   }
 
-  const Scaled &p_;
+  const ScaledProblem &p_;
   double largest_ = 0, loads_ = 0, worst_ = 0;
 };
 
 class Solver {
 public:
-  explicit Solver(const Scaled &p) : p_(p), judge_(p) {}
+  explicit Solver(const ScaledProblem &p) : p_(p), judge_(p) {}
 
   void run(const Vector &start) {
-    Sets sets(p_);
+    ActiveSets sets(p_);
     if (start.size() > 0) {
       sets = sets_at(start);
       return iterate(sets, p_.bounds(start));
     }
-    const Scaled free{.unit = p_.unit,
-                      .q = p_.q,
-                      .size = Vector(0),
-                      .h = p_.h,
-                      .normal = Matrix(0, p_.generators()),
-                      .tangential = Matrix(0, p_.modes()),
-                      .bound = p_.bound};
-    const Point unbounded = Face(free, {}).frozen(Vector(0), sets);
+    ScaledProblem without_bounds = p_;
+    without_bounds.size.resize(0);
+    without_bounds.normal.resize(0, Eigen::NoChange);
+    without_bounds.tangential.resize(0, Eigen::NoChange);
+    const Point unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
     sets.side.assign(at(p_.nodes()), 0);
     iterate(sets, p_.bounds(unbounded.x));
   }
@@ -124,9 +118,8 @@ public:
 private:
   /// Sweeps with the bounds of Newton's point where that is the better one, else with those of the
   /// last sweep; where sets return, with smaller and smaller steps of the bounds.
-  void iterate(Sets sets, Vector s) {
+  void iterate(ActiveSets sets, Vector s) {
     constexpr int limit = 200;
-    std::set<Sets> seen;
     bool cycles = false;
     Vector damping = Vector::Ones(p_.nodes()), last = Vector::Zero(p_.nodes());
     while (sweeps_ < limit) {
@@ -134,10 +127,10 @@ private:
       std::vector<char> closed(at(p_.nodes()));
       for (Index j = 0; j < p_.nodes(); ++j)
         closed[at(j)] = s[j] == 0;
-      const Point point = judged(face(closed).frozen(s, sets));
+      const Point point = judged(without(closed).frozen(s, sets));
       if (best_.residual <= round_off) return;
-      const bool known = !seen.insert(sets).second;
-      if (!known && newton(sets, seen)) return;
+      const bool known = policy_.returns(sets);
+      if (!known && newton(sets)) return;
       if (known && best_.residual <= accuracy) return;
       const Vector step = p_.bounds(point.x) - s;
       for (Index j = 0; j < p_.nodes() && cycles; ++j)
@@ -151,32 +144,30 @@ private:
     }
   }
 
-  /// Semismooth Newton from `sets` until they return or a few steps bring nothing.
-  bool newton(Sets sets, std::set<Sets> &seen) {
-    constexpr int patience = 8;
-    double least = infinity;
-    for (int unrewarded = 0; unrewarded <= patience; ++unrewarded) {
-      const Point point = judged(face(untouched(sets)).newton(sets));
+  /// Semismooth Newton from `sets` until the laws hold (true) or the policy gives up.
+  bool newton(ActiveSets sets) {
+    policy_.restart();
+    for (;;) {
+      const Point point = judged(without(zero_bounds(sets)).newton(sets));
       if (point.residual <= round_off) return true;
       if (point.residual == infinity) return false;
-      if (point.residual < least) unrewarded = 0;
-      least = std::min(least, point.residual);
-      Sets next = corrected(sets, point);
+      ActiveSets next = corrected(sets, point);
       if (next == sets && point.residual <= accuracy) return true;
-      if (!seen.insert(next).second) return false;
+      const bool lost = policy_.is_lost(point.residual);
+      if (policy_.returns(next) || lost) return false;
       sets = std::move(next);
     }
-    return false;
   }
 
-  Face &face(const std::vector<char> &closed) {
-    if (!face_ || !face_->is(closed)) face_ = std::make_unique<Face>(p_, closed);
-    return *face_;
+  ZeroBoundElimination &without(const std::vector<char> &closed) {
+    if (!elimination_ || !elimination_->is(closed))
+      elimination_ = std::make_unique<ZeroBoundElimination>(p_, closed);
+    return *elimination_;
   }
 
   /// Nodes whose bound is zero whatever the pressures of the free generators.
-  std::vector<char> untouched(const Sets &sets) const {
-    std::vector<char> closed(at(p_.nodes()), p_.threshold(0) == 0);
+  std::vector<char> zero_bounds(const ActiveSets &sets) const {
+    std::vector<char> closed(at(p_.nodes()), p_.bound.threshold_at(0) == 0);
     const bool idle = p_.bound.coefficient == 0 && p_.bound.threshold == 0;
     for (Index i = 0; i < p_.generators() && !idle; ++i)
       for (Index j = 0; j < p_.nodes() && sets.free[at(i)] != 0; ++j)
@@ -190,7 +181,7 @@ private:
     return point;
   }
 
-  Sets corrected(Sets sets, const Point &point) const {
+  ActiveSets corrected(ActiveSets sets, const Point &point) const {
     for (Index i = 0; i < p_.generators(); ++i) {
       char &free = sets.free[at(i)];
       free = free != 0 ? point.x[i] > 0 : point.w[i] < -round_off * point.terms[i];
@@ -209,9 +200,9 @@ private:
     return sets;
   }
 
-  Sets sets_at(const Vector &x) const {
+  ActiveSets sets_at(const Vector &x) const {
     constexpr double near = 1e-9;
-    Sets sets(p_);
+    ActiveSets sets(p_);
     const double largest = x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
     for (Index i = 0; i < p_.generators(); ++i)
       sets.free[at(i)] = x[i] > round_off * largest;
@@ -222,10 +213,11 @@ private:
     return sets;
   }
 
-  const Scaled &p_;
+  const ScaledProblem &p_;
   Judge judge_;
-  std::unique_ptr<Face> face_;
+  std::unique_ptr<ZeroBoundElimination> elimination_;
   Point best_;
+  pivoting::Policy<ActiveSets, double> policy_{/*patience=*/8};
   int sweeps_ = 0;
 };
 
@@ -237,7 +229,7 @@ CollocatedResult solve_collocated(const CollocatedProblem &problem, const Vector
   // misses.
   constexpr double accepted = 1e-10;
   check(problem, start);
-  const Scaled p = scaled(problem);
+  const ScaledProblem p = scaled(problem);
   Solver solver(p);
   solver.run(start.size() > 0 ? Vector(start.cwiseQuotient(p.unit)) : start);
   CollocatedResult result;

@@ -1,12 +1,12 @@
 #include "rbvi/law/friction/friction.hpp"
 
+#include "../pivoting.hpp"
 #include "friction_convex.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace rbvi {
 
@@ -24,20 +24,18 @@ void check(const Vector &q, int dim, const FrictionBound &bound, const Vector &s
                   " entries instead of " + std::to_string(q.size()));
   if (!q.allFinite()) throw failure("friction: the right-hand side is not finite");
   if (!start.allFinite()) throw failure("friction: the first guess is not finite");
-  const bool valid = std::isfinite(bound.coefficient) && std::isfinite(bound.threshold) &&
-                     bound.coefficient >= 0 && bound.threshold >= 0;
-  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+  bound.check();
 }
 
-/// What the states and the list of nodes in contact say of x.
-void describe(FrictionResult &result, const Laws &laws, const Sets &sets) {
+/// Fills in the list of nodes in contact and the states of all nodes.
+void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets) {
   result.active.clear();
-  result.states.assign(static_cast<std::size_t>(laws.nodes), NodeState::open);
+  result.states.assign(at(laws.nodes), NodeState::open);
   for (Index i = 0; i < laws.nodes; ++i) {
     if (!(result.x[i] > 0)) continue;
     result.active.push_back(i);
-    result.states[static_cast<std::size_t>(i)] =
-        sets.of(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
+    result.states[at(i)] =
+        sets.tangent_at(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
   }
 }
 
@@ -49,34 +47,33 @@ double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
   return worst;
 }
 
-/// FrictionResult::start. `diagonal(j)`: H_jj, 0 where it is not known. The tangential entries of a
-/// node share their mean: with rho of their own x_tau - rho w_tau would turn.
-template <class Diagonal>
-Vector start_of(const Laws &laws, const Vector &x, const Vector &w, const Diagonal &diagonal) {
-  Vector result = Vector::NullaryExpr(x.size(), diagonal);
+/// FrictionResult::start. The tangential entries of a node share the mean of their H_jj: with rho
+/// of their own x_tau - rho w_tau would turn. Unknown H_jj are taken for the mean of the known
+/// ones.
+Vector smooth_start(const LazyColumns &h, const Laws &laws, const Point &point) {
+  const auto diagonal = [&](Index j) { return h.has(j) ? h.diagonal(j) : 0; };
+  Vector result = Vector::NullaryExpr(point.x.size(), diagonal);
   for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i)
     result.segment(laws.tangent(i), 2).setConstant(result.segment(laws.tangent(i), 2).mean());
   const Index known = (result.array() > 0).count();
   const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
-  for (Index j = 0; j < x.size(); ++j)
-    result[j] = x[j] - w[j] / (result[j] > 0 ? result[j] : mean);
+  for (Index j = 0; j < result.size(); ++j)
+    result[j] = point.x[j] - point.w[j] / (result[j] > 0 ? result[j] : mean);
   return result;
 }
 
 FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
                                 const Vector &start, const FrictionOptions &options) {
   const Index nodes = laws.nodes;
-  std::vector<Index> order, guess;
-  Matrix known(q.size(), 0);
+  LazyColumns h(columns, q.size());
   const ColumnSource normals = [&](const std::vector<Index> &which) {
-    const Matrix received = columns(which);
-    if (received.rows() != q.size() || received.cols() != static_cast<Index>(which.size()))
-      throw failure("the source of the columns of H returned a matrix of the wrong size");
-    known.conservativeResize(Eigen::NoChange, known.cols() + received.cols());
-    known.rightCols(received.cols()) = received;
-    order.insert(order.end(), which.begin(), which.end());
-    return Matrix(received.topRows(nodes));
+    h.require(which);
+    Matrix result(nodes, static_cast<Index>(which.size()));
+    for (std::size_t k = 0; k < which.size(); ++k)
+      result.col(static_cast<Index>(k)) = h.column(which[k]).head(nodes);
+    return result;
   };
+  std::vector<Index> guess;
   for (Index i = 0; i < nodes && start.size() > 0; ++i)
     if (start[i] > 0) guess.push_back(i);
   LcpResult normal =
@@ -89,17 +86,14 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
   result.converged = normal.converged;
   result.reason = std::move(normal.reason);
   if (normal.x.size() != nodes) return result; // H is not positive definite
-  const Vector pressures = normal.x(order);
-  const Vector terms = known.cwiseAbs() * pressures.cwiseAbs() + q.cwiseAbs();
-  result.x = Vector::Zero(q.size());
-  result.x.head(nodes) = normal.x;
-  result.w = known * pressures + q;
-  result.residual = normal_residual(normal.x, result.w.head(nodes), terms.head(nodes));
-  Vector diagonal = Vector::Zero(q.size());
-  for (std::size_t k = 0; k < order.size(); ++k)
-    diagonal[order[k]] = known(order[k], static_cast<Index>(k));
-  result.start = start_of(laws, result.x, result.w, [&](Index j) { return diagonal[j]; });
-  describe(result, laws, Sets(nodes, laws.dim));
+  Vector x = Vector::Zero(q.size());
+  x.head(nodes) = normal.x;
+  Point point = evaluate(h, q, std::move(x));
+  result.residual = normal_residual(normal.x, point.w, point.terms);
+  result.start = smooth_start(h, laws, point);
+  result.x = std::move(point.x);
+  result.w = std::move(point.w);
+  describe(result, laws, ActiveSets(nodes, laws.dim));
   return result;
 }
 
@@ -108,7 +102,7 @@ public:
   Solver(const ColumnSource &columns, const Vector &q, const Laws &laws,
          const FrictionOptions &options)
       : h_(columns, q.size()), q_(q), laws_(laws), options_(options),
-        best_sets_(laws.nodes, laws.dim), left_(options.max_iterations) {}
+        best_sets_(laws.nodes, laws.dim), systems_left_(options.max_iterations) {}
 
   FrictionResult run(const Vector &start) {
     Outcome outcome;
@@ -116,7 +110,7 @@ public:
       best_.x = laws_.feasible(start);
       result_.residual = std::numeric_limits<double>::infinity();
       Point point;
-      outcome = newton_from(laws_, sets_from(h_, laws_, start), point);
+      outcome = newton_from(laws_, predicted_sets(h_, laws_, start), point);
     } else {
       prepare(laws_, Vector::Zero(q_.size()));
       Point point = evaluate(h_, q_, Vector::Zero(q_.size()));
@@ -131,41 +125,37 @@ private:
 
   /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
   void prepare(const Laws &laws, const Vector &x) {
-    Sets sets = sets_of(laws, x);
+    ActiveSets sets = contact_sets(laws, x);
     for (Index i = 0; i < laws.nodes; ++i)
-      if (laws.carries(i, sets.is_active(i)))
-        sets.tangent[static_cast<std::size_t>(i)] = Tangent::stick;
+      if (laws.at_node(i).carries_traction(sets.is_active(i))) sets.tangent[at(i)] = Tangent::stick;
     h_.require(sets.support(laws));
   }
 
   Outcome newton(const Laws &laws, Point &point) {
-    const Sets sets = sets_of(laws, point.x);
+    const ActiveSets sets = contact_sets(laws, point.x);
     Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
     return newton_from(laws, std::move(verdict.next), point);
   }
 
-  /// From the sets of the first step until the laws hold, sets return, or ten steps bring nothing.
-  Outcome newton_from(const Laws &laws, Sets sets, Point &point) {
-    constexpr int patience = 10;
-    std::set<std::string> seen;
-    double least = std::numeric_limits<double>::infinity();
-    for (int unrewarded = 0; unrewarded <= patience; ++unrewarded) {
-      if (laws.dim == 2 && !seen.insert(sets.key()).second) return Outcome::cycles;
-      if (left_ <= 0) return Outcome::limit;
-      --left_;
+  /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
+  /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
+  Outcome newton_from(const Laws &laws, ActiveSets sets, Point &point) {
+    pivoting::Policy<std::string, double> policy(/*patience=*/10);
+    for (;;) {
+      if (laws.dim == 2 && policy.returns(sets.key())) return Outcome::cycles;
+      if (systems_left_ <= 0) return Outcome::limit;
+      --systems_left_;
       h_.require(sets.support(laws));
-      const Solved solved = step(h_, q_, laws, sets, point);
+      const Solved solved = newton_step(h_, q_, laws, sets, point);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
       Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
       keep(laws, point, sets, verdict);
-      if (settled(verdict, least)) return Outcome::converged;
-      if (verdict.residual < least) unrewarded = 0;
-      least = std::min(least, verdict.residual);
+      if (settled(verdict, policy.least())) return Outcome::converged;
+      if (policy.is_lost(verdict.residual)) return Outcome::cycles;
       sets = std::move(verdict.next);
     }
-    return Outcome::cycles;
   }
 
   /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
@@ -185,7 +175,7 @@ private:
     frozen.coefficient = 0;
     frozen.only_in_contact = false;
     frozen.threshold = laws_.bounds(point.x);
-    while (left_ > 0) {
+    while (systems_left_ > 0) {
       ++result_.backup_steps;
       if (!solve_frozen(frozen, 1e-2 * near, point)) return Outcome::indefinite;
       const Vector bounds = laws_.bounds(point.x);
@@ -209,12 +199,13 @@ private:
     Point trial = point;
     const Outcome outcome = newton(frozen, trial);
     if (outcome != Outcome::converged)
-      return outcome != Outcome::indefinite && minimise(h_, q_, frozen, tolerance, left_, point);
+      return outcome != Outcome::indefinite &&
+             minimise(h_, q_, frozen, tolerance, systems_left_, point);
     point = std::move(trial);
     return true;
   }
 
-  void keep(const Laws &laws, const Point &point, const Sets &sets, const Verdict &verdict) {
+  void keep(const Laws &laws, const Point &point, const ActiveSets &sets, const Verdict &verdict) {
     if (&laws != &laws_) return;
     if (best_.x.size() > 0 && verdict.changed && verdict.residual >= result_.residual) return;
     best_ = point;
@@ -224,7 +215,7 @@ private:
 
   FrictionResult finish(Outcome outcome) {
     FrictionResult result = std::move(result_);
-    result.iterations = options_.max_iterations - left_;
+    result.iterations = options_.max_iterations - systems_left_;
     result.columns = h_.count();
     result.converged = outcome == Outcome::converged;
     best_.x = laws_.feasible(std::move(best_.x));
@@ -232,10 +223,9 @@ private:
       best_ = evaluate(h_, q_, std::move(best_.x));
       result.residual = judge(h_, laws_, best_, best_sets_, options_.tolerance).residual;
     }
+    result.start = smooth_start(h_, laws_, best_);
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
-    result.start = start_of(laws_, result.x, result.w,
-                            [this](Index j) { return h_.has(j) ? h_.diagonal(j) : 0; });
     describe(result, laws_, best_sets_);
     result.reason = reason(outcome, result);
     return result;
@@ -260,12 +250,18 @@ private:
   const Laws &laws_;
   const FrictionOptions &options_;
   Point best_; ///< the solution, or the point of the least residual
-  Sets best_sets_;
+  ActiveSets best_sets_;
   FrictionResult result_;
-  int left_; ///< linear systems
+  int systems_left_; ///< linear systems
 };
 
 } // namespace
+
+void FrictionBound::check() const {
+  const bool valid =
+      std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 && threshold >= 0;
+  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+}
 
 FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
                               const FrictionBound &bound, const Vector &start,

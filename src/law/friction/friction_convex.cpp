@@ -42,7 +42,7 @@ double shorten(const Point &point, const Point &aim) {
 
 bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolerance, int &steps,
               Point &point) {
-  Sets sets = sets_of(frozen, point.x);
+  ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
     Verdict verdict = judge(h, frozen, point, sets, tolerance);
     if (verdict.residual <= tolerance || steps <= 0) return true;
@@ -50,7 +50,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
     sets = std::move(verdict.next);
     h.require(sets.support(frozen));
     Point aim;
-    if (step(h, q, frozen, sets, aim) != Solved::yes) return false;
+    if (newton_step(h, q, frozen, sets, aim) != Solved::yes) return false;
     aim = evaluate(h, q, frozen.feasible(std::move(aim.x)));
     const double part = shorten(point, aim);
     if (part == 1) {

@@ -8,10 +8,6 @@ namespace rbvi::friction {
 
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// An unknown of the linear system, and its row: a combination of at most two entries.
 struct Unknown {
   Index node;
@@ -29,16 +25,16 @@ double tangential_diagonal(const LazyColumns &h, const Laws &laws, Index i) {
   return sum / (laws.dim - 1);
 }
 
-std::vector<Unknown> unknowns(const LazyColumns &h, const Laws &laws, const Sets &sets) {
+std::vector<Unknown> unknowns(const LazyColumns &h, const Laws &laws, const ActiveSets &sets) {
   std::vector<Unknown> result;
   for (Index i = 0; i < laws.nodes; ++i) {
     const Index t = laws.tangent(i);
-    const bool slips = sets.of(i) == Tangent::slip;
+    const bool slips = sets.tangent_at(i) == Tangent::slip;
     if (sets.is_active(i)) {
       result.push_back({.node = i, .first = i, .second = i, .unit = 1 / std::sqrt(h.diagonal(i))});
       if (slips) result.back().slope = laws.coefficient;
     }
-    if (sets.of(i) == Tangent::none) continue;
+    if (sets.tangent_at(i) == Tangent::none) continue;
     const double unit = 1 / std::sqrt(tangential_diagonal(h, laws, i));
     for (Index k = 0; k < laws.dim - 1 && !slips; ++k)
       result.push_back({.node = i, .first = t + k, .second = t + k, .unit = unit});
@@ -55,7 +51,7 @@ std::vector<Unknown> unknowns(const LazyColumns &h, const Laws &laws, const Sets
 }
 
 /// The scaled matrix of the linear system, in the order of the unknowns.
-Matrix assemble(const LazyColumns &h, const Laws &laws, const Sets &sets,
+Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
                 const std::vector<Unknown> &list) {
   const Index count = static_cast<Index>(list.size());
   Matrix matrix(count, count);
@@ -77,10 +73,10 @@ Matrix assemble(const LazyColumns &h, const Laws &laws, const Sets &sets,
 }
 
 /// The part of x that no unknown changes: the thresholds of the nodes that slip.
-Vector fixed_part(const Laws &laws, const Sets &sets) {
+Vector fixed_part(const Laws &laws, const ActiveSets &sets) {
   Vector x = Vector::Zero(laws.nodes * laws.dim);
   for (Index i = 0; i < laws.nodes; ++i)
-    if (sets.of(i) == Tangent::slip)
+    if (sets.tangent_at(i) == Tangent::slip)
       x.segment(laws.tangent(i), laws.dim - 1) = laws.threshold[i] * sets.direction.col(i);
   return x;
 }
@@ -99,8 +95,8 @@ Vector solve(const Matrix &matrix, const Vector &right, bool symmetric) {
 }
 
 /// x of the unknowns, slipping nodes on their circle.
-Vector expand(const Laws &laws, const Sets &sets, const std::vector<Unknown> &list, const Vector &u,
-              Vector x) {
+Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
+              const Vector &u, Vector x) {
   for (Index k = 0; k < u.size(); ++k) {
     const Unknown &unknown = list[at(k)];
     const double value = unknown.unit * u[k];
@@ -113,19 +109,19 @@ Vector expand(const Laws &laws, const Sets &sets, const std::vector<Unknown> &li
   for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i) {
     auto tangential = x.segment(laws.tangent(i), 2);
     const double bound = laws.bound(i, x[i]);
-    if (sets.of(i) == Tangent::slip && bound > 0 && tangential.norm() > 0)
+    if (sets.tangent_at(i) == Tangent::slip && bound > 0 && tangential.norm() > 0)
       tangential *= bound / tangential.norm();
   }
   return x;
 }
 
-/// What judges one node.
+/// The verdict on a point, node by node.
 class Judge {
 public:
-  Judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
+  Judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
         double tolerance)
       : h_(h), laws_(laws), point_(point), sets_(sets),
-        tolerance_(tolerance), verdict_{.next = Sets(laws.nodes, laws.dim)} {
+        tolerance_(tolerance), verdict_{.next = ActiveSets(laws.nodes, laws.dim)} {
     for (Index j = 0; j < point.x.size(); ++j)
       if (point.x[j] != 0) largest_ = std::max(largest_, std::abs(point.x[j]) * root(j));
   }
@@ -134,7 +130,7 @@ public:
       normal(i);
       tangential(i);
       verdict_.changed = verdict_.changed || verdict_.next.is_active(i) != sets_.is_active(i) ||
-                         verdict_.next.of(i) != sets_.of(i) || turned(i);
+                         verdict_.next.tangent_at(i) != sets_.tangent_at(i) || turned(i);
     }
     return std::move(verdict_);
   }
@@ -145,7 +141,7 @@ private:
     if (size > 0) verdict_.residual = std::max(verdict_.residual, size / scale);
   }
   bool turned(Index i) const {
-    return laws_.dim == 2 && sets_.of(i) == Tangent::slip &&
+    return laws_.dim == 2 && sets_.tangent_at(i) == Tangent::slip &&
            verdict_.next.direction(0, i) != sets_.direction(0, i);
   }
   void normal(Index i) {
@@ -159,22 +155,21 @@ private:
     }
     if (x < 0) violated(-x * root(i), largest_);
     const double y = x * root(i) - counted / root(i);
-    const bool jumps = laws_.only_in_contact && laws_.threshold[i] > 0;
-    next = sets_.is_active(i) && !jumps ? y >= -tolerance_ * largest_ : y > 0;
+    next = sets_.is_active(i) && !laws_.at_node(i).jumps() ? y >= -tolerance_ * largest_ : y > 0;
   }
   void tangential(Index i) {
     Tangent &next = verdict_.next.tangent[at(i)];
     const double bound = laws_.bound(i, point_.x[i]);
     const bool known = h_.has(laws_.tangent(i));
     if (known) measure(i, bound);
-    if (!laws_.carries(i, verdict_.next.is_active(i))) return;
+    if (!laws_.at_node(i).carries_traction(verdict_.next.is_active(i))) return;
     verdict_.next.direction.col(i) = sets_.direction.col(i);
     if (bound > 0 && known)
       predict(i, bound);
-    else if (sets_.of(i) == Tangent::none)
+    else if (sets_.tangent_at(i) == Tangent::none)
       begin(i);
     else
-      next = sets_.of(i);
+      next = sets_.tangent_at(i);
   }
   /// The bound of a node that just came into contact was zero: it slips against its w_tau.
   void begin(Index i) {
@@ -206,7 +201,7 @@ private:
     const double size = y.norm();
     // A node that slips does not turn back before it has been stuck: otherwise it may do so
     // forever.
-    const bool slips = sets_.of(i) == Tangent::slip
+    const bool slips = sets_.tangent_at(i) == Tangent::slip
                            ? size >= bound * (1 - 1e-15) && y.dot(sets_.direction.col(i)) > 0
                            : size > bound + tolerance_ * largest_ / std::sqrt(diagonal);
     verdict_.next.tangent[at(i)] = slips ? Tangent::slip : Tangent::stick;
@@ -218,9 +213,9 @@ private:
   const LazyColumns &h_;
   const Laws &laws_;
   const Point &point_;
-  const Sets &sets_;
+  const ActiveSets &sets_;
   double tolerance_;
-  double largest_ = 0; ///< of x in the scaling in which H has a unit diagonal
+  double largest_ = 0; ///< largest x in the scaling in which H has a unit diagonal
   Verdict verdict_;
 };
 
@@ -240,27 +235,26 @@ Vector Laws::feasible(Vector x) const {
   return x;
 }
 
-Sets::Sets(Index nodes, int dim)
+ActiveSets::ActiveSets(Index nodes, int dim)
     : active(at(nodes), 0), tangent(at(nodes), Tangent::none),
       direction(Matrix::Zero(dim - 1, nodes)), curvature(Vector::Constant(nodes, -1)) {}
 
-std::vector<Index> Sets::support(const Laws &laws) const {
+std::vector<Index> ActiveSets::support(const Laws &laws) const {
   std::vector<Index> result;
   for (Index i = 0; i < laws.nodes; ++i)
     if (is_active(i)) result.push_back(i);
   for (Index i = 0; i < laws.nodes; ++i)
-    for (Index k = 0; k < laws.dim - 1 && of(i) != Tangent::none; ++k)
+    for (Index k = 0; k < laws.dim - 1 && tangent_at(i) != Tangent::none; ++k)
       result.push_back(laws.tangent(i) + k);
   return result;
 }
 
-std::string Sets::key() const {
+std::string ActiveSets::key() const {
   std::string result;
   for (std::size_t i = 0; i < active.size(); ++i) {
     const bool slips = tangent[i] == Tangent::slip;
-    const int direction_of = slips && direction(0, static_cast<Index>(i)) < 0 ? 8 : 0;
-    result.push_back(
-        static_cast<char>(active[i] + 2 * static_cast<int>(tangent[i]) + direction_of));
+    const int backwards = slips && direction(0, static_cast<Index>(i)) < 0 ? 8 : 0;
+    result.push_back(static_cast<char>(active[i] + 2 * static_cast<int>(tangent[i]) + backwards));
   }
   return result;
 }
@@ -273,20 +267,20 @@ Point evaluate(const LazyColumns &h, const Vector &q, Vector x) {
   return {std::move(x), product + q, terms + q.cwiseAbs()};
 }
 
-Sets sets_of(const Laws &laws, const Vector &x) {
-  Sets result(laws.nodes, laws.dim);
+ActiveSets contact_sets(const Laws &laws, const Vector &x) {
+  ActiveSets result(laws.nodes, laws.dim);
   for (Index i = 0; i < laws.nodes; ++i)
     result.active[at(i)] = x[i] > 0;
   return result;
 }
 
-Sets sets_from(LazyColumns &h, const Laws &laws, const Vector &y) {
+ActiveSets predicted_sets(LazyColumns &h, const Laws &laws, const Vector &y) {
   constexpr double round_off = 1e-10; // x itself is on its bound where it slips
-  Sets result(laws.nodes, laws.dim);
+  ActiveSets result(laws.nodes, laws.dim);
   Vector size(laws.nodes);
   for (Index i = 0; i < laws.nodes; ++i) {
     result.active[at(i)] = y[i] > 0;
-    if (!laws.carries(i, y[i] > 0)) continue;
+    if (!laws.at_node(i).carries_traction(y[i] > 0)) continue;
     const auto tangential = y.segment(laws.tangent(i), laws.dim - 1);
     size[i] = tangential.norm();
     const bool slips = size[i] > 0 && size[i] >= (1 - round_off) * laws.bound(i, y[i]);
@@ -295,19 +289,20 @@ Sets sets_from(LazyColumns &h, const Laws &laws, const Vector &y) {
   }
   h.require(result.support(laws));
   for (Index i = 0; i < laws.nodes; ++i)
-    if (const double bound = laws.bound(i, y[i]); result.of(i) == Tangent::slip && bound > 0)
+    if (const double bound = laws.bound(i, y[i]);
+        result.tangent_at(i) == Tangent::slip && bound > 0)
       result.curvature[i] =
           std::max(0.0, size[i] - bound) * tangential_diagonal(h, laws, i) / bound;
   return result;
 }
 
-Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
+Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
               double tolerance) {
   return Judge(h, laws, point, sets, tolerance).all();
 }
 
-Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, const Sets &sets,
-            Point &point) {
+Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
+                   Point &point) {
   for (const Index j : sets.support(laws))
     if (!(h.diagonal(j) > 0)) return Solved::indefinite;
   const std::vector<Unknown> list = unknowns(h, laws, sets);

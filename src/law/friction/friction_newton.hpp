@@ -19,14 +19,11 @@ struct Laws {
   Index nodes = 0;
   int dim = 2;
   double coefficient = 0;
-  Vector threshold; ///< of every node
+  Vector threshold; ///< t of every node
   bool only_in_contact = false;
 
   Index tangent(Index i) const { return nodes + i * (dim - 1); }
-  /// Whether x_tau of the node can differ from zero.
-  bool carries(Index i, bool active) const {
-    return threshold[i] > 0 ? active || !only_in_contact : active && coefficient > 0;
-  }
+  FrictionBound at_node(Index i) const { return {coefficient, threshold[i], only_in_contact}; }
   double bound(Index i, double normal) const {
     return coefficient * std::max(normal, 0.0) +
            (normal > 0 || !only_in_contact ? threshold[i] : 0.0);
@@ -36,18 +33,20 @@ struct Laws {
   Vector feasible(Vector x) const;
 };
 
-/// What x_tau of a node is: zero, free, or of a given direction.
+/// The kind of x_tau at a node: zero, free, or of a given direction.
 enum class Tangent : char { none, stick, slip };
 
-struct Sets {
+/// The active sets: nodes in contact, and the kind of x_tau at every node. They make the laws
+/// linear equations.
+struct ActiveSets {
   std::vector<char> active;
   std::vector<Tangent> tangent;
   Matrix direction; ///< e of the nodes that slip, dim - 1 x nodes
   Vector curvature; ///< kappa of those nodes; negative: no turn
 
-  Sets(Index nodes, int dim);
-  bool is_active(Index i) const { return active[static_cast<std::size_t>(i)] != 0; }
-  Tangent of(Index i) const { return tangent[static_cast<std::size_t>(i)]; }
+  ActiveSets(Index nodes, int dim);
+  bool is_active(Index i) const { return active[at(i)] != 0; }
+  Tangent tangent_at(Index i) const { return tangent[at(i)]; }
   /// The entries of x that need not be zero.
   std::vector<Index> support(const Laws &laws) const;
   /// Equal for sets with the same linear system, in two dimensions.
@@ -63,24 +62,24 @@ struct Point {
 Point evaluate(const LazyColumns &h, const Vector &q, Vector x);
 
 struct Verdict {
-  Sets next;            ///< the sets that x - rho w predicts
+  ActiveSets next;      ///< the sets that x - rho w predicts
   bool changed = false; ///< next differs from the sets of the point
   double residual = 0;  ///< largest relative violation of the laws
 };
 
 /// `sets`: of the step that gave the point (they decide where the difference is below tolerance).
-Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const Sets &sets,
+Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
               double tolerance);
 /// The sets to judge a point by that no step gave.
-Sets sets_of(const Laws &laws, const Vector &x);
+ActiveSets contact_sets(const Laws &laws, const Vector &x);
 /// The sets that y = x - w / H_jj tells; the columns of their support are asked for.
-Sets sets_from(LazyColumns &h, const Laws &laws, const Vector &y);
+ActiveSets predicted_sets(LazyColumns &h, const Laws &laws, const Vector &y);
 
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite };
 
 /// Solves the linear system of the sets, whose columns are there; otherwise `point` is unchanged.
-Solved step(const LazyColumns &h, const Vector &q, const Laws &laws, const Sets &sets,
-            Point &point);
+Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
+                   Point &point);
 
 } // namespace rbvi::friction

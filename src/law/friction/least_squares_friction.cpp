@@ -1,11 +1,11 @@
 #include "rbvi/law/friction/least_squares_friction.hpp"
 
+#include "../pivoting.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 namespace rbvi {
@@ -13,16 +13,12 @@ namespace rbvi {
 namespace {
 
 constexpr double tolerance = 1e-13;
-constexpr double coarse = 0.1; ///< residual of a basis that hardly describes the solution
-
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr double coarse = 0.1; ///< the residual of a basis that hardly describes the solution
 
 /// The tangential equation of a node: x_tau = 0, w_tau = 0, or x_tau = direction * bound.
-enum class Tangent { zero, stick, slip };
+enum class Tangent { none, stick, slip };
 
-/// What the coefficients say at the nodes.
+/// Multipliers, gaps and slips at the nodes.
 struct Values {
   Vector x_n, x_t, w_n, w_t;
   Vector noise_n, noise_t; ///< round-off of x - w
@@ -48,24 +44,18 @@ public:
 
   Index nodes() const { return gap_.size(); }
   Index modes() const { return normal_.cols(); }
-  /// Of w where x is zero.
-  double load() const {
+  /// The largest w where x is zero.
+  double largest_load() const {
     return nodes() > 0 ? std::max(gap_.cwiseAbs().maxCoeff(), slip_.cwiseAbs().maxCoeff()) : 0.0;
   }
-  /// The threshold jumps when the node touches.
-  bool jumps() const { return bound_.only_in_contact && bound_.threshold > 0; }
-  /// Whether x_tau can differ from zero.
-  bool carries(bool together) const {
-    if (together) return bound_.coefficient > 0 || bound_.threshold > 0;
-    return bound_.threshold > 0 && !bound_.only_in_contact;
-  }
+  const FrictionBound &law() const { return bound_; }
   Tangent tangent(const SlipState &state) const {
     const bool together = state.state != NodeState::open;
-    if (!carries(together)) return Tangent::zero;
+    if (!bound_.carries_traction(together)) return Tangent::none;
     const bool sticks = together ? state.state == NodeState::stick : state.direction == 0;
     return sticks ? Tangent::stick : Tangent::slip;
   }
-  /// Of a node whose x_tau can differ from zero.
+  /// The bound of a node whose x_tau can differ from zero.
   double bound(Index j, double x_n) const { return slope_[j] * std::max(x_n, 0.0) + threshold_[j]; }
 
   /// The coefficients, of minimum norm if `full_rank` turns out to be false.
@@ -134,7 +124,7 @@ private:
   Eigen::HouseholderQR<Matrix> qr_;
 };
 
-/// What the laws make of the values.
+/// The states that the laws predict from the values, and how far the values violate them.
 struct Verdict {
   std::vector<SlipState> next;
   Vector change;        ///< how far a node is beyond the edge of its state, where the next differs
@@ -165,7 +155,7 @@ private:
     const bool before = states_[at(j)].state != NodeState::open;
     const double y = v_.x_n[j] - v_.w_n[j];
     double edge = v_.noise_n[j];
-    if (before) edge = equations_.jumps() ? 0 : -edge;
+    if (before) edge = equations_.law().jumps() ? 0 : -edge;
     const bool result = y > edge;
     if (result != before) raise(verdict_.change[j], y);
     return result;
@@ -177,7 +167,7 @@ private:
     const double x = v_.x_t[j], w = v_.w_t[j], bound = equations_.bound(j, v_.x_n[j]);
     SlipState &next = verdict_.next[at(j)];
     next = {together ? NodeState::slip : NodeState::open, 0};
-    if (equations_.carries(together)) {
+    if (equations_.law().carries_traction(together)) {
       raise(verdict_.violation, x - std::clamp(x - w, -bound, bound));
       next.direction = direction(j, kind, now.direction, bound);
       if (together && next.direction == 0) next.state = NodeState::stick;
@@ -193,7 +183,7 @@ private:
     const double y = v_.x_t[j] - v_.w_t[j], noise = v_.noise_t[j];
     const int sign = y > 0 ? 1 : -1;
     // The bound of a node that just came into contact was zero.
-    if (kind == Tangent::zero) return std::abs(y) > noise ? sign : 0;
+    if (kind == Tangent::none) return std::abs(y) > noise ? sign : 0;
     if (!(bound > 0)) return now;
     if (kind == Tangent::slip) {
       if (now * y >= bound - noise) return now;
@@ -211,7 +201,7 @@ private:
   Verdict verdict_;
 };
 
-/// States that return: block steps, then the change of the first node alone (lcp.hpp), without the
+/// Block exchange of the states; where it ends, the change of the first node alone, without the
 /// changes that are smaller than what the basis misses of the equations.
 class Solver {
 public:
@@ -254,9 +244,10 @@ public:
     for (SlipState &state : states) {
       const bool together = state.state != NodeState::open;
       state.direction = std::clamp(state.direction, -1, 1);
-      if (!equations_.carries(together) || state.state == NodeState::stick) state.direction = 0;
+      if (!equations_.law().carries_traction(together) || state.state == NodeState::stick)
+        state.direction = 0;
       if (!together) continue;
-      if (!equations_.carries(true))
+      if (!equations_.law().carries_traction(true))
         state.state = NodeState::slip;
       else if (state.direction == 0)
         state.state = NodeState::stick;
@@ -274,7 +265,7 @@ private:
 
   double relative(double violation, double largest) const {
     if (violation == 0) return 0;
-    return violation / (largest > 0 ? largest : equations_.load());
+    return violation / (largest > 0 ? largest : equations_.largest_load());
   }
 
   static std::vector<Index> beyond(const Verdict &verdict, double size) {
@@ -287,25 +278,14 @@ private:
   /// The changes to make now; false: none is left (empty), or the states are where they have been.
   bool choose(const std::vector<SlipState> &states, const Verdict &verdict,
               std::vector<Index> &changes) {
-    constexpr int patience = 10;
     std::string key;
     for (const SlipState &s : states)
       key.push_back(static_cast<char>(static_cast<int>(s.state) + 4 * (s.direction + 1)));
-    if (changes.size() < fewest_) {
-      fewest_ = changes.size();
-      unrewarded_ = 0;
-      single_ = false;
-    } else if (!single_) {
-      single_ = seen_.contains(key) || ++unrewarded_ > patience;
-    }
-    if (!single_) {
-      seen_.insert(key);
-      return true;
-    }
+    if (policy_.after(key, changes.size()) == pivoting::Exchange::block) return true;
     changes = beyond(verdict, verdict.misfit);
     if (changes.empty()) return false;
     changes.erase(changes.begin() + 1, changes.end());
-    return seen_alone_.insert(key).second;
+    return visited_alone_.insert(key).second;
   }
 
   static std::string reason(const std::string &what, double residual) {
@@ -314,8 +294,7 @@ private:
   }
   static std::string remedy() {
     return " of the largest multiplier: add modes or collocation nodes, or start from the states "
-           "of "
-           "a problem that is closer";
+           "of a problem that is closer";
   }
 
   LeastSquaresResult alternating(int iterations) {
@@ -339,10 +318,8 @@ private:
 
   Equations equations_;
   Candidate best_;
-  std::set<std::string> seen_, seen_alone_;
-  std::size_t fewest_ = std::numeric_limits<std::size_t>::max();
-  int unrewarded_ = 0;
-  bool single_ = false;
+  pivoting::Policy<std::string, std::size_t> policy_{/*patience=*/11};
+  std::set<std::string> visited_alone_; ///< from where a single node was changed
 };
 
 void check(const LeastSquaresProblem &p, const std::vector<SlipState> &start) {
@@ -369,10 +346,7 @@ void check(const LeastSquaresProblem &p, const std::vector<SlipState> &start) {
   if (!start.empty() && start.size() != at(nodes))
     throw failure("least squares: the first guess has " + std::to_string(start.size()) +
                   " states instead of " + std::to_string(nodes));
-  const FrictionBound &bound = p.bound;
-  const bool valid = std::isfinite(bound.coefficient) && std::isfinite(bound.threshold) &&
-                     bound.coefficient >= 0 && bound.threshold >= 0;
-  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+  p.bound.check();
 }
 
 } // namespace

@@ -1,3 +1,4 @@
+#include "../index.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/least_squares_friction.hpp"
 
@@ -28,7 +29,7 @@ std::vector<int> pivots(Matrix columns, std::size_t count, std::vector<char> &ta
   const double least = equal * sizes.maxCoeff();
   while (result.size() < count && sizes.maxCoeff() > least) {
     const Index pivot = most_important(sizes), node = pivot % nodes;
-    char &known = taken[static_cast<std::size_t>(node)];
+    char &known = taken[at(node)];
     if (known == 0) result.push_back(static_cast<int>(node));
     known = 1;
     const Vector direction = columns.col(pivot) / sizes[pivot];
@@ -53,7 +54,7 @@ std::vector<int> pivot_nodes(const Matrix &basis, int count) {
   const std::size_t wanted = static_cast<std::size_t>(count);
   const double largest = basis.cwiseAbs().maxCoeff();
   Matrix columns = basis.transpose() / (largest > 0 ? largest : 1.0);
-  std::vector<char> taken(static_cast<std::size_t>(nodes), 0);
+  std::vector<char> taken(at(nodes), 0);
   std::vector<int> result;
   // Nodes beyond the rank: what is left is pivoted anew.
   while (result.size() < wanted) {
@@ -66,7 +67,7 @@ std::vector<int> pivot_nodes(const Matrix &basis, int count) {
     }
   }
   for (Index node = 0; result.size() < wanted; ++node)
-    if (taken[static_cast<std::size_t>(node)] == 0) result.push_back(static_cast<int>(node));
+    if (taken[at(node)] == 0) result.push_back(static_cast<int>(node));
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include "rbvi/law/qp/nonnegative_qp.hpp"
 
+#include "../index.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 enum : char { may_enter, in_set, banned };
 
-std::uint64_t mix(Index column) {
+std::uint64_t hash_of(Index column) {
   auto z = static_cast<std::uint64_t>(column + 1) * 0x9e3779b97f4a7c15ull;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
@@ -45,17 +46,17 @@ void NonnegativeQp::prepare(const Columns &y, const Vector &g) {
   linear_ = Vector::Zero(columns);
   if (g.size() > 0) linear_ = (norms_.array() > 0).select(g.cwiseQuotient(norms_), g);
 
-  out_.assign(static_cast<std::size_t>(columns), may_enter);
+  status_.assign(at(columns), may_enter);
   if (stale_) {
     std::erase_if(active_, [&](Index j) {
       if (j < 0 || j >= columns || norms_[j] == 0) return true;
-      return std::exchange(out_[static_cast<std::size_t>(j)], in_set) == in_set;
+      return std::exchange(status_[at(j)], in_set) == in_set;
     });
     factorise(y);
   }
-  out_.assign(static_cast<std::size_t>(columns), may_enter);
+  status_.assign(at(columns), may_enter);
   for (const Index j : active_)
-    out_[static_cast<std::size_t>(j)] = in_set;
+    status_[at(j)] = in_set;
 
   const Index room = std::min(y.rows(), columns);
   for (Vector *work : {&values_, &minimiser_, &image_})
@@ -71,14 +72,13 @@ void NonnegativeQp::factorise(const Columns &y) {
   stale_ = false;
   Matrix start(y.rows(), static_cast<Index>(active_.size()));
   for (Index k = 0; k < start.cols(); ++k) {
-    const Index j = active_[static_cast<std::size_t>(k)];
+    const Index j = active_[at(k)];
     start.col(k) = y.col(j) / norms_[j];
   }
   if (qr_.assign(start)) return;
   std::vector<Index> independent;
   for (Index k = 0; k < start.cols(); ++k)
-    if (qr_.append(start.col(k), options_.dependence))
-      independent.push_back(active_[static_cast<std::size_t>(k)]);
+    if (qr_.append(start.col(k), options_.dependence)) independent.push_back(active_[at(k)]);
   active_ = std::move(independent);
 }
 
@@ -88,9 +88,8 @@ void NonnegativeQp::minimise(const Eigen::Ref<const Vector> &c) {
   const Index count = qr_.size();
   auto image = image_.head(count);
   auto minimiser = minimiser_.head(count);
+  minimiser = linear_(active_);
   const auto upper = qr_.r().triangularView<Eigen::Upper>();
-  for (Index k = 0; k < count; ++k)
-    minimiser[k] = linear_[active_[static_cast<std::size_t>(k)]];
   if (!minimiser.isZero(0)) upper.transpose().solveInPlace(minimiser);
   image = -minimiser;
   image.noalias() += qr_.q().transpose() * c;
@@ -101,9 +100,27 @@ void NonnegativeQp::minimise(const Eigen::Ref<const Vector> &c) {
 void NonnegativeQp::drop(Index position) {
   const Index left = qr_.size() - position - 1;
   values_.segment(position, left) = values_.segment(position + 1, left).eval();
-  out_[static_cast<std::size_t>(active_[static_cast<std::size_t>(position)])] = may_enter;
+  status_[at(active_[at(position)])] = may_enter;
   active_.erase(active_.begin() + position);
   qr_.remove(position);
+}
+
+/// Active columns without a positive value leave, and with them the one that blocks.
+void NonnegativeQp::drop_zeros(Index blocking) {
+  values_[blocking] = 0;
+  for (Index k = qr_.size() - 1; k >= 0; --k) {
+    if (values_[k] > 0) continue;
+    drop(k);
+    ++report_.iterations;
+  }
+}
+
+/// The column that has just been appended to the QR becomes active.
+void NonnegativeQp::take(Index column, double value) {
+  values_[qr_.size() - 1] = value;
+  active_.push_back(column);
+  status_[at(column)] = in_set;
+  ++report_.iterations;
 }
 
 /// Makes any set a valid start: columns with a negative minimiser leave until none is left.
@@ -135,11 +152,7 @@ void NonnegativeQp::settle(const Eigen::Ref<const Vector> &c) {
     if (blocking < 0) break;
     auto values = values_.head(qr_.size());
     values += step * (minimiser_.head(qr_.size()) - values);
-    for (Index k = qr_.size() - 1; k >= 0; --k) {
-      if (k != blocking && values_[k] > 0) continue;
-      drop(k);
-      ++report_.iterations;
-    }
+    drop_zeros(blocking);
   }
   values_.head(qr_.size()) = minimiser_.head(qr_.size());
 }
@@ -155,7 +168,7 @@ Index NonnegativeQp::best_column(const Columns &y, const Eigen::Ref<const Vector
   double largest = 0;
   banned_gain_ = 0;
   for (Index j = 0; j < y.cols(); ++j) {
-    const char state = out_[static_cast<std::size_t>(j)];
+    const char state = status_[at(j)];
     if (state == in_set) continue;
     const double size = norms_[j] > 0 ? scale + std::abs(linear_[j]) : std::abs(linear_[j]);
     const double gain = (norms_[j] > 0 ? gains_[j] / norms_[j] : 0.0) - linear_[j];
@@ -172,10 +185,7 @@ bool NonnegativeQp::enter(const Columns &y, Index column) {
   if (norms_[column] == 0) return false;
   column_ = y.col(column) / norms_[column];
   if (!qr_.append(column_, options_.dependence)) return exchange(column);
-  values_[qr_.size() - 1] = 0;
-  active_.push_back(column);
-  out_[static_cast<std::size_t>(column)] = in_set;
-  ++report_.iterations;
+  take(column, 0);
   return true;
 }
 
@@ -187,12 +197,11 @@ bool NonnegativeQp::exchange(Index column) {
   qr_.r().triangularView<Eigen::Upper>().solveInPlace(a);
   double slope = linear_[column], scale = std::abs(slope);
   for (Index k = 0; k < count; ++k) {
-    const double term = a[k] * linear_[active_[static_cast<std::size_t>(k)]];
+    const double term = a[k] * linear_[active_[at(k)]];
     slope -= term;
     scale += std::abs(term);
   }
-  auto &state = out_[static_cast<std::size_t>(column)];
-  state = banned;
+  status_[at(column)] = banned;
   if (!(slope < -options_.dependence * scale)) return true;
 
   const double least = options_.dependence * std::max(1.0, a.cwiseAbs().maxCoeff());
@@ -205,17 +214,9 @@ bool NonnegativeQp::exchange(Index column) {
   }
   if (blocking < 0) return false;
   values_.head(count) -= step * a;
-  values_[blocking] = 0;
-  for (Index k = count - 1; k >= 0; --k) {
-    if (values_[k] > 0) continue;
-    drop(k);
-    ++report_.iterations;
-  }
+  drop_zeros(blocking);
   if (!qr_.append(column_, options_.dependence)) return true;
-  values_[qr_.size() - 1] = step;
-  active_.push_back(column);
-  state = in_set;
-  ++report_.iterations;
+  take(column, step);
   return true;
 }
 
@@ -223,10 +224,10 @@ bool NonnegativeQp::exchange(Index column) {
 bool NonnegativeQp::seen_before() {
   std::uint64_t hash = 0;
   for (const Index j : active_)
-    hash ^= mix(j);
+    hash ^= hash_of(j);
   if (std::find(seen_.begin(), seen_.end(), hash) != seen_.end()) return true;
   seen_.push_back(hash);
-  std::replace(out_.begin(), out_.end(), banned, may_enter);
+  std::replace(status_.begin(), status_.end(), banned, may_enter);
   return false;
 }
 
@@ -249,7 +250,7 @@ NonnegativeQpReport NonnegativeQp::solve(const Columns &y, const Eigen::Ref<cons
     if (report_.iterations >= limit) break;
     const int before = report_.iterations;
     if (returned) {
-      out_[static_cast<std::size_t>(column)] = banned;
+      status_[at(column)] = banned;
       returned = false;
     } else if (!enter(y, column)) {
       report_.unbounded = true;
@@ -259,10 +260,7 @@ NonnegativeQpReport NonnegativeQp::solve(const Columns &y, const Eigen::Ref<cons
     if (changed) settle(c);
   }
   x_.setZero();
-  for (Index k = 0; k < qr_.size(); ++k) {
-    const Index j = active_[static_cast<std::size_t>(k)];
-    x_[j] = values_[k] / norms_[j];
-  }
+  x_(active_) = values_.head(qr_.size()).cwiseQuotient(norms_(active_));
   return report_;
 }
 

@@ -15,7 +15,7 @@
 
 namespace rbvi {
 
-/// What does not change between the steps of one solve.
+/// The data of one problem.
 struct CollocatedProblem {
   Matrix h;                            ///< (R + S) x (R + S)
   Vector q;                            ///< R + S
@@ -24,7 +24,7 @@ struct CollocatedProblem {
 };
 
 struct CollocatedResult {
-  Vector x, w;
+  Vector x, w;         ///< R + S each
   int iterations = 0;  ///< frozen bounds, each a small QP
   double residual = 0; ///< largest relative violation of the three laws
   bool converged = false;

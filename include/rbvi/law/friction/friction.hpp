@@ -15,13 +15,28 @@
 
 #include "rbvi/law/lcp.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
-/// The bound of every node.
+/// The bound s = c x_n + t of |x_tau| at every node.
 struct FrictionBound {
   double coefficient = 0;       ///< c >= 0
   double threshold = 0;         ///< t >= 0
   bool only_in_contact = false; ///< t = 0 at nodes that carry no pressure
+
+  double threshold_at(double x_n) const { return x_n > 0 || !only_in_contact ? threshold : 0.0; }
+  /// s; a negative x_n counts as zero.
+  double value(double x_n) const { return coefficient * std::max(x_n, 0.0) + threshold_at(x_n); }
+  /// Whether t appears only when the node touches, so that s is not continuous.
+  bool jumps() const { return only_in_contact && threshold > 0; }
+  /// Whether x_tau of a node can differ from zero.
+  bool carries_traction(bool in_contact) const {
+    if (threshold > 0) return in_contact || !only_in_contact;
+    return in_contact && coefficient > 0;
+  }
+  /// Throws bad_input for a coefficient or a threshold that is negative or not finite.
+  void check() const;
 };
 
 /// Where a node is: apart or together, sticking or slipping.
@@ -33,18 +48,18 @@ struct FrictionOptions {
 };
 
 struct FrictionResult {
-  Vector x, w;
+  Vector x, w;  ///< m * dim entries each
   Vector start; ///< x - w / H_jj (the mean of a node's tangential H_jj; where they were not asked
                 ///< for, of all others): its signs and its sizes against the bound tell every
                 ///< state. Smooth where x and w are not: start nearby problems from it, or from
                 ///< interpolants of several
   std::vector<Index> active;     ///< nodes with x_n > 0, increasing
-  std::vector<NodeState> states; ///< of every node; an open node can slip or stick by Tresca: its
-                                 ///< state is open all the same
-  int iterations = 0;            ///< linear systems solved
-  int columns = 0;               ///< of H that were asked for
-  int backup_steps = 0;          ///< fixed-point steps after a cycle
-  double residual = 0;           ///< largest relative violation of the three laws
+  std::vector<NodeState> states; ///< state of every node; an open one can slip or stick by Tresca:
+                                 ///< its state is open all the same
+  int iterations = 0;   ///< linear systems solved
+  int columns = 0;      ///< columns of H that were asked for
+  int backup_steps = 0; ///< fixed-point steps after a cycle
+  double residual = 0;  ///< largest relative violation of the three laws
   bool converged = false;
   std::string reason; ///< why it stopped; not converged: what to try
 };

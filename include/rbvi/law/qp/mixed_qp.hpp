@@ -32,10 +32,10 @@ private:
   Index free_;
   NonnegativeQp qp_;
   bool stale_ = true;
-  Matrix q_, r_;    ///< of the independent free columns; r_ upper trapezoidal, rank x k
+  Matrix q_, r_;    ///< QR of the independent free columns; r_ upper trapezoidal, rank x k
   Matrix bounded_;  ///< (I - Q Q^T) B
   Matrix coupling_; ///< Q^T B
-  Eigen::PermutationMatrix<Eigen::Dynamic> order_; ///< of the free columns in the QR
+  Eigen::PermutationMatrix<Eigen::Dynamic> order_; ///< order of the free columns in the QR
   Vector x_, residual_;
 };
 

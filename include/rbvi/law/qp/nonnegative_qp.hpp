@@ -82,6 +82,8 @@ private:
   void factorise(const Columns &y);
   void minimise(const Eigen::Ref<const Vector> &c);
   void drop(Index position);
+  void drop_zeros(Index blocking);
+  void take(Index column, double value);
   void drop_negative(const Eigen::Ref<const Vector> &c);
   void settle(const Eigen::Ref<const Vector> &c);
   Index best_column(const Columns &y, const Eigen::Ref<const Vector> &c);
@@ -94,15 +96,15 @@ private:
   UpdatableQr qr_;
   std::vector<Index> active_; ///< columns in the order of the QR
   bool stale_ = false;        ///< the QR is not that of active_
-  Vector norms_;              ///< of the columns of Y
+  Vector norms_;              ///< norms of the columns of Y
   Vector linear_;             ///< g_j / |y_j|
   Vector values_;             ///< |y_j| x_j of the active columns, in the order of the QR
-  Vector minimiser_;          ///< the same at the minimum over the active columns
+  Vector minimiser_;          ///< the values at the minimum over the active columns
   Vector image_;              ///< Q^T Y x at that minimum
   Vector gains_;              ///< minus the gradient, per unit column
   double banned_gain_ = 0;    ///< largest gain, relative to its scale, of a banned column
   Vector x_, residual_, column_;
-  std::vector<char> out_;           ///< 0: may enter, 1: active, 2: banned until the next progress
+  std::vector<char> status_;        ///< may enter, active, or banned until the next progress
   std::vector<std::uint64_t> seen_; ///< hashes of the active sets whose minimum was reached
 };
 

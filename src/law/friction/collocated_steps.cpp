@@ -1,4 +1,4 @@
-#include "collocated_face.hpp"
+#include "collocated_steps.hpp"
 
 namespace rbvi::collocated {
 
@@ -14,7 +14,7 @@ std::vector<Index> rows_above(const Vector &norms, double least) {
 /// Newton's step on given sets: the bounds follow the pressure,
 ///
 ///   w_free = 0,   w_tau + T^T delta = 0,   side_j (T b)_j - c (N a)_j = t at the nodes at a bound.
-Point newton_step(const Scaled &p, const Sets &sets) {
+Point newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   std::vector<Index> unknowns, held;
   for (Index i = 0; i < p.generators(); ++i)
     if (sets.free[at(i)] != 0) unknowns.push_back(i);
@@ -32,7 +32,7 @@ Point newton_step(const Scaled &p, const Sets &sets) {
   for (Index k = 0; k < m; ++k) {
     const Index j = held[at(k)];
     const double side = sets.side[at(j)], size = p.size[j];
-    double reach = 0; // of the free generators: in contact by these sets
+    double reach = 0; // largest entry of the free generators: in contact by these sets
     for (Index i = 0; i < pressures; ++i) {
       const double value = p.normal(j, unknowns[at(i)]);
       system(n + k, i) = -p.bound.coefficient * value / size;
@@ -40,7 +40,7 @@ Point newton_step(const Scaled &p, const Sets &sets) {
     }
     system.row(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j);
     system.col(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j).transpose();
-    right[n + k] = p.threshold(reach) / size;
+    right[n + k] = p.bound.threshold_at(reach) / size;
   }
   Vector solution(n + m);
   if (n + m > 0) {
@@ -63,8 +63,8 @@ Point newton_step(const Scaled &p, const Sets &sets) {
 /// and delta of both signs: with H = L L^T, Y = L^-1 [-E_n, T^T, -T^T], c = -L^-1 q, g = (0, s, s).
 class FrozenBounds {
 public:
-  explicit FrozenBounds(const Scaled &p) : p_(p), qp_(p.q.size()), cholesky_(p.h) {
-    if (cholesky_.info() != Eigen::Success) throw dependent();
+  explicit FrozenBounds(const ScaledProblem &p) : p_(p), qp_(p.q.size()), cholesky_(p.h) {
+    if (cholesky_.info() != Eigen::Success) throw not_positive_definite();
     const Index r = p.generators(), s = p.modes(), m = p.nodes();
     y_.setZero(r + s, r + 2 * m);
     y_.topLeftCorner(r, r) = -Matrix::Identity(r, r);
@@ -73,7 +73,7 @@ public:
     if (y_.cols() > 0) cholesky_.matrixL().solveInPlace(y_);
     c_ = cholesky_.matrixL().solve(-p.q);
   }
-  void start_from(const Sets &sets) {
+  void start_from(const ActiveSets &sets) {
     std::vector<Index> active;
     for (Index i = 0; i < p_.generators(); ++i)
       if (sets.free[at(i)] == 0) active.push_back(i);
@@ -96,8 +96,8 @@ public:
     point.delta = (qp_.x().segment(r, m) - qp_.x().tail(m)).cwiseQuotient(p_.size);
     return point;
   }
-  Sets sets() const {
-    Sets result(p_);
+  ActiveSets sets() const {
+    ActiveSets result(p_);
     for (const Index column : qp_.active()) {
       const Index j = column - p_.generators();
       if (j < 0) result.free[at(column)] = 0;
@@ -107,19 +107,19 @@ public:
   }
 
 private:
-  const Scaled &p_;
+  const ScaledProblem &p_;
   NonnegativeQp qp_;
   Eigen::LLT<Matrix> cholesky_;
   Matrix y_;
   Vector c_;
 };
 
-Error dependent() {
+Error not_positive_definite() {
   return failure("collocated friction: H is not positive definite: leave out what depends on the "
                  "other generators and modes");
 }
 
-Scaled scaled(const CollocatedProblem &p) {
+ScaledProblem scaled(const CollocatedProblem &p) {
   const Index r = p.normal_rows.cols();
   const Vector unit = p.h.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix rows = p.tangential_rows * unit.tail(unit.size() - r).asDiagonal();
@@ -134,15 +134,16 @@ Scaled scaled(const CollocatedProblem &p) {
           .bound = p.bound};
 }
 
-Face::Face(const Scaled &p, const std::vector<char> &closed) : closed_(closed), p_(p), reduced_(p) {
+ZeroBoundElimination::ZeroBoundElimination(const ScaledProblem &p, const std::vector<char> &closed)
+    : closed_(closed), p_(p), reduced_(p) {
   for (Index j = 0; j < p.nodes(); ++j)
     (closed[at(j)] != 0 ? zero_ : nodes_).push_back(j);
   if (!zero_.empty()) eliminate();
 }
 
-Face::~Face() = default;
+ZeroBoundElimination::~ZeroBoundElimination() = default;
 
-void Face::eliminate() {
+void ZeroBoundElimination::eliminate() {
   const Index r = p_.generators(), s = p_.modes();
   const double least = round_off * p_.size.maxCoeff();
   qr_.compute(p_.tangential(zero_, Eigen::all).transpose());
@@ -167,18 +168,18 @@ void Face::eliminate() {
   reduced_.normal = p_.normal(nodes_, Eigen::all);
 }
 
-Point Face::newton(const Sets &sets) const {
+Point ZeroBoundElimination::newton(const ActiveSets &sets) const {
   return lifted(newton_step(reduced_, restricted(sets)));
 }
 
-Point Face::frozen(const Vector &s, Sets &sets) {
+Point ZeroBoundElimination::frozen(const Vector &s, ActiveSets &sets) {
   if (!qp_) {
     qp_ = std::make_unique<FrozenBounds>(reduced_);
     qp_->start_from(restricted(sets));
   }
   Point point = lifted(qp_->solve(s(nodes_)));
-  const Sets found = qp_->sets();
-  sets = Sets(p_);
+  const ActiveSets found = qp_->sets();
+  sets = ActiveSets(p_);
   sets.free = found.free;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     sets.side[at(nodes_[k])] = found.side[k];
@@ -187,8 +188,8 @@ Point Face::frozen(const Vector &s, Sets &sets) {
   return point;
 }
 
-Sets Face::restricted(const Sets &sets) const {
-  Sets result(reduced_);
+ActiveSets ZeroBoundElimination::restricted(const ActiveSets &sets) const {
+  ActiveSets result(reduced_);
   result.free = sets.free;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     result.side[k] = sets.side[at(nodes_[k])];
@@ -196,7 +197,7 @@ Sets Face::restricted(const Sets &sets) const {
 }
 
 /// The multipliers of T_E b = 0 are those of what the others leave.
-Point Face::lifted(const Point &point) const {
+Point ZeroBoundElimination::lifted(const Point &point) const {
   if (zero_.empty()) return point;
   Point full;
   const Index r = p_.generators(), s = p_.modes();

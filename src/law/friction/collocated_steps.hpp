@@ -2,6 +2,7 @@
 // sets, and what is left of both where bounds are zero.
 #pragma once
 
+#include "../index.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/collocated_friction.hpp"
 #include "rbvi/law/qp/nonnegative_qp.hpp"
@@ -13,25 +14,21 @@
 
 namespace rbvi::collocated {
 
-inline constexpr double accuracy = 1e-12; ///< of a solution
+inline constexpr double accuracy = 1e-12; ///< largest residual of a solution
 inline constexpr double round_off =
     1e-13; ///< nothing is violated, a row of T says nothing, below it
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
-
-inline std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
 
 inline signed char sign(double value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
 /// H is not positive definite.
-Error dependent();
+Error not_positive_definite();
 
 /// The problem in the scaling in which H has a unit diagonal: x = unit * (scaled x). Rows of T at
 /// round-off are left out; the others have the norm `size`.
-struct Scaled {
+struct ScaledProblem {
   Vector unit, q, size;
   Matrix h, normal, tangential;
   FrictionBound bound;
@@ -40,33 +37,30 @@ struct Scaled {
   Index generators() const { return normal.cols(); }
   Index modes() const { return tangential.cols(); }
 
-  double threshold(double pressure) const {
-    return pressure > 0 || !bound.only_in_contact ? bound.threshold : 0;
-  }
   /// s = c N a + t
   Vector bounds(const Vector &x) const {
-    const Vector pressure = (normal * x.head(generators())).cwiseMax(0);
-    return pressure.unaryExpr(
-        [this](double value) { return bound.coefficient * value + threshold(value); });
+    const Vector pressure = normal * x.head(generators());
+    return pressure.unaryExpr([this](double value) { return bound.value(value); });
   }
 };
 
-Scaled scaled(const CollocatedProblem &problem);
+ScaledProblem scaled(const CollocatedProblem &problem);
 
 /// Which generators may carry pressure, and which nodes are at their bound: -1, 0 or 1, the sign
 /// of T b.
-struct Sets {
+struct ActiveSets {
   std::vector<char> free;
   std::vector<signed char> side;
 
-  explicit Sets(const Scaled &p) : free(at(p.generators()), 1), side(at(p.nodes()), 0) {}
-  friend auto operator<=>(const Sets &, const Sets &) = default;
+  explicit ActiveSets(const ScaledProblem &p)
+      : free(at(p.generators()), 1), side(at(p.nodes()), 0) {}
+  friend auto operator<=>(const ActiveSets &, const ActiveSets &) = default;
 };
 
 /// A point and its multipliers, w_tau + T^T delta = 0; delta has the sign of T b.
 struct Point {
   Vector x, delta;
-  Vector w, terms, bounds, traction; ///< of judge: w, |H| |x| + |q|, s, T b
+  Vector w, terms, bounds, traction; ///< filled by Judge: w, |H| |x| + |q|, s, T b
   double residual = infinity;
 };
 
@@ -75,29 +69,29 @@ class FrozenBounds;
 /// The problem with the nodes of zero bound eliminated: they hold T_E b = 0, often with more rows
 /// than modes. b = Z y, with Z an orthonormal basis of the kernel, leaves the problem of the other
 /// nodes for (a, y).
-class Face {
+class ZeroBoundElimination {
 public:
   /// `closed`: E, of every node.
-  Face(const Scaled &p, const std::vector<char> &closed);
-  ~Face();
+  ZeroBoundElimination(const ScaledProblem &p, const std::vector<char> &closed);
+  ~ZeroBoundElimination();
   bool is(const std::vector<char> &closed) const { return closed_ == closed; }
 
   /// Newton's step on these sets; the bounds follow the pressure.
-  Point newton(const Sets &sets) const;
+  Point newton(const ActiveSets &sets) const;
 
   /// The solution with the bounds s; `sets`: a first guess, and on return those of the solution.
-  Point frozen(const Vector &s, Sets &sets);
+  Point frozen(const Vector &s, ActiveSets &sets);
 
 private:
   void eliminate();
-  Sets restricted(const Sets &sets) const;
+  ActiveSets restricted(const ActiveSets &sets) const;
   Point lifted(const Point &point) const;
 
   std::vector<char> closed_;
-  const Scaled &p_;
-  Scaled reduced_;
+  const ScaledProblem &p_;
+  ScaledProblem reduced_;
   std::vector<Index> zero_, nodes_;       ///< E, the others
-  Eigen::ColPivHouseholderQR<Matrix> qr_; ///< of T_E^T
+  Eigen::ColPivHouseholderQR<Matrix> qr_; ///< QR of T_E^T
   Matrix z_;
   std::unique_ptr<FrozenBounds> qp_;
 };
