@@ -2,11 +2,11 @@
 """layers.py ROOT: the code keeps to the layers and rooms of src/README.md, and to its sizes.
 
 A layer is src/NAME with include/rbvi/NAME; a room is one folder of a layer without its subfolders.
-- A layer includes itself and layers above it in the table "Layers" alone; the scenes of cases include
-  layers of the online program alone.
+- A layer includes itself and layers above it in the table "Layers" alone; the scenes of cases
+  include layers of the online program alone.
 - Rooms do not include each other in a circle.
-- A room of src has fewer than 2000 lines, a file of code at most 400, a function at most 60 unless it
-  is a table of data. Functions are found by the indentation that clang-format gives them.
+- A room of src has fewer than 2000 lines, a file of code at most 400, a function at most 60 unless
+  it is a table of data. Functions are found by the indentation that clang-format gives them.
 """
 
 import re
@@ -103,7 +103,8 @@ def blocks(lines, first, last, indent):
             end += 1
         heading = " ".join(part.strip() for part in lines[line:end + 1])
         if end < last and heading.split("//")[0].rstrip().endswith("{"):
-            close = next((i for i in range(end + 1, last) if lines[i].startswith(margin + "}")), last)
+            inside = range(end + 1, last)
+            close = next((i for i in inside if lines[i].startswith(margin + "}")), last)
             yield heading, line, close
             end = close
         line = end + 1

@@ -31,7 +31,8 @@ def index_of(root):
     index = {}
     for row in re.findall(r"^\| (\(.*) \|$", section.split("\n## ")[0], re.MULTILINE):
         cells = row.split(" | ")
-        files = [(root / "src" / path).resolve() for path in re.findall(r"\]\(([^)]+)\)", cells[-1])]
+        files = [(root / "src" / path).resolve()
+                 for path in re.findall(r"\]\(([^)]+)\)", cells[-1])]
         for number in re.findall(r"\((B\.\d+|\d\.\d+)\)", cells[0]):
             index.setdefault(number, []).extend(files)
     return index
