@@ -14,7 +14,6 @@
 #include "rbvi/tool/finish.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 using namespace rbvi;
 
@@ -36,7 +35,7 @@ Scene membrane() {
 Sweep snapshots(const Scene &scene, const std::string &directory) {
   const Groups groups(PETSC_COMM_WORLD, 1);
   Problem problem(groups.comm(), scene, {});
-  return run_sweep(PETSC_COMM_WORLD, groups, problem, {}, parse_set(scene.parameters, "grid:5,5"),
+  return run_sweep(PETSC_COMM_WORLD, groups, problem, {}, parse_set(scene.parameters, "grid:9,9"),
                    directory);
 }
 
