@@ -42,7 +42,7 @@ Sweep snapshots(const Scene &scene, const std::string &directory) {
 /// 4. The primal basis V_N: modes of the displacements, orthonormal in V, as many as leave the
 /// relative error e_POD(N) <= 1e-6 (2.11). The dual cone W_R+ = {sum_r x_r chi_r, x_r >= 0}: hat
 /// functions where contact changes, and modes of either sign where it never ends; e(R) <= 1e-4
-/// (2.34).
+/// (2.34). The training grid holds the corners of the box: no ring around these nodes is needed.
 ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples, StageTimes &times) {
   ReducedBases bases;
   add_modes(problem, samples, {.tolerance = 1e-6}, bases, times);
@@ -51,7 +51,7 @@ ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples, Stag
   const auto condensed = [&](const std::vector<Index> &which) -> Matrix { // of B A^-1 B^T
     return op.b * solver.responses(Matrix(op.b.transpose())(Eigen::all, which));
   };
-  bases.cone = build_cone(multipliers_of(samples), problem.w_product(), {}, condensed);
+  bases.cone = build_cone(multipliers_of(samples), problem.w_product(), {.ring = 0}, condensed);
   return bases;
 }
 
