@@ -1,3 +1,4 @@
+// samples/HASH.h5: its data sets are listed in src/rom/model/LAYOUT.md.
 #include "sample_file.hpp"
 
 #include "rbvi/core/error.hpp"

@@ -16,7 +16,7 @@ MOST = {"lambda, L2": 0.19, "lambda, L1": 0.105, "peak": 1e-3, "area": 1e-3, "en
 
 
 def main(rbvi, case):
-    sys.path.insert(0, str(case))
+    sys.path.insert(0, str(case / "study"))
     import accuracy
 
     wrong = []

@@ -2,7 +2,7 @@
 """Runs the study of a case on few parameters: every table and figure is there, the constants come in
 their order, and what is recommended is more accurate than what was published.
 
-    check_study.py BIN CASE_DIR OUT [SCRIPT]     SCRIPT: study.py
+    check_study.py BIN CASE_DIR OUT [SCRIPT]     SCRIPT: of CASE_DIR/study, else study.py
 """
 
 import csv
@@ -37,7 +37,7 @@ def largest_error(run):
 def main(binaries, case, out, script="study.py"):
     name = case.name if script == "study.py" else f"{case.name}/{Path(script).stem}"
     shutil.rmtree(out, ignore_errors=True)
-    subprocess.run([sys.executable, case / script, binaries, out, *FEW[name]], check=True,
+    subprocess.run([sys.executable, case / "study" / script, binaries, out, *FEW[name]], check=True,
                    stdout=subprocess.DEVNULL)
     tables = (out / "tables.md").read_text()
     if script == "study.py":

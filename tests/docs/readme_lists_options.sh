@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# readme_lists_options.sh README COMMAND...: every option in the help of each command stands in the
-# README, with its dash, as code.
+# readme_lists_options.sh PAGE COMMAND...: every option in the help of each command stands in the
+# page, with its dash, as code.
 set -euo pipefail
-readme=$1
+page=$1
 shift
 status=0 found=0
 for command in "$@"; do
   for option in $("$command" --help | grep -oE '^ +--?[a-z][a-z0-9_]*' | tr -d ' '); do
     found=$((found + 1))
-    grep -qE -- "\`$option[\` =]" "$readme" || {
-      echo "$option of $(basename "$command") is not in $readme"
+    grep -qE -- "\`$option[\` =]" "$page" || {
+      echo "$option of $(basename "$command") is not in $page"
       status=1
     }
   done

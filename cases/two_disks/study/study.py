@@ -2,7 +2,7 @@
 """The study of two half-disks in contact: both ways to integrate over meshes that do not match,
 the published basis pairs, and every dual basis.
 
-    study.py BIN OUT [OPTION...]     e.g. cases/two_disks/study.py build/bin run/two_disks_study
+    study.py BIN OUT [OPTION...]     e.g. cases/two_disks/study/study.py build/bin run/two_disks_study
 
 Options go to every run (a smaller -train; refined meshes and most timed runs are then left out).
 Runs rbvi offline and rbvi verify for each combination (two at a time, one rank each), then the
@@ -12,12 +12,12 @@ timed ones alone, and writes OUT/tables.md and OUT/figures/*.png. What is there 
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from study_tools import (ENRICHMENTS, enrichment_costs, first_at, history, markdown, pair_options,
                          rows_of, short, study_main, summary, table)
 
-CASE = Path(__file__).parent / "published.yaml"
+CASE = Path(__file__).resolve().parents[1] / "published.yaml"
 VARIANTS = {
     "intersection": ["-integration", "intersection"],
     "direct": ["-integration", "direct"],

@@ -2,7 +2,7 @@
 """The study of a half-disk on a rigid disk with friction: the published reduced model, the four
 reductions of the multipliers, and more free parameters.
 
-    study.py BIN OUT [OPTION...]     e.g. cases/rigid_disk/study.py build/bin run/rigid_disk_study
+    study.py BIN OUT [OPTION...]     e.g. cases/rigid_disk/study/study.py build/bin run/rigid_disk_study
 
 Options go to every run (a smaller -train; more free parameters and most benchmarks are then left
 out). Runs rbvi offline and rbvi verify for each combination (two at a time, one rank each), then
@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from study_tools import (first_at, history, markdown, pair_options, separation_errors, short,
                          stored, study_main, summary, table)
 
-CASE = Path(__file__).parent / "published.yaml"
+CASE = Path(__file__).resolve().parents[1] / "published.yaml"
 VARIANTS = {  # radius: of the free parameter alone
     "radius": [],
     "rigid": ["-normal", "rigid"],

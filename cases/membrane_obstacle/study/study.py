@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The study of the membrane over an obstacle: every dual basis, every enrichment, both disc maps.
 
-    study.py BIN OUT [OPTION...]     e.g. cases/membrane_obstacle/study.py build/bin run/study
+    study.py BIN OUT [OPTION...]     e.g. cases/membrane_obstacle/study/study.py build/bin run/study
 
 Options go to every run (a coarser -mesh, a smaller -train). Runs rbvi offline and rbvi verify for
 each combination (two at a time, one rank each), then the timed ones alone, and writes OUT/tables.md
@@ -13,12 +13,12 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, pair_options, short,
                          study_main, summary, table)
 
-CASE = Path(__file__).parent / "published.yaml"
+CASE = Path(__file__).resolve().parents[1] / "published.yaml"
 MAPS = ("similarity", "graded")
 SETS = {  # the dual bases; all with the operators separated to 1e-4
     "cpg": ["-cone_type", "cpg", "-cone_tolerance", "1e-2"],

@@ -2,7 +2,7 @@
 """The study of Nitsche's method for a half-disk on a rigid disk: the high-fidelity answers, the
 reduced models with three treatments of the contact curve, and the mixed method on the same mesh.
 
-    nitsche_study.py BIN OUT [OPTION...]   e.g. cases/rigid_disk/nitsche_study.py build/bin run/ns
+    nitsche_study.py BIN OUT [OPTION...]   e.g. cases/rigid_disk/study/nitsche_study.py build/bin run/ns
 
 Options go to every run (a smaller -train, fewer -arc_edges; runs with more training radii and other
 meshes are then left out). Writes OUT/tables.md and OUT/figures/*.png. What is there is kept.
@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from study_tools import (history, markdown, rows_of, short, stage_seconds, stored, study_main,
                          summary)
 
-CASE = Path(__file__).parent / "nitsche.yaml"
+CASE = Path(__file__).resolve().parents[1] / "nitsche.yaml"
 RADII = ("0.7", "1", "1.3")
 LAWS = {"none": "none", "tresca": "Tresca, 0.1", "coulomb": "Coulomb, 0.1"}
 EDGES = {"5": "158", "2.5": "316", "1.25": "632"}  # of the arc, by their length in mm

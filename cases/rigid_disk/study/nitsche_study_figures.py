@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, history, log_axis, plt,
                           read_grid, save)

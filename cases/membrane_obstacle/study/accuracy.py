@@ -2,7 +2,7 @@
 """High-fidelity answers of the membrane against the solution without a mesh (exact.py).
 
     accuracy.py BIN [-levels LEVELS] [OPTION...]
-                    e.g. cases/membrane_obstacle/accuracy.py build/bin -lumped no
+                    e.g. cases/membrane_obstacle/study/accuracy.py build/bin -lumped no
 
 Solves at 22 parameters (two of the README and 20 random ones of the box) on the mesh as it is and
 on its refinements (0, 1 and 2 times, or as many as LEVELS), with the options on every solve. Prints
@@ -20,12 +20,12 @@ from subprocess import run
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from exact import Exact
 from figure_tools import read_grid
 
-CASE = Path(__file__).parent / "case.yaml"
+CASE = Path(__file__).resolve().parents[1] / "case.yaml"
 DRAW = random.Random(1).uniform
 PARAMETERS = [(0.2, 0, 0), (0.18, 0.025, -0.025)] + [
     (DRAW(0.16, 0.24), DRAW(-0.05, 0.05), DRAW(-0.05, 0.05)) for _ in range(20)]

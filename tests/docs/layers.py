@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""layers.py ROOT: the code keeps to the layers and rooms of src/README.md, and to its sizes.
+
+A layer is src/NAME with include/rbvi/NAME; a room is one folder of a layer without its subfolders.
+- A layer includes itself and layers above it in the table "Layers" alone; the scenes of cases
+  include layers of the online program alone.
+- Rooms do not include each other in a circle.
+- A room of src has fewer than 2000 lines, a file of code at most 400, a function at most 60 unless
+  it is a table of data. Functions are found by the indentation that clang-format gives them.
+"""
+
+import re
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+MOST_OF_ROOM, MOST_OF_FILE, MOST_OF_FUNCTION = 2000, 400, 60
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+TYPE = re.compile(r"(template\s*<.*?>\s*)?(struct|class|union|enum)\b")
+TABLE = re.compile(r"static const(expr)? .*\{|return \{")
+
+
+def layers_of(root):
+    """Layers in their order, and how many of them the online program has."""
+    page = (root / "src/README.md").read_text(encoding="utf-8")
+    section = page.split("\n## Layers\n")[1].split("\n## ")[0]
+    names = re.findall(r"^\| \[`(\w+)`\]", section, re.MULTILINE)
+    if "rom" not in names or len(names) < 10:
+        sys.exit("src/README.md: no table of layers")
+    return names, names.index("rom") + 1
+
+
+def room_of(path, root):
+    parts = path.relative_to(root).parent.parts
+    return "/".join(parts[2:] if parts[0] == "include" else parts[1:])
+
+
+def sources(root, folders, suffixes=(".cpp", ".hpp")):
+    return sorted(path for folder in folders for path in (root / folder).rglob("*")
+                  if path.suffix in suffixes)
+
+
+def included(path, root):
+    """The files of ours that a file includes."""
+    for name in INCLUDE.findall(path.read_text(encoding="utf-8")):
+        places = [path.parent / name, root / "include" / name]
+        found = [place.resolve() for place in places if place.is_file()]
+        yield name, found[0] if found else None
+
+
+def check_includes(root):
+    names, online = layers_of(root)
+    wrong, edges = [], defaultdict(dict)
+    for path in sources(root, ["src", "include/rbvi"]):
+        here = room_of(path, root)
+        layer = here.split("/")[0]
+        if layer not in names:
+            wrong.append(f"{path.relative_to(root)}: src/README.md has no layer {layer}")
+            continue
+        for name, target in included(path, root):
+            if target is None:
+                wrong.append(f"{path.relative_to(root)} includes {name}, which is nowhere")
+                continue
+            there = room_of(target, root)
+            if there.split("/")[0] not in names[:names.index(layer) + 1]:
+                wrong.append(f"{path.relative_to(root)} includes {name}: {layer} is above it")
+            if here != there:
+                edges[here].setdefault(there, f"{path.relative_to(root)} includes {name}")
+    for path in sources(root, [p for p in (root / "cases").iterdir() if p.is_dir()]):
+        for name, target in included(path, root):
+            if name.startswith("rbvi/") and name.split("/")[1] not in names[:online]:
+                wrong.append(f"{path.relative_to(root)} includes {name}, which the online program "
+                             "does not have")
+    return wrong + circles(edges)
+
+
+def reachable(edges, start):
+    seen, todo = set(), [start]
+    while todo:
+        for room in edges.get(todo.pop(), {}):
+            if room not in seen:
+                seen.add(room)
+                todo.append(room)
+    return seen
+
+
+def circles(edges):
+    return [f"{why}: {there} includes {here}, too, if by others"
+            for here, targets in sorted(edges.items()) for there, why in sorted(targets.items())
+            if here in reachable(edges, there)]
+
+
+def blocks(lines, first, last, indent):
+    """(heading, first line, last line) of every { } whose heading begins at `indent`."""
+    line, margin = first, " " * indent
+    while line < last:
+        text = lines[line]
+        if not text.startswith(margin) or not re.match(r"[A-Za-z_~:\[(]", text[indent:]):
+            line += 1
+            continue
+        end = line
+        while end < last and not re.search(r"[{};]\s*(//.*)?$|:$|^#", lines[end]):
+            end += 1
+        heading = " ".join(part.strip() for part in lines[line:end + 1])
+        if end < last and heading.split("//")[0].rstrip().endswith("{"):
+            inside = range(end + 1, last)
+            close = next((i for i in inside if lines[i].startswith(margin + "}")), last)
+            yield heading, line, close
+            end = close
+        line = end + 1
+
+
+def functions(lines, first=0, last=None, indent=0):
+    """(name, lines from its heading to its brace, those lines) of functions and members."""
+    last = len(lines) if last is None else last
+    for heading, begin, end in blocks(lines, first, last, indent):
+        if heading.startswith("namespace") or heading.startswith("extern"):
+            if indent == 0:  # its contents are not indented: look at them line by line
+                continue
+        elif TYPE.match(heading):
+            yield from functions(lines, begin + 1, end, indent + 2)
+        elif "(" in heading:
+            yield heading, end - begin + 1, lines[begin:end + 1]
+
+
+def without_namespaces(lines):
+    return ["" if re.match(r"(inline )?namespace\b.*\{$|\} // namespace|extern \"C\" \{$", line)
+            else line for line in lines]
+
+
+def is_table(body):
+    """Whether all that a function does is to hold, or return, a table."""
+    statements = [line for line in body[1:-1] if re.match(r"  [^ }/#]", line)]
+    return bool(statements) and TABLE.match(statements[0].strip()) is not None and all(
+        line.strip().startswith("return ") for line in statements[1:])
+
+
+def check_sizes(root):
+    wrong, rooms = [], defaultdict(int)
+    for path in sources(root, ["src", "include", "cases"], (".cpp", ".hpp", ".py")):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        name = path.relative_to(root)
+        if name.parts[0] == "src":
+            rooms[str(name.parent)] += len(lines)
+        if len(lines) > MOST_OF_FILE:
+            wrong.append(f"{name} has {len(lines)} lines, more than {MOST_OF_FILE}")
+        if path.suffix == ".py":
+            continue
+        for heading, length, body in functions(without_namespaces(lines)):
+            if length > MOST_OF_FUNCTION and not is_table(body):
+                wrong.append(f"{name}: a function of {length} lines, more than {MOST_OF_FUNCTION}: "
+                             f"{heading[:60]}")
+    return wrong + [f"{room} has {count} lines: make a room of a part of it"
+                    for room, count in sorted(rooms.items()) if count >= MOST_OF_ROOM]
+
+
+def main(root):
+    wrong = check_includes(root) + check_sizes(root)
+    print("\n".join(wrong) or "the layers, rooms and sizes are those of src/README.md")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve()))

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""small_runs.py BIN OUT: a run of every kind on few parameters, for the tests layout and columns.
+
+Each run OUT/NAME is made, asked and verified, some are measured: model.h5, samples, every table of
+rbvi, online_before.csv and online_after.csv (rbvi-online before and after rbvi verify), solve.csv.
+"""
+
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+DISK = ["-case", CASES / "rigid_disk/case.yaml"]
+NITSCHE = [*DISK, "-formulation", "nitsche", "-arc_edges", "40", "-train", "grid:5"]
+REDUCED = "-multiplier_reduction"
+RUNS = {
+    "membrane": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,2,2"],
+    "membrane_mcpg": ["-case", CASES / "membrane_obstacle/published.yaml", "-train", "grid:3,2,2",
+                      "-cone_type", "mcpg", "-pga_tolerance", "infsup"],
+    "two_disks": ["-case", CASES / "two_disks/case.yaml", "-train", "grid:9"],
+    "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
+    "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness"],
+    "disk_collocated": [*DISK, "-train", "grid:15", "-normal", "rigid", REDUCED, "collocated"],
+    "disk_cones": [*DISK, "-train", "grid:9", REDUCED, "cones"],
+    "disk_joint": [*DISK, "-train", "grid:9", REDUCED, "joint"],
+    "nitsche_empirical": NITSCHE,
+    "nitsche_interpolated": [*NITSCHE, "-nitsche_quadrature", "interpolated",
+                             "-nitsche_eim_validation", "random:2:2"],
+}
+MEASURED = ("two_disks", "nitsche_empirical")  # by rbvi bench, which takes longest
+
+
+def call(*command):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stderr}")
+
+
+def make(binaries, out, options):
+    rbvi, online, few = binaries / "rbvi", binaries / "rbvi-online", ["-valid", "random:2:1"]
+    ask = [online, out / "model.h5", "--queries", "random:2:3", "--out"]
+    call(rbvi, "offline", *options, "-out", out)
+    call(*ask, out / "online_before.csv")
+    call(rbvi, "verify", "-out", out, *few)
+    call(*ask, out / "online_after.csv")
+    if out.name in MEASURED:
+        call(rbvi, "bench", "-out", out, *few)
+    table = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
+    mu = ",".join(table[1].split(",")[:table[0].split(",").index("energy")])
+    call(rbvi, "solve", "-case", out / "case.yaml", "-mu", mu, "-csv", out / "solve.csv")
+
+
+def main(binaries, out):
+    shutil.rmtree(out, ignore_errors=True)
+    with ThreadPoolExecutor(2) as pool:
+        for done in [pool.submit(make, binaries, out / name, options)
+                     for name, options in RUNS.items()]:
+            done.result()
+    print(f"{len(RUNS)} runs in {out}")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve())
