@@ -20,7 +20,8 @@ struct Separated {
   std::function<Vector(const FullMu &)> theta;     ///< at all parameters, of a query
 };
 
-/// Of b: all rows, or B^n and B^tau, by the first entries of its terms and of its values.
+/// Adds the parts of b: all rows, or B^n and B^tau, by the first entries of its terms and of its
+/// values.
 void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Separated> &parts) {
   const auto theta = [&model, &scene](const FullMu &all) {
     return model.support ? support_coefficients(model.b, true, scene, all)
@@ -48,7 +49,7 @@ void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Sepa
                    [=](const FullMu &all) -> Vector { return theta(all).tail(tangential); }});
 }
 
-/// Those with terms. `triangle`, `scene` and `model` must outlive them.
+/// The operators with terms. `triangle`, `scene` and `model` must outlive them.
 std::vector<Separated> separated(const LowerTriangle &triangle, const Scene &scene,
                                  const ReducedModel &model) {
   std::vector<Separated> parts;

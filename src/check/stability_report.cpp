@@ -13,7 +13,7 @@ namespace rbvi {
 
 namespace {
 
-/// Of a singular value, relative to the largest: what the arithmetic leaves.
+/// What the arithmetic leaves of a singular value, relative to the largest.
 constexpr double round_off = 1e-10;
 
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {

@@ -1,4 +1,4 @@
-#include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
@@ -115,28 +115,28 @@ std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, co
 
 void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
                      const ReduceOptions &options, const Matrix &dual_functions,
-                     ReducedBases &bases, StageTimes &times) {
+                     ReducedBases &bases, StageTable &stages) {
   const bool energy = options.product == SupremizerProduct::energy;
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
   RieszSpace riesz;
   const Matrix dual = orthonormal_dual_basis(dual_functions, problem.w_product());
   {
-    const Stage stage("Riesz representers", times);
+    const Stage stage(stages, stage::riesz);
     if (energy)
       RBVI_CALL(MatDuplicate(problem.assemble(reference).a, MAT_COPY_VALUES, stiffness.put()));
     riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(),
                              coupled_dofs(problem, dual, training));
   }
   PgaOptions pga = options.pga;
-  if (options.infsup_tolerance && !bases.online_enriched) {
-    const Stage stage("inf-sup tolerance", times);
+  if (will_run(stages, stage::infsup_tolerance)) {
+    const Stage stage(stages, stage::infsup_tolerance);
     const RieszSpace whole =
         make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace());
     pga.tolerance = infsup_tolerance(problem.comm(), problem, whole, training);
     bases.infsup_tolerance = pga.tolerance;
   }
-  const Stage stage("PGA", times);
+  const Stage stage(stages, stage::pga);
   const Matrix modes =
       energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()))
              : mode_coordinates(riesz, bases.pod.basis);
@@ -177,33 +177,32 @@ Matrix multipliers_of(const std::vector<Sample> &samples) {
 }
 
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
-               ReducedBases &bases, StageTimes &times) {
-  const Stage stage("POD", times);
+               ReducedBases &bases, StageTable &stages) {
+  const Stage stage(stages, stage::pod);
   bases.pod = compress_displacements(problem, samples, options);
   bases.modes = static_cast<int>(bases.pod.basis.size());
 }
 
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
-                         const ReduceOptions &options, bool b_is_scaled, StageTimes &times) {
+                         const ReduceOptions &options, bool b_is_scaled, StageTable &stages) {
   const Matrix multipliers = multipliers_of(samples);
   const Mu reference =
       options.reference.empty() ? box_centre(problem.scene().parameters) : options.reference;
   ReducedBases bases;
-  add_modes(problem, samples, options.pod, bases, times);
-  {
-    const Stage stage("cone", times);
-    bases.cone = build_dual_basis(problem, reference, multipliers, options.cone);
-  }
-  if (options.enrichment == Enrichment::decorrelated) return bases;
+  add_modes(problem, samples, options.pod, bases, stages);
+  bases.cone = timed(stages, stage::cone, [&] {
+    return build_dual_basis(problem, reference, multipliers, options.cone);
+  });
+  if (!will_run(stages, stage::pga)) return bases;
   std::vector<Mu> training = parameters_of(samples);
   if (b_is_scaled) training.resize(1);
-  add_supremizers(problem, training, reference, options, bases.cone.all(), bases, times);
+  add_supremizers(problem, training, reference, options, bases.cone.all(), bases, stages);
   return bases;
 }
 
 namespace {
 
-/// Of each sample in the modes, n x P.
+/// The coefficients of each sample in the modes, n x P.
 Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &samples,
                        const LinearBasis &modes) {
   Matrix result(modes.size(), static_cast<Index>(samples.size()));
@@ -232,13 +231,11 @@ void add_histories(const CurveReport &curve,
 
 /// Modes alone, then the curve.
 void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
-                    const ReduceOptions &options, Reduction &result, StageTimes &times) {
-  add_modes(problem, samples, options.pod, result.bases, times);
-  {
-    const Stage stage("projection", times);
-    result.model = project(problem, samples, result.affine, result.bases);
-  }
-  const Stage stage("contact curve", times);
+                    const ReduceOptions &options, Reduction &result) {
+  add_modes(problem, samples, options.pod, result.bases, result.stages);
+  result.model = timed(result.stages, stage::projection,
+                       [&] { return project(problem, samples, result.affine, result.bases); });
+  const Stage stage(result.stages, stage::contact_curve);
   const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
   Matrix coefficients;
   if (options.curve.rule == CurveRule::interpolated)
@@ -248,8 +245,8 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
 }
 
 void add_collocation(Problem &problem, const std::vector<Sample> &samples,
-                     const GcnsOptions &options, Reduction &result, StageTimes &times) {
-  const Stage stage("collocation nodes", times);
+                     const GcnsOptions &options, Reduction &result) {
+  const Stage stage(result.stages, stage::collocation);
   result.collocation =
       collocate(result.model, problem.scene(), samples, problem.w_product(), options);
   const Gcns &nodes = result.collocation;
@@ -260,8 +257,8 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
 
 /// Collective. The self-check into the model of rank 0. On every rank: how many of its queries went
 /// wrong, 0 where it is clean.
-int check_answers(const Problem &problem, ReducedModel &model, StageTimes &times) {
-  const Stage stage("self-check", times);
+int check_answers(const Problem &problem, ReducedModel &model, StageTable &stages) {
+  const Stage stage(stages, stage::self_check);
   int wrong = 0, rank = 0;
   MPI_Comm_rank(problem.comm(), &rank);
   collectively(problem.comm(), [&] {
@@ -281,16 +278,14 @@ struct CheckedPair {
 
 CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, const AffineOperators &affine,
-                         StageTimes &times) {
-  CheckedPair pair{build_bases(problem, samples, options, affine.b_size() == 1, times),
+                         StageTable &stages) {
+  CheckedPair pair{build_bases(problem, samples, options, affine.b_size() == 1, stages),
                    {},
                    options.cone.ring,
                    0};
-  {
-    const Stage stage("projection", times);
-    pair.model = project(problem, samples, affine, pair.bases);
-  }
-  pair.wrong = check_answers(problem, pair.model, times);
+  pair.model = timed(stages, stage::projection,
+                     [&] { return project(problem, samples, affine, pair.bases); });
+  pair.wrong = check_answers(problem, pair.model, stages);
   return pair;
 }
 
@@ -300,15 +295,15 @@ CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
 /// A bound of the size of the cone bounds its ring as well; without supremizers its ring is not why
 /// queries have no answer.
 void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
-                 Reduction &result, StageTimes &times) {
+                 Reduction &result) {
   constexpr int widest = 64;
   const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0 &&
-                      options.enrichment != Enrichment::decorrelated;
-  CheckedPair best = checked_pair(problem, samples, options, result.affine, times);
+                      will_run(result.stages, stage::pga);
+  CheckedPair best = checked_pair(problem, samples, options, result.affine, result.stages);
   Index hats = best.bases.cone.basis.generators.cols();
   while (widens && best.wrong > 0 && options.cone.ring < widest) {
     options.cone.ring = std::max(1, 2 * options.cone.ring);
-    CheckedPair wider = checked_pair(problem, samples, options, result.affine, times);
+    CheckedPair wider = checked_pair(problem, samples, options, result.affine, result.stages);
     if (wider.bases.cone.basis.generators.cols() == hats) break;
     hats = wider.bases.cone.basis.generators.cols();
     if (wider.wrong < best.wrong) best = std::move(wider);
@@ -328,36 +323,40 @@ std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
   return apart;
 }
 
-} // namespace
-
-Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
-                 StageTimes &times) {
-  const std::vector<Mu> training = parameters_of(samples);
-  Reduction result;
+/// Contact with a rigid support.
+void reduce_on_support(Problem &problem, const std::vector<Sample> &samples,
+                       const ReduceOptions &options, Reduction &result) {
+  result.bases = build_support_bases(problem, samples, options, result.affine, result.stages);
   {
-    const Stage stage("interpolation", times);
-    if (training.empty()) throw failure("there is no sample to build a basis from");
-    result.affine = separate(problem, training, options.eim, rows_apart(options));
-  }
-  if (problem.nitsche()) {
-    reduce_nitsche(problem, samples, options, result, times);
-    check_answers(problem, result.model, times);
-    return result;
-  }
-  if (!problem.on_support()) {
-    reduce_pair(problem, samples, options, result, times);
-    return result;
-  }
-  result.bases = build_support_bases(problem, samples, options, result.affine, times);
-  {
-    const Stage stage("projection", times);
+    const Stage stage(result.stages, stage::projection);
     result.model = project(problem, samples, result.affine, result.bases);
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
   }
-  if (result.bases.multipliers.basis.tangential.size() > 0 &&
-      result.bases.reduction == MultiplierReduction::collocated)
-    add_collocation(problem, samples, options.gcns, result, times);
-  check_answers(problem, result.model, times);
+  if (will_run(result.stages, stage::collocation))
+    add_collocation(problem, samples, options.gcns, result);
+}
+
+} // namespace
+
+Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
+                 const ReduceOptions &options) {
+  const std::vector<Mu> training = parameters_of(samples);
+  if (training.empty()) throw failure("there is no sample to build a basis from");
+  Reduction result;
+  result.stages = reduction_stages(problem.scene(), options);
+  result.affine = timed(result.stages, stage::interpolation, [&] {
+    return separate(problem, training, options.eim, rows_apart(options));
+  });
+  const bool pair = !problem.nitsche() && !problem.on_support();
+  if (pair)
+    reduce_pair(problem, samples, options, result);
+  else if (problem.nitsche())
+    reduce_nitsche(problem, samples, options, result);
+  else
+    reduce_on_support(problem, samples, options, result);
+  if (!pair) check_answers(problem, result.model, result.stages);
+  result.stages =
+      finished_stages(result.stages, reduction_stages(problem.scene(), options, &result));
   return result;
 }
 

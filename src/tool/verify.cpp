@@ -266,7 +266,7 @@ void write_output_errors(const fs::path &path, const std::vector<OutputError> &e
   write_atomically(path, text.str());
 }
 
-/// Those that have a target: quantities and measures.
+/// Errors of the outputs that have a target: quantities and measures.
 void print_output_errors(const std::vector<OutputError> &errors) {
   std::printf("Errors of the outputs: largest, over the range, over the value\n");
   for (const OutputError &e : errors)
@@ -288,7 +288,7 @@ std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &
   return errors;
 }
 
-/// Errors of the model with and without supremizers and of its leading parts, into tables, and the
+/// Errors of the model, of its modes alone and of its leading parts, into tables, and the
 /// summaries into the model file.
 void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
                   const ToolOptions &options, const fs::path &out) {
@@ -335,14 +335,13 @@ void command_verify(const ToolOptions &given) {
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   const std::vector<Mu> training = from_columns(model.trained_mu);
   const Groups groups(world, options.ranks_per_solve);
-  StageTimes times;
-  Workspace work(world, groups, options, times);
+  Workspace work(world, groups, options);
   check_mesh(work.group_problem(), model, options);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
                                 options.out / "samples");
   check_failures(options, sweep.report, validation.size(), "validation");
   const std::vector<Sample> &answers = sweep.samples;
-  Problem &problem = work.world_problem(times);
+  Problem &problem = work.world_problem();
   const Truths truths = make_truths(problem, model, answers);
   const fs::path out = options.out / "verify";
   collectively(world, [&] {

@@ -3,6 +3,7 @@
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
+#include "stability_bound.hpp"
 
 #include <gtest/gtest.h>
 

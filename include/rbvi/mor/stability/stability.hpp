@@ -26,7 +26,7 @@ namespace rbvi {
 struct RieszSpace {
   Matrix factor;           ///< L, lower triangular: n_c x n_c
   std::vector<Index> dofs; ///< the n_c contact dofs of the scene that it covers; empty: all
-  Trace trace;             ///< of these
+  Trace trace;             ///< onto these dofs
   std::shared_ptr<ReplicatedSolver> solver;
 };
 
@@ -70,9 +70,6 @@ struct StabilityBound {
   double sharp;   ///< sqrt(1 - sigma^2) beta_on <= beta_off
   double classic; ///< beta_S^* (2.24) <= beta_off; not positive where (2.23) fails
 };
-
-/// `enriched`: coordinates of V_N + S; `supremizers`: T(mu) X for an orthonormal dual basis X.
-StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers);
 
 /// What the first supremizers guarantee, and what they reach.
 struct StabilityStep {
