@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"
 
@@ -129,8 +130,7 @@ std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedM
   std::vector<SeparationErrors> result;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     Vector &left = largest[k];
-    RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, left.data(), static_cast<PetscMPIInt>(left.size()),
-                            MPI_DOUBLE, MPI_MAX, problem.comm()));
+    over_ranks(problem.comm(), MPI_MAX, left);
     if (const double scale = left[0]; scale > 0) left /= scale;
     result.push_back(
         {parts[k].name, history(model, "eim/" + parts[k].name), {left.begin(), left.end()}});

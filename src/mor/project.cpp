@@ -3,6 +3,7 @@
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/packed.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -34,17 +35,12 @@ private:
   const PetscScalar *values_ = nullptr;
 };
 
-void sum_over_ranks(MPI_Comm comm, Matrix &values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                comm);
-}
-
 /// V^T A V, its lower triangle column by column. Collective.
 Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
   Handle<Mat> product;
   RBVI_CALL(MatMatMult(a, basis, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
   Matrix full = BorrowedRows(basis).rows().transpose() * BorrowedRows(product.get()).rows();
-  sum_over_ranks(comm, full);
+  over_ranks(comm, MPI_SUM, full);
   return pack((full + full.transpose()) / 2);
 }
 
@@ -122,7 +118,7 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     for (int c = 0; c < mesh.dim && mesh.owned_node[v]; ++c)
       model.mesh_points(mesh.natural_node[v], c) = mesh.points[v][static_cast<std::size_t>(c)];
-  sum_over_ranks(problem.comm(), model.mesh_points);
+  over_ranks(problem.comm(), MPI_SUM, model.mesh_points);
 
   const int per_cell = nodes_per_cell(mesh.dim, mesh.degree);
   std::vector<int> mine;
@@ -184,10 +180,8 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
 void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis,
                        SupportModel &support) {
   support.starts = nodal_coefficients(basis, multipliers_of(samples));
-  support.starts_mu.resize(static_cast<Index>(samples.front().mu.size()), support.starts.cols());
-  for (std::size_t p = 0; p < samples.size(); ++p)
-    std::copy(samples[p].mu.begin(), samples[p].mu.end(),
-              support.starts_mu.col(static_cast<Index>(p)).begin());
+  support.starts_mu =
+      as_columns(parameters_of(samples), static_cast<int>(samples.front().mu.size()));
 }
 
 /// e_EIM along the terms, and the training number of each.
@@ -268,7 +262,7 @@ void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
       accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
     if (uses(affine.f, p)) {
       Matrix f = BorrowedRows(basis).rows().transpose() * local_values(op.f);
-      sum_over_ranks(problem.comm(), f);
+      over_ranks(problem.comm(), MPI_SUM, f);
       accumulate(affine.f, p, f, model.f.reduced);
     }
   }
@@ -282,7 +276,7 @@ void store_fields(const Problem &problem, Mat basis, ReducedModel &model) {
   for (Index i = 0; i < local.rows(); ++i)
     model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
         local.row(i);
-  sum_over_ranks(problem.comm(), model.primal_basis);
+  over_ranks(problem.comm(), MPI_SUM, model.primal_basis);
   model.contact_trace = contact_trace_of(problem, model);
 }
 

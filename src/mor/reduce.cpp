@@ -13,17 +13,6 @@ namespace rbvi {
 
 namespace {
 
-Pod compress_displacements(Problem &problem, const std::vector<Sample> &samples,
-                           const PodOptions &options) {
-  std::vector<Handle<Vec>> owned;
-  std::vector<Vec> snapshots;
-  for (const Sample &sample : samples) {
-    owned.push_back(from_natural(problem.dofs(), sample.u));
-    snapshots.push_back(owned.back().get());
-  }
-  return pod(snapshots, problem.v_product(), options);
-}
-
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
                       const ConeOptions &options) {
   if (options.type != ConeType::hybrid) return build_cone(snapshots, problem.w_product(), options);
@@ -58,11 +47,8 @@ std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
   for (const Matrix &t : supremizers)
     coupling =
         coupling.cwiseMax(Matrix(factor.transpose().solve(t)).rowwise().lpNorm<Eigen::Infinity>());
-  MPI_Allreduce(MPI_IN_PLACE, coupling.data(), static_cast<int>(coupling.size()), MPI_DOUBLE,
-                MPI_MAX, comm);
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  if (rank != 0) return {};
+  over_ranks(comm, MPI_MAX, coupling);
+  if (rank_of(comm) != 0) return {};
   std::vector<Index> touched;
   for (Index i = 0; i < coupling.size(); ++i)
     if (coupling[i] > 1e-12 * coupling.maxCoeff()) touched.push_back(i);
@@ -72,7 +58,7 @@ std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
 /// Contact dofs that b couples with the dual basis at some training mu. Collective.
 std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
                                 const std::vector<Mu> &training) {
-  std::vector<char> coupled(static_cast<std::size_t>(problem.trace().size), 0);
+  std::vector<PetscInt> coupled(static_cast<std::size_t>(problem.trace().size), 0);
   Operators op;
   take_turns(problem.comm(), training.size(), [&](std::size_t p) {
     problem.assemble_contact(training[p], op);
@@ -82,8 +68,7 @@ std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
         if (entry.value() != 0) coupled[static_cast<std::size_t>(entry.col())] = 1;
     }
   });
-  MPI_Allreduce(MPI_IN_PLACE, coupled.data(), static_cast<int>(coupled.size()), MPI_CHAR, MPI_MAX,
-                problem.comm());
+  over_ranks(problem.comm(), MPI_MAX, coupled);
   std::vector<Index> dofs;
   for (std::size_t i = 0; i < coupled.size(); ++i)
     if (coupled[i] != 0) dofs.push_back(static_cast<Index>(i));
@@ -179,7 +164,13 @@ Matrix multipliers_of(const std::vector<Sample> &samples) {
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
                ReducedBases &bases, StageTable &stages) {
   const Stage stage(stages, stage::pod);
-  bases.pod = compress_displacements(problem, samples, options);
+  std::vector<Handle<Vec>> owned;
+  std::vector<Vec> snapshots;
+  for (const Sample &sample : samples) {
+    owned.push_back(from_natural(problem.dofs(), sample.u));
+    snapshots.push_back(owned.back().get());
+  }
+  bases.pod = pod(snapshots, problem.v_product(), options);
   bases.modes = static_cast<int>(bases.pod.basis.size());
 }
 
@@ -259,10 +250,9 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
 /// wrong, 0 where it is clean.
 int check_answers(const Problem &problem, ReducedModel &model, StageTable &stages) {
   const Stage stage(stages, stage::self_check);
-  int wrong = 0, rank = 0;
-  MPI_Comm_rank(problem.comm(), &rank);
+  int wrong = 0;
   collectively(problem.comm(), [&] {
-    if (rank != 0) return;
+    if (rank_of(problem.comm()) != 0) return;
     model.self_check = self_check(model, problem.scene());
     wrong = model.self_check.clean() ? 0 : std::max(1, model.self_check.unanswered);
   });

@@ -150,13 +150,7 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
   return {stage::condensation, what};
 }
 
-StageRow no_friction_row() {
-  return {StageName("tangential multipliers"), "the scene has no friction", skipped};
-}
-
-StageRow no_pair_row(const char *why) {
-  return {StageName("cone, PGA"), why, skipped};
-}
+constexpr StageName pair_stages("cone, PGA");
 
 /// Contact with a rigid support: the condensed operator in place of a reduced pair, or beside it.
 void add_support_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
@@ -164,15 +158,14 @@ void add_support_rows(const Scene &scene, const ReduceOptions &options, const Re
   const MultiplierReduction reduction = options.multipliers.reduction;
   rows.push_back(condensation_row(options, made));
   if (reduction == MultiplierReduction::condensed)
-    rows.push_back(
-        no_pair_row("the multipliers keep a coefficient at every node: nothing to stabilise"));
+    rows.push_back({pair_stages,
+                    "the multipliers keep a coefficient at every node: nothing to stabilise",
+                    skipped});
   else
     rows.push_back({stage::multipliers, multiplier_text(options, made)});
   const bool collocated = reduction == MultiplierReduction::collocated;
   if (collocated) add_supremizer_rows(scene, options, made, rows);
-  if (scene.support->friction.law == FrictionLaw::none)
-    rows.push_back(no_friction_row());
-  else if (collocated)
+  if (collocated && scene.support->friction.law != FrictionLaw::none)
     rows.push_back({stage::collocation,
                     made == nullptr ? "greedy (Algorithm 3), reduced problems solved exactly"
                                     : counted(std::ssize(made->collocation.nodes), "node") + ": " +
@@ -192,7 +185,7 @@ void add_curve_rows(const ReduceOptions &options, const Reduction *made, StageTa
       what += ", of " + std::to_string(made->curve.states) + " states";
   }
   rows.push_back({stage::contact_curve, what});
-  rows.push_back(no_pair_row("Nitsche's method has no multipliers"));
+  rows.push_back({pair_stages, "Nitsche's method has no multipliers", skipped});
 }
 
 std::string self_check_text(const Reduction *made) {
@@ -218,8 +211,9 @@ StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
     rows.push_back(cone_row(options, made));
     add_supremizer_rows(scene, options, made, rows);
     rows.push_back(sweep_of_supremizers_row(scene, options, made));
-    rows.push_back(no_friction_row());
   }
+  if (!scene.nitsche && (!scene.support || scene.support->friction.law == FrictionLaw::none))
+    rows.push_back({StageName("tangential multipliers"), "the scene has no friction", skipped});
   rows.push_back({stage::projection, "the separated operators onto the bases"});
   rows.push_back({stage::self_check, self_check_text(made)});
   return rows;

@@ -62,12 +62,10 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
 
 /// Where the model has samples, and where it was to have them.
 void name_training(const Sweep &sweep, ReducedModel &model) {
-  std::vector<Mu> trained, failed;
-  for (const Sample &sample : sweep.samples)
-    trained.push_back(sample.mu);
+  std::vector<Mu> failed;
   for (const auto &[mu, reason] : sweep.report.failed)
     failed.push_back(mu);
-  model.trained_mu = as_columns(trained, model.parameters.size());
+  model.trained_mu = as_columns(parameters_of(sweep.samples), model.parameters.size());
   model.failed_mu = as_columns(failed, model.parameters.size());
 }
 
@@ -79,8 +77,7 @@ void command_offline(const ToolOptions &options) {
   if (options.scene.support) check_support_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
   const Groups groups(world, options.ranks_per_solve);
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
+  const int rank = rank_of(world);
   StageTable before = preparation_stages(options, training.size(), groups.count());
   StageTable after = closing_stages();
   if (rank == 0) print_stages({before, reduction_stages(options.scene, options.reduce), after});

@@ -104,13 +104,12 @@ struct PgaOptions {
 };
 
 struct Pga {
-  Matrix representers;                ///< n_c x S: V^-1 E times column s is supremizer s, of norm 1
-  Matrix coordinates;                 ///< (n_c + N) x (N + S): orthonormal, the modes first
-  std::vector<double> sigma;          ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
-  std::vector<int> selected;          ///< training index of each supremizer; -1: one SVD gave all
-  int evaluations = 0;                ///< candidates evaluated by an eigenproblem, or 1 SVD
-  bool parameter_independent = false; ///< S_R(mu) is one space: a single SVD replaced the sweep
-  std::string reason;                 ///< why it stopped
+  Matrix representers;       ///< n_c x S: V^-1 E times column s is supremizer s, of norm 1
+  Matrix coordinates;        ///< (n_c + N) x (N + S): orthonormal, the modes first
+  std::vector<double> sigma; ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
+  std::vector<int> selected; ///< training index of each supremizer; -1: one SVD gave all
+  int evaluations = 0;       ///< candidates evaluated by an eigenproblem, or 1 SVD
+  std::string reason;        ///< why it stopped
 };
 
 /// Projected greedy algorithm (Algorithm 1), lazily evaluated: sigma does not increase, so that
