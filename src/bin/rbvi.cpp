@@ -1,5 +1,6 @@
 // rbvi: the MPI tool. `rbvi -help` lists commands and options.
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/session.hpp"
 #include "rbvi/tool/commands.hpp"
@@ -10,8 +11,7 @@ namespace {
 using namespace rbvi;
 
 void run(const std::string &command, const std::string &file) {
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  const int rank = rank_of(PETSC_COMM_WORLD);
   if (command == "list" || command == "help" || command == "inspect") {
     if (rank != 0) return;
     if (command == "list") command_list();
@@ -37,9 +37,7 @@ int main(int argc, char **argv) {
     char **values = arguments.data();
     InterruptWatch watch;
     Session session(count, values);
-    int rank = 0;
-    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-    watch.start(rank == 0);
+    watch.start(rank_of(PETSC_COMM_WORLD) == 0);
     const int status = finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
     watch.stop();
     return status;

@@ -56,7 +56,7 @@ double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index
   return std::sqrt(part.dot(w * part));
 }
 
-/// Of Nitsche's method: errors of the stresses of the projected displacement.
+/// Adds, for Nitsche's method, errors of the stresses of the projected displacement.
 void add_stress_floors(const ReducedModel &model, const Matrix &projections, const Truths &truths,
                        const SparseMatrix &w, ModelErrors &errors) {
   OnlineSolver solver(model);

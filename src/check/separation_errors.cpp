@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"
 
@@ -20,7 +21,8 @@ struct Separated {
   std::function<Vector(const FullMu &)> theta;     ///< at all parameters, of a query
 };
 
-/// Of b: all rows, or B^n and B^tau, by the first entries of its terms and of its values.
+/// Adds the parts of b: all rows, or B^n and B^tau, by the first entries of its terms and of its
+/// values.
 void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Separated> &parts) {
   const auto theta = [&model, &scene](const FullMu &all) {
     return model.support ? support_coefficients(model.b, true, scene, all)
@@ -48,7 +50,7 @@ void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Sepa
                    [=](const FullMu &all) -> Vector { return theta(all).tail(tangential); }});
 }
 
-/// Those with terms. `triangle`, `scene` and `model` must outlive them.
+/// The operators with terms. `triangle`, `scene` and `model` must outlive them.
 std::vector<Separated> separated(const LowerTriangle &triangle, const Scene &scene,
                                  const ReducedModel &model) {
   std::vector<Separated> parts;
@@ -128,8 +130,7 @@ std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedM
   std::vector<SeparationErrors> result;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     Vector &left = largest[k];
-    RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, left.data(), static_cast<PetscMPIInt>(left.size()),
-                            MPI_DOUBLE, MPI_MAX, problem.comm()));
+    over_ranks(problem.comm(), MPI_MAX, left);
     if (const double scale = left[0]; scale > 0) left /= scale;
     result.push_back(
         {parts[k].name, history(model, "eim/" + parts[k].name), {left.begin(), left.end()}});

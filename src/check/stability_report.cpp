@@ -13,7 +13,7 @@ namespace rbvi {
 
 namespace {
 
-/// Of a singular value, relative to the largest: what the arithmetic leaves.
+/// What the arithmetic leaves of a singular value, relative to the largest.
 constexpr double round_off = 1e-10;
 
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
@@ -62,8 +62,7 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
     }
     values.col(static_cast<Index>(p)) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
   });
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                comm);
+  over_ranks(comm, MPI_SUM, values);
   std::vector<InfSup> result;
   for (const auto &at : values.colwise())
     result.push_back({at[0], at[1], at[2], at[3], at[4]});
@@ -119,8 +118,7 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
       if (!(off >= bound.sharp - round_off * bound.c)) ++exceptions[static_cast<std::size_t>(k)];
     }
   });
-  MPI_Allreduce(MPI_IN_PLACE, worst.data(), static_cast<int>(worst.size()), MPI_DOUBLE, MPI_MAX,
-                comm);
+  over_ranks(comm, MPI_MAX, worst);
   MPI_Allreduce(MPI_IN_PLACE, exceptions.data(), static_cast<int>(size), MPI_INT, MPI_SUM, comm);
   std::vector<StabilityRow> rows;
   for (Index k = 0; k < size; ++k) {

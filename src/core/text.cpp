@@ -35,6 +35,10 @@ std::string short_number(double value) {
   return formatted("%.4g", value);
 }
 
+std::string counted(long number, const std::string &noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
 std::string joined(const std::vector<std::string> &parts, const std::string &separator) {
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i)

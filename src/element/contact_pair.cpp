@@ -25,13 +25,13 @@ public:
   std::size_t nodes() const { return nodes_.size(); }
   std::size_t edges() const { return edges_; }
   std::size_t per_edge() const { return degree_ + 1; } ///< nodes
-  /// Of an edge: its vertices, then its middle.
+  /// The nodes of an edge: its vertices, then its middle.
   std::size_t node(std::size_t edge, std::size_t local) const {
     return local < 2 ? edge + local : edges_ + 1 + edge;
   }
   double x(std::size_t vertex) const { return nodes_[vertex][0]; }
   double y(std::size_t vertex) const { return nodes_[vertex][1]; }
-  /// Of the straight edge.
+  /// The length of the straight edge.
   double length(std::size_t edge) const {
     const double dx = x(edge + 1) - x(edge), dy = y(edge + 1) - y(edge);
     return std::sqrt(dx * dx + dy * dy);
@@ -228,7 +228,7 @@ SparseMatrix zeros(const std::vector<Row> &rows, const Curve &slave, const Curve
 
 using Values = std::array<double, 3>;
 
-/// Of the displacement functions of an edge, at 0 <= s <= 1.
+/// The values of the displacement functions of an edge, at 0 <= s <= 1.
 Values displacements(const Curve &curve, double s) {
   Values values{};
   lagrange_values(1, static_cast<int>(curve.per_edge()) - 1, std::array{1 - s, s}, values);
@@ -340,7 +340,7 @@ PairOperators couple_at(const Scene &scene, const FullMu &all_parameters,
   try {
     pair = couple({mapped.begin(), master}, {master, mapped.end()},
                   scene.pair.value().discretisation, scene.degree);
-  } catch (const Error &error) { // of this mu, not of the input
+  } catch (const Error &error) { // the fault of this mu, not of the input
     throw failure(std::string(error.what()) + ", mapped at " +
                   describe(scene.parameters, all_parameters));
   }

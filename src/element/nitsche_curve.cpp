@@ -100,7 +100,7 @@ std::vector<NitscheFace> nitsche_faces(const Scene &scene, const FullMu &all_par
 
 NitscheLaw nitsche_law(const Friction &friction, const FullMu &all_parameters) {
   if (friction.law == FrictionLaw::none) return {};
-  const FrictionBound bound = friction_bound(friction, all_parameters); // of one kind
+  const FrictionBound bound = friction_bound(friction, all_parameters); // of one law
   return {friction.law, bound.coefficient + bound.threshold, bound.only_in_contact};
 }
 

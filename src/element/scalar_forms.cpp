@@ -19,7 +19,7 @@ double mass_entry(int dim, int i, int j) {
   return (i == j ? 2.0 : 1.0) / ((dim + 1) * (dim + 2));
 }
 
-/// Of all nodes of a cell, without a heap.
+/// A matrix of all nodes of a cell, without a heap.
 using CellMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_nodes, most_nodes>;
 
 /// What the H1 product needs of every simplex of one dimension.

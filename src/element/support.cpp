@@ -12,7 +12,8 @@ namespace rbvi {
 
 namespace {
 
-/// Of an edge: multiplier of vertex e or e + 1, displacement of vertex e, e + 1 or the middle.
+/// Integrals over an edge: multiplier of vertex e or e + 1, displacement of vertex e, e + 1 or the
+/// middle.
 using Products = std::array<std::array<double, 3>, 2>;
 
 /// A quadrature point of every edge; the weights sum to 1.

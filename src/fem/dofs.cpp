@@ -1,6 +1,7 @@
 #include "rbvi/fem/dofs.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <algorithm>
 
@@ -10,9 +11,7 @@ namespace {
 
 /// Fills the entries of nodes owned by other ranks with their owners' values.
 void share_with_ghosts(const Mesh &mesh, std::vector<PetscInt> &first_row) {
-  int ranks = 1;
-  MPI_Comm_size(mesh.comm, &ranks);
-  if (ranks == 1) return;
+  if (ranks_of(mesh.comm) == 1) return;
   PetscInt begin = 0, end = 0;
   RBVI_CALL(DMPlexGetChart(mesh.dm.get(), &begin, &end));
   std::vector<PetscInt> by_point(static_cast<std::size_t>(end), -1);
@@ -103,8 +102,7 @@ Vector to_natural(const Dofs &dofs, Vec free) {
   for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
     natural[dofs.natural_owned[i]] = values[i];
   RBVI_CALL(VecRestoreArrayRead(free, &values));
-  MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPI_DOUBLE, MPI_SUM,
-                dofs.comm);
+  over_ranks(dofs.comm, MPI_SUM, natural);
   return natural;
 }
 

@@ -1,18 +1,10 @@
 #include "rbvi/fem/trace.hpp"
 
+#include "rbvi/par/collective.hpp"
+
 #include <unordered_map>
 
 namespace rbvi {
-
-namespace {
-
-// Every entry has one owner and is zero elsewhere, so the sum is exact for any number of ranks.
-void share_entries(MPI_Comm comm, double *values, Index count) {
-  RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, values, static_cast<PetscMPIInt>(count), MPI_DOUBLE,
-                          MPI_SUM, comm));
-}
-
-} // namespace
 
 Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural) {
   std::unordered_map<PetscInt, PetscInt> contact_of_natural;
@@ -48,7 +40,7 @@ Vector restrict_to(const Trace &trace, Vec u) {
   for (std::size_t k = 0; k < trace.index.size(); ++k)
     values(trace.index[k]) = local[trace.local_row[k]];
   RBVI_CALL(VecRestoreArrayRead(u, &local));
-  share_entries(trace.comm, values.data(), values.size());
+  over_ranks(trace.comm, MPI_SUM, values); // exact: zero but on the owner
   return values;
 }
 
@@ -63,7 +55,7 @@ Matrix restrict_to(const Trace &trace, Mat dense) {
     for (std::size_t k = 0; k < trace.index.size(); ++k)
       values(trace.index[k], j) = local[trace.local_row[k] + j * stride];
   RBVI_CALL(MatDenseRestoreArrayRead(dense, &local));
-  share_entries(trace.comm, values.data(), values.size());
+  over_ranks(trace.comm, MPI_SUM, values); // exact: zero but on the owner
   return values;
 }
 

@@ -17,11 +17,8 @@ namespace {
 
 struct Communicator {
   MPI_Comm comm;
-  int rank = 0, size = 1;
-  explicit Communicator(MPI_Comm c) : comm(c) {
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &size);
-  }
+  int rank = rank_of(comm), size = ranks_of(comm);
+  explicit Communicator(MPI_Comm c) : comm(c) {}
 };
 
 /// Owns a star forest that PETSc created for us.

@@ -95,7 +95,7 @@ Point at_distance(double d, const Point &x, const Point &centre) {
   return moved;
 }
 
-/// Of each cell, whether it is in a region.
+/// Whether each cell is in a region.
 std::vector<bool> cells_in(const SerialMesh &mesh, const std::string &region) {
   std::vector<bool> in_region(mesh.cells.size(), false);
   if (mesh.region.contains(region))
@@ -178,7 +178,7 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
 void balance_inclusion(SerialMesh &mesh, const Scene &scene) {
   const Inclusion &inclusion = scene.mesh.inclusion;
   if (!mesh.region.contains(inclusion.region)) return;
-  // Of the halves of the edges at each vertex: their lengths, and what the polygon lacks there.
+  // At each vertex the lengths of the halves of its edges, and what the polygon lacks there.
   std::vector<double> length(mesh.points.size(), 0), lacks(length);
   for (const auto &ends : rim_edges(mesh, inclusion.region)) {
     const double chord = distance(mesh.points[at(ends[0])], mesh.points[at(ends[1])]);

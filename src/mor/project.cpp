@@ -1,7 +1,9 @@
 #include "rbvi/mor/reduce.hpp"
 
+#include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/packed.hpp"
+#include "rbvi/rom/model/training_samples.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -33,17 +35,12 @@ private:
   const PetscScalar *values_ = nullptr;
 };
 
-void sum_over_ranks(MPI_Comm comm, Matrix &values) {
-  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM,
-                comm);
-}
-
 /// V^T A V, its lower triangle column by column. Collective.
 Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
   Handle<Mat> product;
   RBVI_CALL(MatMatMult(a, basis, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
   Matrix full = BorrowedRows(basis).rows().transpose() * BorrowedRows(product.get()).rows();
-  sum_over_ranks(comm, full);
+  over_ranks(comm, MPI_SUM, full);
   return pack((full + full.transpose()) / 2);
 }
 
@@ -91,10 +88,6 @@ bool uses(const Eim &eim, int snapshot) {
   return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
 }
 
-} // namespace
-
-namespace {
-
 /// The mesh nodes and the reference points of the contact nodes.
 void describe_contact(const Problem &problem, ReducedModel &model) {
   const int dim = problem.mesh().dim;
@@ -125,7 +118,7 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     for (int c = 0; c < mesh.dim && mesh.owned_node[v]; ++c)
       model.mesh_points(mesh.natural_node[v], c) = mesh.points[v][static_cast<std::size_t>(c)];
-  sum_over_ranks(problem.comm(), model.mesh_points);
+  over_ranks(problem.comm(), MPI_SUM, model.mesh_points);
 
   const int per_cell = nodes_per_cell(mesh.dim, mesh.degree);
   std::vector<int> mine;
@@ -187,10 +180,8 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
 void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis,
                        SupportModel &support) {
   support.starts = nodal_coefficients(basis, multipliers_of(samples));
-  support.starts_mu.resize(static_cast<Index>(samples.front().mu.size()), support.starts.cols());
-  for (std::size_t p = 0; p < samples.size(); ++p)
-    std::copy(samples[p].mu.begin(), samples[p].mu.end(),
-              support.starts_mu.col(static_cast<Index>(p)).begin());
+  support.starts_mu =
+      as_columns(parameters_of(samples), static_cast<int>(samples.front().mu.size()));
 }
 
 /// e_EIM along the terms, and the training number of each.
@@ -208,50 +199,60 @@ void add_separation(const AffineOperators &affine,
   add("g", affine.g);
 }
 
-} // namespace
-
-ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
-                     const AffineOperators &affine, const ReducedBases &bases) {
+/// The model's names and sizes.
+ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
+  const Scene &scene = problem.scene();
   ReducedModel model;
-  model.scene_name = problem.scene().name;
-  model.scene_options = problem.scene().options;
-  model.parameters = problem.scene().parameters;
+  model.scene_name = scene.name;
+  model.scene_options = scene.options;
+  model.parameters = scene.parameters;
   model.modes = bases.modes;
-  model.supremizers = bases.supremizers;
+  model.supremizers = bases.supremizers + bases.responses;
   model.online_enriched = bases.online_enriched;
   model.dual_basis = problem.nitsche()      ? Matrix(problem.dual_size(), 0)
                      : problem.on_support() ? bases.support_dual
                                             : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
-  describe_mesh(problem, model);
+  return model;
+}
 
-  Mat basis = nullptr;
-  RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
+SupportModel start_support(const Problem &problem, const std::vector<Sample> &samples,
+                           const AffineOperators &affine, const ReducedBases &bases,
+                           const ReducedModel &model) {
+  SupportModel support;
+  support.vertices = static_cast<int>(problem.support().curve.vertices);
+  support.normal = model.generators / (static_cast<int>(problem.dual_size()) / support.vertices);
+  support.reduction = bases.reduction;
+  support.mended = bases.mended;
+  support.basis = bases.multipliers.basis;
+  support.condensed = bases.condensed;
+  support.lift = Matrix::Zero(problem.dual_size(), affine.b_size());
+  if (affine.b_tangential.size() > 0)
+    support.apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
+  store_multipliers(samples, model.dual_basis, support);
+  return support;
+}
+
+/// The separated operators, their terms zero.
+void start_operators(const Problem &problem, const std::vector<Sample> &samples,
+                     const AffineOperators &affine, const ReducedBases &bases,
+                     ReducedModel &model) {
   const Index n = model.primal_size(), generators = model.generators;
-  const Matrix trace = restrict_to(problem.trace(), basis); // contact dofs x n
   model.a = start_terms(affine.a, affine.sample_a, n * (n + 1) / 2);
   model.b = start_terms_of_b(affine, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  if (problem.on_support() && !problem.nitsche()) {
-    const int vertices = static_cast<int>(problem.support().curve.vertices);
-    const auto parts = static_cast<int>(problem.dual_size()) / vertices;
-    model.support = SupportModel{};
-    model.support->vertices = vertices;
-    model.support->normal = model.generators / parts;
-    model.support->reduction = bases.reduction;
-    model.support->mended = bases.mended;
-    model.support->basis = bases.multipliers.basis;
-    model.support->condensed = bases.condensed;
-    model.support->lift = Matrix::Zero(problem.dual_size(), affine.b_size());
-    if (affine.b_tangential.size() > 0)
-      model.support->apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
-    store_multipliers(samples, model.dual_basis, *model.support);
-  } else {
+  if (problem.on_support() && !problem.nitsche())
+    model.support = start_support(problem, samples, affine, bases, model);
+  else
     model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
-  }
+}
 
+/// Adds the operators of the snapshots that the terms are made of. Collective.
+void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
+                       const AffineOperators &affine, Mat basis, ReducedModel &model) {
+  const Matrix trace = restrict_to(problem.trace(), basis); // contact dofs x n
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
     if (uses(affine.a, p))
@@ -260,39 +261,55 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     if (uses(affine.g, p))
       accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
     if (uses(affine.f, p)) {
-      const PetscScalar *load = nullptr;
-      RBVI_CALL(VecGetArrayRead(op.f, &load));
-      const BorrowedRows rows(basis);
-      Matrix f = rows.rows().transpose() * Eigen::Map<const Vector>(load, rows.rows().rows());
-      RBVI_CALL(VecRestoreArrayRead(op.f, &load));
-      sum_over_ranks(problem.comm(), f);
+      Matrix f = BorrowedRows(basis).rows().transpose() * local_values(op.f);
+      over_ranks(problem.comm(), MPI_SUM, f);
       accumulate(affine.f, p, f, model.f.reduced);
     }
   }
+}
 
-  model.primal_basis = Matrix::Zero(problem.dofs().total, n);
-  {
-    const BorrowedRows rows(basis);
-    const auto local = rows.rows();
-    for (Index i = 0; i < local.rows(); ++i)
-      model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
-          local.row(i);
-  }
-  sum_over_ranks(problem.comm(), model.primal_basis);
-  RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
+/// The basis functions as fields, in the numbers of the undistributed mesh. Collective.
+void store_fields(const Problem &problem, Mat basis, ReducedModel &model) {
+  model.primal_basis = Matrix::Zero(problem.dofs().total, model.primal_size());
+  const BorrowedRows rows(basis);
+  const auto local = rows.rows();
+  for (Index i = 0; i < local.rows(); ++i)
+    model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
+        local.row(i);
+  over_ranks(problem.comm(), MPI_SUM, model.primal_basis);
   model.contact_trace = contact_trace_of(problem, model);
-  model.histories["pod/error"] = bases.pod.error;
-  model.histories["cone/size"] = {bases.cone.history.size.begin(), bases.cone.history.size.end()};
-  model.histories["cone/error"] = bases.cone.history.error;
-  model.histories["cone/e_orth"] = bases.cone.history.e_orth;
-  model.histories["cone/gram_condition"] = bases.cone.history.gram_condition;
-  model.histories["normal_cone/error"] = bases.multipliers.normal.error;
-  model.histories["bound_cone/error"] = bases.multipliers.left_to_bound.error;
-  model.histories["tangential/error"] = bases.multipliers.tangential;
-  model.histories["pga/sigma"] = bases.pga.sigma;
-  if (bases.infsup_tolerance > 0) model.histories["pga/tolerance"] = {bases.infsup_tolerance};
-  model.histories["pga/selected"] = {bases.pga.selected.begin(), bases.pga.selected.end()};
-  add_separation(affine, model.histories);
+}
+
+void store_histories(const AffineOperators &affine, const ReducedBases &bases,
+                     std::map<std::string, std::vector<double>> &histories) {
+  const ConeHistory &cone = bases.cone.history;
+  histories["pod/error"] = bases.pod.error;
+  histories["cone/size"] = {cone.size.begin(), cone.size.end()};
+  histories["cone/error"] = cone.error;
+  histories["cone/e_orth"] = cone.e_orth;
+  histories["cone/gram_condition"] = cone.gram_condition;
+  histories["normal_cone/error"] = bases.multipliers.normal.error;
+  histories["bound_cone/error"] = bases.multipliers.left_to_bound.error;
+  histories["tangential/error"] = bases.multipliers.tangential;
+  histories["pga/sigma"] = bases.pga.sigma;
+  if (bases.infsup_tolerance > 0) histories["pga/tolerance"] = {bases.infsup_tolerance};
+  histories["pga/selected"] = {bases.pga.selected.begin(), bases.pga.selected.end()};
+  add_separation(affine, histories);
+}
+
+} // namespace
+
+ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
+                     const AffineOperators &affine, const ReducedBases &bases) {
+  ReducedModel model = start_model(problem, bases);
+  describe_mesh(problem, model);
+  start_operators(problem, samples, affine, bases, model);
+  Mat basis = nullptr;
+  RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
+  project_snapshots(problem, samples, affine, basis, model);
+  store_fields(problem, basis, model);
+  RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
+  store_histories(affine, bases, model.histories);
   return model;
 }
 

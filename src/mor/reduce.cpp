@@ -1,4 +1,4 @@
-#include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
@@ -12,17 +12,6 @@
 namespace rbvi {
 
 namespace {
-
-Pod compress_displacements(Problem &problem, const std::vector<Sample> &samples,
-                           const PodOptions &options) {
-  std::vector<Handle<Vec>> owned;
-  std::vector<Vec> snapshots;
-  for (const Sample &sample : samples) {
-    owned.push_back(from_natural(problem.dofs(), sample.u));
-    snapshots.push_back(owned.back().get());
-  }
-  return pod(snapshots, problem.v_product(), options);
-}
 
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
                       const ConeOptions &options) {
@@ -58,11 +47,8 @@ std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
   for (const Matrix &t : supremizers)
     coupling =
         coupling.cwiseMax(Matrix(factor.transpose().solve(t)).rowwise().lpNorm<Eigen::Infinity>());
-  MPI_Allreduce(MPI_IN_PLACE, coupling.data(), static_cast<int>(coupling.size()), MPI_DOUBLE,
-                MPI_MAX, comm);
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  if (rank != 0) return {};
+  over_ranks(comm, MPI_MAX, coupling);
+  if (rank_of(comm) != 0) return {};
   std::vector<Index> touched;
   for (Index i = 0; i < coupling.size(); ++i)
     if (coupling[i] > 1e-12 * coupling.maxCoeff()) touched.push_back(i);
@@ -72,7 +58,7 @@ std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
 /// Contact dofs that b couples with the dual basis at some training mu. Collective.
 std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
                                 const std::vector<Mu> &training) {
-  std::vector<char> coupled(static_cast<std::size_t>(problem.trace().size), 0);
+  std::vector<PetscInt> coupled(static_cast<std::size_t>(problem.trace().size), 0);
   Operators op;
   take_turns(problem.comm(), training.size(), [&](std::size_t p) {
     problem.assemble_contact(training[p], op);
@@ -82,8 +68,7 @@ std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
         if (entry.value() != 0) coupled[static_cast<std::size_t>(entry.col())] = 1;
     }
   });
-  MPI_Allreduce(MPI_IN_PLACE, coupled.data(), static_cast<int>(coupled.size()), MPI_CHAR, MPI_MAX,
-                problem.comm());
+  over_ranks(problem.comm(), MPI_MAX, coupled);
   std::vector<Index> dofs;
   for (std::size_t i = 0; i < coupled.size(); ++i)
     if (coupled[i] != 0) dofs.push_back(static_cast<Index>(i));
@@ -115,28 +100,28 @@ std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, co
 
 void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
                      const ReduceOptions &options, const Matrix &dual_functions,
-                     ReducedBases &bases, StageTimes &times) {
+                     ReducedBases &bases, StageTable &stages) {
   const bool energy = options.product == SupremizerProduct::energy;
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
   RieszSpace riesz;
   const Matrix dual = orthonormal_dual_basis(dual_functions, problem.w_product());
   {
-    const Stage stage("Riesz representers", times);
+    const Stage stage(stages, stage::riesz);
     if (energy)
       RBVI_CALL(MatDuplicate(problem.assemble(reference).a, MAT_COPY_VALUES, stiffness.put()));
     riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(),
                              coupled_dofs(problem, dual, training));
   }
   PgaOptions pga = options.pga;
-  if (options.infsup_tolerance && !bases.online_enriched) {
-    const Stage stage("inf-sup tolerance", times);
+  if (will_run(stages, stage::infsup_tolerance)) {
+    const Stage stage(stages, stage::infsup_tolerance);
     const RieszSpace whole =
         make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace());
     pga.tolerance = infsup_tolerance(problem.comm(), problem, whole, training);
     bases.infsup_tolerance = pga.tolerance;
   }
-  const Stage stage("PGA", times);
+  const Stage stage(stages, stage::pga);
   const Matrix modes =
       energy ? mode_coordinates(riesz, orthonormalised(bases.pod.basis, stiffness.get()))
              : mode_coordinates(riesz, bases.pod.basis);
@@ -177,33 +162,38 @@ Matrix multipliers_of(const std::vector<Sample> &samples) {
 }
 
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
-               ReducedBases &bases, StageTimes &times) {
-  const Stage stage("POD", times);
-  bases.pod = compress_displacements(problem, samples, options);
+               ReducedBases &bases, StageTable &stages) {
+  const Stage stage(stages, stage::pod);
+  std::vector<Handle<Vec>> owned;
+  std::vector<Vec> snapshots;
+  for (const Sample &sample : samples) {
+    owned.push_back(from_natural(problem.dofs(), sample.u));
+    snapshots.push_back(owned.back().get());
+  }
+  bases.pod = pod(snapshots, problem.v_product(), options);
   bases.modes = static_cast<int>(bases.pod.basis.size());
 }
 
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
-                         const ReduceOptions &options, bool b_is_scaled, StageTimes &times) {
+                         const ReduceOptions &options, bool b_is_scaled, StageTable &stages) {
   const Matrix multipliers = multipliers_of(samples);
   const Mu reference =
       options.reference.empty() ? box_centre(problem.scene().parameters) : options.reference;
   ReducedBases bases;
-  add_modes(problem, samples, options.pod, bases, times);
-  {
-    const Stage stage("cone", times);
-    bases.cone = build_dual_basis(problem, reference, multipliers, options.cone);
-  }
-  if (options.enrichment == Enrichment::decorrelated) return bases;
+  add_modes(problem, samples, options.pod, bases, stages);
+  bases.cone = timed(stages, stage::cone, [&] {
+    return build_dual_basis(problem, reference, multipliers, options.cone);
+  });
+  if (!will_run(stages, stage::pga)) return bases;
   std::vector<Mu> training = parameters_of(samples);
   if (b_is_scaled) training.resize(1);
-  add_supremizers(problem, training, reference, options, bases.cone.all(), bases, times);
+  add_supremizers(problem, training, reference, options, bases.cone.all(), bases, stages);
   return bases;
 }
 
 namespace {
 
-/// Of each sample in the modes, n x P.
+/// The coefficients of each sample in the modes, n x P.
 Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &samples,
                        const LinearBasis &modes) {
   Matrix result(modes.size(), static_cast<Index>(samples.size()));
@@ -232,13 +222,11 @@ void add_histories(const CurveReport &curve,
 
 /// Modes alone, then the curve.
 void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
-                    const ReduceOptions &options, Reduction &result, StageTimes &times) {
-  add_modes(problem, samples, options.pod, result.bases, times);
-  {
-    const Stage stage("projection", times);
-    result.model = project(problem, samples, result.affine, result.bases);
-  }
-  const Stage stage("contact curve", times);
+                    const ReduceOptions &options, Reduction &result) {
+  add_modes(problem, samples, options.pod, result.bases, result.stages);
+  result.model = timed(result.stages, stage::projection,
+                       [&] { return project(problem, samples, result.affine, result.bases); });
+  const Stage stage(result.stages, stage::contact_curve);
   const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
   Matrix coefficients;
   if (options.curve.rule == CurveRule::interpolated)
@@ -248,8 +236,8 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
 }
 
 void add_collocation(Problem &problem, const std::vector<Sample> &samples,
-                     const GcnsOptions &options, Reduction &result, StageTimes &times) {
-  const Stage stage("collocation nodes", times);
+                     const GcnsOptions &options, Reduction &result) {
+  const Stage stage(result.stages, stage::collocation);
   result.collocation =
       collocate(result.model, problem.scene(), samples, problem.w_product(), options);
   const Gcns &nodes = result.collocation;
@@ -260,12 +248,11 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
 
 /// Collective. The self-check into the model of rank 0. On every rank: how many of its queries went
 /// wrong, 0 where it is clean.
-int check_answers(const Problem &problem, ReducedModel &model, StageTimes &times) {
-  const Stage stage("self-check", times);
-  int wrong = 0, rank = 0;
-  MPI_Comm_rank(problem.comm(), &rank);
+int check_answers(const Problem &problem, ReducedModel &model, StageTable &stages) {
+  const Stage stage(stages, stage::self_check);
+  int wrong = 0;
   collectively(problem.comm(), [&] {
-    if (rank != 0) return;
+    if (rank_of(problem.comm()) != 0) return;
     model.self_check = self_check(model, problem.scene());
     wrong = model.self_check.clean() ? 0 : std::max(1, model.self_check.unanswered);
   });
@@ -281,16 +268,14 @@ struct CheckedPair {
 
 CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, const AffineOperators &affine,
-                         StageTimes &times) {
-  CheckedPair pair{build_bases(problem, samples, options, affine.b_size() == 1, times),
+                         StageTable &stages) {
+  CheckedPair pair{build_bases(problem, samples, options, affine.b_size() == 1, stages),
                    {},
                    options.cone.ring,
                    0};
-  {
-    const Stage stage("projection", times);
-    pair.model = project(problem, samples, affine, pair.bases);
-  }
-  pair.wrong = check_answers(problem, pair.model, times);
+  pair.model = timed(stages, stage::projection,
+                     [&] { return project(problem, samples, affine, pair.bases); });
+  pair.wrong = check_answers(problem, pair.model, stages);
   return pair;
 }
 
@@ -300,15 +285,15 @@ CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
 /// A bound of the size of the cone bounds its ring as well; without supremizers its ring is not why
 /// queries have no answer.
 void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
-                 Reduction &result, StageTimes &times) {
+                 Reduction &result) {
   constexpr int widest = 64;
   const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0 &&
-                      options.enrichment != Enrichment::decorrelated;
-  CheckedPair best = checked_pair(problem, samples, options, result.affine, times);
+                      will_run(result.stages, stage::pga);
+  CheckedPair best = checked_pair(problem, samples, options, result.affine, result.stages);
   Index hats = best.bases.cone.basis.generators.cols();
   while (widens && best.wrong > 0 && options.cone.ring < widest) {
     options.cone.ring = std::max(1, 2 * options.cone.ring);
-    CheckedPair wider = checked_pair(problem, samples, options, result.affine, times);
+    CheckedPair wider = checked_pair(problem, samples, options, result.affine, result.stages);
     if (wider.bases.cone.basis.generators.cols() == hats) break;
     hats = wider.bases.cone.basis.generators.cols();
     if (wider.wrong < best.wrong) best = std::move(wider);
@@ -328,36 +313,40 @@ std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
   return apart;
 }
 
-} // namespace
-
-Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
-                 StageTimes &times) {
-  const std::vector<Mu> training = parameters_of(samples);
-  Reduction result;
+/// Contact with a rigid support.
+void reduce_on_support(Problem &problem, const std::vector<Sample> &samples,
+                       const ReduceOptions &options, Reduction &result) {
+  result.bases = build_support_bases(problem, samples, options, result.affine, result.stages);
   {
-    const Stage stage("interpolation", times);
-    if (training.empty()) throw failure("there is no sample to build a basis from");
-    result.affine = separate(problem, training, options.eim, rows_apart(options));
-  }
-  if (problem.nitsche()) {
-    reduce_nitsche(problem, samples, options, result, times);
-    check_answers(problem, result.model, times);
-    return result;
-  }
-  if (!problem.on_support()) {
-    reduce_pair(problem, samples, options, result, times);
-    return result;
-  }
-  result.bases = build_support_bases(problem, samples, options, result.affine, times);
-  {
-    const Stage stage("projection", times);
+    const Stage stage(result.stages, stage::projection);
     result.model = project(problem, samples, result.affine, result.bases);
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
   }
-  if (result.bases.multipliers.basis.tangential.size() > 0 &&
-      result.bases.reduction == MultiplierReduction::collocated)
-    add_collocation(problem, samples, options.gcns, result, times);
-  check_answers(problem, result.model, times);
+  if (will_run(result.stages, stage::collocation))
+    add_collocation(problem, samples, options.gcns, result);
+}
+
+} // namespace
+
+Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
+                 const ReduceOptions &options) {
+  const std::vector<Mu> training = parameters_of(samples);
+  if (training.empty()) throw failure("there is no sample to build a basis from");
+  Reduction result;
+  result.stages = reduction_stages(problem.scene(), options);
+  result.affine = timed(result.stages, stage::interpolation, [&] {
+    return separate(problem, training, options.eim, rows_apart(options));
+  });
+  const bool pair = !problem.nitsche() && !problem.on_support();
+  if (pair)
+    reduce_pair(problem, samples, options, result);
+  else if (problem.nitsche())
+    reduce_nitsche(problem, samples, options, result);
+  else
+    reduce_on_support(problem, samples, options, result);
+  if (!pair) check_answers(problem, result.model, result.stages);
+  result.stages =
+      finished_stages(result.stages, reduction_stages(problem.scene(), options, &result));
   return result;
 }
 

@@ -1,4 +1,4 @@
-#include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/support_outputs.hpp"
@@ -40,7 +40,7 @@ void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
 
 ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
                                  const ReduceOptions &options, const AffineOperators &affine,
-                                 StageTimes &times) {
+                                 StageTable &stages) {
   const Matrix multipliers = multipliers_of(samples);
   const Scene &scene = problem.scene();
   check_support_reduction(scene, options);
@@ -50,28 +50,28 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   ReducedBases bases;
   bases.reduction = choice.reduction;
   bases.mended = choice.exact;
-  add_modes(problem, samples, options.pod, bases, times);
+  add_modes(problem, samples, options.pod, bases, stages);
   bases.support_dual = support_dual_basis(problem, multipliers);
   const Matrix &nodal = bases.support_dual;
-  if (!collocated || choice.exact) {
-    const Stage stage("condensation", times);
+  if (will_run(stages, stage::condensation)) {
+    const Stage stage(stages, stage::condensation);
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
     Condensation made = condense(problem, affine, training, nodal, options.condensed, modes);
     bases.condensed = std::move(made.condensed);
-    bases.supremizers = made.responses;
+    bases.responses = made.responses;
   }
-  if (choice.reduction == MultiplierReduction::condensed) return bases;
+  if (!will_run(stages, stage::multipliers)) return bases;
   {
-    const Stage stage("multipliers", times);
+    const Stage stage(stages, stage::multipliers);
     const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
     bases.multipliers = make_multiplier_basis(nodal_coefficients(nodal, multipliers), w,
                                               bounds_at(scene, training), choice, options.cone);
   }
-  if (!collocated || options.enrichment == Enrichment::decorrelated) return bases;
+  if (!will_run(stages, stage::pga)) return bases;
   if (affine.b_size() == 1) training.resize(1);
   const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
   add_supremizers(problem, training, reference, options,
-                  multiplier_functions(nodal, bases.multipliers.basis), bases, times);
+                  multiplier_functions(nodal, bases.multipliers.basis), bases, stages);
   return bases;
 }
 

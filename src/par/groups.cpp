@@ -1,13 +1,12 @@
 #include "rbvi/par/groups.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 
 namespace rbvi {
 
 Groups::Groups(MPI_Comm world, int ranks_per_group) {
-  int ranks = 1, rank = 0;
-  MPI_Comm_size(world, &ranks);
-  MPI_Comm_rank(world, &rank);
+  const int ranks = ranks_of(world), rank = rank_of(world);
   if (ranks_per_group < 1 || ranks % ranks_per_group != 0)
     throw bad_input("-sweep_ranks_per_solve is " + std::to_string(ranks_per_group) +
                     ": use a number that divides the " + std::to_string(ranks) + " ranks");

@@ -27,7 +27,7 @@ rbvi-online MODEL --queries SET          one row per parameter of a CSV file, gr
   --out FILE       the table as CSV (standard output without it, or as -)
   --vtu FILE       with --mu: the field, and the contact region in FILE_contact
   --full           reconstruct the field: adds min_u
-  --decorrelated   without the supremizers
+  --decorrelated   without the supremizers or responses beside the modes
   --extrapolate    allow parameters outside the box of the model, where the scene makes sense
   --help, --version
 Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).

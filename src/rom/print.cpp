@@ -114,8 +114,9 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_parameters(out, model.parameters);
   print_failed(out, model);
   label(out, "modes") << model.modes << '\n';
-  label(out, "supremizers") << model.supremizers
-                            << (model.online_enriched ? " (the space is made online)" : "") << '\n';
+  const bool joined = model.support && model.support->reduction != MultiplierReduction::collocated;
+  label(out, joined ? "responses" : "supremizers")
+      << model.supremizers << (model.online_enriched ? " (the space is made online)" : "") << '\n';
   if (model.nitsche)
     print_curve(out, *model.nitsche);
   else if (model.support)

@@ -107,7 +107,7 @@ Vector means_at_nodes(const Matrix &points, const Vector &of_edges) {
   return sum.cwiseQuotient(weight);
 }
 
-/// Of two bodies; without cells where nothing of the slave curve faces the master curve.
+/// The slave curve of two bodies; without cells where nothing of it faces the master curve.
 Grid curve(const State &state) {
   const auto &[scene, mu, model, u, lambda, moved] = state;
   std::vector<Point> curves;

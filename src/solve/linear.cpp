@@ -1,11 +1,11 @@
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
 
 Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix) {
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
+  const int ranks = ranks_of(comm);
   Handle<KSP> ksp;
   RBVI_CALL(KSPCreate(comm, ksp.put()));
   RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), prefix));

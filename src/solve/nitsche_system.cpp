@@ -1,6 +1,8 @@
 #include "nitsche_system.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/solve/whole.hpp"
 #include "vectors.hpp"
 
 #include <algorithm>
@@ -30,15 +32,6 @@ template <class Work> PetscErrorCode guarded(std::exception_ptr &failed, const W
     failed = std::current_exception();
     return PETSC_ERR_USER;
   }
-}
-
-std::vector<PetscInt> rows_of(const Trace &trace, PetscInt first_row) {
-  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
-  for (std::size_t k = 0; k < trace.index.size(); ++k)
-    rows[static_cast<std::size_t>(trace.index[k])] = first_row + trace.local_row[k];
-  MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPIU_INT, MPI_SUM,
-                trace.comm);
-  return rows;
 }
 
 /// Adds blocks of the faces, every rank in its own rows.
@@ -89,7 +82,7 @@ NitscheSystem &system_of(void *context) {
 
 NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &problem,
                              const NitscheOptions &chosen)
-    : solver(of), options(chosen), rows(rows_of(of.layer().trace, problem.dofs().first_free)) {
+    : solver(of), options(chosen), rows(whole_rows(problem.dofs().first_free, of.layer().trace)) {
   if (!options.nonpenetration) return;
   frames.emplace(problem, problem.support().natural_node.size());
   node_of_dof = nodes_of_dofs(problem.support(), of.layer());
@@ -365,8 +358,7 @@ void NitscheSystem::set_callbacks() {
 void NitscheSystem::set_linear_solver() {
   KSP ksp = nullptr;
   PC pc = nullptr;
-  int ranks = 1;
-  MPI_Comm_size(solver.layer().trace.comm, &ranks);
+  const int ranks = ranks_of(solver.layer().trace.comm);
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(KSPSetType(ksp, KSPCG));
   RBVI_CALL(KSPSetTolerances(ksp, linear_tolerance, PETSC_DEFAULT, 1e30, most_iterations));

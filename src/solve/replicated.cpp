@@ -1,6 +1,7 @@
 #include "rbvi/solve/replicated.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/whole.hpp"
 
@@ -18,9 +19,7 @@ struct Share {
 
 /// This rank's part of 0 .. size - 1.
 Share my_share(MPI_Comm comm, Index size) {
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &ranks);
+  const int rank = rank_of(comm), ranks = ranks_of(comm);
   const Index first = size * rank / ranks;
   return {first, size * (rank + 1) / ranks - first};
 }
@@ -28,8 +27,7 @@ Share my_share(MPI_Comm comm, Index size) {
 } // namespace
 
 Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
+  const int ranks = ranks_of(comm);
   Handle<Mat> whole;
   if (ranks == 1) {
     RBVI_CALL(PetscObjectReference(reinterpret_cast<PetscObject>(a)));
@@ -40,13 +38,16 @@ Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
 }
 
 std::vector<PetscInt> whole_rows(Mat a, const Trace &trace) {
-  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
   PetscInt first = 0;
   RBVI_CALL(MatGetOwnershipRange(a, &first, nullptr));
+  return whole_rows(first, trace);
+}
+
+std::vector<PetscInt> whole_rows(PetscInt first, const Trace &trace) {
+  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
   for (std::size_t k = 0; k < trace.index.size(); ++k)
     rows[static_cast<std::size_t>(trace.index[k])] = first + trace.local_row[k];
-  MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPIU_INT, MPI_SUM,
-                trace.comm);
+  over_ranks(trace.comm, MPI_SUM, rows);
   return rows;
 }
 
@@ -93,8 +94,7 @@ Matrix ReplicatedSolver::responses(const Matrix &loads) {
     result.middleCols(mine.first + done, count) =
         solve_columns(loads, mine.first + done, count)(rows_, Eigen::all);
   }
-  MPI_Allreduce(MPI_IN_PLACE, result.data(), static_cast<int>(result.size()), MPI_DOUBLE, MPI_SUM,
-                comm_);
+  over_ranks(comm_, MPI_SUM, result);
   return result;
 }
 
@@ -111,8 +111,7 @@ Handle<Mat> ReplicatedSolver::fields(const Matrix &loads) {
     Matrix all = Matrix::Zero(size, part.cols());
     if (mine.count > 0)
       all.middleCols(mine.first, mine.count) = solve_columns(part, mine.first, mine.count);
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
-                  comm_);
+    over_ranks(comm_, MPI_SUM, all);
     double *values = nullptr;
     RBVI_CALL(MatDenseGetArray(result.get(), &values));
     for (Index k = 0; k < part.cols(); ++k)

@@ -17,7 +17,7 @@ inline double dot(Vec a, Vec b) {
   return value;
 }
 
-/// Of the same layout; its values are not set.
+/// A vector of the same layout; its values are not set.
 inline Handle<Vec> like(Vec v) {
   Handle<Vec> result;
   RBVI_CALL(VecDuplicate(v, result.put()));

@@ -145,8 +145,7 @@ void prepare_directory(const fs::path &directory, const Stock &stock) {
 std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
                                  const fs::path &directory, const Settings &settings,
                                  const std::function<void()> &begin, SweepReport &report) {
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
+  const int rank = rank_of(world);
   Stock stock{std::vector<int>(set.size(), 1), {}, ""};
   collectively(world, [&] {
     if (rank == 0) stock = take_stock(set, directory, settings);
@@ -208,8 +207,7 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
   const auto total = static_cast<int>(missing.size());
   const int begin = total * groups.mine() / groups.count();
   const int end = total * (groups.mine() + 1) / groups.count();
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
+  const int rank = rank_of(world);
   // The first group tells of all: it knows its own share, and takes the others to be as far.
   Progress progress(groups.count() == 1
                         ? "samples"

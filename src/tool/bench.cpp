@@ -125,9 +125,8 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
     Scene scene = make_scene(options.scene.name, lumped);
     scene.parameters = options.scene.parameters;
     Problem vertex_quadrature(PETSC_COMM_SELF, scene, options.mesh);
-    std::vector<Mu> set;
-    for (std::size_t p = 0; p < std::min(few, truths.size()); ++p)
-      set.push_back(truths[p].mu);
+    std::vector<Mu> set = parameters_of(truths);
+    set.resize(std::min(few, set.size()));
     rows.push_back(bench_vi(vertex_quadrature, set));
   }
   return rows;
@@ -174,9 +173,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
 
 void command_bench(const ToolOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(world, &rank);
-  MPI_Comm_size(world, &ranks);
+  const int rank = rank_of(world), ranks = ranks_of(world);
   const ReducedModel model = model_of_run(world, given.out);
   const ToolOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::none);

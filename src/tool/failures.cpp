@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <cstdio>
 
@@ -19,9 +20,7 @@ std::string count_of(const SweepReport &report, std::size_t total, const std::st
 
 void check_failures(const ToolOptions &options, const SweepReport &report, std::size_t total,
                     const std::string &set) {
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  if (rank == 0)
+  if (rank_of(PETSC_COMM_WORLD) == 0)
     for (const auto &[mu, reason] : report.failed)
       std::printf("  failed at %s: %s\n", describe(options.scene.parameters, mu).c_str(),
                   reason.c_str());

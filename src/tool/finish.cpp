@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <unistd.h>
@@ -17,9 +18,7 @@ namespace {
 /// The lowest rank that failed (the number of ranks if none did), or nothing if some rank does not
 /// arrive within a few seconds of a failure here.
 std::optional<int> first_failure(MPI_Comm world, bool failed) {
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(world, &rank);
-  MPI_Comm_size(world, &ranks);
+  const int rank = rank_of(world), ranks = ranks_of(world);
   const int mine = failed ? rank : ranks;
   int first = ranks, done = 0;
   MPI_Request request = MPI_REQUEST_NULL;
@@ -95,11 +94,9 @@ Invocation read_invocation(int argc, char **argv) {
 }
 
 int report_once(int status, const std::string &message) {
-  int rank = 0;
   MPI_Init(nullptr, nullptr);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   std::FILE *stream = status == 0 ? stdout : stderr;
-  if (rank == 0) std::fprintf(stream, "%s\n", message.c_str());
+  if (rank_of(MPI_COMM_WORLD) == 0) std::fprintf(stream, "%s\n", message.c_str());
   if (std::fflush(stream) != 0) status = static_cast<int>(Status::failed);
   MPI_Barrier(MPI_COMM_WORLD); // mpirun ends all at the first status that is not zero
   MPI_Finalize();
@@ -108,8 +105,8 @@ int report_once(int status, const std::string &message) {
 
 int finish(MPI_Comm world, const std::function<void()> &work) {
   std::string message;
-  int status = 0, rank = 0;
-  MPI_Comm_rank(world, &rank);
+  int status = 0;
+  const int rank = rank_of(world);
   try {
     work();
   } catch (const Error &error) {

@@ -109,12 +109,10 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
                     ": leave out -case, or use another -out");
   options.scene = scene_of(model);
   options.mesh = mesh_of(model, options.mesh);
-  int rank = 0;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   std::string line;
   for (const std::string &difference : differences(given, options, model))
     line += (line.empty() ? "" : ", ") + difference;
-  if (rank == 0 && !line.empty())
+  if (rank_of(PETSC_COMM_WORLD) == 0 && !line.empty())
     std::printf("The model is not of this case, and its own values are used: %s\n", line.c_str());
   return options;
 }

@@ -62,12 +62,10 @@ std::map<std::string, std::string> model_settings(const ToolOptions &options, st
 
 /// Where the model has samples, and where it was to have them.
 void name_training(const Sweep &sweep, ReducedModel &model) {
-  std::vector<Mu> trained, failed;
-  for (const Sample &sample : sweep.samples)
-    trained.push_back(sample.mu);
+  std::vector<Mu> failed;
   for (const auto &[mu, reason] : sweep.report.failed)
     failed.push_back(mu);
-  model.trained_mu = as_columns(trained, model.parameters.size());
+  model.trained_mu = as_columns(parameters_of(sweep.samples), model.parameters.size());
   model.failed_mu = as_columns(failed, model.parameters.size());
 }
 
@@ -79,44 +77,44 @@ void command_offline(const ToolOptions &options) {
   if (options.scene.support) check_support_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
   const Groups groups(world, options.ranks_per_solve);
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
-  if (rank == 0) print_stages(offline_stages(options, training.size(), groups.count()), {});
+  const int rank = rank_of(world);
+  StageTable before = preparation_stages(options, training.size(), groups.count());
+  StageTable after = closing_stages();
+  if (rank == 0) print_stages({before, reduction_stages(options.scene, options.reduce), after});
   if (options.plan) return;
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   check_outputs(world, options,
                 {{"the reduced model", options.out / "model.h5"},
                  {"the table", options.out / "samples.csv"}});
 
-  StageTimes times;
-  Sweep sweep;
-  Workspace work(world, groups, options, times);
-  {
-    const Stage stage("snapshots", times);
-    sweep = run_sweep(world, groups, work.group_problem(), options.hf, training,
-                      options.out / "samples", [&] { begin_run(world, options); });
-  }
+  Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
+  const Sweep sweep = timed(before, stage::snapshots, [&] {
+    return run_sweep(world, groups, work.group_problem(), options.hf, training,
+                     options.out / "samples", [&] { begin_run(world, options); });
+  });
   check_failures(options, sweep.report, training.size(), "training");
 
-  Problem &problem = work.world_problem(times);
-  Reduction made = reduce(problem, sweep.samples, options.reduce, times);
+  if (will_run(before, stage::distributed_mesh))
+    timed(before, stage::distributed_mesh, [&] { work.world_problem(); });
+  before = finished_stages(
+      before, preparation_stages(options, training.size(), groups.count(), &sweep.report));
+  Reduction made = reduce(work.world_problem(), sweep.samples, options.reduce);
   ReducedModel &model = made.model;
   model.settings = model_settings(options, sweep.samples.size());
   if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
   name_training(sweep, model);
-  for (const auto &[stage, seconds] : times)
-    model.stage_seconds[stage] = seconds;
-  {
-    const Stage stage("writing", times);
+  for (const StageTable &table : {before, made.stages})
+    for (const StageRow &row : table)
+      if (row.seconds) model.stage_seconds[row.stage.text] = *row.seconds;
+  timed(after, stage::writing, [&] {
     collectively(world, [&] {
       if (rank != 0) return;
       write_model(model, options.out / "model.h5");
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);
     });
-  }
+  });
   if (rank == 0) {
-    const OfflineResult result{sweep.report, made};
-    print_stages(offline_stages(options, training.size(), groups.count(), &result), times);
+    print_stages({before, made.stages, finished_stages(after, closing_stages())});
     std::cout << "Self-check: ";
     print_self_check(std::cout, model.self_check, model.parameters);
     warn_of_resolution(sweep.samples, std::cout);

@@ -29,9 +29,7 @@ void command_solve(const ToolOptions &options) {
   ReducedModel mesh;
   if (!options.vtu.empty()) describe_mesh(problem, mesh);
   collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
+    if (rank_of(world) != 0) return;
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
     warn_of_resolution({{mu, {}, {}, solution.outputs}}, std::cout);

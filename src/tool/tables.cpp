@@ -1,5 +1,6 @@
 #include "rbvi/tool/tables.hpp"
 
+#include "rbvi/check/bench.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/write_atomically.hpp"
@@ -33,14 +34,8 @@ void Table::add(const ParameterSpace &space, const std::vector<Mu> &set) {
 
 void write_sample_table(const std::filesystem::path &path, const ParameterSpace &space,
                         const std::vector<Sample> &samples) {
-  std::vector<Mu> mus;
-  std::vector<Outputs> outputs;
-  for (const Sample &sample : samples) {
-    mus.push_back(sample.mu);
-    outputs.push_back(sample.outputs);
-  }
   std::ostringstream out;
-  write_csv(out, space, mus, outputs);
+  write_csv(out, space, parameters_of(samples), outputs_of(samples));
   write_atomically(path, out.str());
 }
 

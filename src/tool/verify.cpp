@@ -85,9 +85,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
     for (const int n : sizes_up_to(model.modes, mode_counts(model)))
       for (const int r : generator_counts(model))
         pairs.push_back({kind, n, r});
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(world, &rank);
-  MPI_Comm_size(world, &ranks);
+  const int rank = rank_of(world), ranks = ranks_of(world);
   const auto count = static_cast<int>(pairs.size());
   const bool friction = truths.tangential_norm.size() > 0;
   const bool stresses = friction && model.nitsche;
@@ -105,8 +103,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
       if (stresses) rows(k, 14) = e.tangential_floor.maxCoeff();
     }
   });
-  MPI_Allreduce(MPI_IN_PLACE, rows.data(), static_cast<int>(rows.size()), MPI_DOUBLE, MPI_SUM,
-                world);
+  over_ranks(world, MPI_SUM, rows);
   collectively(world, [&] {
     if (rank != 0) return;
     std::vector<std::vector<double>> columns;
@@ -199,14 +196,11 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
     for (const Cell &cell : cells.cells)
       worst[p] = std::max(worst[p], aspect_ratio(cell.dim, cell.mapped));
   }
-  MPI_Allreduce(MPI_IN_PLACE, worst.data(), static_cast<int>(worst.size()), MPI_DOUBLE, MPI_MAX,
-                world);
+  over_ranks(world, MPI_MAX, worst);
   std::vector<double> is_training(all.size(), 0);
   std::fill_n(is_training.begin(), training.size(), 1.0);
   collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
+    if (rank_of(world) != 0) return;
     Table table;
     table.add(problem.scene().parameters, all);
     table.add("training", is_training);
@@ -223,9 +217,7 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
                       const std::vector<Mu> &validation) {
   const std::vector<SeparationErrors> separated = separation_errors(problem, model, validation);
   collectively(problem.comm(), [&] {
-    int rank = 0;
-    MPI_Comm_rank(problem.comm(), &rank);
-    if (rank != 0) return;
+    if (rank_of(problem.comm()) != 0) return;
     std::ostringstream text;
     text << std::setprecision(4) << "operator,terms,training_error,validation_error\n";
     std::string line;
@@ -266,7 +258,7 @@ void write_output_errors(const fs::path &path, const std::vector<OutputError> &e
   write_atomically(path, text.str());
 }
 
-/// Those that have a target: quantities and measures.
+/// Errors of the outputs that have a target: quantities and measures.
 void print_output_errors(const std::vector<OutputError> &errors) {
   std::printf("Errors of the outputs: largest, over the range, over the value\n");
   for (const OutputError &e : errors)
@@ -288,7 +280,7 @@ std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &
   return errors;
 }
 
-/// Errors of the model with and without supremizers and of its leading parts, into tables, and the
+/// Errors of the model, of its modes alone and of its leading parts, into tables, and the
 /// summaries into the model file.
 void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
                   const ToolOptions &options, const fs::path &out) {
@@ -335,20 +327,17 @@ void command_verify(const ToolOptions &given) {
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   const std::vector<Mu> training = from_columns(model.trained_mu);
   const Groups groups(world, options.ranks_per_solve);
-  StageTimes times;
-  Workspace work(world, groups, options, times);
+  Workspace work(world, groups, options);
   check_mesh(work.group_problem(), model, options);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
                                 options.out / "samples");
   check_failures(options, sweep.report, validation.size(), "validation");
   const std::vector<Sample> &answers = sweep.samples;
-  Problem &problem = work.world_problem(times);
+  Problem &problem = work.world_problem();
   const Truths truths = make_truths(problem, model, answers);
   const fs::path out = options.out / "verify";
   collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
+    if (rank_of(world) != 0) return;
     sweep_up(options.out);
     make_directory(out);
     for (const char *of_another_model : {"infsup.csv", "stability.csv"})
@@ -359,8 +348,7 @@ void command_verify(const ToolOptions &given) {
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
   write_separation(out / "eim.csv", problem, model, truths.mu);
-  int rank = 0;
-  MPI_Comm_rank(world, &rank);
+  const int rank = rank_of(world);
   const std::string none = no_constants(model);
   if (options.stability && none.empty())
     check_stability(world, problem, model, training, truths.mu, out);

@@ -119,9 +119,7 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
                       spread(model.supremizers, steps));
   const int fewest = fewest_supremizers(world, problem, check, different, 0.9);
   collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
+    if (rank_of(world) != 0) return;
     report_constants(out / "infsup.csv", problem.scene().parameters, validation, constants);
     write_stability(out / "stability.csv", rows);
     report_steps(rows);

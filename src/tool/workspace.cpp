@@ -4,22 +4,17 @@
 
 namespace rbvi {
 
-Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options,
-                     StageTimes &times)
+Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options)
     : world_(world), options_(options), shared_(groups.count() == 1) {
-  const Stage stage("mesh", times);
   collectively(world, [&] {
     group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh);
     check_solver_options(*group_, options.hf);
   });
 }
 
-Problem &Workspace::world_problem(StageTimes &times) {
+Problem &Workspace::world_problem() {
   if (shared_) return *group_;
-  if (!all_) {
-    const Stage stage("distributed mesh", times);
-    all_ = std::make_unique<Problem>(world_, options_.scene, options_.mesh);
-  }
+  if (!all_) all_ = std::make_unique<Problem>(world_, options_.scene, options_.mesh);
   return *all_;
 }
 

@@ -33,8 +33,7 @@ struct Reduced {
       : problem(comm, scene, {}),
         samples(solve_all(problem, parse_set(problem.scene().parameters, training))) {}
   void reduce(const ReduceOptions &options) {
-    StageTimes times;
-    Reduction made = rbvi::reduce(problem, samples, options, times);
+    Reduction made = rbvi::reduce(problem, samples, options);
     affine = std::move(made.affine);
     bases = std::move(made.bases);
     model = std::move(made.model);

@@ -276,10 +276,9 @@ TEST(NitscheMeshes, AMeshThatIsNotSymmetricKeepsThePointsOfBothSides) {
   const auto samples = solve_all(problem, parse_set(problem.scene().parameters, "grid:5"));
   ReduceOptions options = with(CurveRule::empirical);
   options.curve.tolerance = 1e-7;
-  StageTimes times;
-  const ReducedModel few = rbvi::reduce(problem, samples, options, times).model;
+  const ReducedModel few = rbvi::reduce(problem, samples, options).model;
   options.curve.rule = CurveRule::full;
-  const ReducedModel all = rbvi::reduce(problem, samples, options, times).model;
+  const ReducedModel all = rbvi::reduce(problem, samples, options).model;
   OnlineSolver of_few(few), of_all(all);
   for (const Sample &sample : samples) {
     const Vector u = of_all.solve(sample.mu).u;

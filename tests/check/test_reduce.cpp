@@ -1,5 +1,6 @@
 // From snapshots to a reduced model: it reproduces its own training set, and what verify measures
 // is what a direct computation gives.
+#include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
 #include "rbvi/check/stability_report.hpp"

@@ -3,6 +3,7 @@
 
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/stages.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
@@ -46,10 +47,10 @@ struct Pair {
 };
 
 Pair with_both(Reduced &r, const ReduceOptions &options, const RowOptions &rows) {
-  StageTimes times;
+  StageTable stages = reduction_stages(r.problem.scene(), options);
   const AffineOperators joint = separate(r.problem, r.mus(), options.eim);
   Pair pair{{}, {}, separate(r.problem, r.mus(), options.eim, rows)};
-  const ReducedBases bases = build_support_bases(r.problem, r.samples, options, joint, times);
+  const ReducedBases bases = build_support_bases(r.problem, r.samples, options, joint, stages);
   pair.joint = project(r.problem, r.samples, joint, bases);
   pair.apart = project(r.problem, r.samples, pair.separated, bases);
   (void)collocate(pair.joint, r.problem.scene(), r.samples, r.problem.w_product(), options.gcns);

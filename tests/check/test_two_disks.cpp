@@ -1,5 +1,6 @@
 // Two bodies from snapshots to answers: reproduction, errors, stability, ranks, and training sets
 // with little or no contact.
+#include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
 #include "rbvi/check/stability_report.hpp"
@@ -255,9 +256,8 @@ TEST(ReducedDisks, WithoutAnyContactThereIsNoModel) {
 /// Between nine random radii the edge of contact moves further than a ring of one layer.
 TEST(TwoDisks, AHybridConeWidensUntilEveryRandomQueryIsAnswered) {
   Reduced r(make_scene("two_disks"), "random:9:1");
-  StageTimes times;
   const ReduceOptions options = with(ConeType::hybrid, 1e-3, 1e-3);
-  const Reduction made = reduce(r.problem, r.samples, options, times);
+  const Reduction made = reduce(r.problem, r.samples, options);
   EXPECT_GT(made.ring, options.cone.ring);
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

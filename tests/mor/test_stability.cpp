@@ -5,6 +5,7 @@
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/session.hpp"
+#include "stability_bound.hpp"
 
 #include <gtest/gtest.h>
 

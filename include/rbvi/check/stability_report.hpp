@@ -24,7 +24,7 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<Mu> &set, bool b_is_scaled);
 
-/// Of the mu of a set the one with the smallest |b(mu)|, the first among equals: where b is only
+/// The mu of a set with the smallest |b(mu)|, the first among equals: where b is only
 /// scaled it has the smallest constants of all. Not collective.
 Mu weakest_form(Problem &problem, const std::vector<Mu> &set);
 

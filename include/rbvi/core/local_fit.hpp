@@ -8,7 +8,7 @@ namespace rbvi {
 
 /// The free parameters among all, as parts of the width of their box: coordinates of like size.
 Vector parts_of_box(const ParameterSpace &space, const FullMu &all_parameters);
-/// The same of columns of free parameters, d x P.
+/// Columns of free parameters as such parts, d x P.
 Matrix parts_of_box(const ParameterSpace &space, Matrix free);
 
 /// Values at `here` of the affine function that fits those of the nearest samples, 2 (d + 1) of

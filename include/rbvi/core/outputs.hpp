@@ -24,8 +24,8 @@ struct Outputs {
   /// how well the mesh resolves the two zones.
   std::optional<double> contact_nodes, stick_nodes;
   std::optional<double> min_u;
-  /// Of the problem that was solved, relative: stationarity, feasibility, complementarity; of a
-  /// reduced answer that of the reduced problem, by Nitsche's method the residual of its equation.
+  /// Residual of the problem that was solved, relative: stationarity, feasibility, complementarity;
+  /// of a reduced answer that of the reduced problem, by Nitsche's method that of its equation.
   std::optional<double> kkt_residual;
   /// Nitsche's method reduced: residual of the integrals over the whole curve, tested with the
   /// reduced basis; what integrating at few points leaves.

@@ -190,8 +190,8 @@ struct Scene {
   std::optional<SupportRecipe> support;
   std::optional<NitscheRecipe> nitsche; ///< with a support and a material
 
-  /// Of an elastic body at the centre of a reference cell, constant on the cell; in 2D plane
-  /// strain. Empty: not elastic (a membrane), then there are no stresses.
+  /// The material of an elastic body at the centre of a reference cell, constant on the cell; in 2D
+  /// plane strain. Empty: not elastic (a membrane), then there are no stresses.
   std::function<Lame(const FullMu &, const Point &centre)> material;
 
   Form a;

@@ -12,6 +12,9 @@ std::string formatted(const char *format, double value);
 /// "%.4g".
 std::string short_number(double value);
 
+/// "1 mode", "2 modes".
+std::string counted(long number, const std::string &noun);
+
 /// "a, b, c".
 std::string joined(const std::vector<std::string> &parts, const std::string &separator = ", ");
 

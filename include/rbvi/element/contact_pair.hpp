@@ -6,7 +6,7 @@
 //
 // which is (2.49) with the slave on top. A curve is the nodes of its edges: the vertices in the
 // order of strictly increasing abscissa, then, of degree 2, a point of each edge near its middle.
-// Of degree 1 the gap is that of the polygons. Of degree 2 it is that of the parabolas through the
+// By degree 1 the gap is that of the polygons. By degree 2 it is that of the parabolas through the
 // three points of each edge, so that bodies with straight edges meet along their true curves if
 // these points are on them; displacements are quadratic in the abscissa, with their third node in
 // the middle of the straight edge. In every function of this file a curve of too few nodes, or of
@@ -45,9 +45,9 @@ Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
 PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &master,
                      const PairDiscretisation &discretisation, int degree = 1);
 
-/// The same for a scene with a pair: its curves mapped by h(mu), its motion taken into both gaps.
-/// `points`: reference nodes of the slave curve, then of the master curve. Throws failure, naming
-/// mu, if the map leaves no curve.
+/// The operators of a scene with a pair: its curves mapped by h(mu), its motion taken into both
+/// gaps. `points`: reference nodes of the slave curve, then of the master curve. Throws failure,
+/// naming mu, if the map leaves no curve.
 PairOperators couple_at(const Scene &scene, const FullMu &all_parameters,
                         const std::vector<Point> &points, Index slave_nodes);
 

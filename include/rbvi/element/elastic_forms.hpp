@@ -6,10 +6,10 @@
 
 namespace rbvi {
 
-/// Of Young's modulus, as wide as round-off allows; of Poisson's ratio, up to where elements of
-/// degree 1 begin to lock.
+/// Bounds of Young's modulus, as wide as round-off allows, and of Poisson's ratio, up to where
+/// elements of degree 1 begin to lock.
 constexpr Range young_range{1e-6, 1e15}, poisson_range{-0.99, 0.499};
-/// Of a coefficient of friction: above, solutions need not be unique.
+/// Bounds of a coefficient of friction: above, solutions need not be unique.
 constexpr Range friction_range{0, 5};
 
 /// lambda = E nu / ((1 + nu) (1 - 2 nu)), shear = E / (2 (1 + nu)). `young` is E (a pressure),
@@ -20,8 +20,8 @@ Lame lame(double young, double poisson);
 /// bad_input for a degree other than 1 and 2.
 Form elasticity(const std::string &region, const Lame &material, int degree = 1);
 
-/// The same with a material that is constant on each cell: `material(mu, centre)`, the centre that
-/// of the reference cell.
+/// Elasticity with a material that is constant on each cell: `material(mu, centre)`, the centre
+/// that of the reference cell.
 Form elasticity(const std::string &region,
                 const std::function<Lame(const FullMu &mu, const Point &centre)> &material,
                 int degree);

@@ -16,7 +16,7 @@ namespace rbvi {
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false);
 
-/// The same one by one, in constant memory; "-" is a CSV table on standard input.
+/// A set one by one, in constant memory; "-" is a CSV table on standard input.
 class ParameterReader {
 public:
   /// `space` must outlive it. Throws bad_input for a set that cannot be read from the beginning.

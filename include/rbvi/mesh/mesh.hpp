@@ -61,7 +61,7 @@ struct SerialMesh {
 /// circle into the square.
 SerialMesh square_with_disc();
 
-/// The same square, disc and names, graded: the finest edges are in the disc about its centre, to
+/// That square, disc and names, graded: the finest edges are in the disc about its centre, to
 /// 0.65 of its radius, 0.65 of the `circle_edges` equal edges of the circle; outside they are of
 /// nearly one length. With 60 edges 3399 nodes, 631 of them in the closed disc. Aspect ratios
 /// <= 1.65. Deterministic: concentric rings of 6 k nodes, rings of as many nodes as the circle has,
@@ -78,9 +78,9 @@ SerialMesh square_with_disc(int circle_edges);
 /// turn into the flat side.
 SerialMesh two_quarter_discs();
 
-/// The same two bodies, regions and boundaries with `edges` equal edges on each contact arc, graded
-/// to the corners where the flat sides, which are clamped, meet the circles. Throws bad_input unless
-/// there are at least 8.
+/// These two bodies, regions and boundaries with `edges` equal edges on each contact arc, graded
+/// to the corners where the flat sides, which are clamped, meet the circles. Throws bad_input
+/// unless there are at least 8.
 SerialMesh two_graded_quarter_discs(int edges);
 
 /// Two blocks with meshes that do not match, for patch tests: region "upper" is

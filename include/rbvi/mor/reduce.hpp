@@ -40,17 +40,17 @@ struct ReduceOptions {
   /// MultiplierReduction::collocated: tolerances of B^n and of B^tau, where not that of eim.
   std::optional<double> eim_normal, eim_tangential;
   CondensedOptions condensed;    ///< contact with a rigid support
-  MultiplierOptions multipliers; ///< of it
+  MultiplierOptions multipliers; ///< contact with a rigid support
   GcnsOptions gcns;
   CurveOptions curve; ///< Nitsche's method
   Enrichment enrichment = Enrichment::offline;
   SupremizerProduct product = SupremizerProduct::v;
-  Mu reference; ///< free parameters of that a, and of the hybrid cone's; empty: centre of the box
+  Mu reference; ///< free parameters of the a of energy and of the hybrid cone; empty: box_centre
 };
 
 /// A basis pair and how it was found.
 struct ReducedBases {
-  Pod pod; ///< basis: N modes, then the S supremizers, V-orthonormal
+  Pod pod; ///< basis: N modes, then the S supremizers or responses, V-orthonormal
   Cone cone;
   Pga pga;
   Matrix support_dual; ///< contact with a rigid support: the nodal dual basis; cone is empty
@@ -60,6 +60,7 @@ struct ReducedBases {
   MultiplierBases multipliers;
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
+  int responses = 0;   ///< contact with a rigid support: S functions of `condense` in their place
   bool online_enriched = false;
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
@@ -77,23 +78,24 @@ struct Reduction {
   int ring = 0;      ///< layers of nodes of a hybrid cone, ReduceOptions::cone.ring or more
   Gcns collocation;  ///< of MultiplierReduction::collocated
   CurveReport curve; ///< of Nitsche's method
+  StageTable stages; ///< reduction_stages(), timed
 };
 
 /// Collective. `problem`: on all ranks. Throws failure where there is no sample, or no contact in
 /// any; bad_input for options that do not fit the scene.
-Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
-                 StageTimes &times);
+Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
+                 const ReduceOptions &options);
 
 /// Contact with a rigid support: POD, the condensed operator, and, where the multipliers are
 /// reduced further, their functions and (collocated) the supremizers of the pair. Collective.
 ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
                                  const ReduceOptions &options, const AffineOperators &affine,
-                                 StageTimes &times);
+                                 StageTable &stages);
 
 /// Every other scene: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a factor
 /// only, so one training mu serves the supremizers. Collective.
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
-                         const ReduceOptions &options, bool b_is_scaled, StageTimes &times);
+                         const ReduceOptions &options, bool b_is_scaled, StageTable &stages);
 
 /// `collocated` alone: the collocation nodes of a model that has none yet, into it. Serial.
 Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
@@ -107,14 +109,14 @@ void add_starts(ReducedModel &model, const Scene &scene);
 /// functions that span the dual space, dual dofs x any number. Collective.
 void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
                      const ReduceOptions &options, const Matrix &dual, ReducedBases &bases,
-                     StageTimes &times);
+                     StageTable &stages);
 
 /// The middle of the box. Free parameters.
 Mu box_centre(const ParameterSpace &space);
 
 /// POD of the displacements, as the stage "POD". Collective.
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
-               ReducedBases &bases, StageTimes &times);
+               ReducedBases &bases, StageTable &stages);
 
 /// Multipliers as columns. Throws failure where there is no sample, or no contact in any.
 Matrix multipliers_of(const std::vector<Sample> &samples);

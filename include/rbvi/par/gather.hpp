@@ -1,7 +1,7 @@
 // Concatenation of vectors over ranks.
 #pragma once
 
-#include <mpi.h>
+#include "rbvi/par/collective.hpp"
 
 #include <numeric>
 #include <vector>
@@ -11,9 +11,7 @@ namespace rbvi {
 /// Collective. The entries of rank 0, then of rank 1, ..., on every rank; `type` is T's.
 template <class T>
 std::vector<T> gather_all(MPI_Comm comm, const std::vector<T> &mine, MPI_Datatype type) {
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
-  std::vector<int> counts(static_cast<std::size_t>(ranks)), offsets(counts.size(), 0);
+  std::vector<int> counts(static_cast<std::size_t>(ranks_of(comm))), offsets(counts.size(), 0);
   const int count = static_cast<int>(mine.size());
   MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
   std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);

@@ -23,45 +23,6 @@ namespace rbvi {
 
 namespace rbvi {
 
-namespace detail {
-inline PetscErrorCode destroy(Vec *x) {
-  return VecDestroy(x);
-}
-inline PetscErrorCode destroy(Mat *x) {
-  return MatDestroy(x);
-}
-inline PetscErrorCode destroy(KSP *x) {
-  return KSPDestroy(x);
-}
-inline PetscErrorCode destroy(SNES *x) {
-  return SNESDestroy(x);
-}
-inline PetscErrorCode destroy(DM *x) {
-  return DMDestroy(x);
-}
-inline PetscErrorCode destroy(IS *x) {
-  return ISDestroy(x);
-}
-inline PetscErrorCode destroy(VecScatter *x) {
-  return VecScatterDestroy(x);
-}
-inline PetscErrorCode destroy(PetscSection *x) {
-  return PetscSectionDestroy(x);
-}
-inline PetscErrorCode destroy(PetscViewer *x) {
-  return PetscViewerDestroy(x);
-}
-inline PetscErrorCode destroy(BV *x) {
-  return BVDestroy(x);
-}
-inline PetscErrorCode destroy(EPS *x) {
-  return EPSDestroy(x);
-}
-inline PetscErrorCode destroy(SVD *x) {
-  return SVDDestroy(x);
-}
-} // namespace detail
-
 /// Owns one reference to a PETSc or SLEPc object; move-only. `get()` hands out the raw handle.
 template <class T> class Handle {
 public:
@@ -74,7 +35,7 @@ public:
     return *this;
   }
   ~Handle() {
-    if (raw_ != nullptr) (void)detail::destroy(&raw_);
+    if (raw_ != nullptr) (void)PetscObjectDestroy(object());
   }
   Handle(const Handle &) = delete;
   Handle &operator=(const Handle &) = delete;
@@ -82,13 +43,14 @@ public:
   T get() const noexcept { return raw_; }
   /// For PETSc's creation calls: releases what is held, then hands out the address.
   T *put() {
-    if (raw_ != nullptr) RBVI_CALL(detail::destroy(&raw_));
+    if (raw_ != nullptr) RBVI_CALL(PetscObjectDestroy(object()));
     raw_ = nullptr;
     return &raw_;
   }
   explicit operator bool() const noexcept { return raw_ != nullptr; }
 
 private:
+  PetscObject *object() noexcept { return reinterpret_cast<PetscObject *>(&raw_); }
   T raw_ = nullptr;
 };
 

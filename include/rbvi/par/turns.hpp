@@ -11,9 +11,7 @@ namespace rbvi {
 /// ... A failure is that of every rank. `visit` must not communicate on `comm`.
 template <class Visit> void take_turns(MPI_Comm comm, std::size_t count, Visit &&visit) {
   collectively(comm, [&] {
-    int rank = 0, ranks = 1;
-    MPI_Comm_rank(comm, &rank);
-    MPI_Comm_size(comm, &ranks);
+    const int rank = rank_of(comm), ranks = ranks_of(comm);
     for (auto p = static_cast<std::size_t>(rank); p < count; p += static_cast<std::size_t>(ranks))
       visit(p);
   });

@@ -80,7 +80,7 @@ private:
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.
   Vector packed_, theta_a_, theta_b_;
-  Matrix a_, l_, b_, y_; // of two bodies B is always that of the query
+  Matrix a_, l_, b_, y_; // two bodies: B is always that of the query
   Matrix enrichment_; ///< online-enriched: V_N + S_R(mu) in the n functions, which a_ ... f_ are in
   double a_scale_ = 1, b_scale_ = 1;
   Vector f_, g_, c_;

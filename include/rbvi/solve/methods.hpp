@@ -55,7 +55,7 @@ private:
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
                               Compliance *kept = nullptr);
 
-/// The same on a body with a scaled part, set to `op`.
+/// Active set on a body with a scaled part, set to `op`.
 MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start);
 
 MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,

@@ -28,7 +28,7 @@ struct NitscheOptions {
 /// Where Newton starts: what is in contact and sticks by these pressures, which those at nearby mu
 /// predict better than their displacements do.
 struct NitscheStart {
-  Vec u; ///< of some nearby mu
+  Vec u; ///< the displacement of some nearby mu
   Matrix pressures;
 };
 

@@ -2,28 +2,25 @@
 // done and how long it took, and in both what is skipped and why.
 #pragma once
 
+#include "rbvi/mor/stages.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 namespace rbvi {
 
-struct StageRow {
-  std::string stage; ///< as in StageTimes
-  std::string what;  ///< what is done, or why not
-  bool skipped = false;
-};
+namespace stage {
+inline constexpr StageName mesh("mesh"), snapshots("snapshots"),
+    distributed_mesh("distributed mesh"), writing("writing");
+} // namespace stage
 
-/// What a run knows at its end.
-struct OfflineResult {
-  const SweepReport &sweep;
-  const Reduction &made;
-};
+/// What runs before the reduction. `sweep` null: as planned.
+StageTable preparation_stages(const ToolOptions &options, std::size_t training, int groups,
+                              const SweepReport *sweep = nullptr);
 
-/// One row per stage, in the order of the run. `result` null: as planned; what hangs on the
-/// separation of the operators is then said as a condition.
-std::vector<StageRow> offline_stages(const ToolOptions &options, std::size_t training, int groups,
-                                     const OfflineResult *result = nullptr);
+/// What runs after the reduction.
+StageTable closing_stages();
 
-/// Stage, seconds (nothing where no time is known) or "skipped", what.
-void print_stages(const std::vector<StageRow> &rows, const StageTimes &times);
+/// Stage, seconds (nothing where no time is known) or "skipped", what; where anything was timed,
+/// the total.
+void print_stages(const std::vector<StageTable> &tables);
 
 } // namespace rbvi

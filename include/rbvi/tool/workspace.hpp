@@ -3,7 +3,6 @@
 #pragma once
 
 #include "rbvi/par/groups.hpp"
-#include "rbvi/par/stage.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <memory>
@@ -13,10 +12,10 @@ namespace rbvi {
 class Workspace {
 public:
   /// Collective on `world`. Makes the group's problem and checks the options of its solvers.
-  Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options, StageTimes &times);
+  Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options);
   Problem &group_problem() { return *group_; }
   /// Made at the first call. Collective on the world.
-  Problem &world_problem(StageTimes &times);
+  Problem &world_problem();
 
 private:
   MPI_Comm world_;

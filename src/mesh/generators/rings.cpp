@@ -19,7 +19,8 @@ double quality(const SerialMesh &mesh, const std::array<int, 4> &cell) {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Of a cell in a strip: a high power, for the worst cell to matter most; infinite if inverted.
+/// The cost of a cell in a strip: a high power, for the worst cell to matter most; infinite if
+/// inverted.
 double cost_of(const SerialMesh &mesh, const std::array<int, 4> &cell) {
   const auto at = [&](int i) -> const Point & { return mesh.points[static_cast<std::size_t>(i)]; };
   const Point &x = at(cell[0]), &y = at(cell[1]), &z = at(cell[2]);
@@ -74,7 +75,7 @@ void zip_best(SerialMesh &mesh, const Ring &left, const Ring &right) {
   const auto cost = [&](std::size_t i, std::size_t j, int third) {
     return cost_of(mesh, {left[i], right[j], third, -1});
   };
-  // Of the best triangulation up to the edge from left[i] to right[j], and its last step.
+  // The cost of the best triangulation up to the edge from left[i] to right[j], and its last step.
   std::vector<double> sum(n, 0);
   std::vector<bool> by_left(m * n, false);
   for (std::size_t i = 0; i < m; ++i)

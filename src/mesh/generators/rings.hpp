@@ -27,8 +27,8 @@ void add_facets(SerialMesh &mesh, const std::string &boundary, const Ring &ring)
 /// mesh.
 void zip(SerialMesh &mesh, const Ring &left, const Ring &right);
 
-/// The same with the best of all triangulations of the strip instead of a step by step choice,
-/// for rings whose nodes or distance vary; in time and memory the product of the nodes.
+/// Fills the strip with the best of all its triangulations instead of a step by step choice, for
+/// rings whose nodes or distance vary; in time and memory the product of the nodes.
 void zip_best(SerialMesh &mesh, const Ring &left, const Ring &right);
 
 } // namespace rbvi

@@ -16,10 +16,10 @@ constexpr int outer_rings = 23; ///< from the circle's 72 nodes to the square's 
 constexpr int square_nodes = 200;
 constexpr int circle_nodes = 6 * disc_rings;
 
-// Of the graded mesh. The contact set reaches to 0.6 of the disc's radius: the finest part is a
-// little larger. It, outer_distance and outer_growth were chosen by the errors of all outputs at a
-// given number of nodes.
-constexpr double core = 0.65;           ///< of the disc's radius
+// Sizes of the graded mesh. The contact set reaches to 0.6 of the disc's radius: the finest part is
+// a little larger. It, outer_distance and outer_growth were chosen by the errors of all outputs at
+// a given number of nodes.
+constexpr double core = 0.65;           ///< radius, in radii of the disc
 constexpr double shell_distance = 0.91; ///< of the rings around the core, in edges
 constexpr double outer_distance = 0.74; ///< of the rings outside the disc, on average, in edges
 constexpr double outer_growth = 1.1;    ///< of the edges from the circle to the square

@@ -20,7 +20,7 @@ Matrix checked(const Matrix &snapshots, const SparseMatrix &product);
 /// infinite if there are more of them than coordinates.
 double gram_condition(const Matrix &coordinates);
 
-/// The same of the first `smallest`, smallest + 1, ... of them.
+/// Condition numbers of the Gram matrices of the first `smallest`, smallest + 1, ... columns.
 std::vector<double> gram_conditions(const Matrix &coordinates, Index smallest = 1);
 
 /// Exact distances of the snapshots to a growing cone. They never increase, so an old one is a

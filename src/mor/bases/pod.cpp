@@ -155,7 +155,6 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
   }
   const PetscInt rank = factorisation.size();
   if (rank == 0) throw failure("all snapshots of a POD are zero");
-  result.dropped = static_cast<int>(count - rank);
 
   SmallSvd svd = small_svd(factor.topRows(rank));
   fix_signs(svd);

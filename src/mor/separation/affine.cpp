@@ -175,7 +175,7 @@ struct Snapshots {
       number = numbers[static_cast<std::size_t>(number)];
     return result;
   }
-  /// Those of the rows from `first` on, `count` of them.
+  /// The snapshots of the rows from `first` on, `count` of them.
   Snapshots rows(PetscInt first, PetscInt count) const {
     std::vector<Index> taken;
     Snapshots result({}, numbers);

@@ -62,7 +62,7 @@ public:
         points_.push_back(static_cast<int>(q));
   }
   const Matrix &answers() const { return answers_; } ///< n x P
-  /// Those that matter; on a symmetric curve the points of one half stand for both.
+  /// The points that matter; on a symmetric curve the points of one half stand for both.
   const std::vector<int> &points() const { return points_; }
   double share() const { return symmetric_ ? 2 : 1; }
   /// What each of them adds to answer p to first order: tangent^-1 residual, relative to |u|.

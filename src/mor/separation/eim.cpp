@@ -1,6 +1,7 @@
 #include "rbvi/mor/separation/eim.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <array>
 #include <cmath>
@@ -29,8 +30,7 @@ Vector column_maxima(MPI_Comm comm, const Matrix &residual) {
                 : column.allFinite() ? column.cwiseAbs().maxCoeff()
                                      : std::numeric_limits<double>::infinity();
   }
-  RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, maxima.data(), static_cast<PetscMPIInt>(maxima.size()),
-                          MPI_DOUBLE, MPI_MAX, comm));
+  over_ranks(comm, MPI_MAX, maxima);
   return maxima;
 }
 
@@ -46,9 +46,7 @@ Pivot find_pivot(MPI_Comm comm, const Eigen::Ref<const Vector> &column,
     lowest = key;
     pivot.local = e;
   }
-  PetscMPIInt ranks = 0, rank = 0;
-  RBVI_CALL(MPI_Comm_size(comm, &ranks));
-  RBVI_CALL(MPI_Comm_rank(comm, &rank));
+  const int ranks = ranks_of(comm), rank = rank_of(comm);
   const std::array<PetscInt, 2> mine{lowest.row, lowest.column};
   std::vector<PetscInt> all(2 * static_cast<std::size_t>(ranks));
   RBVI_CALL(MPI_Allgather(mine.data(), 2, MPIU_INT, all.data(), 2, MPIU_INT, comm));
@@ -100,8 +98,7 @@ struct Residuals {
       if (at_pivot(q) != 0) columns.col(q) -= at_pivot(q) * columns.col(p);
       if (columns.rows() > 0) maxima(q) = columns.col(q).cwiseAbs().maxCoeff();
     }
-    RBVI_CALL(MPI_Allreduce(MPI_IN_PLACE, maxima.data(), static_cast<PetscMPIInt>(maxima.size()),
-                            MPI_DOUBLE, MPI_MAX, comm));
+    over_ranks(comm, MPI_MAX, maxima);
   }
 };
 

@@ -1,5 +1,7 @@
 #include "rbvi/mor/separation/operator_entries.hpp"
 
+#include "rbvi/par/collective.hpp"
+
 namespace rbvi {
 
 namespace {
@@ -8,8 +10,7 @@ std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
   std::vector<PetscInt> natural(static_cast<std::size_t>(dofs.total_free), 0);
   for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
     natural[static_cast<std::size_t>(dofs.first_free) + i] = dofs.natural_owned[i];
-  MPI_Allreduce(MPI_IN_PLACE, natural.data(), static_cast<int>(natural.size()), MPIU_INT, MPI_SUM,
-                dofs.comm);
+  over_ranks(dofs.comm, MPI_SUM, natural);
   return natural;
 }
 

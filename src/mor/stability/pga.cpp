@@ -32,8 +32,6 @@ class Candidates {
 public:
   /// Collective. `supremizers`: T(mu_p) X for p = rank, rank + ranks, ...
   Candidates(MPI_Comm comm, std::vector<Matrix> supremizers) : comm_(comm), eigen_("pga_") {
-    MPI_Comm_rank(comm, &rank_);
-    MPI_Comm_size(comm, &ranks_);
     for (Matrix &one : supremizers)
       mine_.emplace_back(std::move(one));
     unsigned long count = mine_.size();
@@ -105,10 +103,7 @@ private:
     share_bounds();
   }
 
-  void share_bounds() {
-    MPI_Allreduce(MPI_IN_PLACE, sigma_.data(), static_cast<int>(sigma_.size()), MPI_DOUBLE, MPI_MIN,
-                  comm_);
-  }
+  void share_bounds() { over_ranks(comm_, MPI_MIN, sigma_); }
 
   /// Evaluates the candidates whose bounds are above `needed`, which the largest is not below, and
   /// where that turns out to be within a tie of it those whose bound it is; the winner.
@@ -140,7 +135,7 @@ private:
   }
 
   MPI_Comm comm_;
-  int rank_ = 0, ranks_ = 1, evaluations_ = 0;
+  int rank_ = rank_of(comm_), ranks_ = ranks_of(comm_), evaluations_ = 0;
   SmallEigen eigen_;
   std::vector<PgaCandidate> mine_;
   std::vector<double> sigma_; // upper bounds of all, the same on every rank
@@ -178,10 +173,9 @@ struct FirstSpace {
 
 FirstSpace first_space(MPI_Comm comm, const std::vector<Matrix> &supremizers) {
   FirstSpace first;
-  int rank = 0, differ = 0;
-  MPI_Comm_rank(comm, &rank);
+  int differ = 0;
   collectively(comm, [&] {
-    if (rank == 0) first.range = orthonormal_range(supremizers.front());
+    if (rank_of(comm) == 0) first.range = orthonormal_range(supremizers.front());
   });
   first.range = broadcast(comm, 0, std::move(first.range));
   collectively(comm, [&] {
@@ -200,7 +194,6 @@ FirstSpace first_space(MPI_Comm comm, const std::vector<Matrix> &supremizers) {
 /// The greedy on a single space takes the singular vectors of (I - Pi) range one after the other.
 void take_singular_vectors(Pga &result, PgaSpace &space, const Matrix &range,
                            const Target &target) {
-  result.parameter_independent = true;
   result.evaluations = 1;
   const SmallSvd svd = small_svd(space.remainder(range), "pga_");
   for (Index n = 0;; ++n) {
@@ -242,9 +235,7 @@ Pga projected_greedy(MPI_Comm comm, const RieszSpace &space, const Matrix &modes
   const Index contact = space.factor.rows();
   const Target target = make_target(options, contact);
   collectively(comm, [&] {
-    int rank = 0;
-    MPI_Comm_rank(comm, &rank);
-    if (rank == 0 && supremizers.empty())
+    if (rank_of(comm) == 0 && supremizers.empty())
       throw failure("the projected greedy needs a training parameter");
   });
   PgaSpace enriched{contact, modes.cols(), modes.cols(),

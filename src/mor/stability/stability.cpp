@@ -164,22 +164,6 @@ InfSup infsup_constants(const RieszSpace &space, const SparseMatrix &b_contact, 
           .off = infsup_constant(enriched, supremizers)};
 }
 
-StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers) {
-  const Vector stretch = stretches(supremizers);
-  const Matrix range = orthonormal_range(supremizers);
-  Matrix rest = Matrix::Zero(enriched.rows(), range.cols());
-  rest.topRows(range.rows()) = range;
-  rest -= enriched * (enriched.topRows(range.rows()).transpose() * range);
-  StabilityBound bound{};
-  bound.sigma = range.cols() > 0 ? std::min(stretches(rest)(0), 1.0) : 0;
-  bound.c = stretch.size() > 0 ? stretch(0) : 0;
-  bound.on = smallest_stretch(supremizers);
-  // The smallest cosine between S_R(mu) and the space is sqrt(1 - sigma^2), without cancellation.
-  bound.sharp = std::min(infsup_constant(enriched, range), 1.0) * bound.on;
-  bound.classic = (bound.on - bound.c * bound.sigma) / (1 + bound.sigma);
-  return bound;
-}
-
 std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes,
                                           const std::vector<int> &counts,
                                           const Matrix &supremizers) {

@@ -8,7 +8,7 @@ namespace rbvi {
 
 namespace {
 
-/// Of point k on [-1, 1].
+/// The abscissa of point k on [-1, 1].
 double abscissa(int k, int points) {
   return points == 1 ? 0 : std::cos(std::numbers::pi * k / (points - 1));
 }

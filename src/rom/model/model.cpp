@@ -162,7 +162,7 @@ void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
                 "nitsche/starts_mu");
 }
 
-/// Of the first `size` of n columns.
+/// The terms of the first `size` of n columns.
 LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
   LayerTerms result = terms;
   if (terms.size() == 0) return result;

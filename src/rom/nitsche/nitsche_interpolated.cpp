@@ -100,7 +100,7 @@ Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &
   return result;
 }
 
-/// Of the blocks of `cells`: a row for each dof of the layer.
+/// The blocks of `cells` times the trace: a row for each dof of the layer.
 Matrix ReducedNitsche::Interpolated::times_trace(const std::vector<FaceBlock> &blocks) const {
   Matrix result = Matrix::Zero(model.trace.rows(), model.trace.cols());
   for (std::size_t k = 0; k < blocks.size(); ++k) {

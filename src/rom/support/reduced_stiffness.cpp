@@ -43,7 +43,7 @@ ReducedStiffness::ReducedStiffness(const ReducedModel &model, const Scene &scene
   if (model.a.size() <= 2 && !model.online_enriched) find_common_eigenvectors();
 }
 
-/// Of A_N at two corners of the box, or of its only term.
+/// The common eigenvectors of A_N at two corners of the box, or of its only term.
 void ReducedStiffness::find_common_eigenvectors() {
   const AffineTerms &a = model_.a;
   const Index n = model_.primal_size();

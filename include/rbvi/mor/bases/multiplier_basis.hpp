@@ -3,9 +3,8 @@
 // lambda_tau (without friction k, for collocated alone). Serial and dense.
 //
 //   collocated   mCPG (or another cone) of lambda_n, POD of lambda_tau
-//   cones        a cone of lambda_n, and one of what is left to the bound, s(lambda_n) -
-//   |lambda_tau| joint        POD of (lambda_n, lambda_tau) together, collocation nodes by pivoted
-//   QR
+//   cones        a cone of lambda_n, and one of what is left to the bound of friction
+//   joint        POD of (lambda_n, lambda_tau) together, collocation nodes by pivoted QR
 #pragma once
 
 #include "rbvi/law/friction/friction.hpp"
@@ -42,8 +41,8 @@ DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, doubl
 
 /// `coefficients`: m x P; `product`: m x m, its blocks of lambda_n and lambda_tau; `bounds`: of
 /// each snapshot, empty without friction: then m = k, and collocated has a cone of lambda_n alone.
-/// Throws failure where the snapshots do not slip at all or, for cones, in two
-/// directions at one node; bad_input for cones of type hybrid, which has functions of either sign.
+/// Throws failure where the snapshots do not slip at all or, for cones, in two directions at one
+/// node; bad_input for cones of type hybrid, which has functions of either sign.
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMatrix &product,
                                       const std::vector<FrictionBound> &bounds,
                                       const MultiplierOptions &options, const ConeOptions &cone);

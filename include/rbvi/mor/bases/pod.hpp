@@ -24,7 +24,6 @@ struct Pod {
   LinearBasis basis;
   std::vector<double> singular_values; ///< all (rank many), decreasing
   std::vector<double> error;           ///< e_POD(n), n = 0, 1, ..., rank (2.11)
-  int dropped = 0;                     ///< snapshots that depend on earlier ones
 };
 
 /// Collective. `snapshots`: free dofs, all of one layout; `product`: Gram matrix of V. Columns

@@ -11,9 +11,9 @@
 namespace rbvi {
 
 struct AffineOperators {
-  Eim a, b, f, g;   ///< of size 0: f without a load; b and g of two bodies (assembled exactly
-                    ///< online) and of Nitsche's method (there are none)
-  Eim b_tangential; ///< B^tau, where b is of B^n alone; of size 0 where b is of all rows
+  Eim a, b, f, g;   ///< size 0: f without a load; b and g of two bodies (assembled exactly online)
+                    ///< and of Nitsche's method (there are none)
+  Eim b_tangential; ///< B^tau, where b is B^n alone; size 0 where b is all rows
   SampleMesh sample_a, sample_b, sample_f, sample_g; ///< sample_b: entries of b, then b_tangential
   int b_size() const { return b.size() + b_tangential.size(); }
 };

@@ -26,7 +26,7 @@ namespace rbvi {
 struct RieszSpace {
   Matrix factor;           ///< L, lower triangular: n_c x n_c
   std::vector<Index> dofs; ///< the n_c contact dofs of the scene that it covers; empty: all
-  Trace trace;             ///< of these
+  Trace trace;             ///< onto these dofs
   std::shared_ptr<ReplicatedSolver> solver;
 };
 
@@ -71,9 +71,6 @@ struct StabilityBound {
   double classic; ///< beta_S^* (2.24) <= beta_off; not positive where (2.23) fails
 };
 
-/// `enriched`: coordinates of V_N + S; `supremizers`: T(mu) X for an orthonormal dual basis X.
-StabilityBound stability_bound(const Matrix &enriched, const Matrix &supremizers);
-
 /// What the first supremizers guarantee, and what they reach.
 struct StabilityStep {
   StabilityBound bound; ///< sigma from its cosine: nothing below 1e-8 is meant
@@ -107,13 +104,12 @@ struct PgaOptions {
 };
 
 struct Pga {
-  Matrix representers;                ///< n_c x S: V^-1 E times column s is supremizer s, of norm 1
-  Matrix coordinates;                 ///< (n_c + N) x (N + S): orthonormal, the modes first
-  std::vector<double> sigma;          ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
-  std::vector<int> selected;          ///< training index of each supremizer; -1: one SVD gave all
-  int evaluations = 0;                ///< candidates evaluated by an eigenproblem, or 1 SVD
-  bool parameter_independent = false; ///< S_R(mu) is one space: a single SVD replaced the sweep
-  std::string reason;                 ///< why it stopped
+  Matrix representers;       ///< n_c x S: V^-1 E times column s is supremizer s, of norm 1
+  Matrix coordinates;        ///< (n_c + N) x (N + S): orthonormal, the modes first
+  std::vector<double> sigma; ///< max over mu of sigma_{S^n}(mu), n = 0, 1, ..., S (2.21)
+  std::vector<int> selected; ///< training index of each supremizer; -1: one SVD gave all
+  int evaluations = 0;       ///< candidates evaluated by an eigenproblem, or 1 SVD
+  std::string reason;        ///< why it stopped
 };
 
 /// Projected greedy algorithm (Algorithm 1), lazily evaluated: sigma does not increase, so that

@@ -3,12 +3,13 @@
 //   sum_q theta^a_q(mu) A_q u + sum_q theta^b_q(mu) B_q^T x = sum_q theta^f_q(mu) F_q
 //   sum_q theta^b_q(mu) B_q u <= sum_q theta^g_q(mu) G_q,    x >= 0,  complementary
 //
-// u: n coefficients of the primal basis (N POD modes, then S supremizers), x: R coefficients of the
-// generators of the dual cone. theta comes from empirical interpolation (B.36): a few entries of
-// the full operator are re-assembled on their few cells. Of two bodies B and G do not separate:
-// they are assembled for each mu on the two contact curves alone, exactly, from the trace of the
-// basis. Other full-order data are there for outputs and for reconstruction alone. All fields are
-// numbered by the undistributed mesh. Where the scene has a motion, u is what is left beside it.
+// u: n coefficients of the primal basis (N POD modes, then S supremizers or responses), x: R
+// coefficients of the generators of the dual cone. theta comes from empirical interpolation (B.36):
+// a few entries of the full operator are re-assembled on their few cells. B and G of two bodies do
+// not separate: they are assembled for each mu on the two contact curves alone, exactly, from the
+// trace of the basis. Other full-order data are there for outputs and for reconstruction alone. All
+// fields are numbered by the undistributed mesh. Where the scene has a motion, u is what is left
+// beside it.
 #pragma once
 
 #include "rbvi/core/dense.hpp"
@@ -69,7 +70,7 @@ struct SelfCheck {
   int queries = 0; ///< 0: none were asked
   int unanswered = 0;
   Mu unanswered_at{};      ///< the first one without an answer; empty where there is none
-  std::string reason = ""; ///< of that one
+  std::string reason = ""; ///< why there was none
   /// kkt_residual, max_penetration, and friction_violation over peak_pressure.
   Worst residual{}, penetration{}, friction{};
   /// All were answered, with residuals of round-off.
@@ -108,7 +109,8 @@ struct MultiplierBasis {
 
 /// Where B^n and B^tau, the rows of lambda_n and those of lambda_tau, are interpolated apart.
 struct TermsApart {
-  int normal = 0; ///< of b the first so many terms are of B^n, the others of B^tau; 0: all of both
+  int normal =
+      0; ///< the first so many terms of b are B^n's, the others B^tau's; 0: all are of both
   double normal_error = 0, tangential_error = 0; ///< e_EIM reached of each (3.61)
 };
 
@@ -174,7 +176,7 @@ struct ReducedModel {
   std::string mesh_fingerprint;
 
   int modes = 0;       ///< N
-  int supremizers = 0; ///< S
+  int supremizers = 0; ///< S, or (cones, joint, condensed) the responses that join the modes
   int generators = 0;  ///< R
   int free_modes = 0;  ///< the last of the R: their coefficients take either sign
   /// V_N + S_R(mu) is made for each mu (2.17); the supremizers span S_R(mu) for every mu.
@@ -228,7 +230,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path);
 /// alone needs: primal_basis, mesh_points, mesh_cells.
 ReducedModel read_model(const std::filesystem::path &path, bool with_fields = true);
 
-/// The same model with the first n primal columns alone (n = modes: the decorrelated basis) and
+/// The model with the first n primal columns alone (n = modes: the decorrelated basis) and
 /// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
 /// that the model does not have.
 ReducedModel leading(const ReducedModel &model, int n, int r);

@@ -34,7 +34,7 @@ private:
   std::vector<Contribution> contributions_;
 };
 
-/// Those of `all` with these numbers.
+/// The items of `all` with these numbers.
 template <class Item>
 std::vector<Item> selected(const std::vector<Item> &all, const std::vector<int> &numbers) {
   std::vector<Item> result;

@@ -34,7 +34,7 @@ public:
   /// positive definite.
   NitscheAnswer solve(const FullMu &all_parameters);
 
-  /// Of the last answer: what each point adds to the residual, n x points, ...
+  /// What each point adds to the residual of the last answer, n x points, ...
   Matrix point_residuals() const;
   /// ... and the tangent, n x n.
   Matrix tangent() const;

@@ -1,0 +1,222 @@
+#include "rbvi/mor/stages.hpp"
+
+#include "rbvi/core/text.hpp"
+#include "rbvi/rom/print.hpp"
+
+namespace rbvi {
+
+namespace {
+
+using enum StageKind;
+
+std::string terms(const char *name, const Eim &eim) {
+  return std::string(name) + " " + std::to_string(eim.size()) + (eim.exact() ? " (exact)" : "");
+}
+
+/// "to 0.0001", and the tolerances of B^n and B^tau where they have their own.
+std::string interpolation_tolerance(const ReduceOptions &options) {
+  std::string text = "to " + short_number(options.eim.tolerance);
+  if (options.eim_normal) text += ", B^n to " + short_number(*options.eim_normal);
+  if (options.eim_tangential) text += ", B^tau to " + short_number(*options.eim_tangential);
+  return text;
+}
+
+std::string terms_of_b(const AffineOperators &affine) {
+  if (affine.b_tangential.size() == 0) return terms("B", affine.b);
+  return terms("B^n", affine.b) + ", " + terms("B^tau", affine.b_tangential);
+}
+
+StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
+                           const Reduction *made) {
+  const std::string tolerance = interpolation_tolerance(options);
+  const bool load = static_cast<bool>(scene.f);
+  const bool apart = scene.pair.has_value() || scene.nitsche.has_value();
+  const std::string exact = scene.pair ? "; B, G are assembled exactly online" : "";
+  if (constant_stiffness(scene) && apart && !load)
+    return {stage::interpolation, "A does not depend on mu" + exact, nothing_to_do};
+  if (made == nullptr)
+    return {stage::interpolation, std::string("A") + (apart ? "" : ", B") + (load ? ", F" : "") +
+                                      (apart ? " " : ", G ") + tolerance +
+                                      "; a sum of few terms ends there" + exact};
+  const AffineOperators &affine = made->affine;
+  return {stage::interpolation,
+          "terms: " + terms("A", affine.a) + (apart ? "" : ", " + terms_of_b(affine)) +
+              (load ? ", " + terms("F", affine.f) : "") +
+              (apart ? "" : ", " + terms("G", affine.g)) + "; " + tolerance + exact};
+}
+
+StageRow pod_row(const ReduceOptions &options, const Reduction *made) {
+  if (made == nullptr)
+    return {stage::pod, "displacements to " + short_number(options.pod.tolerance)};
+  const ReducedBases &bases = made->bases;
+  const double error = bases.pod.error[static_cast<std::size_t>(bases.modes)];
+  return {stage::pod, "N = " + counted(bases.modes, "mode") + ", error " + short_number(error)};
+}
+
+StageRow cone_row(const ReduceOptions &options, const Reduction *made) {
+  const ConeOptions &cone = options.cone;
+  const std::string &name = cone_type_names()[static_cast<std::size_t>(cone.type)];
+  if (made == nullptr)
+    return {stage::cone,
+            name + " for the multipliers" +
+                (cone.type == ConeType::nodal ? "" : ", to " + short_number(cone.tolerance))};
+  const Cone &found = made->bases.cone;
+  const Index modes = found.modes.columns.cols();
+  return {
+      stage::cone,
+      "R = " + counted(found.basis.generators.cols(), "generator") +
+          (modes > 0 ? " + " + counted(modes, "free mode") : "") + " (" + name + "), error " +
+          short_number(found.history.error.back()) + ", " + found.history.reason +
+          (made->ring > cone.ring ? ", widened to a ring of " + std::to_string(made->ring) : "")};
+}
+
+/// When the greedy stops.
+std::string pga_target(const ReduceOptions &options) {
+  if (options.infsup_tolerance) return "sigma <= beta_HF / c_HF at all training mu";
+  if (options.pga.tolerance > 0) return "sigma <= " + short_number(options.pga.tolerance);
+  return "beta_off >= " + short_number(options.pga.stability) + " beta_on";
+}
+
+StageRow pga_row(const Scene &scene, const ReduceOptions &options, const Reduction *made) {
+  const std::string product = options.product == SupremizerProduct::energy ? " in energy" : "";
+  if (made == nullptr && options.enrichment == Enrichment::online)
+    return {stage::pga, "the span of all supremizers" + product};
+  if (made == nullptr)
+    return {stage::pga, "supremizers" + product + " until " + pga_target(options) +
+                            (scene.pair ? "" : "; one SVD if B only scales")};
+  const ReducedBases &bases = made->bases;
+  return {stage::pga, "S = " + counted(bases.supremizers, "supremizer") + product + ", sigma " +
+                          short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};
+}
+
+/// Supremizers of a reduced pair.
+void add_supremizer_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
+                         StageTable &rows) {
+  if (options.enrichment == Enrichment::decorrelated) {
+    rows.push_back({stage::pga, "no supremizers are wanted (-pga_enrichment)", skipped});
+    return;
+  }
+  rows.push_back({stage::riesz, options.product == SupremizerProduct::energy
+                                    ? "one factorisation of A at the reference mu"
+                                    : "one factorisation of V for all mu"});
+  if (options.infsup_tolerance && options.enrichment == Enrichment::offline)
+    rows.push_back({stage::infsup_tolerance,
+                    "smallest beta_HF / c_HF" +
+                        (made == nullptr ? " over the training set"
+                                         : ": " + short_number(made->bases.infsup_tolerance))});
+  rows.push_back(pga_row(scene, options, made));
+}
+
+StageRow sweep_of_supremizers_row(const Scene &scene, const ReduceOptions &options,
+                                  const Reduction *made) {
+  constexpr StageName name("supremizers at all mu");
+  if (options.enrichment == Enrichment::decorrelated)
+    return {name, "no supremizers are wanted", skipped};
+  if (made == nullptr && !scene.pair) return {name, "only if B does more than scale", part};
+  if (!scene.pair && made->affine.b_size() == 1)
+    return {name, "B only scales: one set and one SVD serve all mu", skipped};
+  return {name, "B depends on mu: part of PGA", part};
+}
+
+/// Functions of the multipliers of a further reduction.
+std::string multiplier_text(const ReduceOptions &options, const Reduction *made) {
+  const MultiplierReduction reduction = options.multipliers.reduction;
+  const std::string name = multiplier_reduction_names()[static_cast<std::size_t>(reduction)];
+  if (made == nullptr) return name;
+  const MultiplierBasis &basis = made->bases.multipliers.basis;
+  if (reduction == MultiplierReduction::joint)
+    return name + ": " + counted(basis.normal.cols(), "mode") + ", " +
+           counted(std::ssize(basis.nodes), "node");
+  const std::string normal = name + ": R = " + counted(basis.normal.cols(), "generator");
+  if (basis.tangential.size() == 0) return normal;
+  const bool cones = reduction == MultiplierReduction::cones;
+  return normal + ", " + (cones ? "M = " : "S = ") +
+         counted(basis.tangential.cols(), cones ? "generator" : "mode");
+}
+
+StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
+  if (options.multipliers.reduction == MultiplierReduction::collocated &&
+      !options.multipliers.exact)
+    return {stage::condensation, "not wanted (-multiplier_exact no)", skipped};
+  if (made == nullptr)
+    return {stage::condensation,
+            "the condensed operator, at the Chebyshev points of the parameters of A to " +
+                short_number(options.condensed.tolerance)};
+  const CondensedOperator &condensed = made->bases.condensed;
+  std::string what = counted(made->bases.support_dual.cols(), "multiplier") + ", " +
+                     counted(grid_size(condensed.axes), "factorisation") + ", " +
+                     counted(condensed.terms.cols(), "term");
+  if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);
+  return {stage::condensation, what};
+}
+
+constexpr StageName pair_stages("cone, PGA");
+
+/// Contact with a rigid support: the condensed operator in place of a reduced pair, or beside it.
+void add_support_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
+                      StageTable &rows) {
+  const MultiplierReduction reduction = options.multipliers.reduction;
+  rows.push_back(condensation_row(options, made));
+  if (reduction == MultiplierReduction::condensed)
+    rows.push_back({pair_stages,
+                    "the multipliers keep a coefficient at every node: nothing to stabilise",
+                    skipped});
+  else
+    rows.push_back({stage::multipliers, multiplier_text(options, made)});
+  const bool collocated = reduction == MultiplierReduction::collocated;
+  if (collocated) add_supremizer_rows(scene, options, made, rows);
+  if (collocated && scene.support->friction.law != FrictionLaw::none)
+    rows.push_back({stage::collocation,
+                    made == nullptr ? "greedy (Algorithm 3), reduced problems solved exactly"
+                                    : counted(std::ssize(made->collocation.nodes), "node") + ": " +
+                                          made->collocation.reason});
+}
+
+/// Nitsche's method: how the integrals over the curve are reduced.
+void add_curve_rows(const ReduceOptions &options, const Reduction *made, StageTable &rows) {
+  const CurveRule rule = options.curve.rule;
+  std::string what = rule == CurveRule::full        ? "all Gauss points"
+                     : rule == CurveRule::empirical ? "few Gauss points, non-negative weights"
+                                                    : "EIM over (mu, Newton step)";
+  if (made != nullptr) {
+    what = describe_curve(*made->model.nitsche);
+    if (rule == CurveRule::empirical) what += ", error " + short_number(made->curve.error.back());
+    if (rule == CurveRule::interpolated)
+      what += ", of " + std::to_string(made->curve.states) + " states";
+  }
+  rows.push_back({stage::contact_curve, what});
+  rows.push_back({pair_stages, "Nitsche's method has no multipliers", skipped});
+}
+
+std::string self_check_text(const Reduction *made) {
+  if (made == nullptr) return "random queries of the model just made";
+  const SelfCheck &check = made->model.self_check;
+  return counted(check.queries - check.unanswered, "answer") + " to " +
+         std::to_string(check.queries) + " random queries, residual " +
+         short_number(check.residual.value);
+}
+
+} // namespace
+
+StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
+                            const Reduction *made) {
+  StageTable rows{interpolation_row(scene, options, made)};
+  if (!scene.f) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
+  rows.push_back(pod_row(options, made));
+  if (scene.nitsche) {
+    add_curve_rows(options, made, rows);
+  } else if (scene.support) {
+    add_support_rows(scene, options, made, rows);
+  } else {
+    rows.push_back(cone_row(options, made));
+    add_supremizer_rows(scene, options, made, rows);
+    rows.push_back(sweep_of_supremizers_row(scene, options, made));
+  }
+  if (!scene.nitsche && (!scene.support || scene.support->friction.law == FrictionLaw::none))
+    rows.push_back({StageName("tangential multipliers"), "the scene has no friction", skipped});
+  rows.push_back({stage::projection, "the separated operators onto the bases"});
+  rows.push_back({stage::self_check, self_check_text(made)});
+  return rows;
+}
+
+} // namespace rbvi
