@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace rbvi {
 
@@ -53,9 +54,17 @@ int choice_of(const std::string &name, const std::string &value, const std::vect
   return static_cast<int>(found - names.begin());
 }
 
+std::string plain(double number) {
+  std::string text = shortest_number(number);
+  for (const char *padded : {"e-0", "e+0", "e+"})
+    if (const std::size_t at = text.find(padded); at != std::string::npos)
+      text.replace(at, std::strlen(padded), padded[1] == '-' ? "e-" : "e");
+  return text;
+}
+
 std::string in_words(const Range &range) {
-  if (range.upper >= 1e300) return "at least " + shown(range.lower);
-  return shown(range.lower) + " to " + shown(range.upper);
+  if (range.upper >= 1e300) return "at least " + plain(range.lower);
+  return plain(range.lower) + " to " + plain(range.upper);
 }
 
 std::vector<Choice> choices(const std::vector<std::string> &names,
@@ -81,6 +90,32 @@ Option described(const Parameter &parameter) {
   return {parameter.name, OptionKind::number, "parameter" + unit + ": bounds a,b or a fixed value",
           describe(parameter.valid),
           short_number(parameter.lower) + "," + short_number(parameter.upper)};
+}
+
+std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry) {
+  std::vector<std::pair<std::string, Scene>> found;
+  for (const SceneOption &option : entry.options)
+    for (const std::string &choice : option.choices) {
+      if (choice == option.default_value) continue;
+      try {
+        found.emplace_back(std::string("-").append(option.name).append(" ").append(choice),
+                           make_scene(entry.name, {{option.name, choice}}));
+      } catch (const Error &) { // this choice asks for others beside it
+      }
+    }
+  return found;
+}
+
+std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry) {
+  std::vector<std::pair<Parameter, std::string>> all;
+  std::vector<std::pair<std::string, Scene>> scenes = variants(entry);
+  scenes.insert(scenes.begin(), {"", make_scene(entry.name)});
+  for (const auto &[choice, scene] : scenes)
+    for (const Parameter &parameter : scene.parameters.all)
+      if (std::none_of(all.begin(), all.end(),
+                       [&](const auto &known) { return known.first.name == parameter.name; }))
+        all.emplace_back(parameter, choice);
+  return all;
 }
 
 } // namespace rbvi

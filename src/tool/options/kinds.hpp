@@ -24,16 +24,19 @@ std::string in_words(const Range &range);
 std::vector<Choice> choices(const std::vector<std::string> &names,
                             const std::vector<std::string> &meanings);
 
+/// The shortest text of a number: "1e-6".
+std::string plain(double number);
+
 /// A value as text; of an optional one that is not set "".
-template <class Value> std::string as_text(const Value &value) {
+template <class Value> std::string as_text(const Value &value, std::string (*write)(double)) {
   if constexpr (std::is_same_v<Value, bool>)
     return value ? "yes" : "no";
   else if constexpr (std::is_integral_v<Value>)
     return std::to_string(value);
   else if constexpr (std::is_same_v<Value, std::optional<double>>)
-    return value ? short_number(*value) : "";
+    return value ? write(*value) : "";
   else if constexpr (std::is_same_v<Value, double>)
-    return short_number(value);
+    return write(value);
   else
     return std::filesystem::path(value).string();
 }
@@ -41,10 +44,11 @@ template <class Value> std::string as_text(const Value &value) {
 /// A description with the default that the place has. `place`: from options (maybe const) to the
 /// place of the value in them.
 template <class Place> Option placed(Option option, Place place) {
-  option.shown = [place](const ToolOptions &options) { return as_text(place(options)); };
-  option.default_value = option.shown({});
-  if (const std::size_t zero = option.default_value.find("e-0"); zero != std::string::npos)
-    option.default_value.erase(zero + 2, 1); // 1e-6
+  option.shown = [place](const ToolOptions &options) {
+    return as_text(place(options), short_number);
+  };
+  const ToolOptions defaults;
+  option.default_value = as_text(place(defaults), plain);
   return option;
 }
 

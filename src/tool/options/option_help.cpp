@@ -11,7 +11,7 @@ namespace rbvi {
 namespace {
 
 /// "name  help: choices [default], values". `range`: what stands before the range of a number.
-void print_line(const Option &option, const char *range) {
+void print_line(const Option &option, const std::string &range) {
   std::string line = option.help;
   for (std::size_t i = 0; i < option.choices.size(); ++i)
     line += (i == 0 ? ": " : " | ") + option.choices[i].name;
@@ -23,17 +23,17 @@ void print_line(const Option &option, const char *range) {
 
 /// Options, parameters and the mesh of one scene.
 void print_scene(const SceneEntry &entry) {
-  const Scene scene = make_scene(entry.name);
   std::printf("\nScene %s: %s\n", entry.name.c_str(), entry.summary.c_str());
   for (const SceneOption &option : entry.options)
     print_line(described(option), ", valid in ");
-  for (const Parameter &parameter : scene.parameters.all)
-    print_line(described(parameter), ", valid in ");
-  print_mesh_contract(scene);
+  for (const auto &[parameter, choice] : parameters_of(entry))
+    print_line(described(parameter),
+               choice.empty() ? ", valid in " : ", with " + choice + ", valid in ");
+  print_mesh_contract(entry);
 }
 
 void print_options() {
-  std::printf("Options [default]:\n");
+  std::printf("Options [default], range:\n");
   std::string group;
   for (const Option &option : tool_options()) {
     if (option.group != group) std::printf(" %s\n", (group = option.group).c_str());

@@ -36,8 +36,8 @@ constexpr const char *of_petsc = R"(
 ## PETSc and SLEPc
 
 Options of their objects work under these prefixes: `-hf_pc_type`, `-nitsche_snes_monitor`,
-`-pga_eps_view`, ... One that a solver would read and not follow is refused, and so is one that no
-solver of the run asks for; in a case file those of another command may stand.
+`-pga_eps_view`, ... One that a solver would read and not follow is refused, and so is one that
+nothing of the run asks for; SLEPc's of another command may stand in a case file.
 )";
 
 constexpr const char *of_petsc_more = R"(
@@ -118,11 +118,13 @@ std::string tables_of_groups() {
   return text + after;
 }
 
-std::string table_of_parameters(const Scene &scene) {
-  std::string text = head({"parameter", "unit", "box", "value while fixed", "range of validity"});
-  for (const Parameter &p : scene.parameters.all)
+std::string table_of_parameters(const SceneEntry &entry) {
+  std::string text =
+      head({"parameter", "unit", "box", "value while fixed", "range of validity", ""});
+  for (const auto &[p, choice] : parameters_of(entry))
     text += row({code("-" + p.name), p.unit, describe(Range{p.lower, p.upper}),
-                 short_number(p.value), describe(p.valid)});
+                 short_number(p.value), describe(p.valid), choice.empty() ? "" : "with " + choice});
+  const Scene scene = make_scene(entry.name);
   return text + "\nFree by default: " + names_of(scene.parameters) + "; `-train " + scene.training +
          "`, `-valid " + scene.validation + "`.\n";
 }
@@ -131,7 +133,7 @@ std::string section_of(const SceneEntry &entry) {
   std::string text = "\n### " + entry.name + "\n\n" + entry.summary + ".\n" + head(option_head);
   for (const SceneOption &option : entry.options)
     text += option_row(described(option));
-  return text + table_of_parameters(make_scene(entry.name));
+  return text + table_of_parameters(entry);
 }
 
 std::string table_of_prefixes() {

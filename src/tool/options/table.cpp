@@ -274,7 +274,7 @@ std::vector<Option> of_nitsche() {
       choice("nitsche_loop",
              {{"nested", "frozen in an outer loop (4.63)"},
               {"single", "following every Newton step (4.53)"}},
-             AT(hf.nitsche.single_loop), "Coulomb's bound"),
+             AT(hf.nitsche.single_loop), "how Newton's method takes Coulomb's bound"),
       choice("nitsche_bounds",
              {{"none", "Newton's method"},
               {"nonpenetration", "SNES keeps the nodes' normal displacements below the gap"}},

@@ -53,6 +53,12 @@ const Option *find_option(const std::string &name);
 Option described(const SceneOption &option);
 Option described(const Parameter &parameter);
 
+/// The scene with another choice of one option each, and "-bodies one", that choice.
+std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry);
+
+/// Parameters of the scene, and those that variants add, with "" and that choice.
+std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry);
+
 /// Throws bad_input for options that do not go together, or not with the scene.
 void check_rules(const ToolOptions &options);
 

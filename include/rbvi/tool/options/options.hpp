@@ -81,6 +81,6 @@ void print_help(const std::string &scene);
 std::string options_page();
 
 /// Prints the names and facts that a mesh file for the scene must have.
-void print_mesh_contract(const Scene &scene);
+void print_mesh_contract(const SceneEntry &entry);
 
 } // namespace rbvi
