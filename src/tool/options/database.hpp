@@ -20,6 +20,9 @@ struct SolverPrefix {
 };
 const std::vector<SolverPrefix> &solver_objects();
 
+/// How their options begin, of those of these kinds.
+std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds);
+
 /// How the options of SLEPc's objects begin.
 const std::vector<std::string> &eigen_prefixes();
 

@@ -12,8 +12,9 @@ namespace rbvi {
 namespace {
 
 /// How options of PETSc's and SLEPc's kinds of objects begin.
-const std::vector<std::string> kinds{"ksp_", "pc_", "mat_", "snes_", "sub_", "vec_", "dm_", "eps_",
-                                     "svd_", "st_", "bv_",  "ds_",   "tao_", "ts_",  "is_"};
+const std::vector<std::string> all_kinds{"ksp_", "pc_", "mat_", "snes_", "sub_",
+                                         "vec_", "dm_", "eps_", "svd_",  "st_",
+                                         "bv_",  "ds_", "tao_", "ts_",   "is_"};
 
 /// Of PETSc itself, those that serve here.
 const std::vector<std::string> petsc_names{"log_view",     "log_trace",    "info",
@@ -27,7 +28,7 @@ bool is_flag(const std::string &name) {
 
 /// What to do about a name that nothing knows.
 std::string advice(const std::string &name, std::vector<std::string> known) {
-  for (const std::string &kind : kinds) {
+  for (const std::string &kind : all_kinds) {
     if (!name.starts_with(kind)) continue;
     std::vector<std::string> ours;
     for (const SolverPrefix &solver : solver_objects())
@@ -53,6 +54,14 @@ const std::vector<SolverPrefix> &solver_objects() {
        {"svd_", "eps_"},
        "verify: inf-sup constants (SLEPc); eps: beta_HF of more than 1000 multipliers"}};
   return all;
+}
+
+std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds) {
+  std::vector<std::string> prefixes;
+  for (const SolverPrefix &solver : solver_objects())
+    for (const std::string &kind : solver.kinds)
+      if (contains(kinds, kind)) prefixes.push_back(solver.prefix + kind);
+  return prefixes;
 }
 
 void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene) {

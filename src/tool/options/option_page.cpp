@@ -28,8 +28,8 @@ constexpr const char *of_scenes = R"(
 
 Each scene has options and parameters of its own. A parameter is an option, too: two bounds
 `-radius 0.18,0.22` free it, one value `-radius 0.2` fixes it; `-parameters` names those that are
-free. No box, no value and no query leaves the range of validity. `rbvi -help -scene NAME` prints what
-a mesh for the scene must have, too.
+free. No box, no value and no query leaves the range of validity. `rbvi -help -scene NAME` prints
+what a mesh for the scene must have, too.
 )";
 
 constexpr const char *of_petsc = R"(
@@ -45,8 +45,8 @@ Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-12. `
 [1e-12] is that of the residual relative to its terms. Of PETSc itself, `-log_view` shows one stage
 per step.
 
-SLEPc solves the eigenproblems of the projected greedy, and the one singular value decomposition that
-replaces them where b only scales. Each rank has objects of its own for the parameters that are its
+SLEPc solves the eigenproblems of the projected greedy, and the one singular value decomposition
+that replaces them where b only scales. Each rank has objects of its own for the parameters that are its
 share, of type lapack: it returns all pairs of a small matrix, which iterative types do not do for
 clustered values (fewer than all are an error). `-infsup_eps_` alone is iterative: beta_HF of more
 than 1000 multipliers is the smallest eigenvalue of B V^-1 B^T x = beta^2 W x by inverse iteration,
@@ -57,8 +57,8 @@ matrix of the size of the contact dofs).
 constexpr const char *of_online = R"(
 ## rbvi-online
 
-`rbvi-online MODEL` alone prints what the model is. Options have one or two dashes, and `--name value`
-or `--name=value`.
+`rbvi-online MODEL` alone prints what the model is. Options have one or two dashes, and
+`--name value` or `--name=value`.
 )";
 
 std::string code(const std::string &text) {
