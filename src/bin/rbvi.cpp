@@ -6,17 +6,27 @@
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/finish.hpp"
 
+#include <cstdio>
+
 namespace {
 
 using namespace rbvi;
 
-void run(const std::string &command, const std::string &file) {
+void print_options(const Invocation &invocation) {
+  if (invocation.markdown)
+    std::fputs(options_page().c_str(), stdout);
+  else
+    print_help(invocation.file);
+}
+
+void run(const Invocation &invocation) {
+  const std::string &command = invocation.command;
   const int rank = rank_of(PETSC_COMM_WORLD);
   if (command == "list" || command == "help" || command == "inspect") {
     if (rank != 0) return;
     if (command == "list") command_list();
-    if (command == "help") print_help(file);
-    if (command == "inspect") command_inspect(file);
+    if (command == "help") print_options(invocation);
+    if (command == "inspect") command_inspect(invocation.file);
     return;
   }
   const ToolOptions options = read_options(PETSC_COMM_WORLD);
@@ -38,7 +48,7 @@ int main(int argc, char **argv) {
     InterruptWatch watch;
     Session session(count, values);
     watch.start(rank_of(PETSC_COMM_WORLD) == 0);
-    const int status = finish(PETSC_COMM_WORLD, [&] { run(invocation.command, invocation.file); });
+    const int status = finish(PETSC_COMM_WORLD, [&] { run(invocation); });
     watch.stop();
     return status;
   } catch (const Error &error) { // PETSc does not start with these options

@@ -65,9 +65,13 @@ std::string nearest_name(const std::string &given, const std::vector<std::string
         (completion.empty() || name.size() < completion.size()))
       completion = name;
   if (!completion.empty()) return completion;
+  const auto distance = [&](const std::string &name) {
+    const auto parted = std::mismatch(given.begin(), given.end(), name.begin(), name.end()).first;
+    return static_cast<long>(edits(given, name)) - (parted - given.begin());
+  };
   const auto nearest =
       std::min_element(names.begin(), names.end(), [&](const std::string &a, const std::string &b) {
-        return edits(given, a) < edits(given, b);
+        return distance(a) < distance(b);
       });
   return nearest == names.end() ? "" : *nearest;
 }

@@ -19,43 +19,25 @@ namespace rbvi {
 
 namespace {
 
-constexpr const char *usage =
-    R"(rbvi-online MODEL                        what the model is: parameters, sizes, errors
-rbvi-online MODEL --mu VALUES            one answer (0.18,0.02,-0.01 or radius=0.18,center_x=0.02)
-rbvi-online MODEL --queries SET          one row per parameter of a CSV file, grid:5,5,5,
-                                         random:COUNT:SEED or - (a CSV table on standard input)
-  --out FILE       the table as CSV (standard output without it, or as -)
-  --vtu FILE       with --mu: the field, and the contact region in FILE_contact
-  --full           reconstruct the field: adds min_u
-  --decorrelated   without the supremizers or responses beside the modes
-  --extrapolate    allow parameters outside the box of the model, where the scene makes sense
-  --help, --version
-Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).
-)";
+std::string usage() {
+  std::string text = "rbvi-online MODEL            what the model is: parameters, sizes, errors\n"
+                     "rbvi-online MODEL [options]  answers\n";
+  for (const OnlineOption &option : online_options()) {
+    const std::string name =
+        "--" + option.name + (option.values.empty() ? "" : " ") + option.values;
+    text += "  " + name +
+            std::string(std::max<std::size_t>(17, name.size() + 1) - name.size(), ' ') +
+            option.help + "\n";
+  }
+  return text + "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n";
+}
 
-struct Option {
-  const char *name;
-  std::string OnlineArguments::*text;
-  bool OnlineArguments::*flag;
-};
-
-constexpr Option options[] = {{"mu", &OnlineArguments::mu, nullptr},
-                              {"queries", &OnlineArguments::queries, nullptr},
-                              {"out", &OnlineArguments::out, nullptr},
-                              {"vtu", &OnlineArguments::vtu, nullptr},
-                              {"extrapolate", nullptr, &OnlineArguments::extrapolate},
-                              {"decorrelated", nullptr, &OnlineArguments::decorrelated},
-                              {"full", nullptr, &OnlineArguments::full},
-                              {"help", nullptr, &OnlineArguments::help},
-                              {"version", nullptr, &OnlineArguments::version}};
-
-const Option &find_option(const std::string &name) {
-  const auto found = std::find_if(std::begin(options), std::end(options),
-                                  [&](const Option &option) { return name == option.name; });
-  if (found != std::end(options)) return *found;
+const OnlineOption &find_option(const std::string &name) {
   std::vector<std::string> names;
-  for (const Option &option : options)
-    names.emplace_back(option.name);
+  for (const OnlineOption &option : online_options()) {
+    if (option.name == name) return option;
+    names.push_back(option.name);
+  }
   throw bad_input("unknown option --" + name + "; the nearest one is --" +
                   nearest_name(name, names) + " (--help lists all)");
 }
@@ -70,6 +52,29 @@ void check_combination(const OnlineArguments &given) {
 }
 
 } // namespace
+
+const std::vector<OnlineOption> &online_options() {
+  using Arguments = OnlineArguments;
+  static const std::vector<OnlineOption> options{
+      {"mu", "VALUES", "one answer: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02", &Arguments::mu},
+      {"queries", "SET",
+       "one row per mu: a CSV file, grid:5,5,5, random:COUNT:SEED or - (a CSV table on standard "
+       "input)",
+       &Arguments::queries},
+      {"out", "FILE", "the table as CSV (standard output without it, or as -)", &Arguments::out},
+      {"vtu", "FILE",
+       "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact",
+       &Arguments::vtu},
+      {"full", "", "reconstruct the field: adds min_u", nullptr, &Arguments::full},
+      {"decorrelated", "", "without the supremizers or responses beside the modes", nullptr,
+       &Arguments::decorrelated},
+      {"extrapolate", "",
+       "allow mu outside the box of the model, within the range of validity (an error otherwise)",
+       nullptr, &Arguments::extrapolate},
+      {"help", "", "this list", nullptr, &Arguments::help},
+      {"version", "", "of the program", nullptr, &Arguments::version}};
+  return options;
+}
 
 Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
                ReducedSolution &solution) {
@@ -130,8 +135,8 @@ OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments
     }
     const std::string body = argument.substr(argument[1] == '-' ? 2 : 1);
     const std::size_t equals = body.find('=');
-    const Option &option = find_option(body.substr(0, equals));
-    const std::string name = std::string("--") + option.name;
+    const OnlineOption &option = find_option(body.substr(0, equals));
+    const std::string name = "--" + option.name;
     if (!given.insert(name).second) throw bad_input(name + " is given twice");
     if (option.flag != nullptr) {
       if (equals != std::string::npos) throw bad_input(name + " takes no value");
@@ -166,7 +171,7 @@ void check_files(const OnlineArguments &arguments) {
 
 void run_online(const OnlineArguments &arguments, std::ostream &out) {
   if (arguments.help) {
-    out << usage;
+    out << usage();
     return;
   }
   if (arguments.version) {

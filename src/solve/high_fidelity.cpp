@@ -101,6 +101,11 @@ double friction_residual(const Operators &op, const Vector &lambda, const Vector
 
 } // namespace
 
+const std::vector<std::string> &hf_method_names() {
+  static const std::vector<std::string> names{"active_set", "uzawa", "vi"};
+  return names;
+}
+
 double KktResidual::largest() const {
   return std::max({stationarity, feasibility, complementarity, sign, friction});
 }

@@ -8,6 +8,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"
+#include "rbvi/solve/methods.hpp"
 #include "sample_file.hpp"
 
 #include <algorithm>
@@ -267,8 +268,7 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
     settings["nitsche_bounds"] = options.nitsche.nonpenetration ? "nonpenetration" : "none";
     return settings;
   }
-  const char *methods[] = {"active_set", "uzawa", "vi"};
-  settings["hf_method"] = methods[static_cast<int>(options.method)];
+  settings["hf_method"] = hf_method_names()[static_cast<std::size_t>(options.method)];
   if (options.method == HfMethod::uzawa)
     settings["uzawa_tolerance"] = number(options.uzawa_tolerance);
   return settings;

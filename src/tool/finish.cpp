@@ -66,6 +66,7 @@ Invocation read_invocation(int argc, char **argv) {
   if (given.size() < 2 || has("-help") || has("-h")) {
     const auto scene = std::find(given.begin(), given.end(), "-scene");
     if (given.end() - scene > 1) result.file = *(scene + 1);
+    result.markdown = has("-markdown");
     given.resize(1);
     given.emplace_back("help");
   }

@@ -1,6 +1,5 @@
 // rbvi offline: from a case file to a model file.
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
@@ -19,46 +18,6 @@
 namespace rbvi {
 
 namespace {
-
-std::map<std::string, std::string> model_settings(const ToolOptions &options, std::size_t samples) {
-  std::map<std::string, std::string> settings{
-      {"training", options.train},
-      {"samples", std::to_string(samples)},
-      {"mesh_refine", std::to_string(options.mesh.refine)},
-      {"pod_tolerance", short_number(options.reduce.pod.tolerance)},
-      {"eim_tolerance", short_number(options.reduce.eim.tolerance)}};
-  if (!options.mesh.file.empty())
-    settings["mesh_file"] =
-        std::filesystem::absolute(options.mesh.file).lexically_normal().string();
-  if (options.scene.nitsche) {
-    settings["nitsche_quadrature"] =
-        curve_rule_names()[static_cast<std::size_t>(options.reduce.curve.rule)];
-    return settings;
-  }
-  if (options.scene.support) {
-    const MultiplierOptions &choice = options.reduce.multipliers;
-    settings["condensed_tolerance"] = short_number(options.reduce.condensed.tolerance);
-    settings["multiplier_reduction"] =
-        multiplier_reduction_names()[static_cast<std::size_t>(choice.reduction)];
-    if (choice.reduction == MultiplierReduction::condensed) return settings;
-    settings["tangential_tolerance"] = short_number(choice.tangential);
-    if (options.reduce.eim_normal)
-      settings["eim_normal_tolerance"] = short_number(*options.reduce.eim_normal);
-    if (options.reduce.eim_tangential)
-      settings["eim_tangential_tolerance"] = short_number(*options.reduce.eim_tangential);
-  }
-  settings.merge(std::map<std::string, std::string>{
-      {"cone_type", cone_type_names()[static_cast<std::size_t>(options.reduce.cone.type)]},
-      {"cone_tolerance", short_number(options.reduce.cone.tolerance)},
-      {"cone_feasibility", short_number(options.reduce.cone.feasibility)},
-      {"cone_ring", std::to_string(options.reduce.cone.ring)},
-      {"pga_enrichment", enrichment_names()[static_cast<std::size_t>(options.reduce.enrichment)]},
-      {"pga_product", product_names()[static_cast<std::size_t>(options.reduce.product)]},
-      {"pga_tolerance",
-       options.reduce.infsup_tolerance ? "infsup" : short_number(options.reduce.pga.tolerance)},
-      {"pga_beta_fraction", short_number(options.reduce.pga.stability)}});
-  return settings;
-}
 
 /// Where the model has samples, and where it was to have them.
 void name_training(const Sweep &sweep, ReducedModel &model) {
@@ -100,7 +59,8 @@ void command_offline(const ToolOptions &options) {
       before, preparation_stages(options, training.size(), groups.count(), &sweep.report));
   Reduction made = reduce(work.world_problem(), sweep.samples, options.reduce);
   ReducedModel &model = made.model;
-  model.settings = model_settings(options, sweep.samples.size());
+  model.settings = kept_settings(options);
+  model.settings["samples"] = std::to_string(sweep.samples.size());
   if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
   name_training(sweep, model);
   for (const StageTable &table : {before, made.stages})

@@ -75,8 +75,9 @@ inline Finished shell(const std::string &command, const std::string &name = "las
                            " >" + out + " 2>" + err + " </dev/null";
   const int status = std::system(line.c_str());
   Finished run{WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(out), slurp(err)};
+  std::error_code ignored; // a daemon of Open MPI may be removing its own files
   for (const fs::path &left : {fs::path(out), fs::path(err), mpi})
-    fs::remove_all(left);
+    fs::remove_all(left, ignored);
   return run;
 }
 

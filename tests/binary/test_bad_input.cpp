@@ -63,6 +63,7 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml -pod_tolerance -1 -out run", "use a number from 0 to 0.5"},
        {"offline -case case.yaml -pod_tolerance 1 -out run", "use a number from 0 to 0.5"},
        {"offline -case case.yaml -pod_tol 1e-3 -out run", "nearest one is -pod_tolerance"},
+       {"offline -case case.yaml -pod_tols 1e-3 -out run", "nearest one is -pod_tolerance"},
        {"offline -case case.yaml -cone_type cone -out run",
         "use one of cpg, mcpg, angle_greedy, nmf, nodal, hybrid"},
        {"offline -case case.yaml -disc_map round -out run", "use one of similarity, graded"},
@@ -224,6 +225,7 @@ TEST_P(BadInput, CaseFiles) {
   spill("bytes.yaml", std::string("\0\1\377\376scene", 9));
   spill("empty.yaml", "");
   spill("key.yaml", "scene: membrane_obstacle\ntrian: grid:2,2,2\n");
+  spill("short.yaml", "scene: membrane_obstacle\npod_tol: 1e-3\n");
   spill("nested.yaml", "scene: membrane_obstacle\npod: {tolerance: 1}\n");
   spill("twice.yaml", "scene: membrane_obstacle\nload: -25\nload: -20\n");
   spill("another.yaml", "scene: membrane_obstacle\ncase: case.yaml\n");
@@ -241,6 +243,8 @@ TEST_P(BadInput, CaseFiles) {
           {"offline -case bytes.yaml -out run", "bytes.yaml is malformed at line 1"},
           {"offline -case empty.yaml -out run", "no scene is named"},
           {"offline -case key.yaml -out run", "unknown option -trian (line 2 of key.yaml)"},
+          {"offline -case short.yaml -out run",
+           "-pod_tol (line 2 of short.yaml): the nearest one is -pod_tolerance"},
           {"offline -case nested.yaml -out run", "line 2: options are not nested"},
           {"offline -case nested.yaml -out run", "write 'pod_tolerance: value'"},
           {"offline -case twice.yaml -out run", "line 3: load is given again, after line 2"},

@@ -303,6 +303,14 @@ TEST_F(Runs, HelpVersionAndListWithOneAndTwoDashes) {
   EXPECT_EQ(shell("sh -c '" + rbvi(1, "list") + " > /dev/full'").status, 1);
 }
 
+TEST_F(Runs, ASceneNeedsNoCaseFile) {
+  const std::string scene = " -scene two_disks -arc_edges 40 -train grid:5 -valid grid:2 ";
+  EXPECT_TRUE(contains(output_of(rbvi(2, "offline -plan" + scene)), "snapshots"));
+  EXPECT_TRUE(contains(output_of(rbvi(2, "solve -mu 1" + scene)), "kkt_residual"));
+  for (const char *command : {"offline", "verify", "bench"})
+    EXPECT_TRUE(contains(output_of(rbvi(2, command + scene + "-out run")), "wrote run/"));
+}
+
 /// Options of PETSc itself: what is left over is what nothing asked for, and memory is whole.
 TEST_F(Runs, OptionsOfPetscItself) {
   const std::string solve = "solve -case case.yaml -mu 0.2,0,0 -hf_pc_type lu ";

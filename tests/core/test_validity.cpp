@@ -148,6 +148,8 @@ TEST(NearestName, CompletionsFirst) {
   EXPECT_EQ(nearest_name("pod_m", names), "pod_max_size");
   EXPECT_EQ(nearest_name("pod_tolernace", names), "pod_tolerance");
   EXPECT_EQ(nearest_name("plam", names), "plan");
+  EXPECT_EQ(nearest_name("pod_tols", {"out", "load", "pod_tolerance"}), "pod_tolerance");
+  EXPECT_EQ(nearest_name("tolerance", names), "pod_tolerance");
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 

@@ -25,7 +25,7 @@ std::string shortest_number(double value);
 std::string trimmed(const std::string &text);
 
 /// The shortest name that begins with what was given; else the one with the fewest single-letter
-/// edits (Levenshtein); "" if there is none.
+/// edits (Levenshtein), less one for each letter of a common beginning; "" if there is none.
 std::string nearest_name(const std::string &given, const std::vector<std::string> &names);
 
 } // namespace rbvi

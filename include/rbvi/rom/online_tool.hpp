@@ -12,6 +12,15 @@ struct OnlineArguments {
   bool extrapolate = false, decorrelated = false, full = false, help = false, version = false;
 };
 
+/// An option: what it takes ("FILE"; "": it is a flag), what it does, and its place.
+struct OnlineOption {
+  std::string name, values, help;
+  std::string OnlineArguments::*text = nullptr;
+  bool OnlineArguments::*flag = nullptr;
+};
+
+const std::vector<OnlineOption> &online_options();
+
 /// Reads the arguments behind the program's name; one or two dashes, `--name value` or
 /// `--name=value`. Throws bad_input, naming the nearest option.
 OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments);

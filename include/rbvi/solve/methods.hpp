@@ -6,6 +6,9 @@
 
 namespace rbvi {
 
+/// "active_set", "uzawa", "vi".
+const std::vector<std::string> &hf_method_names();
+
 /// What a method returns: the free displacement, the multiplier, and how it ended.
 struct MethodResult {
   Handle<Vec> u;

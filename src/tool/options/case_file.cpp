@@ -205,8 +205,7 @@ std::string case_line(const std::string &name, const std::string &value) {
 }
 
 std::string read_case_text(MPI_Comm comm, const std::filesystem::path &file) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
+  const int rank = rank_of(comm);
   std::string text;
   collectively(comm, [&] {
     if (rank != 0) return;

@@ -12,6 +12,17 @@ std::vector<std::string> unread_names();
 /// Those that begin with one of the prefixes and that nothing has asked for.
 std::vector<std::string> unread_names(const std::vector<std::string> &prefixes);
 
+/// Objects of ours that take PETSc's or SLEPc's options.
+struct SolverPrefix {
+  std::string prefix;
+  std::vector<std::string> kinds; ///< of objects, as their options begin: "ksp_"
+  std::string of;                 ///< what they solve
+};
+const std::vector<SolverPrefix> &solver_objects();
+
+/// How their options begin, of those of these kinds.
+std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds);
+
 /// How the options of SLEPc's objects begin.
 const std::vector<std::string> &eigen_prefixes();
 
@@ -19,20 +30,11 @@ bool contains(const std::vector<std::string> &list, const std::string &name);
 bool starts_with_any(const std::string &name, const std::vector<std::string> &prefixes);
 
 bool is_given(const std::string &name);
-std::string text_of(const std::string &name, const std::string &otherwise = "");
+/// Its value; "" where it has none or is not given.
+std::string text_of(const std::string &name);
 
 /// Forgets that an option was asked for.
 void mark_unread(const std::string &name);
-
-// Options of ours, with the default of tool_options().
-
-/// A number in [lower, upper].
-double number_of(const std::string &name, double lower, double upper);
-int integer_of(const std::string &name, int lower, int upper);
-/// Yes or no; without a value yes.
-bool flag_of(const std::string &name);
-/// Position of the value among the choices.
-int choice_of(const std::string &name, const std::vector<std::string> &choices);
 
 /// Where an option stands: " (line 2 of case.yaml)"; "" on the command line.
 using Origin = std::map<std::string, std::string>;

@@ -54,8 +54,7 @@ std::string why_not(const std::string &name, const ToolOptions &options, EigenUs
 } // namespace
 
 const std::vector<std::string> &eigen_prefixes() {
-  static const std::vector<std::string> prefixes{"pga_eps_", "pga_svd_", "infsup_svd_",
-                                                 "infsup_eps_"};
+  static const std::vector<std::string> prefixes = prefixes_of({"eps_", "svd_"});
   return prefixes;
 }
 

@@ -24,10 +24,10 @@ void check_case_of_run(const ToolOptions &options) {
 
 void check_outputs(MPI_Comm comm, const ToolOptions &options,
                    const std::vector<NamedFile> &outputs) {
-  const std::vector<NamedFile> inputs{{"the case file", options.case_name},
-                                      {"the file of -mesh", options.mesh.file},
-                                      {"the file of -train", options.train},
-                                      {"the file of -valid", options.valid}};
+  std::vector<NamedFile> inputs{{"the case file", options.case_name},
+                                {"the file of -mesh", options.mesh.file}};
+  for (const auto &[name, file] : options.set_files)
+    inputs.push_back({"the file of -" + name, file});
   collectively(comm, [&] {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       check_overwriting(outputs[i], inputs);

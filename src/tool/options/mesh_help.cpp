@@ -1,7 +1,5 @@
 // What a scene needs of a mesh file, for -help.
-#include "rbvi/tool/options/options.hpp"
-
-#include "rbvi/core/error.hpp"
+#include "table.hpp"
 
 #include <cstdio>
 
@@ -32,32 +30,17 @@ std::string contract(const Scene &scene) {
   return text;
 }
 
-/// Each choice of one option that changes the contract, as "-bodies one", and the other contract.
-std::vector<std::pair<std::string, std::string>> other_contracts(const Scene &scene) {
-  std::vector<std::pair<std::string, std::string>> found;
-  for (const SceneEntry &entry : scene_catalogue()) {
-    if (entry.name != scene.name) continue;
-    for (const SceneOption &option : entry.options)
-      for (const std::string &choice : option.choices) {
-        try {
-          const std::string other = contract(make_scene(scene.name, {{option.name, choice}}));
-          if (other != contract(scene)) found.emplace_back("-" + option.name + " " + choice, other);
-        } catch (const Error &) { // this choice asks for others beside it
-        }
-      }
-  }
-  return found;
-}
-
 } // namespace
 
-void print_mesh_contract(const Scene &scene) {
+void print_mesh_contract(const SceneEntry &entry) {
+  const std::string own = contract(make_scene(entry.name));
   std::printf(
       "  A mesh of your own (-mesh FILE: Gmsh 2.2, 4.0 or 4.1, order 1, in metres), its parts\n"
       "  by physical name, vertices in place to 1e-6 of the extent, edges along the rims:\n%s",
-      contract(scene).c_str());
-  for (const auto &[choice, other] : other_contracts(scene))
-    std::printf("  With %s:\n%s", choice.c_str(), other.c_str());
+      own.c_str());
+  for (const auto &[choice, scene] : variants(entry))
+    if (const std::string other = contract(scene); other != own)
+      std::printf("  With %s:\n%s", choice.c_str(), other.c_str());
 }
 
 } // namespace rbvi

@@ -1,5 +1,6 @@
 // Names of options: which there are, and what to say of others.
 #include "database.hpp"
+#include "table.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -10,30 +11,10 @@ namespace rbvi {
 
 namespace {
 
-/// Options of PETSc objects, and how ours of that kind begin.
-struct Kind {
-  const char *begin;
-  std::vector<std::string> prefixes;
-};
-
-const std::vector<Kind> &kinds() {
-  static const std::vector<Kind> all{{"ksp_", {"hf_", "v_", "vi_", "nitsche_"}},
-                                     {"pc_", {"hf_", "v_", "vi_", "nitsche_"}},
-                                     {"mat_", {"hf_", "v_", "vi_", "nitsche_"}},
-                                     {"snes_", {"vi_", "nitsche_"}},
-                                     {"sub_", {}},
-                                     {"vec_", {}},
-                                     {"dm_", {}},
-                                     {"eps_", {"pga_", "infsup_"}},
-                                     {"svd_", {"pga_", "infsup_"}},
-                                     {"st_", {}},
-                                     {"bv_", {}},
-                                     {"ds_", {}},
-                                     {"tao_", {}},
-                                     {"ts_", {}},
-                                     {"is_", {}}};
-  return all;
-}
+/// How options of PETSc's and SLEPc's kinds of objects begin.
+const std::vector<std::string> all_kinds{"ksp_", "pc_", "mat_", "snes_", "sub_",
+                                         "vec_", "dm_", "eps_", "svd_",  "st_",
+                                         "bv_",  "ds_", "tao_", "ts_",   "is_"};
 
 /// Of PETSc itself, those that serve here.
 const std::vector<std::string> petsc_names{"log_view",     "log_trace",    "info",
@@ -41,21 +22,20 @@ const std::vector<std::string> petsc_names{"log_view",     "log_trace",    "info
                                            "options_view", "options_file", "fp_trap"};
 
 bool is_flag(const std::string &name) {
-  return std::any_of(tool_options().begin(), tool_options().end(), [&](const OptionHelp &o) {
-    return o.name == name && (o.default_value == "yes" || o.default_value == "no");
-  });
+  const Option *option = find_option(name);
+  return option != nullptr && option->kind == OptionKind::flag;
 }
 
 /// What to do about a name that nothing knows.
 std::string advice(const std::string &name, std::vector<std::string> known) {
-  for (const Kind &kind : kinds()) {
-    if (!name.starts_with(kind.begin)) continue;
-    if (kind.prefixes.empty())
-      return "no object of rbvi takes PETSc's options -" + std::string(kind.begin) + "*";
-    std::string all;
-    for (const std::string &prefix : kind.prefixes)
-      all += (all.empty() ? "-" : ", -") + prefix + name;
-    return "PETSc's options need the prefix of a solver: " + all;
+  for (const std::string &kind : all_kinds) {
+    if (!name.starts_with(kind)) continue;
+    std::vector<std::string> ours;
+    for (const SolverPrefix &solver : solver_objects())
+      if (contains(solver.kinds, kind))
+        ours.push_back(std::string("-").append(solver.prefix).append(name));
+    if (ours.empty()) return "no object of rbvi takes PETSc's options -" + kind + "*";
+    return "PETSc's options need the prefix of a solver: " + joined(ours);
   }
   known.insert(known.end(), petsc_names.begin(), petsc_names.end());
   return "the nearest one is -" + nearest_name(name, known) + " (-help lists all)";
@@ -63,9 +43,30 @@ std::string advice(const std::string &name, std::vector<std::string> known) {
 
 } // namespace
 
+const std::vector<SolverPrefix> &solver_objects() {
+  static const std::vector<SolverPrefix> all{
+      {"hf_", {"ksp_", "pc_", "mat_"}, "the stiffness A, but for Nitsche's method"},
+      {"v_", {"ksp_", "pc_", "mat_"}, "the V product: Riesz representers"},
+      {"vi_", {"snes_", "ksp_", "pc_", "mat_"}, "-hf_method vi"},
+      {"nitsche_", {"snes_", "ksp_", "pc_", "mat_"}, "Nitsche's method"},
+      {"pga_", {"eps_", "svd_"}, "offline: the projected greedy algorithm (SLEPc)"},
+      {"infsup_",
+       {"svd_", "eps_"},
+       "verify: inf-sup constants (SLEPc); eps: beta_HF of many multipliers"}};
+  return all;
+}
+
+std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds) {
+  std::vector<std::string> prefixes;
+  for (const SolverPrefix &solver : solver_objects())
+    for (const std::string &kind : solver.kinds)
+      if (contains(kinds, kind)) prefixes.push_back(solver.prefix + kind);
+  return prefixes;
+}
+
 void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene) {
   std::vector<std::string> known;
-  for (const OptionHelp &option : tool_options())
+  for (const Option &option : tool_options())
     known.push_back(option.name);
   for (const auto &[name, value] : scene.options)
     known.push_back(name);

@@ -3,10 +3,10 @@
 #include "database.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
-#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/options/case_file.hpp"
 #include "rbvi/tool/options/run_directory.hpp"
+#include "table.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -14,9 +14,6 @@
 namespace rbvi {
 
 namespace {
-
-/// Largest relative error that a reduced model may be asked for: above, it says nothing.
-constexpr double rough = 0.5;
 
 /// -case, or the options that a run directory was made with, or none for the defaults of -scene.
 std::string case_file_name() {
@@ -108,10 +105,9 @@ void adapt_parameters(ParameterSpace &space) {
 
 /// The options as a case file, without those of one command.
 std::string as_case_file(const std::vector<std::string> &names) {
-  const std::vector<std::string> of_command{"case", "out", "plan", "mu", "vtu", "csv"};
   std::string text = std::string(run_case_header) + "\n";
   for (const std::string &name : names) {
-    if (contains(of_command, name)) continue;
+    if (const Option *option = find_option(name); option != nullptr && option->of_command) continue;
     text += case_line(name, value_in_run(name, text_of(name)));
     // What a solver must ask for is unread until it does: check_solver_options.
     if (starts_with_any(name, solver_prefixes())) mark_unread(name);
@@ -119,102 +115,15 @@ std::string as_case_file(const std::vector<std::string> &names) {
   return text;
 }
 
-ReduceOptions reduce_options(const ParameterSpace &space) {
-  ReduceOptions options;
-  options.pod.tolerance = number_of("pod_tolerance", 0, rough);
-  options.pod.max_size = integer_of("pod_max_size", 0, 100000);
-  options.cone.type = static_cast<ConeType>(choice_of("cone_type", cone_type_names()));
-  options.cone.tolerance = number_of("cone_tolerance", 0, rough);
-  options.cone.max_size = integer_of("cone_max_size", 0, 100000);
-  options.cone.feasibility = number_of("cone_feasibility", 0, rough);
-  options.cone.ring = integer_of("cone_ring", 0, 1000);
-  options.enrichment = static_cast<Enrichment>(choice_of("pga_enrichment", enrichment_names()));
-  options.product = static_cast<SupremizerProduct>(choice_of("pga_product", product_names()));
-  if (options.enrichment == Enrichment::online && options.product == SupremizerProduct::energy)
-    throw bad_input("-pga_enrichment online takes supremizers in the V product: leave out "
-                    "-pga_product energy");
-  const std::string reference = text_of("reference_mu");
-  if (!reference.empty())
-    options.reference =
-        while_doing("reading option -reference_mu", [&] { return parse_mu(space, reference); });
-  options.infsup_tolerance = text_of("pga_tolerance") == "infsup";
-  if (!options.infsup_tolerance)
-    options.pga.tolerance = while_doing("reading -pga_tolerance, a number or infsup",
-                                        [] { return number_of("pga_tolerance", 0, 0.999); });
-  options.pga.stability = number_of("pga_beta_fraction", 0, 1 - 1e-12);
-  options.pga.max_size = integer_of("pga_max_size", 0, 100000);
-  options.eim.tolerance = number_of("eim_tolerance", 0, rough);
-  options.eim.max_size = integer_of("eim_max_size", 0, 100000);
-  if (is_given("eim_normal_tolerance"))
-    options.eim_normal = number_of("eim_normal_tolerance", 0, rough);
-  if (is_given("eim_tangential_tolerance"))
-    options.eim_tangential = number_of("eim_tangential_tolerance", 0, rough);
-  options.condensed.tolerance = number_of("condensed_tolerance", 0, rough);
-  options.condensed.responses = number_of("response_tolerance", 0, rough);
-  options.multipliers.reduction = static_cast<MultiplierReduction>(
-      choice_of("multiplier_reduction", multiplier_reduction_names()));
-  options.multipliers.tangential = number_of("tangential_tolerance", 0, rough);
-  options.multipliers.extra_nodes = integer_of("joint_extra_nodes", 0, 100000);
-  options.multipliers.exact = flag_of("multiplier_exact");
-  options.curve.rule = static_cast<CurveRule>(choice_of("nitsche_quadrature", curve_rule_names()));
-  options.curve.tolerance = number_of("nitsche_quadrature_tolerance", 0, rough);
-  options.curve.eim_tolerance = number_of("nitsche_eim_tolerance", 0, rough);
-  if (const std::string unseen = text_of("nitsche_eim_validation"); !unseen.empty())
-    options.curve.eim_validation = while_doing("reading option -nitsche_eim_validation",
-                                               [&] { return parse_set(space, unseen); });
-  options.gcns.tolerance = number_of("gcns_tolerance", 0, 1e300);
-  options.gcns.max_nodes = integer_of("gcns_max_nodes", 0, 100000);
-  return options;
-}
-
-HfOptions hf_options() {
-  HfOptions options;
-  options.method = static_cast<HfMethod>(choice_of("hf_method", {"active_set", "uzawa", "vi"}));
-  options.uzawa_tolerance = number_of("uzawa_tolerance", 1e-15, 0.1);
-  options.uzawa_max_iterations = integer_of("uzawa_max_iterations", 1, 100000000);
-  options.uzawa_accelerated = flag_of("uzawa_accelerated");
-  options.uzawa_step = number_of("uzawa_step", 0, 1e300);
-  options.nitsche.single_loop = choice_of("nitsche_loop", {"nested", "single"}) == 1;
-  options.nitsche.nonpenetration = choice_of("nitsche_bounds", {"none", "nonpenetration"}) == 1;
-  return options;
-}
-
-/// Throws bad_input where vi is asked for and constraints are not bounds at single nodes.
-void check_vi(const ToolOptions &options) {
-  if (options.hf.method != HfMethod::vi) return;
-  const Scene &scene = options.scene;
-  if (scene.pair)
-    throw bad_input("-hf_method vi needs a bound at each node, and contact of two bodies bounds "
-                    "integrals over several: use active_set or uzawa");
-  if (scene.support && (scene.support->friction.law != FrictionLaw::none || !scene.lumped))
-    throw bad_input("-hf_method vi on a rigid support needs a bound at each node and no friction: "
-                    "set -friction none and -lumped yes, or use active_set");
-  if (!scene.lumped)
-    throw bad_input("-hf_method vi needs a bound at each node: set -lumped yes, or use "
-                    "active_set");
-}
-
-/// Throws bad_input for a mesh file beside an option of the built-in mesh.
-void check_mesh_options(const std::string &scene) {
-  if (text_of("mesh").empty()) return;
-  for (const SceneEntry &entry : scene_catalogue())
-    for (const SceneOption &option : entry.options)
-      if (entry.name == scene && option.built_in_mesh && is_given(option.name))
-        throw bad_input("-" + option.name +
-                        " is of the built-in mesh and has no effect on that of -mesh: leave out "
-                        "one of the two");
-}
-
-/// Throws bad_input for tolerances of B^n and of B^tau where they are not apart.
-void check_rows_apart(const Scene &scene, const ReduceOptions &reduce) {
-  if (!reduce.eim_normal && !reduce.eim_tangential) return;
-  if (!scene.support || scene.nitsche ||
-      reduce.multipliers.reduction != MultiplierReduction::collocated)
-    throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for contact with a "
-                    "rigid support and -multiplier_reduction collocated: use -eim_tolerance");
-  if (reduce.eim_tangential && scene.support->friction.law == FrictionLaw::none)
-    throw bad_input("-eim_tangential_tolerance is for contact with friction, which this scene has "
-                    "not");
+/// Every option that is given, into its place.
+void read_table(ToolOptions &options) {
+  for (const Option &option : tool_options()) {
+    if (!option.read || !is_given(option.name)) continue;
+    const std::string value = text_of(option.name);
+    option.read(value, options);
+    if (option.kind == OptionKind::set && is_set_file(value))
+      options.set_files[option.name] = value;
+  }
 }
 
 } // namespace
@@ -251,37 +160,12 @@ ToolOptions read_options(MPI_Comm comm) {
   options.case_file = as_case_file(names);
   adapt_parameters(options.scene.parameters);
   check_box(options.scene);
-  check_mesh_options(scene);
-  options.mesh.file = text_of("mesh");
-  options.mesh.refine = integer_of("mesh_refine", 0, 6);
-  options.train = text_of("train", options.scene.training);
-  options.valid = text_of("valid", options.scene.validation);
-  for (const std::string name : {"train", "valid", "nitsche_eim_validation"})
-    if (const std::string set = text_of(name); is_set_file(set)) options.set_files[name] = set;
-  options.hf = hf_options();
-  if (options.scene.nitsche && contains(names, "hf_method"))
-    throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
-                    "-nitsche_snes_type");
-  check_vi(options);
-  options.reduce = reduce_options(options.scene.parameters);
-  const bool multipliers = options.scene.support && !options.scene.nitsche;
-  if (!multipliers && contains(names, "multiplier_reduction"))
-    throw bad_input("-multiplier_reduction is for contact with a rigid support by multipliers, "
-                    "which this scene has not");
-  check_rows_apart(options.scene, options.reduce);
-  if (!options.scene.nitsche && contains(names, "nitsche_quadrature"))
-    throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
-  if (options.scene.support && !contains(names, "cone_type"))
+  options.train = options.scene.training;
+  options.valid = options.scene.validation;
+  read_table(options);
+  check_rules(options);
+  if (options.scene.support && !is_given("cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // a cone of snapshots; hybrid is for one body
-  options.ranks_per_solve = integer_of("sweep_ranks_per_solve", 1, 1000000);
-  options.max_failures = number_of("sweep_max_failures", 0, 1);
-  options.case_name = text_of("case");
-  options.out = text_of("out");
-  options.mu = text_of("mu");
-  options.vtu = text_of("vtu");
-  options.csv = text_of("csv");
-  options.plan = flag_of("plan");
-  options.stability = flag_of("verify_stability");
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
+#include "table.hpp"
 
 #include <fstream>
 #include <sstream>
@@ -14,8 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_set(const std::string &name) {
-  return name == "train" || name == "valid" || name == "nitsche_eim_validation";
+bool is_of(OptionKind kind, const std::string &name) {
+  const Option *option = find_option(name);
+  return option != nullptr && option->kind == kind;
 }
 
 fs::path copy_of(const std::string &name) {
@@ -41,7 +43,8 @@ bool is_set_file(const std::string &set) {
 
 std::string beside_case(const std::string &name, const std::string &value,
                         const fs::path &case_file) {
-  const bool is_file = name == "mesh" || (is_set(name) && is_set_file(value));
+  const bool is_file =
+      is_of(OptionKind::file, name) || (is_of(OptionKind::set, name) && is_set_file(value));
   if (!is_file || value.empty() || fs::path(value).is_absolute()) return value;
   const fs::path beside = case_file.parent_path() / value;
   std::error_code ignored;
@@ -49,16 +52,15 @@ std::string beside_case(const std::string &name, const std::string &value,
 }
 
 std::string value_in_run(const std::string &name, const std::string &value) {
-  if (is_set(name) && is_set_file(value)) return copy_of(name).string();
-  if (name == "mesh" && !value.empty()) return fs::absolute(value).lexically_normal().string();
+  if (is_of(OptionKind::set, name) && is_set_file(value)) return copy_of(name).string();
+  if (is_of(OptionKind::file, name) && !value.empty())
+    return fs::absolute(value).lexically_normal().string();
   return value;
 }
 
 void begin_run(MPI_Comm world, const ToolOptions &options) {
   collectively(world, [&] {
-    int rank = 0;
-    MPI_Comm_rank(world, &rank);
-    if (rank != 0) return;
+    if (rank_of(world) != 0) return;
     std::map<std::string, std::string> sets; // all are read before anything is written
     for (const auto &[name, file] : options.set_files)
       sets[name] = read_set_file(name, file);

@@ -27,9 +27,14 @@ constexpr Ineffective ineffective[] = {{"nitsche_snes_stol", by_residual},
                                        {"nitsche_snes_lag_preconditioner", by_iterations},
                                        {"nitsche_ksp_reuse_preconditioner", by_iterations}};
 
-const std::vector<std::string> of_solvers{
-    "hf_ksp_", "hf_pc_",        "hf_mat_",      "vi_",         "v_ksp_",      "v_pc_",
-    "v_mat_",  "nitsche_snes_", "nitsche_ksp_", "nitsche_pc_", "nitsche_mat_"};
+const std::vector<std::string> &of_solvers() {
+  static const std::vector<std::string> prefixes = [] {
+    std::vector<std::string> all = prefixes_of({"ksp_", "pc_", "mat_", "snes_"});
+    all.emplace_back("vi_"); // and what a preconditioner of it is made of
+    return all;
+  }();
+  return prefixes;
+}
 
 /// Throws bad_input for options of a solver that this run does not have, or that have no effect.
 void check_solver_of(const std::string &name, const Scene &scene, const HfOptions &options) {
@@ -107,7 +112,7 @@ void try_solvers(Problem &problem, const HfOptions &options) {
 
 const std::vector<std::string> &solver_prefixes() {
   static const std::vector<std::string> prefixes = [] {
-    std::vector<std::string> all = of_solvers;
+    std::vector<std::string> all = of_solvers();
     all.insert(all.end(), eigen_prefixes().begin(), eigen_prefixes().end());
     return all;
   }();
@@ -115,20 +120,20 @@ const std::vector<std::string> &solver_prefixes() {
 }
 
 void check_solver_options(Problem &problem, const HfOptions &options) {
-  const std::vector<std::string> names = unread_names(of_solvers);
+  const std::vector<std::string> names = unread_names(of_solvers());
   if (names.empty()) return;
   for (const std::string &name : names)
     check_solver_of(name, problem.scene(), options);
   std::string reason;
   try {
     make_solvers(problem.comm(), names, options);
-    if (!unread_names(of_solvers).empty()) try_solvers(problem, options);
+    if (!unread_names(of_solvers()).empty()) try_solvers(problem, options);
   } catch (const Error &error) {
     if (error.status() == Status::bad_input) throw;
     reason = std::string(" (") + error.what() + ")";
   }
   std::string unused;
-  for (const std::string &name : unread_names(of_solvers))
+  for (const std::string &name : unread_names(of_solvers()))
     unused += " -" + name;
   if (!unused.empty())
     throw bad_input("no solver of this run asks for the option" + unused + reason);

@@ -31,14 +31,6 @@ struct ToolOptions {
   bool stability = true; ///< verify: inf-sup constants and bounds too
 };
 
-/// One option for -help.
-struct OptionHelp {
-  std::string name, default_value, help;
-};
-
-/// All options of rbvi that are not a scene's own.
-const std::vector<OptionHelp> &tool_options();
-
 /// "-name": a dash and a letter, as PETSc sees it.
 bool is_option(const std::string &word);
 
@@ -50,6 +42,9 @@ std::vector<std::string> normalised_arguments(int argc, char **argv);
 /// for an unknown option (naming the nearest one), a missing or malformed case file, or a value
 /// that does not fit.
 ToolOptions read_options(MPI_Comm comm);
+
+/// The options that a model keeps among its settings, by the names that they have there.
+std::map<std::string, std::string> kept_settings(const ToolOptions &options);
 
 /// The case file that a run leaves in its directory, read where no other is named.
 std::filesystem::path case_of_run(const std::filesystem::path &out);
@@ -82,7 +77,10 @@ void check_eigen_options(const ToolOptions &options, EigenUse use);
 /// parameters and mesh of that scene alone. Throws bad_input for an unknown scene.
 void print_help(const std::string &scene);
 
+/// All options of both programs and of the scenes, explained: the page cases/OPTIONS.md.
+std::string options_page();
+
 /// Prints the names and facts that a mesh file for the scene must have.
-void print_mesh_contract(const Scene &scene);
+void print_mesh_contract(const SceneEntry &entry);
 
 } // namespace rbvi

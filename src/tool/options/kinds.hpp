@@ -1,0 +1,104 @@
+// The kinds of options: what their values are, how they are read into their place and shown.
+#pragma once
+
+#include "table.hpp"
+
+#include "rbvi/core/text.hpp"
+
+#include <type_traits>
+
+namespace rbvi {
+
+// Values from text. They throw bad_input, naming the option.
+
+double number_of(const std::string &name, const std::string &value, const Range &range);
+int integer_of(const std::string &name, const std::string &value, const Range &range);
+bool flag_of(const std::string &name, const std::string &value);
+/// Position of the value among the choices.
+int choice_of(const std::string &name, const std::string &value, const std::vector<Choice> &all);
+
+/// "0 to 0.5"
+std::string in_words(const Range &range);
+
+/// Names of an enumeration, and what each means.
+std::vector<Choice> choices(const std::vector<std::string> &names,
+                            const std::vector<std::string> &meanings);
+
+/// The shortest text of a number: "1e-6".
+std::string plain(double number);
+
+/// A value as text; of an optional one that is not set "".
+template <class Value> std::string as_text(const Value &value, std::string (*write)(double)) {
+  if constexpr (std::is_same_v<Value, bool>)
+    return value ? "yes" : "no";
+  else if constexpr (std::is_integral_v<Value>)
+    return std::to_string(value);
+  else if constexpr (std::is_same_v<Value, std::optional<double>>)
+    return value ? write(*value) : "";
+  else if constexpr (std::is_same_v<Value, double>)
+    return write(value);
+  else
+    return std::filesystem::path(value).string();
+}
+
+/// A description with the default that the place has. `place`: from options (maybe const) to the
+/// place of the value in them.
+template <class Place> Option placed(Option option, Place place) {
+  option.shown = [place](const ToolOptions &options) {
+    return as_text(place(options), short_number);
+  };
+  const ToolOptions defaults;
+  option.default_value = as_text(place(defaults), plain);
+  return option;
+}
+
+template <class Place>
+Option number(const std::string &name, const Range &range, Place place, const std::string &help) {
+  using Value = std::remove_reference_t<decltype(place(std::declval<ToolOptions &>()))>;
+  constexpr bool whole = std::is_integral_v<Value>;
+  Option option{name, whole ? OptionKind::integer : OptionKind::number, help};
+  option.values = (whole ? "integer, " : "") + in_words(range);
+  option.read = [=](const std::string &value, ToolOptions &options) {
+    if constexpr (whole)
+      place(options) = integer_of(name, value, range);
+    else
+      place(options) = number_of(name, value, range);
+  };
+  return placed(std::move(option), place);
+}
+
+template <class Place> Option flag(const std::string &name, Place place, const std::string &help) {
+  Option option{name, OptionKind::flag, help, "yes, no"};
+  option.read = [=](const std::string &value, ToolOptions &options) {
+    place(options) = flag_of(name, value);
+  };
+  return placed(std::move(option), place);
+}
+
+/// The place holds an enumeration, or yes for the second of two choices.
+template <class Place>
+Option choice(const std::string &name, const std::vector<Choice> &all, Place place,
+              const std::string &help) {
+  using Value = std::remove_reference_t<decltype(place(std::declval<ToolOptions &>()))>;
+  Option option{name, OptionKind::choice, help};
+  option.choices = all;
+  option.read = [=](const std::string &value, ToolOptions &options) {
+    place(options) = static_cast<Value>(choice_of(name, value, all));
+  };
+  option.shown = [=](const ToolOptions &options) {
+    return all[static_cast<std::size_t>(place(options))].name;
+  };
+  option.default_value = option.shown({});
+  return option;
+}
+
+/// Text, the name of a file or a set: whoever uses it reads it.
+template <class Place>
+Option text(const std::string &name, OptionKind kind, const std::string &values, Place place,
+            const std::string &help) {
+  Option option{name, kind, help, values};
+  option.read = [=](const std::string &value, ToolOptions &options) { place(options) = value; };
+  return placed(std::move(option), place);
+}
+
+} // namespace rbvi
