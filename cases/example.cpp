@@ -9,6 +9,7 @@
 #include "rbvi/check/errors.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/reduce.hpp"
+#include "rbvi/mor/stages.hpp"
 #include "rbvi/par/session.hpp"
 #include "rbvi/par/turns.hpp"
 #include "rbvi/tool/finish.hpp"
@@ -43,9 +44,10 @@ Sweep snapshots(const Scene &scene, const std::string &directory) {
 /// relative error e_POD(N) <= 1e-6 (2.11). The dual cone W_R+ = {sum_r x_r chi_r, x_r >= 0}: hat
 /// functions where contact changes, and modes of either sign where it never ends; e(R) <= 1e-4
 /// (2.34). The training grid holds the corners of the box: no ring around these nodes is needed.
-ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples, StageTimes &times) {
+ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples) {
   ReducedBases bases;
-  add_modes(problem, samples, {.tolerance = 1e-6}, bases, times);
+  StageTable stages{{stage::pod, "displacements to 1e-6"}};
+  add_modes(problem, samples, {.tolerance = 1e-6}, bases, stages);
   const Operators &op = problem.assemble(box_centre(problem.scene().parameters));
   ReplicatedSolver solver(op.a, problem.trace(), "hf_");
   const auto condensed = [&](const std::vector<Index> &which) -> Matrix { // of B A^-1 B^T
@@ -58,10 +60,8 @@ ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples, Stag
 /// 5. Stability. Modes alone leave beta = inf over eta of sup over v of b(mu; v, eta) at zero
 /// (2.14). With T(mu) eta the supremizer of eta, V_N + span {T(mu) chi_r} is stable at one mu
 /// (2.17). The projected greedy algorithm takes the few supremizers that serve every training mu:
-/// it stops at
-///   max over mu of sigma_S(mu), the distance of the supremizers at mu to V_N + S      (2.21),
-///   (2.27)
-/// so small that beta_off >= sqrt(1 - sigma_S^2) beta_on >= 0.9 beta_on.
+/// it stops where sigma_S, the largest distance over mu of the supremizers at mu to V_N + S (2.21),
+/// (2.27), is so small that beta_off >= sqrt(1 - sigma_S^2) beta_on >= 0.9 beta_on.
 void stabilise(Problem &problem, const std::vector<Mu> &training, ReducedBases &bases) {
   const RieszSpace riesz = make_riesz_space(problem.v_product(), problem.trace());
   const Matrix dual = orthonormal_dual_basis(bases.cone.all(), problem.w_product());
@@ -112,8 +112,7 @@ void run(const std::string &directory) {
   const Scene scene = membrane();
   const std::vector<Sample> samples = snapshots(scene, directory + "/samples").samples;
   Problem problem(PETSC_COMM_WORLD, scene, {}); // distributed over all ranks
-  StageTimes times;
-  ReducedBases bases = bases_of(problem, samples, times);
+  ReducedBases bases = bases_of(problem, samples);
   stabilise(problem, parameters_of(samples), bases);
   const ReducedModel model = reduced_model(problem, samples, bases);
   if (!(error_of_query(problem, model, {0.19, 0.02}) < most_error))
