@@ -13,10 +13,10 @@ struct ThinSvd {
 /// By one-sided rotations.
 ThinSvd thin_svd(const Matrix &matrix);
 
-/// Of a symmetric matrix, increasing.
+/// Eigenvalues of a symmetric matrix, increasing.
 Vector symmetric_eigenvalues(const Matrix &matrix);
 
-/// Of a x = theta b x, a symmetric, b also positive definite; increasing.
+/// Eigenvalues of a x = theta b x, a symmetric, b also positive definite; increasing.
 Vector generalised_eigenvalues(const Matrix &a, const Matrix &b);
 
 /// a^-1 b by complete pivoting.

@@ -29,8 +29,8 @@ constexpr double height = 0.5;
 constexpr double on_side = 1e-6; ///< of the sides: how far a vertex of a mesh file may lie beside
 constexpr double largest_strain = 0.25;
 
-/// Of all parameters of one body.
-enum Of { indentation, shear, friction };
+/// Positions of the parameters of one body.
+enum Position { indentation, shear, friction };
 
 /// From (0, y) to (1, y).
 Place level(double y) {

@@ -29,8 +29,8 @@ constexpr int nitsche_edges = 316; // 2.5 mm, the mesh of the published study
 /// Indentation over the radius: from there on contact reaches the ends of the arc.
 constexpr double deepest = 0.13;
 
-/// Of all parameters.
-enum Of { radius, indentation, friction, core_stiffness, poisson_ratio };
+/// Positions of the parameters.
+enum Position { radius, indentation, friction, core_stiffness, poisson_ratio };
 
 double norm(const Point &x) {
   return std::sqrt(x[0] * x[0] + x[1] * x[1]);

@@ -47,7 +47,7 @@ struct Runs : InDirectory {
   }
 };
 
-/// The same training parameters chosen for the supremizers, the same primal space to 1e-8.
+/// Expects the same training parameters chosen for the supremizers, the same primal space to 1e-8.
 void expect_same_greedy(const ReducedModel &model, const ReducedModel &expected) {
   EXPECT_EQ(model.histories.at("pga/selected"), expected.histories.at("pga/selected"));
   ASSERT_EQ(model.primal_size(), expected.primal_size());

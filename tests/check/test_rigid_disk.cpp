@@ -187,7 +187,7 @@ std::pair<double, double> extremes(const Matrix &squares, const Matrix &gram) {
   return {std::sqrt(std::max(values(0), 0.0)), std::sqrt(values(values.size() - 1))};
 }
 
-/// Of normal and tangential multipliers together, against generalised eigenproblems of the reduced
+/// Constants of normal and tangential multipliers together, against generalised eigenproblems of the reduced
 /// b that a query uses, and of B V^-1 B^T.
 TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   Reduced r(disk("radius", {{"normal", "rigid"}}), "grid:21");

@@ -40,7 +40,7 @@ void name_training(Reduced &r) {
     std::copy(set[p].begin(), set[p].end(), r.model.trained_mu.col(static_cast<Index>(p)).begin());
 }
 
-/// The same bases and nodes, with the one or the other separation of B.
+/// Models of the same bases and nodes, with the one or the other separation of B.
 struct Pair {
   ReducedModel joint, apart;
   AffineOperators separated;

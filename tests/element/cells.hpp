@@ -37,7 +37,7 @@ inline Eigen::Matrix3d random_block(int dim, Random &random) {
   return m;
 }
 
-/// Of a bilinear form on a cell that is mapped by the identity.
+/// The matrix of a bilinear form on a cell that is mapped by the identity.
 inline Matrix evaluate(const Form &form, int dim, const Vertices &x, int components,
                        int degree = 1) {
   const Index k = nodes_per_cell(dim, degree) * components;

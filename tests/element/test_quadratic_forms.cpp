@@ -58,7 +58,7 @@ Vector interpolate(const Field &field, int dim, const Vertices &x, int component
   return u;
 }
 
-/// Of a polynomial of degree <= 7.
+/// The integral of a polynomial of degree <= 7.
 double integral(int dim, const Vertices &x,
                 const std::function<double(const Eigen::Vector3d &)> &integrand) {
   double sum = 0;

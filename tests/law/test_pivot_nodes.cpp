@@ -39,7 +39,7 @@ std::vector<int> first_nodes(int count) {
   return result;
 }
 
-/// Of the rows of the nodes, normal and tangential.
+/// The condition of the rows of the nodes, normal and tangential.
 double condition(const Matrix &basis, std::vector<int> nodes) {
   for (int k = static_cast<int>(nodes.size()) - 1; k >= 0; --k)
     nodes.push_back(nodes[static_cast<std::size_t>(k)] + static_cast<int>(basis.rows() / 2));

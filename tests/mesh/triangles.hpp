@@ -26,7 +26,7 @@ inline double length(const Point &x, const Point &y) {
   return std::hypot(x[0] - y[0], x[1] - y[1]);
 }
 
-/// Of the regular polygon with its corners on the circle.
+/// Area of the regular polygon with its corners on the circle.
 inline double polygon_area(int sides, double radius) {
   return 0.5 * sides * radius * radius * std::sin(2 * std::numbers::pi / sides);
 }

@@ -219,7 +219,7 @@ TEST(Pga, nothing_to_add) {
   EXPECT_EQ(pga.reason, "the space contains all supremizers");
 }
 
-/// Of this rank's turns.
+/// The matrices of this rank's turns.
 std::vector<Matrix> mine_of(const std::vector<Matrix> &all) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);

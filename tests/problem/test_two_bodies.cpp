@@ -14,7 +14,7 @@ namespace {
 
 constexpr double indentation = 0.09, initial_gap = 0.001; // defaults of two_disks
 
-/// Of degree 1.
+/// Two disks of degree 1.
 Scene discs(SceneOptions options = {}) {
   options.emplace("degree", "1");
   return make_scene("two_disks", options);

@@ -14,7 +14,7 @@
 namespace rbvi {
 namespace {
 
-/// Of degree 1 unless the options say otherwise.
+/// Two disks, of degree 1 unless the options say otherwise.
 Scene disks(SceneOptions options = {}) {
   options.emplace("degree", "1");
   return make_scene("two_disks", options);
@@ -68,7 +68,7 @@ TEST(TwoDisks, ForceEnergyAndPeakConvergeToTheKnownValues) {
   }
 }
 
-/// Of degree 2 at about as many dofs: the errors of the default mesh are some hundredth of those
+/// Degree 2 at about as many dofs: the errors of the default mesh are some hundredth of those
 /// above, within the uncertainty of the known values.
 TEST(TwoDisks, OfDegreeTwoAreWithinFiveTenThousandths) {
   for (const std::string multiplier : {"p0", "p1"})

@@ -110,7 +110,7 @@ TEST(LumpedSupport, UzawaComesToTheSameAnswer) {
   }
 }
 
-/// Of degree 1 vertex quadrature takes a constant stress as it is.
+/// Vertex quadrature of degree 1 takes a constant stress as it is.
 TEST(LumpedSupport, PassesThePatchTest) {
   const Mu mu{0.05, 0.02, 0.3};
   for (const char *friction : {"none", "coulomb"}) {

@@ -47,7 +47,7 @@ std::vector<Index> random_set(std::mt19937 &random, Index size) {
   return result;
 }
 
-/// Of the columns scaled to unit norm.
+/// The condition of the columns scaled to unit norm.
 double condition(const Matrix &y) {
   const Vector values = y.colwise().normalized().eval().bdcSvd().singularValues();
   return values[0] / values[values.size() - 1];

@@ -140,7 +140,7 @@ Handle<EPS> make_infsup_eps(PetscInt size) {
   RBVI_CALL(EPSSetProblemType(eps.get(), EPS_HEP));
   RBVI_CALL(EPSSetType(eps.get(), EPSKRYLOVSCHUR));
   RBVI_CALL(EPSSetTolerances(eps.get(), tolerance, most_restarts));
-  // Of two bodies the values cluster: 16 vectors, the default, do not suffice.
+  // The values of two bodies cluster: 16 vectors, the default, do not suffice.
   RBVI_CALL(EPSSetDimensions(eps.get(), 1, std::min<PetscInt>(size, 64), PETSC_DEFAULT));
   RBVI_CALL(EPSSetFromOptions(eps.get()));
   RBVI_CALL(EPSSetWhichEigenpairs(eps.get(), EPS_LARGEST_REAL));

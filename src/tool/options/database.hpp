@@ -9,7 +9,7 @@ namespace rbvi {
 /// be called before anything asks for an option.
 std::vector<std::string> unread_names();
 
-/// Those that begin with one of the prefixes and that nothing has asked for.
+/// The options that begin with one of the prefixes and that nothing has asked for.
 std::vector<std::string> unread_names(const std::vector<std::string> &prefixes);
 
 /// Objects of ours that take PETSc's or SLEPc's options.

@@ -16,7 +16,7 @@ const std::vector<std::string> all_kinds{"ksp_", "pc_", "mat_", "snes_", "sub_",
                                          "vec_", "dm_", "eps_", "svd_",  "st_",
                                          "bv_",  "ds_", "tao_", "ts_",   "is_"};
 
-/// Of PETSc itself, those that serve here.
+/// Options of PETSc itself that serve here.
 const std::vector<std::string> petsc_names{"log_view",     "log_trace",    "info",
                                            "malloc_debug", "malloc_dump",  "options_left",
                                            "options_view", "options_file", "fp_trap"};

@@ -50,7 +50,7 @@ Option kept(bool (*when)(const ToolOptions &), Option option, const std::string 
   return option;
 }
 
-/// Of one command, not of the run.
+/// An option of one command, not of the run.
 Option of_command(Option option) {
   option.of_command = true;
   return option;
