@@ -51,9 +51,8 @@ Point reference_centre(const Cell &cell) {
 void check_orientation(const Scene &scene, const FullMu &mu, const Cell &cell) {
   const double volume = simplex(cell.dim, cell.mapped).volume;
   if (!(volume > 1e-12 * std::pow(longest_edge(cell.dim, cell.mapped), cell.dim)))
-    throw failure("the geometric map of scene " + scene.name +
-                  " inverts a cell at mu = " + describe(scene.parameters, mu) +
-                  ": use a smaller parameter box or a finer mesh");
+    throw failure("the geometric map of scene " + scene.name + " inverts a cell at mu = " +
+                  describe(scene.parameters, mu) + ": use a smaller parameter box or a finer mesh");
 }
 
 void map_cell(const Scene &scene, const FullMu &mu, Cell &cell) {

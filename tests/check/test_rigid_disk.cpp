@@ -187,8 +187,8 @@ std::pair<double, double> extremes(const Matrix &squares, const Matrix &gram) {
   return {std::sqrt(std::max(values(0), 0.0)), std::sqrt(values(values.size() - 1))};
 }
 
-/// Constants of normal and tangential multipliers together, against generalised eigenproblems of the reduced
-/// b that a query uses, and of B V^-1 B^T.
+/// Constants of normal and tangential multipliers together, against generalised eigenproblems of
+/// the reduced b that a query uses, and of B V^-1 B^T.
 TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   Reduced r(disk("radius", {{"normal", "rigid"}}), "grid:21");
   r.reduce(published());

@@ -326,7 +326,9 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
 /// Where the material jumps.
 TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
   Scene scene = half_disk(2);
-  scene.material = [](const FullMu &, const Point &x) { return x[0] < 0 ? Lame{9, 4} : Lame{18, 8}; };
+  scene.material = [](const FullMu &, const Point &x) {
+    return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
+  };
   const Strip s = strip(2, line(2, -0.5, 0.5, -1));
   scene.support->normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
   const FullMu mu{1};

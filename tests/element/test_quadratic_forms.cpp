@@ -200,7 +200,8 @@ TEST(Elasticity, MaterialMayDependOnTheCellAndTheParameters) {
   for (int dim : {2, 3})
     for (int degree : {1, 2}) {
       const Form piecewise = elasticity(
-          "", [](const FullMu &at, const Point &centre) { return centre[0] < at[0] ? steel : rubber; },
+          "",
+          [](const FullMu &at, const Point &centre) { return centre[0] < at[0] ? steel : rubber; },
           degree);
       int rubbers = 0;
       for (int repeat = 0; repeat < 20; ++repeat) {

@@ -73,7 +73,9 @@ Scene cube_scene() {
   scene.dim = 3;
   scene.mesh = {"", {"core"}, {"boundary"}};
   scene.contact_region = "core";
-  scene.map = [](const FullMu &mu, const Point &x) { return Point{x[0], x[1], mu[0] / 0.2 * x[2]}; };
+  scene.map = [](const FullMu &mu, const Point &x) {
+    return Point{x[0], x[1], mu[0] / 0.2 * x[2]};
+  };
   scene.snap = {};
   scene.obstacle = [](const FullMu &, const Point &) { return -0.5; };
   scene.a = laplace("");

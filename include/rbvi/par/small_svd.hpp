@@ -16,8 +16,8 @@ struct SmallSvd {
 };
 
 /// Serial. `prefix`: of the options of SLEPc's SVD ("infsup_": -infsup_svd_view, ...); "": none are
-/// read. Where LAPACK does not converge Eigen does. Throws failure if an entry is not finite or SLEPc
-/// does not return every triplet.
+/// read. Where LAPACK does not converge Eigen does. Throws failure if an entry is not finite or
+/// SLEPc does not return every triplet.
 SmallSvd small_svd(const Matrix &matrix, const char *prefix = "");
 
 /// Singular values alone, decreasing. Serial; throws like small_svd.
