@@ -10,10 +10,10 @@
 // <= nu_F p, so that the foot sticks; else nu_F p / G, and the foot slips as a whole.
 #include "scene.hpp"
 
+#include "rbvi/contact/pair/elastic_pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/element/elastic_pair.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 

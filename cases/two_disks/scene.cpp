@@ -11,9 +11,9 @@
 // plane stiffness as it is, so that a does not depend on mu.
 #include "scene.hpp"
 
+#include "rbvi/contact/pair/elastic_pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
-#include "rbvi/element/elastic_pair.hpp"
 
 #include <algorithm>
 #include <cmath>

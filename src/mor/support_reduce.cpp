@@ -1,7 +1,7 @@
 #include "rbvi/mor/stages.hpp"
 
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
 namespace rbvi {

@@ -1,9 +1,9 @@
 #include "rbvi/problem/problem.hpp"
 
+#include "rbvi/contact/pair/contact_pair.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/contact_pair.hpp"
 #include "rbvi/element/scalar_forms.hpp"
-#include "rbvi/element/support_outputs.hpp"
 
 namespace rbvi {
 

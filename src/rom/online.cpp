@@ -1,9 +1,9 @@
 #include "rbvi/rom/online.hpp"
 
+#include "rbvi/contact/obstacle/contact_area.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
-#include "rbvi/element/contact_area.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/support/reduced_stiffness.hpp"

@@ -1,10 +1,10 @@
 #include "rbvi/solve/high_fidelity.hpp"
 
+#include "rbvi/contact/obstacle/contact_area.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/element/contact_area.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "vectors.hpp"
 

@@ -1,5 +1,5 @@
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 // rigid motion stands for.
 #include "rbvi/problem/problem.hpp"
 
-#include "../element/curves.hpp"
+#include "../contact/curves.hpp"
 #include <gtest/gtest.h>
 
 #include <cmath>

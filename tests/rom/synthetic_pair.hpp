@@ -4,7 +4,7 @@
 
 #include "brute_force.hpp"
 
-#include "rbvi/element/contact_pair.hpp"
+#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include <algorithm>

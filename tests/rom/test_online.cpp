@@ -1,7 +1,7 @@
 #include "brute_force.hpp"
 
+#include "rbvi/contact/obstacle/contact_area.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/contact_area.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"

@@ -1,5 +1,5 @@
 // Reduced models of two bodies: contact operators assembled online, outputs, files and VTU.
-#include "../element/curves.hpp"
+#include "../contact/curves.hpp"
 #include "synthetic_pair.hpp"
 
 #include "rbvi/core/error.hpp"

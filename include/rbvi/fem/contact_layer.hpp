@@ -3,7 +3,7 @@
 // communication and are bitwise the same for any number of ranks.
 #pragma once
 
-#include "rbvi/element/nitsche_curve.hpp"
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 #include "rbvi/fem/dofs.hpp"
 #include "rbvi/fem/trace.hpp"
 

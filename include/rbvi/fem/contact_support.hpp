@@ -3,7 +3,7 @@
 // operators are assembled without communication and are bitwise the same for any number of ranks.
 #pragma once
 
-#include "rbvi/element/support.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/fem/dofs.hpp"
 #include "rbvi/fem/trace.hpp"
 

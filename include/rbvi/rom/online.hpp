@@ -10,8 +10,8 @@
 // rom/support/support_solver.hpp, by Nitsche's method rom/nitsche/nitsche_solver.hpp.
 #pragma once
 
+#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/element/contact_pair.hpp"
 #include "rbvi/law/qp/mixed_qp.hpp"
 #include "rbvi/rom/model/model.hpp"
 #include "rbvi/rom/nitsche/nitsche_solver.hpp"

@@ -9,7 +9,7 @@
 // iterations.
 #pragma once
 
-#include "rbvi/element/nitsche_curve.hpp"
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 #include "rbvi/fem/contact_layer.hpp"
 #include "rbvi/problem/problem.hpp"
 

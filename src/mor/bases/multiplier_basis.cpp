@@ -1,7 +1,7 @@
 #include "rbvi/mor/bases/multiplier_basis.hpp"
 
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/law/friction/least_squares_friction.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/rom/support/reduced_law.hpp"

@@ -1,8 +1,8 @@
 #include "rbvi/rom/support/reduced_law.hpp"
 
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/law/general_lcp.hpp"
 
 #include <algorithm>

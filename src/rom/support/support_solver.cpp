@@ -1,9 +1,9 @@
 #include "rbvi/rom/support/support_solver.hpp"
 
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/element/support_outputs.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Operators on the contact layer by empirical interpolation (B.36), from a few of their entries.
 #pragma once
 
-#include "rbvi/element/nitsche_curve.hpp"
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 #include "rbvi/rom/model/model.hpp"
 
 namespace rbvi {

@@ -5,7 +5,7 @@
 // mended by solve_friction, which starts from it, where it fails.
 #pragma once
 
-#include "rbvi/element/support.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/rom/support/reduced_law.hpp"
 
 namespace rbvi {

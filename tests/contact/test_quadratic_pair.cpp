@@ -1,8 +1,8 @@
 // Contact operators of two curves of degree 2: against analytic parabolas and quadratic
 // displacements, the operators of degree 1 on the same vertices, and by balance of forces.
 #include "curves.hpp"
+#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/contact_pair.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Nitsche's terms along a curve: against differences of their energies, and the fields and outputs
 // of states that are known.
-#include "cells.hpp"
+#include "../element/cells.hpp"
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/nitsche_curve.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>

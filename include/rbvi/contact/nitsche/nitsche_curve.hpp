@@ -1,12 +1,12 @@
 // Nitsche's terms along the whole contact curve, on the dofs of the cells beside it (the contact
-// layer), from the terms of element/nitsche.hpp. Serial: the layer is small beside the domain, and
-// every rank holds all of it. The energy is a quadratic one, a_gamma(u, u) / 2 - f(u) with
-// a_gamma = a + consistency (4.18), (4.40), and the integrals of contact and friction over the
+// layer), from the terms of contact/nitsche/nitsche.hpp. Serial: the layer is small beside the
+// domain, and every rank holds all of it. The energy is a quadratic one, a_gamma(u, u) / 2 - f(u)
+// with a_gamma = a + consistency (4.18), (4.40), and the integrals of contact and friction over the
 // pressures P_n, P_tau, which are affine in u.
 #pragma once
 
+#include "rbvi/contact/nitsche/nitsche.hpp"
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/element/nitsche.hpp"
 
 #include <vector>
 

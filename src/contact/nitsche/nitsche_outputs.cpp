@@ -1,5 +1,5 @@
-#include "rbvi/element/nitsche_curve.hpp"
-#include "rbvi/element/support_outputs.hpp"
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
 
 #include <algorithm>
 #include <cmath>

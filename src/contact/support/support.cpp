@@ -1,4 +1,4 @@
-#include "rbvi/element/support.hpp"
+#include "rbvi/contact/support/support.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"

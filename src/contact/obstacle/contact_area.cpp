@@ -1,4 +1,4 @@
-#include "rbvi/element/contact_area.hpp"
+#include "rbvi/contact/obstacle/contact_area.hpp"
 
 #include <algorithm>
 

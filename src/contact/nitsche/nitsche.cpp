@@ -1,4 +1,4 @@
-#include "rbvi/element/nitsche.hpp"
+#include "rbvi/contact/nitsche/nitsche.hpp"
 
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"

@@ -1,4 +1,4 @@
-#include "rbvi/element/contact_pair.hpp"
+#include "rbvi/contact/pair/contact_pair.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"

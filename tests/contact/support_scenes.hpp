@@ -2,7 +2,7 @@
 #pragma once
 
 #include "curves.hpp"
-#include "rbvi/element/support.hpp"
+#include "rbvi/contact/support/support.hpp"
 
 #include <functional>
 

@@ -2,8 +2,8 @@
 // where meshes coincide, slide past each other or overlap in part.
 #include "../linear_algebra.hpp"
 #include "curves.hpp"
+#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/contact_pair.hpp"
 
 #include <gtest/gtest.h>
 

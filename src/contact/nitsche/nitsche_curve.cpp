@@ -1,7 +1,7 @@
-#include "rbvi/element/nitsche_curve.hpp"
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/element/lagrange.hpp"
-#include "rbvi/element/support_outputs.hpp"
 
 #include <algorithm>
 #include <cmath>

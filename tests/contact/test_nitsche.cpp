@@ -1,9 +1,9 @@
 // Nitsche's terms at a point against differences of their energies and the laws they stand for, and
 // what a point sees of a displacement against fields whose stress is known.
-#include "cells.hpp"
+#include "../element/cells.hpp"
+#include "rbvi/contact/nitsche/nitsche.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/element/nitsche.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>

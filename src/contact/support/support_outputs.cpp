@@ -1,4 +1,4 @@
-#include "rbvi/element/support_outputs.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"

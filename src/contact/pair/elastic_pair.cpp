@@ -1,4 +1,4 @@
-#include "rbvi/element/elastic_pair.hpp"
+#include "rbvi/contact/pair/elastic_pair.hpp"
 
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
