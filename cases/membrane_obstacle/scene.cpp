@@ -7,6 +7,7 @@
 // gives the contact of the published basis sizes.
 #include "scene.hpp"
 
+#include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"
@@ -57,7 +58,8 @@ Point graded(const FullMu &mu, const Point &x) {
   return {mu[1] + scale * x[0], mu[2] + scale * x[1], 0};
 }
 
-double obstacle(const FullMu &mu, const Point &x) {
+/// psi(mu) of the obstacle.
+double height(const FullMu &mu, const Point &x) {
   const double dx = x[0] - mu[1], dy = x[1] - mu[2];
   return -1.25 * (dx * dx + dy * dy) / (mu[0] * mu[0]);
 }
@@ -103,23 +105,19 @@ Scene make(const SceneOptions &options) {
   scene.check_parameters = check_disc_in_square;
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
-  scene.lumped = options.at("lumped") == "yes";
-  scene.mesh = mesh(circle_edges(options, scene.lumped));
+  const bool lumped = options.at("lumped") == "yes";
+  scene.mesh = mesh(circle_edges(options, lumped));
   scene.map = options.at("disc_map") == "graded" ? graded : similarity;
   scene.snap = [](const Point &x) -> Point {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
     return {scale * x[0], scale * x[1], 0};
   };
   scene.fixed = {{"boundary", {}}};
-  scene.contact_region = "obstacle";
+  scene.contacts = {obstacle({"obstacle", height, lumped})};
   const double load = number_in(options, "load");
   scene.a = laplace("");
   if (load != 0) scene.f = constant_load("", load);
-  scene.b = mass("obstacle", Domain::mapped, -1, scene.lumped);
-  scene.g = function_load("obstacle", -1, obstacle, scene.lumped);
   scene.v_product = h1_product(1);
-  scene.w_product = mass("obstacle", Domain::reference, 1);
-  scene.obstacle = obstacle;
   return scene;
 }
 

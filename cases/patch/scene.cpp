@@ -10,6 +10,7 @@
 // <= nu_F p, so that the foot sticks; else nu_F p / G, and the foot slips as a whole.
 #include "scene.hpp"
 
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/contact/pair/elastic_pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
@@ -124,18 +125,19 @@ Scene make_one(const SceneOptions &options) {
   const bool frictionless = options.at("friction") == "none";
   scene.components = 2;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
-  scene.support = SupportRecipe{};
-  scene.support->boundary = "contact";
-  scene.support->normal = [](const FullMu &, const Point &) -> Point { return {0, -1, 0}; };
-  scene.support->gap = [](const FullMu &, const Point &) { return 0.0; };
-  scene.support->friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
-  scene.support->friction.value = [](const FullMu &mu) { return mu[friction]; };
+  Support support{"contact",
+                  [](const FullMu &, const Point &) -> Point {
+                    return {0, -1, 0};
+                  },
+                  [](const FullMu &, const Point &) { return 0.0; }};
+  support.friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
+  support.friction.value = [](const FullMu &mu) { return mu[friction]; };
+  support.lumped = options.at("lumped") == "yes";
+  scene.contacts = {support_contact(support, options)};
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain * height}},
                                {"shear", "m", 0, 0.2, 0.02, {-height / 2, height / 2}},
                                {"friction_coefficient", "", 0, 1, 0.3, friction_range}});
   scene.parameters.free = {indentation};
-  scene.nitsche = nitsche_recipe(options);
-  scene.lumped = options.at("lumped") == "yes";
   scene.material = [material](const FullMu &, const Point &) { return material; };
   scene.mesh = mesh_of_one();
   scene.map = [](const FullMu &, const Point &x) { return x; };

@@ -11,6 +11,7 @@
 // finer curve by default.
 #include "scene.hpp"
 
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"
@@ -147,20 +148,19 @@ Scene make(const SceneOptions &options) {
   const double young = number_in(options, "young");
   scene.components = 2;
   scene.degree = 2;
-  scene.support = SupportRecipe{"contact", {}, {}, friction_of(options)};
   const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
-  scene.support->normal = normal;
-  scene.support->gap = gap_function(options.at("gap"), options.at("gap_from") == "arc", normal);
+  const Support support{"contact", normal,
+                        gap_function(options.at("gap"), options.at("gap_from") == "arc", normal),
+                        friction_of(options), options.at("lumped") == "yes"};
+  const bool nitsche = asks_for_nitsche(options);
+  if (support.lumped && nitsche)
+    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
+  scene.contacts = {support_contact(support, options)};
   scene.material = [young](const FullMu &mu, const Point &centre) {
     const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
     return lame(stiffness * young, mu[poisson_ratio]);
   };
-  scene.nitsche = nitsche_recipe(options);
-  const bool nitsche = scene.nitsche.has_value();
-  scene.lumped = options.at("lumped") == "yes";
-  if (scene.lumped && nitsche)
-    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
-  scene.parameters = parameters(scene.support->friction.law, nitsche, young);
+  scene.parameters = parameters(support.friction.law, nitsche, young);
   scene.check_parameters = check_indentation;
   scene.training = "grid:61";
   scene.validation = "random:30:1";

@@ -60,7 +60,7 @@ double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index
 void add_stress_floors(const ReducedModel &model, const Matrix &projections, const Truths &truths,
                        const SparseMatrix &w, ModelErrors &errors) {
   OnlineSolver solver(model);
-  const Index normal = model.contact_points.rows(), count = projections.cols();
+  const Index normal = solver.contact().nodes(), count = projections.cols();
   errors.lambda_floor.resize(count);
   errors.tangential_floor.resize(truths.tangential_norm.size());
   for (Index p = 0; p < count; ++p) {
@@ -142,8 +142,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
                 Vector(count),
                 {},
                 {}};
-  const bool on_support = model.support || model.nitsche;
-  const Index normal = on_support ? model.contact_points.rows() : model.dual_basis.rows();
+  const Index normal = problem.contact().nodes();
   const Index rest = model.dual_basis.rows() - normal;
   if (rest > 0) truths.tangential_norm.resize(count);
   for (Index p = 0; p < count; ++p) {

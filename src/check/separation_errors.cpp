@@ -23,10 +23,9 @@ struct Separated {
 
 /// Adds the parts of b: all rows, or B^n and B^tau, by the first entries of its terms and of its
 /// values.
-void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Separated> &parts) {
-  const auto theta = [&model, &scene](const FullMu &all) {
-    return model.support ? support_coefficients(model.b, true, scene, all)
-                         : affine_coefficients(model.b, scene.b, scene, all);
+void add_contact(const ReducedModel &model, const Problem &problem, std::vector<Separated> &parts) {
+  const auto theta = [&](const FullMu &all) {
+    return contact_coefficients(model.b, Part::b, problem.contact(), problem.scene(), all);
   };
   const Index normal = model.support ? model.support->apart.normal : 0;
   if (normal == 0) {
@@ -50,21 +49,21 @@ void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Sepa
                    [=](const FullMu &all) -> Vector { return theta(all).tail(tangential); }});
 }
 
-/// The operators with terms. `triangle`, `scene` and `model` must outlive them.
-std::vector<Separated> separated(const LowerTriangle &triangle, const Scene &scene,
+/// The operators with terms. `triangle`, `problem` and `model` must outlive them.
+std::vector<Separated> separated(const LowerTriangle &triangle, const Problem &problem,
                                  const ReducedModel &model) {
+  const Scene &scene = problem.scene();
   std::vector<Separated> parts;
   parts.push_back(
       {"a", model.a.size(), [&triangle](const Operators &op) { return triangle.values(op.a); },
        [&](const FullMu &all) { return affine_coefficients(model.a, scene.a, scene, all); }});
-  add_contact(model, scene, parts);
+  add_contact(model, problem, parts);
   parts.push_back(
       {"f", model.f.size(), [](const Operators &op) { return local_values(op.f); },
        [&](const FullMu &all) { return affine_coefficients(model.f, scene.f, scene, all); }});
   parts.push_back({"g", model.g.size(), [](const Operators &op) { return op.g; },
                    [&](const FullMu &all) {
-                     return model.support ? support_coefficients(model.g, false, scene, all)
-                                          : affine_coefficients(model.g, scene.g, scene, all);
+                     return contact_coefficients(model.g, Part::g, problem.contact(), scene, all);
                    }});
   std::erase_if(parts, [](const Separated &part) { return part.terms == 0; });
   return parts;
@@ -115,7 +114,7 @@ std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedM
                                                 const std::vector<Mu> &validation) {
   if (validation.empty()) return {};
   const LowerTriangle triangle(problem.assemble(validation.front()).a, problem.dofs());
-  const std::vector<Separated> parts = separated(triangle, problem.scene(), model);
+  const std::vector<Separated> parts = separated(triangle, problem, model);
   std::vector<Matrix> functions;
   std::vector<Vector> largest;
   for (const Separated &part : parts) {

@@ -30,41 +30,6 @@ bool constant_stiffness(const Scene &scene) {
                       [&](int i) { return std::find(free.begin(), free.end(), i) != free.end(); });
 }
 
-std::vector<SceneOption> pair_options() {
-  return {{"multiplier",
-           "p0",
-           "pressure: constant on pairs of edges, of degree 2 on edges (p0), or continuous (p1)",
-           {"p0", "p1"}},
-          {"integration",
-           "intersection",
-           "contact integrals: edges intersected, or Gauss points of the upper body alone",
-           {"intersection", "direct"}}};
-}
-
-PairDiscretisation pair_discretisation(const SceneOptions &options) {
-  return {options.at("multiplier") == "p1" ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
-          options.at("integration") == "direct" ? PairQuadrature::direct
-                                                : PairQuadrature::intersection};
-}
-
-std::vector<SceneOption> nitsche_options() {
-  return {{"formulation",
-           "mixed",
-           "of contact: with multipliers, or by Nitsche's method",
-           {"mixed", "nitsche"}},
-          {"nitsche_gamma0",
-           "11.54",
-           "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge",
-           {},
-           {0.1, 2000}}};
-}
-
-std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options) {
-  const double gamma0 = number_in(options, "nitsche_gamma0");
-  if (options.at("formulation") == "mixed") return std::nullopt;
-  return NitscheRecipe{gamma0};
-}
-
 double number_in(const SceneOptions &options, const std::string &name) {
   return parse_number(options.at(name), "option " + name);
 }

@@ -273,13 +273,14 @@ private:
   std::map<std::array<long long, 3>, std::vector<int>> vertices_;
 };
 
-/// Facets on top of each other without common nodes, but for the two curves of a pair.
+/// Facets on top of each other without common nodes, but for the two curves of two bodies.
 void check_glued(const Subject &s) {
   std::vector<Facet> apart;
-  if (s.scene.pair)
-    for (const std::string &name : {s.scene.pair->slave, s.scene.pair->master})
-      for (const Facet &facet : facets_of(s, name))
-        apart.push_back(facet);
+  for (const ContactRecipe &contact : s.scene.contacts)
+    for (const std::string &name : contact.entities.parts)
+      if (contact.entities.parts.size() > 1)
+        for (const Facet &facet : facets_of(s, name))
+          apart.push_back(facet);
   std::sort(apart.begin(), apart.end());
   CommonVertices common(s);
   std::vector<std::pair<Facet, Facet>> placed; // by place, by vertex
@@ -308,7 +309,8 @@ void check_recipe(const Scene &scene) {
   known.emplace_back("");
   for (const MeshFact &fact : scene.mesh.facts)
     used.insert(used.end(), {fact.part, fact.within});
-  if (scene.pair) used.insert(used.end(), {scene.pair->slave, scene.pair->master});
+  for (const ContactRecipe &contact : scene.contacts)
+    used.insert(used.end(), contact.entities.parts.begin(), contact.entities.parts.end());
   for (const std::string &name : used)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw bad_input("scene " + scene.name + " speaks of '" + name +

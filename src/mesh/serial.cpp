@@ -166,7 +166,13 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (on_rim[v]) mesh.points[v] = at_distance(inclusion.radius, mesh.points[v], inclusion.centre);
   if (!scene.snap) return;
-  std::vector<bool> on_curve = interface_of(mesh, scene.contact_region);
+  std::vector<bool> on_curve(mesh.points.size(), false);
+  for (const ContactRecipe &contact : scene.contacts) {
+    if (contact.entities.kind != InterfaceEntities::Kind::cells) continue;
+    const std::vector<bool> on_rim_of_region = interface_of(mesh, contact.entities.parts.front());
+    for (std::size_t v = 0; v < on_curve.size(); ++v)
+      on_curve[v] = on_curve[v] || on_rim_of_region[v];
+  }
   if (mesh.boundary.contains(scene.mesh.curved))
     for (const auto &facet : mesh.boundary.at(scene.mesh.curved))
       for (int i = 0; i < mesh.dim; ++i)

@@ -58,8 +58,8 @@ double error_of(const Eim &eim) {
   return eim.error.empty() ? 0 : eim.error.back();
 }
 
-AffineTerms start_terms(const Eim &eim, const SampleMesh &sample, Index entries) {
-  return {Matrix::Zero(entries, eim.size()), eim.interpolation, sample, error_of(eim)};
+AffineTerms start_terms(const Eim &eim, const std::vector<SampleMesh> &samples, Index entries) {
+  return {Matrix::Zero(entries, eim.size()), eim.interpolation, samples, error_of(eim)};
 }
 
 /// B^n and B^tau apart have one interpolation matrix, block diagonal.
@@ -88,27 +88,6 @@ bool uses(const Eim &eim, int snapshot) {
   return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
 }
 
-/// The mesh nodes and the reference points of the contact nodes.
-void describe_contact(const Problem &problem, ReducedModel &model) {
-  const int dim = problem.mesh().dim;
-  const bool pair = problem.two_bodies(), support = problem.on_support();
-  const std::vector<Point> &points = support ? problem.support().curve.points
-                                     : pair  ? problem.curves().points
-                                             : problem.contact().points;
-  const std::vector<PetscInt> &nodes = support ? problem.support().natural_node
-                                       : pair  ? problem.curves().natural_node
-                                               : problem.contact().natural_node;
-  const auto count = support ? problem.support().curve.vertices : static_cast<Index>(points.size());
-  model.contact_nodes.assign(nodes.begin(), nodes.begin() + count);
-  model.contact_points.resize(count, dim);
-  for (Index r = 0; r < count; ++r)
-    for (int c = 0; c < dim; ++c)
-      model.contact_points(r, c) = points[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
-  if (pair) model.slave_nodes = static_cast<int>(problem.curves().slave_nodes);
-  if (pair || support) return;
-  model.contact_cells = flat_cells(problem.contact());
-}
-
 } // namespace
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
@@ -132,31 +111,13 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
   model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * per_cell));
   for (auto record = all.begin(); record != all.end(); record += per_cell + 1)
     std::copy(record + 1, record + 1 + per_cell, model.mesh_cells.begin() + *record * per_cell);
-  describe_contact(problem, model);
+  for (std::size_t i = 0; i < problem.places().meshes.size(); ++i) {
+    const std::vector<PetscInt> &nodes = problem.places().natural_nodes[i];
+    model.interfaces.push_back({problem.places().meshes[i], {nodes.begin(), nodes.end()}});
+  }
 }
 
 namespace {
-
-/// The primal basis at the contact nodes: of two bodies its vertical component, on a support all.
-Matrix contact_trace_of(const Problem &problem, const ReducedModel &model) {
-  const int components = problem.scene().components;
-  const int first = problem.two_bodies() ? components - 1 : 0;
-  const int count = problem.on_support() ? components : 1;
-  Matrix trace(static_cast<Index>(model.contact_nodes.size()) * count, model.primal_size());
-  for (Index r = 0; r < trace.rows(); ++r)
-    trace.row(r) = model.primal_basis.row(
-        model.contact_nodes[static_cast<std::size_t>(r / count)] * components + first + r % count);
-  return trace;
-}
-
-/// A unit displacement along the last axis at the contact dofs of a support.
-Vector upwards(const Problem &problem) {
-  const Index components = problem.scene().components;
-  Vector result = Vector::Zero(problem.trace().size);
-  for (Index i = components - 1; i < result.size(); i += components)
-    result[i] = 1;
-  return result;
-}
 
 /// Adds a snapshot of B to the terms that contain it: of B^n and B^tau apart each has its own.
 void accumulate_b(const Problem &problem, const AffineOperators &affine, int snapshot,
@@ -168,11 +129,6 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
     const auto b = op.b.middleRows(row, rows);
     const Matrix reduced = model.dual_basis.middleRows(row, rows).transpose() * (b * trace);
     accumulate(eim, snapshot, reduced.reshaped(), model.b.reduced.middleCols(begin, eim.size()));
-    if (model.support)
-      accumulate(eim, snapshot, b * upwards(problem),
-                 model.support->lift.block(row, begin, rows, eim.size()));
-    else
-      accumulate(eim, snapshot, op.weights, model.lumped_weights);
   }
 }
 
@@ -209,9 +165,9 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   model.modes = bases.modes;
   model.supremizers = bases.supremizers + bases.responses;
   model.online_enriched = bases.online_enriched;
-  model.dual_basis = problem.nitsche()      ? Matrix(problem.dual_size(), 0)
-                     : problem.on_support() ? bases.support_dual
-                                            : bases.cone.all();
+  model.dual_basis = by_nitsche(scene)    ? Matrix(problem.dual_size(), 0)
+                     : keeps_nodes(scene) ? bases.support_dual
+                                          : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
   return model;
@@ -221,13 +177,12 @@ SupportModel start_support(const Problem &problem, const std::vector<Sample> &sa
                            const AffineOperators &affine, const ReducedBases &bases,
                            const ReducedModel &model) {
   SupportModel support;
-  support.vertices = static_cast<int>(problem.support().curve.vertices);
-  support.normal = model.generators / (static_cast<int>(problem.dual_size()) / support.vertices);
+  const Index parts = problem.dual_size() / problem.contact().nodes();
+  support.normal = model.generators / static_cast<int>(parts);
   support.reduction = bases.reduction;
   support.mended = bases.mended;
   support.basis = bases.multipliers.basis;
   support.condensed = bases.condensed;
-  support.lift = Matrix::Zero(problem.dual_size(), affine.b_size());
   if (affine.b_tangential.size() > 0)
     support.apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
   store_multipliers(samples, model.dual_basis, support);
@@ -243,10 +198,8 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
   model.b = start_terms_of_b(affine, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  if (problem.on_support() && !problem.nitsche())
+  if (keeps_nodes(problem.scene()))
     model.support = start_support(problem, samples, affine, bases, model);
-  else
-    model.lumped_weights = Matrix::Zero(problem.dual_size(), affine.b.size());
 }
 
 /// Adds the operators of the snapshots that the terms are made of. Collective.
@@ -277,7 +230,7 @@ void store_fields(const Problem &problem, Mat basis, ReducedModel &model) {
     model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
         local.row(i);
   over_ranks(problem.comm(), MPI_SUM, model.primal_basis);
-  model.contact_trace = contact_trace_of(problem, model);
+  model.contact_trace = model.primal_basis(problem.places().natural_dofs, Eigen::all);
 }
 
 void store_histories(const AffineOperators &affine, const ReducedBases &bases,

@@ -238,8 +238,7 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
 void add_collocation(Problem &problem, const std::vector<Sample> &samples,
                      const GcnsOptions &options, Reduction &result) {
   const Stage stage(result.stages, stage::collocation);
-  result.collocation =
-      collocate(result.model, problem.scene(), samples, problem.w_product(), options);
+  result.collocation = collocate(result.model, problem, samples, options);
   const Gcns &nodes = result.collocation;
   result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
   result.model.histories["gcns/error"] = nodes.error;
@@ -320,7 +319,7 @@ void reduce_on_support(Problem &problem, const std::vector<Sample> &samples,
   {
     const Stage stage(result.stages, stage::projection);
     result.model = project(problem, samples, result.affine, result.bases);
-    if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem.scene());
+    if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem);
   }
   if (will_run(result.stages, stage::collocation))
     add_collocation(problem, samples, options.gcns, result);
@@ -337,10 +336,10 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
   result.affine = timed(result.stages, stage::interpolation, [&] {
     return separate(problem, training, options.eim, rows_apart(options));
   });
-  const bool pair = !problem.nitsche() && !problem.on_support();
+  const bool pair = !by_nitsche(problem.scene()) && !keeps_nodes(problem.scene());
   if (pair)
     reduce_pair(problem, samples, options, result);
-  else if (problem.nitsche())
+  else if (by_nitsche(problem.scene()))
     reduce_nitsche(problem, samples, options, result);
   else
     reduce_on_support(problem, samples, options, result);

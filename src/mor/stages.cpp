@@ -30,8 +30,8 @@ StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
                            const Reduction *made) {
   const std::string tolerance = interpolation_tolerance(options);
   const bool load = static_cast<bool>(scene.f);
-  const bool apart = scene.pair.has_value() || scene.nitsche.has_value();
-  const std::string exact = scene.pair ? "; B, G are assembled exactly online" : "";
+  const bool apart = !separable_contact(scene), evaluated = apart && !by_nitsche(scene);
+  const std::string exact = evaluated ? "; B, G are assembled exactly online" : "";
   if (constant_stiffness(scene) && apart && !load)
     return {stage::interpolation, "A does not depend on mu" + exact, nothing_to_do};
   if (made == nullptr)
@@ -83,7 +83,7 @@ StageRow pga_row(const Scene &scene, const ReduceOptions &options, const Reducti
     return {stage::pga, "the span of all supremizers" + product};
   if (made == nullptr)
     return {stage::pga, "supremizers" + product + " until " + pga_target(options) +
-                            (scene.pair ? "" : "; one SVD if B only scales")};
+                            (separable_contact(scene) ? "; one SVD if B only scales" : "")};
   const ReducedBases &bases = made->bases;
   return {stage::pga, "S = " + counted(bases.supremizers, "supremizer") + product + ", sigma " +
                           short_number(bases.pga.sigma.back()) + ", " + bases.pga.reason};
@@ -112,8 +112,9 @@ StageRow sweep_of_supremizers_row(const Scene &scene, const ReduceOptions &optio
   constexpr StageName name("supremizers at all mu");
   if (options.enrichment == Enrichment::decorrelated)
     return {name, "no supremizers are wanted", skipped};
-  if (made == nullptr && !scene.pair) return {name, "only if B does more than scale", part};
-  if (!scene.pair && made->affine.b_size() == 1)
+  const bool separable = separable_contact(scene);
+  if (made == nullptr && separable) return {name, "only if B does more than scale", part};
+  if (separable && made->affine.b_size() == 1)
     return {name, "B only scales: one set and one SVD serve all mu", skipped};
   return {name, "B depends on mu: part of PGA", part};
 }
@@ -165,7 +166,7 @@ void add_support_rows(const Scene &scene, const ReduceOptions &options, const Re
     rows.push_back({stage::multipliers, multiplier_text(options, made)});
   const bool collocated = reduction == MultiplierReduction::collocated;
   if (collocated) add_supremizer_rows(scene, options, made, rows);
-  if (collocated && scene.support->friction.law != FrictionLaw::none)
+  if (collocated && has_friction(scene))
     rows.push_back({stage::collocation,
                     made == nullptr ? "greedy (Algorithm 3), reduced problems solved exactly"
                                     : counted(std::ssize(made->collocation.nodes), "node") + ": " +
@@ -179,7 +180,7 @@ void add_curve_rows(const ReduceOptions &options, const Reduction *made, StageTa
                      : rule == CurveRule::empirical ? "few Gauss points, non-negative weights"
                                                     : "EIM over (mu, Newton step)";
   if (made != nullptr) {
-    what = describe_curve(*made->model.nitsche);
+    what = describe_curve(*made->model.nitsche, made->model.interfaces.front().mesh.count());
     if (rule == CurveRule::empirical) what += ", error " + short_number(made->curve.error.back());
     if (rule == CurveRule::interpolated)
       what += ", of " + std::to_string(made->curve.states) + " states";
@@ -203,16 +204,16 @@ StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
   StageTable rows{interpolation_row(scene, options, made)};
   if (!scene.f) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
   rows.push_back(pod_row(options, made));
-  if (scene.nitsche) {
+  if (by_nitsche(scene)) {
     add_curve_rows(options, made, rows);
-  } else if (scene.support) {
+  } else if (keeps_nodes(scene)) {
     add_support_rows(scene, options, made, rows);
   } else {
     rows.push_back(cone_row(options, made));
     add_supremizer_rows(scene, options, made, rows);
     rows.push_back(sweep_of_supremizers_row(scene, options, made));
   }
-  if (!scene.nitsche && (!scene.support || scene.support->friction.law == FrictionLaw::none))
+  if (!by_nitsche(scene) && !has_friction(scene))
     rows.push_back({StageName("tangential multipliers"), "the scene has no friction", skipped});
   rows.push_back({stage::projection, "the separated operators onto the bases"});
   rows.push_back({stage::self_check, self_check_text(made)});

@@ -1,7 +1,7 @@
 #include "rbvi/mor/stages.hpp"
 
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
 namespace rbvi {
@@ -9,18 +9,18 @@ namespace rbvi {
 namespace {
 
 /// None without friction.
-std::vector<FrictionBound> bounds_at(const Scene &scene, const std::vector<Mu> &set) {
+std::vector<FrictionBound> bounds_at(const Scene &scene, const Contact &contact,
+                                     const std::vector<Mu> &set) {
   std::vector<FrictionBound> bounds;
-  if (scene.support->friction.law == FrictionLaw::none) return bounds;
+  if (!has_friction(scene)) return bounds;
   for (const Mu &mu : set)
-    bounds.push_back(friction_bound(scene.support->friction, expand(scene.parameters, mu)));
+    bounds.push_back(contact.interfaces.front()->bound(expand(scene.parameters, mu)));
   return bounds;
 }
 
 } // namespace
 
 void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
-  if (scene.nitsche) return;
   const MultiplierReduction reduction = options.multipliers.reduction;
   const bool reduced_body =
       reduction == MultiplierReduction::collocated && !options.multipliers.exact;
@@ -29,8 +29,7 @@ void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
                     " has a load, which the condensed operator does not see: use "
                     "-multiplier_reduction collocated -multiplier_exact no");
   if (reduction == MultiplierReduction::condensed) return;
-  if (scene.support->friction.law == FrictionLaw::none &&
-      reduction != MultiplierReduction::collocated)
+  if (!has_friction(scene) && reduction != MultiplierReduction::collocated)
     throw bad_input("the scene has no friction: use -multiplier_reduction condensed or collocated");
   if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
     throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
@@ -51,7 +50,7 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   bases.reduction = choice.reduction;
   bases.mended = choice.exact;
   add_modes(problem, samples, options.pod, bases, stages);
-  bases.support_dual = support_dual_basis(problem, multipliers);
+  bases.support_dual = nodal_dual_basis(problem, multipliers);
   const Matrix &nodal = bases.support_dual;
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);
@@ -64,8 +63,9 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   {
     const Stage stage(stages, stage::multipliers);
     const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
-    bases.multipliers = make_multiplier_basis(nodal_coefficients(nodal, multipliers), w,
-                                              bounds_at(scene, training), choice, options.cone);
+    bases.multipliers =
+        make_multiplier_basis(nodal_coefficients(nodal, multipliers), w,
+                              bounds_at(scene, problem.contact(), training), choice, options.cone);
   }
   if (!will_run(stages, stage::pga)) return bases;
   if (affine.b_size() == 1) training.resize(1);
@@ -75,33 +75,35 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   return bases;
 }
 
-void add_starts(ReducedModel &model, const Scene &scene) {
+void add_starts(ReducedModel &model, const Problem &problem) {
   Matrix starts = model.support->starts;
-  SupportSolver solver(model, scene);
+  SupportSolver solver(model, problem.scene(), problem.contact());
   for (Index p = 0; p < starts.cols(); ++p) {
     const Vector mu = model.support->starts_mu.col(p);
     starts.col(p) =
-        solver.start_of(expand(scene.parameters, {mu.begin(), mu.end()}), starts.col(p));
+        solver.start_of(expand(problem.scene().parameters, {mu.begin(), mu.end()}), starts.col(p));
   }
   model.support->starts = std::move(starts);
 }
 
-Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
-               const SparseMatrix &w_product, const GcnsOptions &options) {
+Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
+               const GcnsOptions &options) {
+  const Scene &scene = problem.scene();
   SupportModel &support = *model.support;
-  SupportSolver solver(model, scene);
+  SupportSolver solver(model, problem.scene(), problem.contact());
   const Index nodes = support.normal;
   const Matrix &nodal = model.dual_basis;
   const Matrix coefficients = nodal_coefficients(nodal, multipliers_of(samples));
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
-    const BodyAtMu body = solver.body_at(all, support_coefficients(model.b, true, scene, all));
+    const BodyAtMu body =
+        solver.body_at(all, contact_coefficients(model.b, Part::b, problem.contact(), scene, all));
     CollocatedProblem reduced = collocated_problem(support.basis, body);
     problems.push_back({std::move(reduced.h), std::move(reduced.q), body.bound,
                         coefficients.col(static_cast<Index>(p)).tail(nodes)});
   }
-  const SparseMatrix w = (nodal.transpose() * w_product * nodal).sparseView();
+  const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
   Gcns selected = select_collocation_nodes(problems, support.basis.normal, support.basis.tangential,
                                            w.block(nodes, nodes, nodes, nodes), options);
   support.basis.nodes = selected.nodes;

@@ -1,129 +1,44 @@
 #include "rbvi/problem/problem.hpp"
 
-#include "rbvi/contact/pair/contact_pair.hpp"
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/scalar_forms.hpp"
 
 namespace rbvi {
 
-namespace {
-
-SparseMatrix region_product(const ContactRegion &region, const Scene &scene) {
-  std::vector<Cell> cells;
-  for (const auto &vertices : region.cells) {
-    Cell cell{region.dim, {}, {}};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(region.dim); ++i)
-      cell.reference[i] = region.points[static_cast<std::size_t>(vertices[i])];
-    cells.push_back(cell);
-  }
-  ContactMatrix matrix(region, ContactMatrix::Columns::dual_dofs);
-  return matrix.assemble(scene.w_product, {}, cells);
-}
-
-/// -u <= -psi at every node of the region.
-SparseMatrix minus_trace(const ContactRegion &region) {
-  SparseMatrix result(region.dual_size(), region.trace.size);
-  for (Index i = 0; i < region.dual_size(); ++i)
-    if (const int dof = region.contact_dof[static_cast<std::size_t>(i)]; dof >= 0)
-      result.insert(i, dof) = -1;
-  result.makeCompressed();
-  return result;
-}
-
-} // namespace
-
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
-    : scene_(std::move(scene)), mesh_(make_mesh(comm, scene_, options)),
-      dofs_(number_dofs(mesh_, scene_.components, scene_.fixed)), cells_(reference_cells(mesh_)),
-      a_(make_matrix(mesh_, dofs_, scene_.a.region)), f_(make_vector(dofs_)) {
-  if (scene_.degree != 1 && !scene_.support && !scene_.pair)
-    throw bad_input("scene " + scene_.name +
-                    ": degree 2 is for contact of two bodies or with a rigid support");
-  if (scene_.support) {
-    support_ = make_contact_support(mesh_, dofs_, *scene_.support);
-    w_product_ = multiplier_product(support_->curve, *scene_.support);
-  } else if (scene_.pair) {
-    curves_ = make_contact_curves(mesh_, dofs_, scene_);
-    const auto slave = curves_->points.begin();
-    w_product_ = multiplier_product({slave, slave + curves_->slave_nodes},
-                                    scene_.pair->discretisation.multiplier, scene_.degree);
-  } else {
-    contact_ = make_contact_region(mesh_, dofs_, scene_.contact_region);
-    b_.emplace(*contact_, ContactMatrix::Columns::contact_dofs);
-    w_product_ = region_product(*contact_, scene_);
-    operators_.nodal_b = minus_trace(*contact_);
-  }
-}
-
-void Problem::assemble_obstacle(Operators &operators) {
-  const std::vector<Cell> cells = mapped_contact_cells(*contact_, scene_, operators.mu);
-  operators.b = b_->assemble(scene_.b, operators.mu, cells);
-  operators.g = contact_vector(*contact_, scene_.g, operators.mu, cells);
-  static const Form hat_integrals = constant_load("", 1);
-  operators.weights = contact_vector(*contact_, hat_integrals, operators.mu, cells);
-  operators.nodal_b = operators_.nodal_b;
-  operators.nodal_gap.resize(contact_->dual_size());
-  for (Index r = 0; r < contact_->dual_size(); ++r)
-    operators.nodal_gap[r] = -scene_.obstacle(
-        operators.mu, scene_.map(operators.mu, contact_->points[static_cast<std::size_t>(r)]));
-}
-
-void Problem::assemble_pair(Operators &operators) {
-  PairOperators pair = couple_at(scene_, operators.mu, curves_->points, curves_->slave_nodes);
-  operators.b = std::move(pair.b);
-  operators.g = std::move(pair.g);
-  operators.weights = std::move(pair.weights);
-  operators.nodal_b = std::move(pair.nodal_b);
-  operators.nodal_gap = std::move(pair.nodal_gap);
-}
-
-void Problem::assemble_support(Operators &operators) {
-  SupportOperators support = couple_with_support(scene_, operators.mu, support_->curve);
-  operators.b = std::move(support.b);
-  operators.g = std::move(support.g);
-  operators.weights = std::move(support.weights);
-  operators.nodal_b = std::move(support.nodal_b);
-  operators.nodal_gap = std::move(support.nodal_gap);
-  operators.bound = friction_bound(scene_.support->friction, operators.mu);
-}
+    : scene_(std::make_unique<const Scene>(std::move(scene))),
+      mesh_(make_mesh(comm, *scene_, options)),
+      dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
+      places_(place_interfaces(mesh_, dofs_, *scene_)),
+      contact_(make_contact(*scene_, places_.meshes)), cells_(reference_cells(mesh_)),
+      a_(make_matrix(mesh_, dofs_, scene_->a.region)), f_(make_vector(dofs_)) {}
 
 void Problem::assemble_contact(const Mu &mu, Operators &operators) {
-  operators.mu = expand(scene_.parameters, mu);
-  if (scene_.nitsche) return;
-  if (scene_.support)
-    assemble_support(operators);
-  else if (scene_.pair)
-    assemble_pair(operators);
-  else
-    assemble_obstacle(operators);
-  operators.normal = operators.weights.size();
-}
-
-const Trace &Problem::trace() const {
-  return support_ ? support_->trace : curves_ ? curves_->trace : contact_->trace;
+  operators.mu = expand(scene_->parameters, mu);
+  rbvi::assemble(contact_, operators.mu, {}, operators);
+  operators.bound = contact_.interfaces.front()->bound(operators.mu);
+  operators.normal = contact_.nodes();
 }
 
 std::vector<double> Problem::stiffness_values(const FullMu &all_parameters) const {
-  if (!scene_.a_parameters) return all_parameters;
+  if (!scene_->a_parameters) return all_parameters;
   std::vector<double> values;
-  for (const int i : *scene_.a_parameters)
+  for (const int i : *scene_->a_parameters)
     values.push_back(all_parameters[static_cast<std::size_t>(i)]);
   return values;
 }
 
 const Operators &Problem::assemble(const Mu &mu) {
-  const FullMu all = expand(scene_.parameters, mu);
+  const FullMu all = expand(scene_->parameters, mu);
   assemble_contact(mu, operators_);
   const std::vector<double> values = stiffness_values(all);
   const bool new_a = a_made_at_ != values;
-  if (new_a || scene_.f) map_cells(scene_, all, mesh_, cells_);
+  if (new_a || scene_->f) map_cells(*scene_, all, mesh_, cells_);
   if (new_a) {
     a_made_at_.reset();
-    assemble_matrix(scene_.a, all, mesh_, dofs_, cells_, a_.get());
+    assemble_matrix(scene_->a, all, mesh_, dofs_, cells_, a_.get());
     a_made_at_ = values;
   }
-  if (scene_.f) assemble_vector(scene_.f, all, mesh_, dofs_, cells_, f_.get());
+  if (scene_->f) assemble_vector(scene_->f, all, mesh_, dofs_, cells_, f_.get());
   operators_.a = a_.get();
   operators_.f = f_.get();
   return operators_;
@@ -131,8 +46,8 @@ const Operators &Problem::assemble(const Mu &mu) {
 
 Mat Problem::v_product() {
   if (!v_product_) {
-    v_product_ = make_matrix(mesh_, dofs_, scene_.v_product.region);
-    assemble_matrix(scene_.v_product, {}, mesh_, dofs_, reference_cells(mesh_), v_product_.get());
+    v_product_ = make_matrix(mesh_, dofs_, scene_->v_product.region);
+    assemble_matrix(scene_->v_product, {}, mesh_, dofs_, reference_cells(mesh_), v_product_.get());
   }
   return v_product_.get();
 }

@@ -1,7 +1,5 @@
 #include "rbvi/rom/online.hpp"
 
-#include "rbvi/contact/obstacle/contact_area.hpp"
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
@@ -40,53 +38,23 @@ void check_kernel(const AffineTerms &terms, const Form &form, const std::string 
 
 } // namespace
 
-Vector normal_gap(const Scene &scene, const FullMu &all_parameters, const Matrix &contact_points,
-                  const Vector &displacement) {
-  Vector gap(contact_points.rows());
-  for (Index i = 0; i < gap.size(); ++i) {
-    const Point x = point_of(contact_points, i), n = scene.support->normal(all_parameters, x);
-    const Point motion = scene.motion ? scene.motion(all_parameters, x) : Point{};
-    gap[i] = scene.support->gap(all_parameters, x);
-    for (int c = 0; c < scene.components; ++c) {
-      const auto k = static_cast<std::size_t>(c);
-      gap[i] -= n[k] * (motion[k] + displacement[i * scene.components + c]);
-    }
-  }
-  return gap;
-}
-
-std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene) {
-  std::vector<Point> points;
-  const Index count = model.two_bodies() ? model.slave_nodes : model.contact_points.rows();
-  for (Index i = 0; i < count; ++i)
-    points.push_back(point_of(model.contact_points, i));
-  return model.two_bodies()
-             ? multiplier_points(points, scene.pair->discretisation.multiplier, scene.degree)
-             : points;
-}
-
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
-    : model_(model), scene_(std::move(scene)), qp_(solved_size(model), model.free_modes) {
+    : model_(model), scene_(std::move(scene)), contact_(contact_of(model, scene_)),
+      qp_(solved_size(model), model.free_modes) {
   check_kernel(model.a, scene_.a, "a");
-  if (scene_.nitsche || model.nitsche) {
-    nitsche_ = std::make_unique<ReducedNitsche>(model, scene_);
-    return;
-  }
-  if (scene_.support || model.support) {
-    support_ = std::make_unique<SupportSolver>(model, scene_);
-    return;
-  }
-  check_kernel(model.b, scene_.b, "b");
   check_kernel(model.f, scene_.f, "f");
-  check_kernel(model.g, scene_.g, "g");
-  if (model.two_bodies() != scene_.pair.has_value() ||
-      (scene_.pair && multiplier_count(model.slave_nodes, scene_.pair->discretisation.multiplier,
-                                       scene_.degree) != model.dual_basis.rows()))
-    throw bad_input("the contact curves of the model do not fit its scene in this build");
-  for (Index i = 0; i < model.contact_points.rows() && model.two_bodies(); ++i)
-    curves_.push_back(point_of(model.contact_points, i));
+  if (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche)
+    throw bad_input("the contact of the model does not fit its scene in this build");
+  if (model.nitsche) {
+    nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());
+    return;
+  }
+  if (model.support) {
+    support_ = std::make_unique<SupportSolver>(model, scene_, contact_);
+    return;
+  }
   const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
   first_dual_ = 0;
   Index end = rows.size();
@@ -106,12 +74,13 @@ void OnlineSolver::enrich() {
   b_ = (b_ * enrichment_).eval();
 }
 
-void OnlineSolver::assemble_pair(const FullMu &all_parameters, ReducedSolution &solution) {
-  solution.pair = couple_at(scene_, all_parameters, curves_, model_.slave_nodes);
+void OnlineSolver::evaluate_contact(ReducedSolution &solution) {
+  ContactOperators &op = solution.contact;
+  assemble(contact_, solution.mu, {}, op);
   const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
-  const Matrix traces = solution.pair.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
+  const Matrix traces = op.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
   b_.noalias() = basis * traces;
-  g_.noalias() = basis * solution.pair.g.segment(first_dual_, dual_rows_);
+  g_.noalias() = basis * op.g.segment(first_dual_, dual_rows_);
 }
 
 void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b) {
@@ -121,7 +90,7 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
   const Index n = model_.primal_size();
   a_scale_ = a_ratio > 0 ? std::sqrt(a_ratio) : 1;
   b_scale_ = b_ratio > 0 ? b_ratio : 1;
-  if (b_ratio == 0 && !model_.two_bodies()) {
+  if (b_ratio == 0 && !model_.evaluates_contact()) {
     b_.resize(model_.generators, n);
     Eigen::Map<Vector>(b_.data(), b_.size()).noalias() = model_.b.reduced * theta_b;
     theta_b_ = theta_b;
@@ -191,7 +160,7 @@ void OnlineSolver::check(ReducedSolution &solution) {
   const Vector pressure = multiplier(solution);
   Index node = 0;
   if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
-  const Point at = dual_points(model_, scene_)[static_cast<std::size_t>(node)];
+  const Point at = dual_points(contact_)[static_cast<std::size_t>(node)];
   throw failure((std::ostringstream("the pressure is negative at the contact point of reference "
                                     "coordinates ",
                                     std::ios::ate)
@@ -204,6 +173,9 @@ void OnlineSolver::check(ReducedSolution &solution) {
 ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
   const auto theta = [&](const AffineTerms &terms, const Form &form) {
     return affine_coefficients(terms, form, scene_, all_parameters);
+  };
+  const auto of_contact = [&](const AffineTerms &terms, Part part) {
+    return contact_coefficients(terms, part, contact_, scene_, all_parameters);
   };
   ReducedSolution solution;
   solution.mu = all_parameters;
@@ -225,15 +197,15 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
     solution.iterations = answer.iterations;
     return solution;
   }
-  if (model_.two_bodies())
-    assemble_pair(all_parameters, solution);
+  if (model_.evaluates_contact())
+    evaluate_contact(solution);
   else
-    solution.theta_b = theta(model_.b, scene_.b);
+    solution.theta_b = of_contact(model_.b, Part::b);
   update_operators(theta(model_.a, scene_.a), solution.theta_b);
   f_ = Vector::Zero(model_.primal_size());
   if (model_.f.size() > 0) f_.noalias() = model_.f.reduced * theta(model_.f, scene_.f);
   if (model_.online_enriched) f_ = (enrichment_.transpose() * f_).eval();
-  if (model_.g.size() > 0) g_.noalias() = model_.g.reduced * theta(model_.g, scene_.g);
+  if (model_.g.size() > 0) g_.noalias() = model_.g.reduced * of_contact(model_.g, Part::g);
   solve_dual(solution);
   check(solution);
   if (model_.online_enriched) solution.u = (enrichment_ * solution.u).eval();
@@ -248,20 +220,20 @@ ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
 
 Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
   if (nitsche_)
-    return nitsche_multiplier(nitsche_->fields(solution.mu, solution.u),
-                              scene_.support->friction.law != FrictionLaw::none);
+    return nitsche_multiplier(nitsche_->fields(solution.mu, solution.u), has_friction(scene_));
   return model_.dual_basis * solution.x;
 }
 
-Vector OnlineSolver::contact_gap(const Mu &mu, const ReducedSolution &solution) const {
-  const Vector trace = model_.contact_trace * solution.u;
-  if (model_.two_bodies()) return solution.pair.nodal_gap - solution.pair.nodal_b * trace;
-  const FullMu all = expand(scene_.parameters, mu);
-  if (support_ || nitsche_) return normal_gap(scene_, all, model_.contact_points, trace);
-  Vector gap = trace;
-  for (Index i = 0; i < gap.size(); ++i)
-    gap[i] -= scene_.obstacle(all, scene_.map(all, point_of(model_.contact_points, i)));
-  return gap;
+ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution) const {
+  if (model_.evaluates_contact()) return solution.contact;
+  ContactOperators operators;
+  assemble_nodal(contact_, solution.mu, {}, operators);
+  return operators;
+}
+
+Vector OnlineSolver::contact_gap(const ReducedSolution &solution) const {
+  const ContactOperators operators = nodal_operators(solution);
+  return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * solution.u);
 }
 
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
@@ -270,20 +242,10 @@ Vector OnlineSolver::field(const ReducedSolution &solution) const {
   return model_.primal_basis * solution.u;
 }
 
-void OnlineSolver::support_outputs_of(const FullMu &all_parameters, const ReducedSolution &solution,
-                                      Outputs &outputs) const {
-  const Vector lambda = multiplier(solution), lift = model_.support->lift * solution.theta_b;
-  const FrictionBound bound = friction_bound(scene_.support->friction, all_parameters);
-  const MappedCurve curve = mapped_curve(model_, scene_, all_parameters);
-  support_outputs({lambda, curve.weights, lift, bound, curve.points}, outputs);
-}
-
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) const {
   Outputs result;
   const double images = scene_.mirror_images;
   result.energy = images * solution.energy;
-  const Vector gap = contact_gap(mu, solution);
-  result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
   result.kkt_residual = solution.kkt_residual;
   result.iterations = solution.iterations;
   const ValidationErrors &expected = expected_errors(model_);
@@ -295,22 +257,17 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
     nitsche_->outputs(solution.mu, solution.u, result);
     return result;
   }
-  if (support_) {
-    support_outputs_of(solution.mu, solution, result);
+  if (nitsche_) {
+    nitsche_->outputs(solution.mu, solution.u, result);
     return result;
   }
+  const ContactOperators operators = nodal_operators(solution);
+  const Vector excess =
+      operators.nodal_b * (model_.contact_trace * solution.u) - operators.nodal_gap;
+  result.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
   const Vector lambda = multiplier(solution);
-  const Vector weights = model_.two_bodies() ? solution.pair.weights
-                                             : Vector(model_.lumped_weights * solution.theta_b);
-  const double peak = lambda.maxCoeff();
-  result.normal_force = images * weights.dot(lambda);
-  result.peak_pressure = peak;
-  const auto active = lambda.array() > active_fraction * std::max(0.0, peak);
-  result.contact_measure =
-      images * (scene_.lumped ? contact_area(weights, active.select(lambda, 0),
-                                             model_.contact_cells, scene_.dim + 1)
-                              : active.select(weights, 0).sum());
-  result.contact_nodes = images * static_cast<double>(active.count());
+  const double least = support_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
+  contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   return result;
 }
 

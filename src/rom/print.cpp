@@ -72,9 +72,18 @@ void print_support(std::ostream &out, const SupportModel &support, int multiplie
   out << '\n';
 }
 
-void print_curve(std::ostream &out, const NitscheModel &nitsche) {
-  label(out, "contact curve") << describe_curve(nitsche) << '\n';
+void print_curve(std::ostream &out, const NitscheModel &nitsche, Index edges) {
+  label(out, "contact curve") << describe_curve(nitsche, edges) << '\n';
   label(out, "terms of a_gamma - a") << nitsche.consistency.size() << '\n';
+}
+
+/// "140", of each boundary: "281 + 281".
+std::string nodes_of_interfaces(const ReducedModel &model) {
+  std::string text;
+  for (const InterfaceModel &interface : model.interfaces)
+    for (const int nodes : interface.mesh.parts)
+      text += (text.empty() ? "" : " + ") + std::to_string(nodes);
+  return text;
 }
 
 /// Where the model has no sample, though it was to have one.
@@ -92,14 +101,14 @@ void print_failed(std::ostream &out, const ReducedModel &model) {
 
 } // namespace
 
-std::string describe_curve(const NitscheModel &nitsche) {
+std::string describe_curve(const NitscheModel &nitsche, Index edges) {
   const auto number = [](auto size) { return std::to_string(size); };
   if (nitsche.rule == CurveRule::interpolated)
     return "terms: B^n " + number(nitsche.contact_matrix.size()) + ", Theta^n " +
            number(nitsche.contact_vector.size()) + ", B^tau " +
            number(nitsche.friction_matrix.size()) + ", Theta^tau " +
            number(nitsche.friction_vector.size());
-  const std::size_t all = 4 * nitsche.edges.size();
+  const std::size_t all = 4 * static_cast<std::size_t>(edges);
   const bool few = nitsche.rule == CurveRule::empirical;
   return number(few ? nitsche.points.size() : all) + " of " + number(all) + " Gauss points";
 }
@@ -118,7 +127,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, joined ? "responses" : "supremizers")
       << model.supremizers << (model.online_enriched ? " (the space is made online)" : "") << '\n';
   if (model.nitsche)
-    print_curve(out, *model.nitsche);
+    print_curve(out, *model.nitsche, model.interfaces.front().mesh.count());
   else if (model.support)
     print_support(out, *model.support, model.generators);
   else
@@ -128,9 +137,9 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_terms(out, "f", model.f);
   if (model.nitsche) {
     label(out, "b, g") << "none: Nitsche's method\n";
-  } else if (model.two_bodies()) {
-    label(out, "b, g") << "assembled for each mu on " << model.slave_nodes << " + "
-                       << model.contact_points.rows() - model.slave_nodes << " contact nodes\n";
+  } else if (model.evaluates_contact()) {
+    label(out, "b, g") << "assembled for each mu on " << nodes_of_interfaces(model)
+                       << " contact nodes\n";
   } else {
     if (model.support && model.support->apart.normal > 0)
       print_terms_of_rows(out, model.b.size(), model.support->apart);

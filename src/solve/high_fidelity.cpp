@@ -1,6 +1,5 @@
 #include "rbvi/solve/high_fidelity.hpp"
 
-#include "rbvi/contact/obstacle/contact_area.hpp"
 #include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
@@ -19,32 +18,6 @@ double ratio(double value, double scale) {
   return scale > 0 ? value / scale : value;
 }
 
-/// Forces, half-widths and pressures of contact with a rigid support.
-void measure_support(const Problem &problem, const Operators &op, const Vector &lambda,
-                     Outputs &outputs) {
-  const SupportCurve &curve = problem.support().curve;
-  const int components = problem.scene().components;
-  Vector upwards = Vector::Zero(op.b.cols());
-  for (Index i = components - 1; i < upwards.size(); i += components)
-    upwards[i] = 1;
-  std::vector<Point> points;
-  for (Index i = 0; i < curve.vertices; ++i)
-    points.push_back(problem.scene().map(op.mu, curve.points[static_cast<std::size_t>(i)]));
-  support_outputs({lambda, op.weights, op.b * upwards, op.bound, points}, outputs);
-}
-
-/// The sum of the active weights; with vertex quadrature over an obstacle's region, contact_area.
-double contact_measure(const Problem &problem, const Operators &op, const MethodResult &result) {
-  if (problem.scene().lumped) {
-    const ContactRegion &region = problem.contact();
-    return contact_area(op.weights, result.lambda, flat_cells(region), region.dim + 1);
-  }
-  double measure = 0;
-  for (const Index i : result.active)
-    measure += op.weights[i];
-  return measure;
-}
-
 Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
                 const HfSolution &solution) {
   Handle<Vec> au;
@@ -61,14 +34,7 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
   outputs.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
   outputs.iterations = result.iterations;
-  if (problem.on_support()) {
-    measure_support(problem, op, result.lambda, outputs);
-    return outputs;
-  }
-  outputs.normal_force = images * op.weights.dot(result.lambda);
-  outputs.contact_measure = images * contact_measure(problem, op, result);
-  outputs.contact_nodes = images * static_cast<double>(result.active.size());
-  outputs.peak_pressure = result.lambda.maxCoeff();
+  contact_outputs(problem.contact(), op.mu, op, result.lambda, 0, outputs);
   if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
   return outputs;
 }
@@ -141,13 +107,7 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
-  if (options.method == HfMethod::vi && problem.two_bodies())
-    throw bad_input("vi needs a bound at each node, and contact of two bodies bounds integrals "
-                    "over several: use -hf_method active_set or uzawa");
-  if (options.method == HfMethod::vi && problem.on_support() &&
-      (!problem.scene().lumped || problem.scene().support->friction.law != FrictionLaw::none))
-    throw bad_input("vi on a rigid support needs a bound at each node and no friction: set "
-                    "-friction none and -lumped yes, or use -hf_method active_set");
+  if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
   if (problem.nitsche()) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
     return;
@@ -200,14 +160,13 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   if (!solved_.empty()) start = {nearest(mu)->u.get(), predicted_pressures(mu)};
   NitscheSolution found = nitsche_->solve(op, solved_.empty() ? nullptr : &start);
   const Scene &scene = problem_.scene();
-  const std::vector<CurveCell> &cells = nitsche_->layer().cells;
-  const CurveFields fields = nitsche_fields(scene, op.mu, cells, found.layer);
-  const std::vector<NitscheFace> faces = nitsche_faces(scene, op.mu, cells);
+  const NitscheCurve &curve = *problem_.nitsche();
+  const CurveFields fields = nitsche_fields(curve, op.mu, found.layer);
   HfSolution solution;
   solution.u = to_natural(problem_.dofs(), found.u.get());
-  solution.lambda = nitsche_multiplier(fields, scene.support->friction.law != FrictionLaw::none);
-  nitsche_outputs(faces, found.pressures, fields, nitsche_law(scene.support->friction, op.mu),
-                  solution.outputs);
+  solution.lambda = nitsche_multiplier(fields, curve.friction());
+  nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells), found.pressures, fields,
+                  nitsche_law(curve, op.mu), solution.outputs);
   solution.kkt.stationarity = found.residual;
   solution.outputs.energy = scene.mirror_images * found.energy;
   solution.outputs.kkt_residual = found.residual;

@@ -19,15 +19,13 @@ constexpr int most_outer_iterations = 60;
 } // namespace
 
 NitscheSolver::NitscheSolver(Problem &problem, const NitscheOptions &options)
-    : problem_(problem), options_(options),
-      layer_(make_contact_layer(problem.mesh(), problem.dofs(), problem.scene().support->boundary)),
-      system_(new NitscheSystem(*this, problem, options_)) {}
+    : options_(options), system_(new NitscheSystem(*this, problem, options_)) {}
 
 NitscheSolver::~NitscheSolver() = default;
 
 NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *start) {
   NitscheSystem &system = *system_;
-  system.set(problem_.scene(), op);
+  system.set(op);
   NitscheSolution result;
   const int factorised_before = system.factorisations;
   Handle<Vec> unknowns;

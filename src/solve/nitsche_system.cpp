@@ -1,6 +1,7 @@
 #include "nitsche_system.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/whole.hpp"
 #include "vectors.hpp"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 namespace rbvi {
 
@@ -74,27 +76,48 @@ void check_inertia(KSP ksp) {
   if (negative > 0) throw failure(not_definite);
 }
 
+/// The gaps at all nodes of the contact curve, middles too.
+std::vector<NodalBound> bounds_along(const ContactInterface &interface, const FullMu &mu) {
+  const InterfaceMesh &mesh = interface.mesh();
+  std::map<int, NodalBound> bounds;
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const int edge = mesh.edges[static_cast<std::size_t>(e)];
+    const auto [a, b] = simplex_edges[static_cast<std::size_t>(edge)];
+    std::vector<int> on_curve{a, b};
+    if (mesh.degree == 2) on_curve.push_back(3 + edge);
+    for (const int local : on_curve) {
+      const int node = mesh.nodes_of(e)[local];
+      const PointConstraint at =
+          interface.constraint_at(mu, mesh.points[static_cast<std::size_t>(node)]);
+      bounds[node] = {mesh.dofs[static_cast<std::size_t>(2 * node)], at.direction, at.gap};
+    }
+  }
+  std::vector<NodalBound> result;
+  for (const auto &[node, bound] : bounds)
+    result.push_back(bound);
+  return result;
+}
+
 NitscheSystem &system_of(void *context) {
   return *static_cast<NitscheSystem *>(context);
 }
 
 } // namespace
 
-NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &problem,
+NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
                              const NitscheOptions &chosen)
-    : solver(of), options(chosen), rows(whole_rows(problem.dofs().first_free, of.layer().trace)) {
-  if (!options.nonpenetration) return;
-  frames.emplace(problem, problem.support().natural_node.size());
-  node_of_dof = nodes_of_dofs(problem.support(), of.layer());
+    : solver(of), problem(whole), curve(*whole.nitsche()), options(chosen),
+      rows(whole_rows(whole.dofs().first_free, whole.trace())) {
+  if (options.nonpenetration) frames.emplace(whole);
 }
 
-void NitscheSystem::set(const Scene &scene, const Operators &op) {
+void NitscheSystem::set(const Operators &op) {
   if (!snes) make_snes(op);
-  faces = nitsche_faces(scene, op.mu, solver.layer().cells);
-  law = nitsche_law(scene.support->friction, op.mu);
+  faces = nitsche_faces(curve, op.mu, curve.cells);
+  law = nitsche_law(curve, op.mu);
   if (frames) {
-    frames->set(op.mu);
-    frames->turn(faces, node_of_dof);
+    frames->set(bounds_along(*problem.contact().interfaces.front(), op.mu));
+    frames->turn(faces);
     f = frames->turned(op.f);
     upper = frames->upper();
     const Handle<Vec> lower = like(op.f);
@@ -106,7 +129,7 @@ void NitscheSystem::set(const Scene &scene, const Operators &op) {
     RBVI_CALL(VecCopy(op.f, f.get()));
     RBVI_CALL(MatCopy(op.a, a_gamma.get(), SAME_NONZERO_PATTERN));
   }
-  add_blocks(faces, nitsche_consistency(faces, law.law != FrictionLaw::none), rows, a_gamma.get());
+  add_blocks(faces, nitsche_consistency(faces, curve.friction()), rows, a_gamma.get());
 }
 
 void NitscheSystem::residual(Vec u, Vec r) {
@@ -115,7 +138,7 @@ void NitscheSystem::residual(Vec u, Vec r) {
   RBVI_CALL(MatMult(a_gamma.get(), u, r));
   RBVI_CALL(VecAXPY(r, -1, f.get()));
   scale = std::max(norm(r) + terms.norm(), smallest_scale);
-  add_extension(solver.layer().trace, terms, r);
+  add_extension(problem.trace(), terms, r);
 }
 
 void NitscheSystem::jacobian(Vec u, Mat matrix) {
@@ -150,7 +173,7 @@ void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bo
   RBVI_CALL(MatMult(a_gamma.get(), from, au.get()));
   RBVI_CALL(VecAXPY(au.get(), -1, f.get()));
   const Vector terms = nitsche_linearised(faces, on_layer(from), start.pressures, bounds);
-  add_extension(solver.layer().trace, terms, au.get());
+  add_extension(problem.trace(), terms, au.get());
   RBVI_CALL(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPSetOperators(ksp, tangent.get(), tangent.get()));
   const auto converges = [&](bool anew) {
@@ -277,7 +300,7 @@ void NitscheSystem::make_snes(const Operators &op) {
   RBVI_CALL(MatSetOption(tangent.get(), MAT_SPD, PETSC_TRUE));
   for (Handle<Vec> *scratch : {&au, &ay, &force})
     *scratch = like(op.f);
-  RBVI_CALL(SNESCreate(solver.layer().trace.comm, snes.put()));
+  RBVI_CALL(SNESCreate(problem.trace().comm, snes.put()));
   RBVI_CALL(SNESSetOptionsPrefix(snes.get(), "nitsche_"));
   // The type comes first: a change of type destroys the line search.
   char type[64] = SNESVINEWTONSSLS;
@@ -358,7 +381,7 @@ void NitscheSystem::set_callbacks() {
 void NitscheSystem::set_linear_solver() {
   KSP ksp = nullptr;
   PC pc = nullptr;
-  const int ranks = ranks_of(solver.layer().trace.comm);
+  const int ranks = ranks_of(problem.trace().comm);
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(KSPSetType(ksp, KSPCG));
   RBVI_CALL(KSPSetTolerances(ksp, linear_tolerance, PETSC_DEFAULT, 1e30, most_iterations));

@@ -15,10 +15,11 @@ struct NitscheSystem {
   NitscheSystem(const NitscheSolver &solver, const Problem &problem, const NitscheOptions &options);
 
   const NitscheSolver &solver;
+  const Problem &problem;
+  const NitscheCurve &curve;
   const NitscheOptions &options;
-  std::vector<PetscInt> rows; ///< of the dofs of the layer
+  std::vector<PetscInt> rows; ///< of the contact dofs
   std::optional<LocalFrames> frames;
-  std::vector<int> node_of_dof; ///< with local frames: of the layer
   Handle<SNES> snes;
   Handle<Mat> a_gamma, tangent;
   Handle<Vec> au, ay, force; ///< scratch
@@ -42,11 +43,11 @@ struct NitscheSystem {
   bool factorised = false; ///< in this step
   std::exception_ptr failed;
 
-  Vector on_layer(Vec u) const { return restrict_to(solver.layer().trace, u); }
+  Vector on_layer(Vec u) const { return restrict_to(problem.trace(), u); }
   void set_bounds(Vec u) { bounds = nitsche_bounds(nitsche_pressures(faces, on_layer(u)), law); }
 
   /// Collective, as are all below.
-  void set(const Scene &scene, const Operators &op);
+  void set(const Operators &op);
   void residual(Vec u, Vec r);
   void jacobian(Vec u, Mat matrix);
   double energy(Vec u);

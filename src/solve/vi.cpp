@@ -3,12 +3,14 @@
 #include "rbvi/solve/methods.hpp"
 #include "vectors.hpp"
 
+#include <cmath>
+
 namespace rbvi {
 
 namespace {
 
-/// a v = f in unknowns v that are bounded one by one: near an obstacle u itself, near a support its
-/// normal and tangential components (local frames).
+/// a v = f in unknowns v that are bounded one by one: u itself where it is scalar, else its normal
+/// and tangential components (local frames).
 struct PrimalProblem {
   Mat a;
   Vec f;
@@ -44,17 +46,22 @@ PetscErrorCode energy(SNES, Vec u, PetscReal *value, void *context) {
   PetscFunctionReturn(0);
 }
 
-/// Throws bad_input unless row i of b has entries at node i alone.
-void require_nodal_bounds(const Operators &op, Index components) {
-  for (Index i = 0; i < op.b.rows(); ++i)
-    for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
-      if (entry.value() != 0 && entry.col() / components != i)
-        throw bad_input(
-            "vi needs a bound at each node: set -lumped yes, or use -hf_method active_set");
+/// Row i of b bounds a node in two dimensions: b_i / |b_i| is a normal there.
+std::vector<NodalBound> nodal_bounds(const Contact &contact, const Operators &op) {
+  std::vector<NodalBound> bounds;
+  Index row = 0;
+  for (const auto &interface : contact.interfaces)
+    for (const Index node : interface->dual().vertices) {
+      const Index dof = interface->mesh().dofs[static_cast<std::size_t>(2 * node)];
+      const Point direction{op.b.coeff(row, dof), op.b.coeff(row, dof + 1), 0};
+      const double size = std::hypot(direction[0], direction[1]);
+      bounds.push_back({dof, {direction[0] / size, direction[1] / size, 0}, op.g[row++] / size});
+    }
+  return bounds;
 }
 
-/// The bound of each contact dof: row i of b reads b_i u_c <= g_i.
-void set_bounds_of_obstacle(const Trace &trace, const Operators &op, PrimalProblem &primal) {
+/// Scalar displacements: row i of b reads b_i u_c <= g_i.
+void set_bounds(const Trace &trace, const Operators &op, PrimalProblem &primal) {
   Vector low = Vector::Constant(trace.size, PETSC_NINFINITY);
   Vector high = Vector::Constant(trace.size, PETSC_INFINITY);
   for (Index i = 0; i < op.b.rows(); ++i)
@@ -93,7 +100,7 @@ Vector recover_multiplier(const Trace &trace, const Operators &op, Vec u) {
 }
 
 /// In local frames, the bounds those of the normal components at the vertices.
-PrimalProblem problem_on_support(const Operators &op, const LocalFrames &frames) {
+PrimalProblem problem_in_frames(const Operators &op, const LocalFrames &frames) {
   PrimalProblem primal{
       op.a, op.f, like(op.f), frames.upper(), frames.turned(op.a), frames.turned(op.f)};
   primal.a = primal.turned_a.get();
@@ -102,11 +109,11 @@ PrimalProblem problem_on_support(const Operators &op, const LocalFrames &frames)
   return primal;
 }
 
-PrimalProblem problem_on_obstacle(const Trace &trace, const Operators &op) {
+PrimalProblem scalar_problem(const Trace &trace, const Operators &op) {
   PrimalProblem primal{op.a, op.f, like(op.f), like(op.f)};
   RBVI_CALL(VecSet(primal.lower.get(), PETSC_NINFINITY));
   RBVI_CALL(VecSet(primal.upper.get(), PETSC_INFINITY));
-  set_bounds_of_obstacle(trace, op, primal);
+  set_bounds(trace, op, primal);
   return primal;
 }
 
@@ -171,15 +178,21 @@ MethodResult minimise(MPI_Comm comm, PrimalProblem &primal) {
 
 } // namespace
 
+void require_bounds_at_nodes(const Scene &scene) {
+  if (!bounds_nodes(scene))
+    throw bad_input("vi needs a bound at each node and no friction: set -lumped yes and -friction "
+                    "none where the scene has these options, or use -hf_method active_set");
+}
+
 MethodResult solve_vi(const Problem &problem, const Operators &op) {
-  require_nodal_bounds(op, problem.scene().components);
+  require_bounds_at_nodes(problem.scene());
   std::optional<LocalFrames> frames;
-  if (problem.on_support()) {
-    frames.emplace(problem, static_cast<std::size_t>(problem.support().curve.vertices));
-    frames->set(op.mu);
+  if (problem.scene().components > 1) {
+    frames.emplace(problem);
+    frames->set(nodal_bounds(problem.contact(), op));
   }
   PrimalProblem primal =
-      frames ? problem_on_support(op, *frames) : problem_on_obstacle(problem.trace(), op);
+      frames ? problem_in_frames(op, *frames) : scalar_problem(problem.trace(), op);
   MethodResult result = minimise(problem.comm(), primal);
   if (frames) result.u = frames->turned_back(result.u.get());
   result.lambda = recover_multiplier(problem.trace(), op, result.u.get());

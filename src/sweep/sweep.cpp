@@ -264,7 +264,7 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
       free += (free.empty() ? "" : ",") + parameter.name;
   }
   settings["parameters"] = free;
-  if (scene.nitsche) {
+  if (by_nitsche(scene)) {
     settings["nitsche_bounds"] = options.nitsche.nonpenetration ? "nonpenetration" : "none";
     return settings;
   }

@@ -96,8 +96,7 @@ double offline_seconds(const ReducedModel &model, const std::vector<Sample> &sna
 
 /// Whether vi solves the scene once it has vertex quadrature: one body, without friction.
 bool vi_fits(const Scene &scene) {
-  return scene.options.contains("lumped") && !scene.pair &&
-         (!scene.support || scene.support->friction.law == FrictionLaw::none);
+  return scene.options.contains("lumped") && separable_contact(scene) && !has_friction(scene);
 }
 
 std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &options,
@@ -107,7 +106,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   HfOptions hf = options.hf;
   hf.method = HfMethod::active_set;
   rows.push_back(bench_solver(problem, hf, truths, truths.size(), false));
-  if (problem.nitsche()) {
+  if (problem.nitsche() != nullptr) {
     rows.push_back(bench_solver(problem, hf, truths, few, true));
     return rows;
   }

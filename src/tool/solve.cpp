@@ -19,7 +19,8 @@ void command_solve(const ToolOptions &options) {
   const ParameterSpace &space = options.scene.parameters;
   const Mu mu = parse_mu(space, options.mu);
   std::vector<NamedFile> outputs{{"-csv", options.csv}, {"-vtu", options.vtu}};
-  if (!options.vtu.empty()) outputs.push_back({"-vtu", contact_file(options.vtu)});
+  for (std::size_t i = 0; i < options.scene.contacts.size() && !options.vtu.empty(); ++i)
+    outputs.push_back({"-vtu", contact_file(options.vtu, i)});
   check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh);
   check_solver_options(problem, options.hf);

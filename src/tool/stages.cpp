@@ -33,7 +33,7 @@ StageRow snapshot_row(const ToolOptions &options, std::size_t training, int grou
 
 /// What of the solves is done once for all mu.
 std::string factorisation_text(const ToolOptions &options) {
-  if (options.scene.nitsche)
+  if (by_nitsche(options.scene))
     return "one serves many Newton steps, as long as conjugate gradients need few iterations";
   if (constant_stiffness(options.scene))
     return "A does not depend on mu: one for the sweep, one condensed operator";

@@ -128,7 +128,7 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
   (friction ? errors.tangential : errors.lambda).maxCoeff(&worst);
   const Mu &mu = truths.mu[static_cast<std::size_t>(worst)];
   OnlineSolver solver(model);
-  const std::vector<Point> points = dual_points(model, solver.scene());
+  const std::vector<Point> points = dual_points(solver.contact());
   const auto count = static_cast<Index>(points.size());
   const Vector reduced = solver.multiplier(solver.solve(mu, true)),
                truth = truths.lambda.col(worst);

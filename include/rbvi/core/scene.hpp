@@ -7,6 +7,7 @@
 // scene serves the offline assembly and the online evaluation of sampled entries.
 #pragma once
 
+#include "rbvi/core/contact_recipe.hpp"
 #include "rbvi/core/parameters.hpp"
 
 #include <array>
@@ -87,65 +88,10 @@ struct FixedBoundary {
   std::vector<int> components; ///< empty: all
 };
 
-/// Where multipliers of two bodies live (2D).
-enum class MultiplierSpace {
-  macro_edges, ///< constant on macro-edges (local average contact, LAC): two slave edges, of
-               ///< degree 2 one
-  nodes        ///< continuous, linear on each slave edge
-};
-
-/// How the integrals over two meshes that do not match are taken.
-enum class PairQuadrature {
-  intersection, ///< exact: slave and master edges are intersected
-  direct        ///< Gauss points of the slave edges alone
-};
-
-struct PairDiscretisation {
-  MultiplierSpace multiplier = MultiplierSpace::macro_edges;
-  PairQuadrature quadrature = PairQuadrature::intersection;
-};
-
-/// Two bodies that meet along two curves. The partner of a point of the slave (upper) curve is the
-/// point of the master (lower) one below it; the gap is measured along e_y (2.49). Of degree 2
-/// Scene::snap brings the middles of their edges onto them.
-struct PairRecipe {
-  std::string slave, master; ///< boundaries
-  PairDiscretisation discretisation;
-};
-
-enum class FrictionLaw { none, tresca, coulomb };
-
-/// |sigma_tau| <= bound: Tresca's threshold (a pressure), or Coulomb's coefficient times the normal
-/// pressure.
-struct Friction {
-  FrictionLaw law = FrictionLaw::none;
-  std::function<double(const FullMu &)> value; ///< threshold or coefficient, >= 0
-  bool only_in_contact = false;                ///< Tresca: zero where a node carries no pressure
-};
-
-/// Contact with a rigid support along a boundary. Multipliers are continuous and linear on its
-/// edges, normal and, with friction, tangential; tau = (-n_y, n_x) in 2D.
-struct SupportRecipe {
-  std::string boundary;
-  /// Unit normal at a point of the reference boundary, out of the mapped body.
-  std::function<Point(const FullMu &, const Point &)> normal;
-  /// Gap along it: u . n <= gap.
-  std::function<double(const FullMu &, const Point &)> gap;
-  Friction friction;
-};
-
 /// The two constants of an isotropic material, pressures:
 /// sigma = lambda tr(eps) I + 2 shear eps.
 struct Lame {
   double lambda, shear;
-};
-
-/// Contact with the support by Nitsche's method in place of multipliers (Niakh 2022, chapter 4):
-/// gamma = gamma0 (lambda + 2 shear) / h on each edge of the curve, h its length in the reference
-/// domain. Below some 3 the tangent is indefinite; far above the default the answer hardly changes,
-/// and takes more steps.
-struct NitscheRecipe {
-  double gamma0;
 };
 
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
@@ -184,11 +130,8 @@ struct Scene {
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
   double mirror_images = 1;
 
-  // Contact with an obstacle in a region, of two bodies, or with a rigid support.
-  std::string contact_region; ///< multipliers live on the vertices of this closed region
-  std::optional<PairRecipe> pair;
-  std::optional<SupportRecipe> support;
-  std::optional<NitscheRecipe> nitsche; ///< with a support and a material
+  /// Where the body can touch: at least one.
+  std::vector<ContactRecipe> contacts;
 
   /// The material of an elastic body at the centre of a reference cell, constant on the cell; in 2D
   /// plane strain. Empty: not elastic (a membrane), then there are no stresses.
@@ -201,14 +144,8 @@ struct Scene {
   /// a_part.
   std::optional<int> part_stiffness;
   std::map<int, Coordinate> a_coordinates; ///< of some of these parameters; the others: themselves
-  Form b, g;                               ///< empty where there is a pair or a support
   Form f;                                  ///< empty: no load
   Form v_product;                          ///< inner product of V on the reference domain
-  Form w_product;      ///< inner product of W on the reference domain; pair, support have theirs
-  bool lumped = false; ///< b, g by vertex quadrature: the constraint is a bound at each node
-
-  /// psi(mu) at a point of the mapped domain: u >= psi in the contact region.
-  std::function<double(const FullMu &, const Point &)> obstacle;
 };
 
 struct SceneEntry {
@@ -219,15 +156,6 @@ struct SceneEntry {
 
 /// Whether a is the same for all values of the free parameters.
 bool constant_stiffness(const Scene &scene);
-
-/// The options `multiplier` and `integration` of scenes with a pair, and what they say.
-std::vector<SceneOption> pair_options();
-PairDiscretisation pair_discretisation(const SceneOptions &options);
-
-/// The options `formulation` and `nitsche_gamma0` of scenes with a support, and what they say:
-/// nothing for the mixed formulation. Throws bad_input for a gamma0 that is not positive.
-std::vector<SceneOption> nitsche_options();
-std::optional<NitscheRecipe> nitsche_recipe(const SceneOptions &options);
 
 /// The number in an option.
 double number_in(const SceneOptions &options, const std::string &name);

@@ -98,12 +98,12 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTable &stages);
 
 /// `collocated` alone: the collocation nodes of a model that has none yet, into it. Serial.
-Gcns collocate(ReducedModel &model, const Scene &scene, const std::vector<Sample> &samples,
-               const SparseMatrix &w_product, const GcnsOptions &options);
+Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
+               const GcnsOptions &options);
 
 /// Contact with a rigid support, with the condensed operator: the training multipliers that
 /// `project` has left in the model become what a query starts from. Serial.
-void add_starts(ReducedModel &model, const Scene &scene);
+void add_starts(ReducedModel &model, const Problem &problem);
 
 /// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
 /// functions that span the dual space, dual dofs x any number. Collective.
@@ -126,7 +126,7 @@ Matrix multipliers_of(const std::vector<Sample> &samples);
 ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases);
 
-/// Collective. Fills the parts of a model that describe the mesh and the contact region.
+/// Collective. Fills the parts of a model that describe the mesh and the contact interfaces.
 void describe_mesh(const Problem &problem, ReducedModel &model);
 
 /// T(mu) X in coordinates for every mu of the set (n_c x columns of X each). Not collective.

@@ -10,29 +10,23 @@
 // |lambda_tau| <= bound, lambda_tau = bound slip / |slip| where it slips (corrected (3.32)).
 #pragma once
 
-#include "rbvi/law/friction/friction.hpp"
-
+#include "rbvi/contact/contact.hpp"
 #include "rbvi/fem/assembly.hpp"
-#include "rbvi/fem/contact_curves.hpp"
-#include "rbvi/fem/contact_region.hpp"
-#include "rbvi/fem/contact_support.hpp"
+#include "rbvi/fem/interface_mesh.hpp"
 
+#include <memory>
 #include <optional>
 
 namespace rbvi {
 
-/// Valid until the problem is assembled at another mu.
-struct Operators {
+/// Valid until the problem is assembled at another mu. b, g, weights and the nodal constraint are
+/// those of all interfaces together; empty by Nitsche's method.
+struct Operators : ContactOperators {
   FullMu mu;
   Mat a = nullptr;
-  Vec f = nullptr;  ///< zero where the scene has no load
-  SparseMatrix b;   ///< dual x contact dofs
-  Vector g;         ///< dual
-  Vector weights;   ///< integral of each normal multiplier's basis function over the mapped surface
-  Index normal = 0; ///< normal multipliers: the first of the dual dofs
-  FrictionBound bound;  ///< of the others
-  SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
-  Vector nodal_gap;
+  Vec f = nullptr;     ///< zero where the scene has no load
+  Index normal = 0;    ///< normal multipliers: the first of the dual dofs
+  FrictionBound bound; ///< of the others
 };
 
 class Problem {
@@ -41,18 +35,15 @@ public:
   Problem(MPI_Comm comm, Scene scene, const MeshOptions &options);
 
   MPI_Comm comm() const { return mesh_.comm; }
-  const Scene &scene() const { return scene_; }
+  const Scene &scene() const { return *scene_; }
   const Mesh &mesh() const { return mesh_; }
   const Dofs &dofs() const { return dofs_; }
-  bool two_bodies() const { return curves_.has_value(); }
-  bool on_support() const { return support_.has_value(); }
-  /// Contact by Nitsche's method: no B, G, weights and nodal constraint are assembled.
-  bool nitsche() const { return scene_.nitsche.has_value(); }
-  const ContactRegion &contact() const { return contact_.value(); }  ///< an obstacle
-  const ContactCurves &curves() const { return curves_.value(); }    ///< two bodies
-  const ContactSupport &support() const { return support_.value(); } ///< a rigid support
-  const Trace &trace() const;
-  Index dual_size() const { return w_product_.rows(); }
+  const InterfacePlaces &places() const { return places_; }
+  const Contact &contact() const { return contact_; }
+  const Trace &trace() const { return places_.trace; }
+  Index dual_size() const { return contact_.dual_size(); }
+  /// Nitsche's method: the terms along the contact curve; null: by multipliers.
+  const NitscheCurve *nitsche() const { return contact_.interfaces.front()->nitsche(); }
 
   /// Collective. `mu`: the free parameters, inside or outside the box. A is assembled again only
   /// where the parameters that it depends on have changed. Throws failure if a cell is inverted.
@@ -64,25 +55,18 @@ public:
   std::vector<double> stiffness_values(const FullMu &all_parameters) const;
 
   Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
-  const SparseMatrix &w_product() const { return w_product_; } ///< dual x dual
+  const SparseMatrix &w_product() const { return contact_.w_product; } ///< dual x dual
 
 private:
-  void assemble_obstacle(Operators &operators);
-  void assemble_pair(Operators &operators);
-  void assemble_support(Operators &operators);
-
-  Scene scene_;
+  std::unique_ptr<const Scene> scene_; ///< the interfaces refer to it
   Mesh mesh_;
   Dofs dofs_;
-  std::optional<ContactRegion> contact_;
-  std::optional<ContactCurves> curves_;
-  std::optional<ContactSupport> support_;
+  InterfacePlaces places_;
+  Contact contact_;
   MappedCells cells_;
   Handle<Mat> a_, v_product_;
   std::optional<std::vector<double>> a_made_at_; ///< stiffness_values
   Handle<Vec> f_;
-  std::optional<ContactMatrix> b_; ///< an obstacle
-  SparseMatrix w_product_;
   Operators operators_;
 };
 

@@ -4,13 +4,12 @@
 //   min over x >= 0 of  1/2 |Y x - c|^2 + g . x,    then  u = L^-T (c - Y x)
 //
 // What does not depend on mu is done once: the factor L where A has one term, Y where B has one
-// term too. Of two bodies B and G are assembled anew, on the contact curves alone. Free modes have
-// equations in place of inequalities. An online-enriched model is first reduced to V_N + S_R(mu)
-// (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
+// term too. B and G that do not separate are evaluated anew, on the interfaces alone. Free modes
+// have equations in place of inequalities. An online-enriched model is first reduced to V_N +
+// S_R(mu) (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
 // rom/support/support_solver.hpp, by Nitsche's method rom/nitsche/nitsche_solver.hpp.
 #pragma once
 
-#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/law/qp/mixed_qp.hpp"
 #include "rbvi/rom/model/model.hpp"
@@ -23,13 +22,13 @@ namespace rbvi {
 
 struct ReducedSolution {
   FullMu mu;
-  Vector u;                ///< n coefficients
-  Vector x;                ///< R coefficients, >= 0 but for those of the free modes
-  Vector theta_b;          ///< coefficients of b at this mu; two bodies: none
-  PairOperators pair;      ///< two bodies: the contact operators at this mu
-  double energy = 0;       ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
-  double kkt_residual = 0; ///< see kkt_residual(); on a support that of the laws at all nodes
-  int iterations = 0;      ///< active-set updates, or Newton steps
+  Vector u;                 ///< n coefficients
+  Vector x;                 ///< R coefficients, >= 0 but for those of the free modes
+  Vector theta_b;           ///< coefficients of b at this mu, where it separates
+  ContactOperators contact; ///< at this mu, where they do not separate
+  double energy = 0;        ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
+  double kkt_residual = 0;  ///< see kkt_residual(); on a support that of the laws at all nodes
+  int iterations = 0;       ///< active-set updates, or Newton steps
 };
 
 /// Answers queries on a model that it does not own; keeps the last active set as the next start.
@@ -49,50 +48,42 @@ public:
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
   Vector multiplier(const ReducedSolution &solution) const;
-  /// Gap that is left at the contact nodes: u - psi of one body; of two at the slave nodes that
-  /// have a partner (solution.pair.paired), measured vertically; on a support along the normal.
-  Vector contact_gap(const Mu &mu, const ReducedSolution &solution) const;
+  /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap).
+  Vector contact_gap(const ReducedSolution &solution) const;
   /// At all dofs, without the motion of the scene. Throws failure if the model was read without its
   /// fields.
   Vector field(const ReducedSolution &solution) const;
   const ReducedModel &model() const { return model_; }
   const Scene &scene() const { return scene_; }
+  const Contact &contact() const { return contact_; }
 
 private:
   ReducedSolution solve_at(const FullMu &all_parameters);
-  void assemble_pair(const FullMu &all_parameters, ReducedSolution &solution);
+  void evaluate_contact(ReducedSolution &solution);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
   void enrich();
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
-  void support_outputs_of(const FullMu &all_parameters, const ReducedSolution &solution,
-                          Outputs &outputs) const;
+  /// weights, nodal_b and nodal_gap.
+  ContactOperators nodal_operators(const ReducedSolution &solution) const;
 
   const ReducedModel &model_;
-  Scene scene_;
+  const Scene scene_;
+  Contact contact_;
   // Contact with a rigid support: the rest is not used.
   std::unique_ptr<SupportSolver> support_;
   std::unique_ptr<ReducedNitsche> nitsche_;
   MixedQp qp_;
   bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
-  std::vector<Point> curves_;    ///< two bodies: the contact points
   Index first_dual_, dual_rows_; ///< the rows of the dual basis that are not zero lie among these
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.
   Vector packed_, theta_a_, theta_b_;
-  Matrix a_, l_, b_, y_; // two bodies: B is always that of the query
+  Matrix a_, l_, b_, y_; // evaluated contact: B is always that of the query
   Matrix enrichment_; ///< online-enriched: V_N + S_R(mu) in the n functions, which a_ ... f_ are in
   double a_scale_ = 1, b_scale_ = 1;
   Vector f_, g_, c_;
 };
-
-/// Where each multiplier is, reference coordinates.
-std::vector<Point> dual_points(const ReducedModel &model, const Scene &scene);
-
-/// Gap that is left to a rigid support along its normal, at points of the reference boundary;
-/// `displacement`: components at each, without the motion.
-Vector normal_gap(const Scene &scene, const FullMu &all_parameters, const Matrix &contact_points,
-                  const Vector &displacement);
 
 /// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
 /// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with

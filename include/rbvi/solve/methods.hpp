@@ -64,8 +64,12 @@ MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start
 MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
                          const SparseMatrix &w_product, const HfOptions &options);
 
-/// Needs a `b` whose rows have one node each (vertex quadrature), else throws bad_input; without
-/// friction. On a support the unknowns are those of local frames.
+/// Throws bad_input, saying what to set, unless every interface bounds single nodes (vertex
+/// quadrature) without friction.
+void require_bounds_at_nodes(const Scene &scene);
+
+/// Needs bounds at nodes, else throws bad_input. Where the displacement is no scalar, the unknowns
+/// are those of local frames.
 MethodResult solve_vi(const Problem &problem, const Operators &op);
 
 /// Collective.

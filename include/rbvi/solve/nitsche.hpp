@@ -10,7 +10,6 @@
 #pragma once
 
 #include "rbvi/contact/nitsche/nitsche_curve.hpp"
-#include "rbvi/fem/contact_layer.hpp"
 #include "rbvi/problem/problem.hpp"
 
 #include <functional>
@@ -36,7 +35,7 @@ struct NitscheSolution {
   Handle<Vec> u;       ///< free dofs, without the motion
   Matrix pressures;    ///< at the points of the curve, see nitsche_pressures
   Vector bounds;       ///< of friction there
-  Vector layer;        ///< u on the layer
+  Vector layer;        ///< u at the contact dofs
   double energy = 0;   ///< a(u,u)/2 - f(u) (4.11)
   double residual = 0; ///< |A_gamma u - F + terms| / (|A_gamma u - F| + |terms|)
   int iterations = 0;  ///< Newton steps
@@ -50,22 +49,21 @@ struct NitscheSystem;
 class NitscheSolver {
 public:
   /// Collective. SNES, KSP and PC options under -nitsche_; rtol is that of the residual, relative
-  /// to its terms, atol that of its norm. `problem` must outlive it; its scene has a NitscheRecipe.
+  /// to its terms, atol that of its norm. `problem` must outlive it; its contact is by Nitsche's
+  /// method.
   NitscheSolver(Problem &problem, const NitscheOptions &options);
   ~NitscheSolver();
   /// Collective. `op`: the problem assembled at some mu; `start`: null: u = 0, in contact where its
   /// penetration is above half of the largest. Throws failure, saying what to try, where SNES does
   /// not converge or a tangent is not positive definite (gamma0 too small).
   NitscheSolution solve(const Operators &op, const NitscheStart *start = nullptr);
-  const ContactLayer &layer() const { return layer_; }
-  /// Called with u on the layer at the start of every Newton step, and the bounds of friction.
+  /// Called with u at the contact dofs at the start of every Newton step, and the bounds of
+  /// friction.
   std::function<void(const Vector &layer, const Vector &bounds)> watch;
 
 private:
   void run(bool nested, Vec u, NitscheSolution &result);
-  Problem &problem_;
   NitscheOptions options_;
-  ContactLayer layer_;
   std::unique_ptr<NitscheSystem> system_;
 };
 

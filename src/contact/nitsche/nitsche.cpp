@@ -52,23 +52,19 @@ double coulomb_bound(double p, double coefficient) {
   return coefficient * std::max(-p, 0.0);
 }
 
-NitschePoint nitsche_point(const Scene &scene, const FullMu &all_parameters, const Cell &cell,
-                           int edge, const Lame &material, double s) {
+NitschePoint nitsche_point(const Scene &scene, const Support &support, const FullMu &mu,
+                           const Cell &cell, int edge, const Lame &material, double s) {
   const Simplex geometry = simplex(2, cell.mapped);
   const auto [first, second] = simplex_edges[static_cast<std::size_t>(edge)];
   const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(second);
   const Point x{(1 - s) * cell.reference[begin][0] + s * cell.reference[end][0],
                 (1 - s) * cell.reference[begin][1] + s * cell.reference[end][1], 0};
-  const Point n = scene.support->normal(all_parameters, x);
+  const SupportPoint here = support_point(scene, support, mu, x);
   NitschePoint point;
   point.weight = std::hypot(cell.mapped[end][0] - cell.mapped[begin][0],
                             cell.mapped[end][1] - cell.mapped[begin][1]);
-  point.gap = scene.support->gap(all_parameters, x);
-  if (scene.motion) {
-    const Point motion = scene.motion(all_parameters, x);
-    point.gap -= motion[0] * n[0] + motion[1] * n[1];
-    point.slip = motion[1] * n[0] - motion[0] * n[1];
-  }
+  point.gap = here.gap;
+  point.slip = here.slip;
   std::array<double, 3> barycentric{};
   barycentric[begin] = 1 - s;
   barycentric[end] = s;
@@ -76,17 +72,18 @@ NitschePoint nitsche_point(const Scene &scene, const FullMu &all_parameters, con
   std::array<std::array<double, 3>, most_nodes> gradients{};
   lagrange_values(2, scene.degree, barycentric, values);
   lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
-  set_functionals(static_cast<std::size_t>(nodes_per_cell(2, scene.degree)), values, gradients, n,
-                  material, point);
+  set_functionals(static_cast<std::size_t>(nodes_per_cell(2, scene.degree)), values, gradients,
+                  here.normal, material, point);
   return point;
 }
 
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const FullMu &all_parameters,
-                                           const Cell &cell, int edge, const Lame &material) {
-  check_orientation(scene, all_parameters, cell);
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Support &support,
+                                           const FullMu &mu, const Cell &cell, int edge,
+                                           const Lame &material) {
+  check_orientation(scene, mu, cell);
   std::array<NitschePoint, 4> points;
   for (std::size_t q = 0; q < points.size(); ++q) {
-    points[q] = nitsche_point(scene, all_parameters, cell, edge, material, edge_quadrature[q].s);
+    points[q] = nitsche_point(scene, support, mu, cell, edge, material, edge_quadrature[q].s);
     points[q].weight *= edge_quadrature[q].weight;
   }
   return points;

@@ -1,6 +1,5 @@
 #include "rbvi/contact/nitsche/nitsche_curve.hpp"
 
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
@@ -75,32 +74,33 @@ double edge_length(const std::array<Point, 4> &vertices, int edge) {
 
 } // namespace
 
-CurveCellAtMu curve_cell_at(const Scene &scene, const FullMu &all_parameters,
-                            const CurveCell &beside) {
-  CurveCellAtMu result{beside.cell, scene.material(all_parameters, reference_centre(beside.cell)),
-                       0};
+CurveCellAtMu curve_cell_at(const NitscheCurve &curve, const FullMu &mu, const CurveCell &beside) {
+  const Scene &scene = curve.scene;
+  CurveCellAtMu result{beside.cell, scene.material(mu, reference_centre(beside.cell)), 0};
   for (std::size_t v = 0; v < 3; ++v)
-    result.cell.mapped[v] = scene.map(all_parameters, beside.cell.reference[v]);
-  result.gamma = scene.nitsche->gamma0 * (result.material.lambda + 2 * result.material.shear) /
+    result.cell.mapped[v] = scene.map(mu, beside.cell.reference[v]);
+  result.gamma = curve.gamma0 * (result.material.lambda + 2 * result.material.shear) /
                  edge_length(beside.cell.reference, beside.edge);
   return result;
 }
 
-std::vector<NitscheFace> nitsche_faces(const Scene &scene, const FullMu &all_parameters,
+std::vector<NitscheFace> nitsche_faces(const NitscheCurve &curve, const FullMu &mu,
                                        const std::vector<CurveCell> &cells) {
   std::vector<NitscheFace> faces;
   faces.reserve(cells.size());
   for (const CurveCell &beside : cells) {
-    const CurveCellAtMu at = curve_cell_at(scene, all_parameters, beside);
-    faces.push_back({nitsche_points(scene, all_parameters, at.cell, beside.edge, at.material),
-                     at.gamma, beside.dofs});
+    const CurveCellAtMu at = curve_cell_at(curve, mu, beside);
+    faces.push_back(
+        {nitsche_points(curve.scene, curve.support, mu, at.cell, beside.edge, at.material),
+         at.gamma, beside.dofs});
   }
   return faces;
 }
 
-NitscheLaw nitsche_law(const Friction &friction, const FullMu &all_parameters) {
+NitscheLaw nitsche_law(const NitscheCurve &curve, const FullMu &mu) {
+  const Friction &friction = curve.support.friction;
   if (friction.law == FrictionLaw::none) return {};
-  const FrictionBound bound = friction_bound(friction, all_parameters); // of one law
+  const FrictionBound bound = friction_bound(friction, mu); // of one law
   return {friction.law, bound.coefficient + bound.threshold, bound.only_in_contact};
 }
 
@@ -237,8 +237,8 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line) {
   return low > 0 ? low : high;
 }
 
-CurveFields nitsche_fields(const Scene &scene, const FullMu &all_parameters,
-                           const std::vector<CurveCell> &cells, const Vector &u) {
+CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Vector &u) {
+  const std::vector<CurveCell> &cells = curve.cells;
   const auto count = static_cast<Index>(cells.size()) + 1;
   CurveFields fields;
   for (Vector *field : {&fields.sigma_n, &fields.sigma_tau, &fields.p_n, &fields.p_tau,
@@ -247,14 +247,14 @@ CurveFields nitsche_fields(const Scene &scene, const FullMu &all_parameters,
   Vector &excess = fields.excess;
   Vector slip = Vector::Zero(count), gamma = Vector::Zero(count), edges = Vector::Zero(count);
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const CurveCellAtMu at = curve_cell_at(scene, all_parameters, cells[k]);
+    const CurveCellAtMu at = curve_cell_at(curve, mu, cells[k]);
     const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
     const bool forward = at.cell.reference[static_cast<std::size_t>(ends[0])][0] <
                          at.cell.reference[static_cast<std::size_t>(ends[1])][0];
     const Row here = local(cells[k].dofs, u);
     for (const double s : {0.0, 1.0}) {
       const NitschePoint point =
-          nitsche_point(scene, all_parameters, at.cell, cells[k].edge, at.material, s);
+          nitsche_point(curve.scene, curve.support, mu, at.cell, cells[k].edge, at.material, s);
       const Index vertex = static_cast<Index>(k) + ((s == 1) == forward ? 1 : 0);
       fields.sigma_n[vertex] += point.sigma_n.dot(here);
       fields.sigma_tau[vertex] += point.sigma_tau.dot(here);

@@ -329,30 +329,6 @@ PairOperators couple(const std::vector<Point> &slave_nodes, const std::vector<Po
   return result;
 }
 
-PairOperators couple_at(const Scene &scene, const FullMu &all_parameters,
-                        const std::vector<Point> &points, Index slave_nodes) {
-  std::vector<Point> mapped;
-  mapped.reserve(points.size());
-  for (const Point &x : points)
-    mapped.push_back(scene.map(all_parameters, x));
-  const auto master = mapped.begin() + slave_nodes;
-  PairOperators pair;
-  try {
-    pair = couple({mapped.begin(), master}, {master, mapped.end()},
-                  scene.pair.value().discretisation, scene.degree);
-  } catch (const Error &error) { // the fault of this mu, not of the input
-    throw failure(std::string(error.what()) + ", mapped at " +
-                  describe(scene.parameters, all_parameters));
-  }
-  if (!scene.motion) return pair;
-  Vector motion(static_cast<Index>(points.size()));
-  for (Index i = 0; i < motion.size(); ++i)
-    motion[i] = scene.motion(all_parameters, points[static_cast<std::size_t>(i)])[1];
-  pair.g -= pair.b * motion;
-  pair.nodal_gap -= pair.nodal_b * motion;
-  return pair;
-}
-
 SparseMatrix multiplier_product(const std::vector<Point> &slave_nodes, MultiplierSpace space,
                                 int degree) {
   const Curve slave(slave_nodes, degree, "slave");

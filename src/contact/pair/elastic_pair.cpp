@@ -1,9 +1,27 @@
 #include "rbvi/contact/pair/elastic_pair.hpp"
 
+#include "rbvi/contact/pair/pair.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
 namespace rbvi {
+
+std::vector<SceneOption> pair_options() {
+  return {{"multiplier",
+           "p0",
+           "pressure: constant on pairs of edges, of degree 2 on edges (p0), or continuous (p1)",
+           {"p0", "p1"}},
+          {"integration",
+           "intersection",
+           "contact integrals: edges intersected, or Gauss points of the upper body alone",
+           {"intersection", "direct"}}};
+}
+
+PairDiscretisation pair_discretisation(const SceneOptions &options) {
+  return {options.at("multiplier") == "p1" ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
+          options.at("integration") == "direct" ? PairQuadrature::direct
+                                                : PairQuadrature::intersection};
+}
 
 std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<SceneOption> &own) {
   std::vector<SceneOption> options = pair_options();
@@ -18,7 +36,7 @@ void set_elastic_pair(const SceneOptions &options, Scene &scene) {
   scene.dim = 2;
   scene.components = 2;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
-  scene.pair = PairRecipe{"slave", "master", pair_discretisation(options)};
+  scene.contacts = {two_bodies({"slave", "master", pair_discretisation(options)})};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = [material](const FullMu &, const Point &) { return material; };
   scene.a = elasticity("", material, scene.degree);

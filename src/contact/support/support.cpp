@@ -1,7 +1,8 @@
 #include "rbvi/contact/support/support.hpp"
 
+#include "rbvi/contact/curve.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"
 
@@ -12,24 +13,16 @@ namespace rbvi {
 
 namespace {
 
-/// Integrals over an edge: multiplier of vertex e or e + 1, displacement of vertex e, e + 1 or the
-/// middle.
-using Products = std::array<std::array<double, 3>, 2>;
-
 /// A quadrature point of every edge; the weights sum to 1.
 struct TracePoint {
   double weight;
   std::array<double, 2> eta; ///< of both multipliers: 1 - s and s
-  Products products;         ///< weight * multiplier * displacement
+  std::array<double, 3> phi; ///< of the displacements: vertices, middle
 };
 
 TracePoint trace_point(int degree, const EdgePoint &at) {
   TracePoint point{at.weight, {1 - at.s, at.s}, {}};
-  std::array<double, 3> phi{};
-  lagrange_values(1, degree, point.eta, phi);
-  for (std::size_t a = 0; a < 2; ++a)
-    for (std::size_t node = 0; node < 3; ++node)
-      point.products[a][node] = at.weight * point.eta[a] * phi[node];
+  lagrange_values(1, degree, point.eta, point.phi);
   return point;
 }
 
@@ -42,221 +35,149 @@ std::vector<TracePoint> trace_points(int degree, bool lumped) {
   return points;
 }
 
-/// The indices of what the multipliers of a curve couple. The row of a vertex holds the columns of
-/// the vertices and the middles of its one or two edges.
-struct Pattern {
-  std::size_t vertices, middles; ///< middles: 0 of degree 1
+double length(const std::array<Point, 4> &edge) {
+  return std::hypot(edge[1][0] - edge[0][0], edge[1][1] - edge[0][1]);
+}
 
-  std::size_t edges() const { return vertices - 1; }
-  std::size_t columns() const { return 2 * (vertices + middles); }
-  std::size_t first_edge(std::size_t row) const { return row == 0 ? 0 : row - 1; }
-  std::size_t edges_of(std::size_t row) const {
-    return std::min(row + 1, edges()) - first_edge(row);
+class SupportInterface : public EntitySum {
+public:
+  SupportInterface(const Scene &scene, InterfaceMesh interface_mesh, Support support)
+      : EntitySum(scene, std::move(interface_mesh), 1), support_(std::move(support)),
+        points_(trace_points(mesh_.degree, support_.lumped)) {
+    const Index vertices = check_curve(mesh_, 0, "support's boundary");
+    if (mesh_.components != 2)
+      throw bad_input("scene " + scene.name +
+                      ": a rigid support is for displacements of two "
+                      "components");
+    const std::vector<Point> points(mesh_.points.begin(), mesh_.points.begin() + vertices);
+    const int copies = support_.friction.law == FrictionLaw::none ? 1 : 2;
+    set_dual(vertices, copies, linear_gram(points, copies));
   }
-  std::size_t entries(std::size_t row) const {
-    return 2 * (edges_of(row) + 1 + (middles > 0 ? edges_of(row) : 0));
+
+  void integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const override;
+  void weigh(const FullMu &, const Cell &edge, EntityValues &values) const override {
+    values.weights.setConstant(length(edge.mapped) / 2);
   }
-  /// Where in the row the x component of a node of an edge is: 0, 1 its vertices, 2 its middle.
-  std::size_t entry(std::size_t row, std::size_t edge, std::size_t node) const {
-    const std::size_t local = edge - first_edge(row);
-    return 2 * (node < 2 ? local + node : edges_of(row) + 1 + local);
+  FrictionBound bound(const FullMu &mu) const override {
+    return friction_bound(support_.friction, mu);
   }
+  PointConstraint constraint_at(const FullMu &mu, const Point &x) const override {
+    const SupportPoint at = support_point(scene_, support_, mu, x);
+    return {at.normal, at.gap};
+  }
+
+  void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
+               double least, Outputs &outputs) const override;
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
+    return support_fields(scene_, mu, *this, u, lambda);
+  }
+
+private:
+  Vector lift(const FullMu &mu, const Matrix &mapped) const;
+
+  Support support_;
+  std::vector<TracePoint> points_;
 };
 
-void check_curve(const SupportCurve &curve) {
-  const auto vertices = static_cast<std::size_t>(std::max<Index>(0, curve.vertices));
-  if (vertices < 2)
-    throw bad_input("the support's boundary needs at least one edge, but has " +
-                    std::to_string(vertices) + " vertices");
-  if (curve.points.size() < vertices)
-    throw bad_input("the support's boundary has " + std::to_string(vertices) +
-                    " vertices, but only " + std::to_string(curve.points.size()) + " points");
-  for (std::size_t i = 1; i < vertices; ++i)
-    if (!(curve.points[i - 1][0] < curve.points[i][0]))
-      throw bad_input("x must increase along the support's boundary, but vertex " +
-                      std::to_string(i) + " at x = " + short_number(curve.points[i][0]) +
-                      " follows x = " + short_number(curve.points[i - 1][0]));
-}
-
-Pattern pattern_of(const SupportCurve &curve, int degree) {
-  check_degree(degree);
-  check_curve(curve);
-  const auto vertices = static_cast<std::size_t>(curve.vertices);
-  const Pattern pattern{vertices, degree == 2 ? vertices - 1 : 0};
-  if (curve.points.size() != pattern.columns() / 2)
-    throw bad_input("a support's boundary of " + std::to_string(vertices) + " vertices has " +
-                    std::to_string(pattern.columns() / 2) + " nodes of degree " +
-                    std::to_string(degree) + ", not " + std::to_string(curve.points.size()));
-  return pattern;
-}
-
-double distance(const Point &x, const Point &y) {
-  const double dx = y[0] - x[0], dy = y[1] - x[1];
-  return std::sqrt(dx * dx + dy * dy);
-}
-
-std::vector<double> mapped_lengths(const Scene &scene, const FullMu &mu,
-                                   const SupportCurve &curve) {
-  std::vector<double> lengths(static_cast<std::size_t>(curve.vertices) - 1);
-  Point begin = scene.map(mu, curve.points[0]);
-  for (std::size_t edge = 0; edge < lengths.size(); ++edge) {
-    const Point end = scene.map(mu, curve.points[edge + 1]);
-    lengths[edge] = distance(begin, end);
-    begin = end;
+void SupportInterface::integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const {
+  const Point &begin = edge.reference[0], &end = edge.reference[1];
+  const double whole = length(edge.mapped);
+  const Index columns = values.b.cols(), nodes = columns / 2;
+  const bool friction = values.b.rows() > 2;
+  values.b.setZero();
+  values.g.setZero();
+  for (const TracePoint &at : points_) {
+    const double weight = at.weight * whole;
+    const Point x{at.eta[0] * begin[0] + at.eta[1] * end[0],
+                  at.eta[0] * begin[1] + at.eta[1] * end[1], 0};
+    const SupportPoint here = support_point(scene_, support_, mu, x);
+    for (Index a = 0; a < 2; ++a) {
+      const double eta = weight * at.eta[static_cast<std::size_t>(a)];
+      for (Index node = 0; node < nodes; ++node)
+        for (Index c = 0; c < 2; ++c)
+          values.b(a, 2 * node + c) += eta * at.phi[static_cast<std::size_t>(node)] *
+                                       here.normal[static_cast<std::size_t>(c)];
+      values.g[a] += here.gap * eta;
+      if (friction) values.g[2 + a] -= here.slip * eta;
+    }
   }
-  const double longest = *std::ranges::max_element(lengths);
-  for (std::size_t edge = 0; edge < lengths.size(); ++edge)
-    if (!(lengths[edge] > 1e-12 * longest))
-      throw failure("edge " + std::to_string(edge) + " of the support's boundary has no length, " +
-                    "mapped at " + describe(scene.parameters, mu));
-  return lengths;
+  for (Index a = 0; a < 2 && friction; ++a) // v . tau is v . n with v turned: (v_y, -v_x) . n
+    for (Index k = 0; k < columns; k += 2) {
+      values.b(2 + a, k) = -values.b(a, k + 1);
+      values.b(2 + a, k + 1) = values.b(a, k);
+    }
 }
 
-/// Zero values; `copies` blocks of rows of the same pattern.
-SparseMatrix zeros(const Pattern &pattern, std::size_t copies) {
-  const std::size_t rows = copies * pattern.vertices;
-  SparseMatrix b(static_cast<Index>(rows), static_cast<Index>(pattern.columns()));
-  int *const outer = b.outerIndexPtr();
-  for (std::size_t i = 0; i < rows; ++i)
-    outer[i + 1] = outer[i] + static_cast<int>(pattern.entries(i % pattern.vertices));
-  b.resizeNonZeros(outer[rows]);
-  std::fill_n(b.valuePtr(), b.nonZeros(), 0.0);
-  for (std::size_t i = 0; i < rows; ++i) {
-    const std::size_t row = i % pattern.vertices;
-    const std::size_t first = pattern.first_edge(row),
-                      on_vertices = 2 * (pattern.edges_of(row) + 1);
-    int *const columns = b.innerIndexPtr() + outer[i];
-    for (std::size_t k = 0; k < pattern.entries(row); ++k)
-      columns[k] = static_cast<int>(
-          k < on_vertices ? 2 * first + k : 2 * (pattern.vertices + first) + k - on_vertices);
-  }
-  return b;
-}
-
-/// What an edge adds to both components of its columns in the normal rows of its two vertices.
-struct EdgeBlock {
-  Products x{}, y{};
-
-  void add(const TracePoint &at, double n_x, double n_y) {
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t node = 0; node < 3; ++node) {
-        x[a][node] += at.products[a][node] * n_x;
-        y[a][node] += at.products[a][node] * n_y;
-      }
-  }
-  void add_to(SparseMatrix &b, const Pattern &pattern, std::size_t edge) const {
-    for (std::size_t a = 0; a < 2; ++a) {
-      double *const values = b.valuePtr() + b.outerIndexPtr()[edge + a];
-      for (std::size_t node = 0; node < (pattern.middles > 0 ? 3 : 2); ++node) {
-        double *const of_node = values + pattern.entry(edge + a, edge, node);
-        of_node[0] += x[a][node];
-        of_node[1] += y[a][node];
+/// The work of every multiplier on a unit vertical displacement, B e_y.
+Vector SupportInterface::lift(const FullMu &mu, const Matrix &mapped) const {
+  Vector result = Vector::Zero(dual_.size());
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const Cell edge = reference_entity(e);
+    const double whole = (mapped.row(e + 1) - mapped.row(e)).norm();
+    for (const TracePoint &at : points_) {
+      const Point &begin = edge.reference[0], &end = edge.reference[1];
+      const Point n = support_.normal(mu, {at.eta[0] * begin[0] + at.eta[1] * end[0],
+                                           at.eta[0] * begin[1] + at.eta[1] * end[1], 0});
+      for (Index a = 0; a < 2; ++a) {
+        const double eta = at.weight * whole * at.eta[static_cast<std::size_t>(a)];
+        result[e + a] += eta * n[1];
+        if (dual_.components > 1) result[dual_.nodes() + e + a] += eta * n[0];
       }
     }
   }
-};
-
-/// v . tau is v . n with v turned: (v_y, -v_x) . n.
-void set_tangential_rows(SparseMatrix &b) {
-  const Index half = b.nonZeros() / 2;
-  const double *const normal = b.valuePtr();
-  double *const tangential = b.valuePtr() + half;
-  for (Index k = 0; k < half; k += 2) {
-    tangential[k] = -normal[k + 1];
-    tangential[k + 1] = normal[k];
-  }
+  return result;
 }
 
-/// All but what is nodal.
-void integrate(const Scene &scene, const FullMu &mu, const SupportCurve &curve,
-               const Pattern &pattern, SupportOperators &result) {
-  const SupportRecipe &support = scene.support.value();
-  const bool friction = support.friction.law != FrictionLaw::none;
-  const std::vector<double> lengths = mapped_lengths(scene, mu, curve);
-  const std::vector<TracePoint> points = trace_points(scene.degree, scene.lumped);
-  const auto vertices = static_cast<Index>(pattern.vertices);
-  result.b = zeros(pattern, friction ? 2 : 1);
-  result.g = Vector::Zero(result.b.rows());
-  result.weights = Vector::Zero(vertices);
-  for (std::size_t edge = 0; edge < lengths.size(); ++edge) {
-    const Point &begin = curve.points[edge], &end = curve.points[edge + 1];
-    const auto first = static_cast<Index>(edge);
-    EdgeBlock block;
-    for (const TracePoint &at : points) {
-      const double weight = at.weight * lengths[edge];
-      const Point x{at.eta[0] * begin[0] + at.eta[1] * end[0],
-                    at.eta[0] * begin[1] + at.eta[1] * end[1], 0};
-      const Eigen::Vector2d eta(weight * at.eta[0], weight * at.eta[1]);
-      const Point n = support.normal(mu, x);
-      double gap = support.gap(mu, x), slip = 0;
-      if (scene.motion) {
-        const Point motion = scene.motion(mu, x);
-        gap -= motion[0] * n[0] + motion[1] * n[1];
-        slip = motion[1] * n[0] - motion[0] * n[1];
-      }
-      block.add(at, lengths[edge] * n[0], lengths[edge] * n[1]);
-      result.weights.segment<2>(first) += eta;
-      result.g.segment<2>(first) += gap * eta;
-      if (friction) result.g.segment<2>(vertices + first) -= slip * eta;
-    }
-    block.add_to(result.b, pattern, edge);
-  }
-  if (friction) set_tangential_rows(result.b);
-}
-
-void collocate(const Scene &scene, const FullMu &mu, const SupportCurve &curve,
-               const Pattern &pattern, SupportOperators &result) {
-  const auto vertices = static_cast<Index>(pattern.vertices);
-  SparseMatrix b(vertices, static_cast<Index>(pattern.columns()));
-  b.resizeNonZeros(2 * vertices);
-  result.nodal_gap.resize(vertices);
-  for (std::size_t i = 0; i < pattern.vertices; ++i) {
-    const Point &x = curve.points[i], n = scene.support->normal(mu, x);
-    const Point motion = scene.motion ? scene.motion(mu, x) : Point{};
-    for (std::size_t c = 0; c < 2; ++c) {
-      b.innerIndexPtr()[2 * i + c] = static_cast<int>(2 * i + c);
-      b.valuePtr()[2 * i + c] = n[c];
-    }
-    b.outerIndexPtr()[i + 1] = static_cast<int>(2 * (i + 1));
-    result.nodal_gap[static_cast<Index>(i)] =
-        scene.support->gap(mu, x) - (motion[0] * n[0] + motion[1] * n[1]);
-  }
-  result.nodal_b = std::move(b);
+void SupportInterface::outputs(const FullMu &mu, const ContactOperators &operators,
+                               const Vector &lambda, double, Outputs &outputs) const {
+  const Matrix mapped = mapped_points(scene_, mu, dual_.points);
+  support_outputs({lambda, operators.weights, lift(mu, mapped), bound(mu), mapped}, outputs);
 }
 
 } // namespace
 
-Index multiplier_count(const SupportCurve &curve, const SupportRecipe &support) {
-  return support.friction.law == FrictionLaw::none ? curve.vertices : 2 * curve.vertices;
-}
-
-SupportOperators couple_with_support(const Scene &scene, const FullMu &all_parameters,
-                                     const SupportCurve &curve) {
-  const Pattern pattern = pattern_of(curve, scene.degree);
-  SupportOperators result;
-  integrate(scene, all_parameters, curve, pattern, result);
-  collocate(scene, all_parameters, curve, pattern, result);
-  return result;
-}
-
-SparseMatrix multiplier_product(const SupportCurve &curve, const SupportRecipe &support) {
-  check_curve(curve);
-  const Index vertices = curve.vertices, rows = multiplier_count(curve, support);
-  const auto length = [&curve](Index edge) {
-    const auto e = static_cast<std::size_t>(edge);
-    return distance(curve.points[e], curve.points[e + 1]);
-  };
-  SparseMatrix product(rows, rows);
-  product.reserve(Eigen::VectorXi::Constant(rows, 3));
-  for (Index row = 0; row < rows; ++row) {
-    const Index i = row % vertices;
-    const double before = i > 0 ? length(i - 1) : 0, after = i + 1 < vertices ? length(i) : 0;
-    if (i > 0) product.insert(row, row - 1) = before / 6;
-    product.insert(row, row) = (before + after) / 3;
-    if (i + 1 < vertices) product.insert(row, row + 1) = after / 6;
+SupportPoint support_point(const Scene &scene, const Support &support, const FullMu &mu,
+                           const Point &x) {
+  const Point n = support.normal(mu, x);
+  SupportPoint point{n, support.gap(mu, x), 0};
+  if (scene.motion) {
+    const Point motion = scene.motion(mu, x);
+    point.gap -= motion[0] * n[0] + motion[1] * n[1];
+    point.slip = motion[1] * n[0] - motion[0] * n[1];
   }
-  product.makeCompressed();
-  return product;
+  return point;
+}
+
+Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
+                    const Vector &u, const Vector &lambda) {
+  const InterfaceMesh &mesh = interface.mesh();
+  const std::vector<Index> &vertices = interface.dual().vertices;
+  const auto count = static_cast<Index>(vertices.size());
+  Grid grid = polyline(scene, mu, mesh, vertices, u);
+  Vector gap(count);
+  for (Index k = 0; k < count; ++k) {
+    const Index node = vertices[static_cast<std::size_t>(k)];
+    const PointConstraint at =
+        interface.constraint_at(mu, mesh.points[static_cast<std::size_t>(node)]);
+    gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
+  }
+  grid.of_nodes.push_back({"gap", gap, "m"});
+  grid.of_nodes.push_back({"pressure", lambda.head(count), "Pa"});
+  if (lambda.size() > count)
+    grid.of_nodes.push_back({"tangential_stress", lambda.tail(count), "Pa"});
+  return grid;
+}
+
+ContactRecipe rigid_support(Support support) {
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::curves, {support.boundary}};
+  recipe.friction = support.friction.law;
+  recipe.nodal = support.lumped;
+  recipe.keeps_nodes = true;
+  recipe.make = [support](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<SupportInterface>(scene, std::move(mesh), support);
+  };
+  return recipe;
 }
 
 } // namespace rbvi

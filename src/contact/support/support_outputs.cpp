@@ -1,8 +1,5 @@
 #include "rbvi/contact/support/support_outputs.hpp"
 
-#include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +8,10 @@ namespace rbvi {
 namespace {
 
 /// Arc lengths of the points from the middle of the curve.
-Vector arc_lengths(const std::vector<Point> &points) {
-  Vector s(static_cast<Index>(points.size()));
-  s[0] = 0;
-  for (Index i = 1; i < s.size(); ++i) {
-    const Point &a = points[static_cast<std::size_t>(i) - 1];
-    const Point &b = points[static_cast<std::size_t>(i)];
-    s[i] = s[i - 1] + std::hypot(b[0] - a[0], b[1] - a[1]);
-  }
+Vector arc_lengths(const Matrix &points) {
+  Vector s = Vector::Zero(points.rows());
+  for (Index i = 1; i < s.size(); ++i)
+    s[i] = s[i - 1] + (points.row(i) - points.row(i - 1)).norm();
   return s.array() - s[s.size() - 1] / 2;
 }
 
@@ -28,18 +21,6 @@ bool sticks(double tangential, double bound, double violation) {
 }
 
 } // namespace
-
-FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters) {
-  FrictionBound bound;
-  if (friction.law == FrictionLaw::none) return bound;
-  const double value = friction.value(all_parameters);
-  if (!(value >= 0))
-    throw failure("the friction coefficient or threshold is " + short_number(value) +
-                  ": it must not be negative");
-  (friction.law == FrictionLaw::coulomb ? bound.coefficient : bound.threshold) = value;
-  bound.only_in_contact = friction.only_in_contact;
-  return bound;
-}
 
 Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n) {
   Vector result = bound.coefficient * lambda_n;

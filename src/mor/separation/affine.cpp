@@ -1,5 +1,6 @@
 #include "rbvi/mor/separation/affine.hpp"
 
+#include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 
@@ -18,11 +19,12 @@ struct TouchedCell {
   std::vector<std::pair<int, int>> entries;
 };
 
-/// `corners`: vertices of each cell, dim + 1 or (edges of a support) 2.
+/// `corners`: vertices of each cell.
 SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) {
   std::sort(cells.begin(), cells.end(),
             [](const TouchedCell &x, const TouchedCell &y) { return x.number < y.number; });
   SampleMesh sample;
+  sample.corners = corners;
   sample.vertices.resize(static_cast<Index>(cells.size()) * corners, dim);
   for (std::size_t k = 0; k < cells.size(); ++k) {
     for (int i = 0; i < corners; ++i)
@@ -50,49 +52,33 @@ std::vector<std::pair<int, int>> touched(const std::vector<EntryKey> &entries,
   return result;
 }
 
-/// Cells of the contact region; columns are contact dofs for b, the single 0 for g.
-SampleMesh sample_contact(const ContactRegion &region, const std::vector<EntryKey> &entries,
-                          bool matrix) {
-  std::vector<TouchedCell> cells;
-  const auto components = static_cast<std::size_t>(region.components);
-  for (std::size_t k = 0; k < region.cells.size(); ++k) {
-    std::vector<PetscInt> rows, columns;
-    TouchedCell cell{static_cast<PetscInt>(k), {}, {}};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(region.dim); ++i) {
-      const int dual = region.cells[k][i];
-      rows.push_back(dual);
-      cell.vertices[i] = region.points[static_cast<std::size_t>(dual)];
-      for (std::size_t c = 0; c < components && matrix; ++c)
-        columns.push_back(region.contact_dof[static_cast<std::size_t>(dual) * components + c]);
-    }
-    if (!matrix) columns.push_back(0);
-    cell.entries = touched(entries, rows, columns);
-    if (!cell.entries.empty()) cells.push_back(std::move(cell));
-  }
-  return to_sample_mesh(region.dim, region.dim + 1, std::move(cells));
-}
-
-/// Edges of the curve of a support; columns are contact dofs for b, the single 0 for g. Local rows
-/// and columns are those of an edge as a curve of its own.
-SampleMesh sample_support(const SupportCurve &curve, Index multipliers,
-                          const std::vector<EntryKey> &entries, bool matrix) {
-  std::vector<TouchedCell> edges;
-  const auto vertices = static_cast<PetscInt>(curve.vertices);
-  for (PetscInt e = 0; e + 1 < vertices; ++e) {
-    const auto at = static_cast<std::size_t>(e);
-    TouchedCell edge{e, {curve.points[at], curve.points[at + 1], {}, {}}, {}};
-    std::vector<PetscInt> rows{e, e + 1}, nodes{e, e + 1}, columns{0};
-    if (multipliers > curve.vertices) rows.insert(rows.end(), {vertices + e, vertices + e + 1});
-    if (static_cast<PetscInt>(curve.points.size()) > vertices) nodes.push_back(vertices + e);
+/// Entities of one interface; rows are dual dofs, columns contact dofs for b, the single 0 for g.
+SampleMesh sample_interface(const EntitySum &interface, Index first_row,
+                            const std::vector<EntryKey> &entries, bool matrix) {
+  std::vector<TouchedCell> touching;
+  for (Index e = 0; e < interface.mesh().count(); ++e) {
+    std::vector<PetscInt> rows, columns{0};
+    for (const Index row : interface.rows_of(e))
+      rows.push_back(static_cast<PetscInt>(first_row + row));
     if (matrix) {
       columns.clear();
-      for (const PetscInt node : nodes)
-        columns.insert(columns.end(), {2 * node, 2 * node + 1});
+      for (const Index column : interface.columns_of(e))
+        columns.push_back(static_cast<PetscInt>(column));
     }
-    edge.entries = touched(entries, rows, columns);
-    if (!edge.entries.empty()) edges.push_back(std::move(edge));
+    TouchedCell entity{static_cast<PetscInt>(e), interface.reference_entity(e).reference,
+                       touched(entries, rows, columns)};
+    if (!entity.entries.empty()) touching.push_back(std::move(entity));
   }
-  return to_sample_mesh(2, 2, std::move(edges));
+  return to_sample_mesh(interface.mesh().dim, interface.entity_dim() + 1, std::move(touching));
+}
+
+std::vector<SampleMesh> sample_contact(const Contact &contact, const std::vector<EntryKey> &entries,
+                                       bool matrix) {
+  std::vector<SampleMesh> samples;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i)
+    samples.push_back(sample_interface(*contact.interfaces[i]->entity_sum(), contact.first_row[i],
+                                       entries, matrix));
+  return samples;
 }
 
 /// Flattens the cells of all ranks onto every rank.
@@ -220,7 +206,7 @@ std::vector<EntryKey> entries_of_b(const AffineOperators &affine) {
 std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem) {
   const Index dual = problem.dual_size();
   if (affine.b_tangential.size() == 0) return {{affine.b, 0, dual}};
-  const Index normal = problem.support().curve.vertices;
+  const Index normal = problem.contact().nodes();
   return {{affine.b, 0, normal}, {affine.b_tangential, normal, dual - normal}};
 }
 
@@ -228,7 +214,7 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart) {
   std::vector<int> all(training.size()), none;
   std::iota(all.begin(), all.end(), 0);
-  const bool without_b = problem.two_bodies() || problem.nitsche(),
+  const bool without_b = !separable_contact(problem.scene()),
              load = static_cast<bool>(problem.scene().f);
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());
@@ -251,20 +237,13 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
 
   AffineOperators result;
   result.a = a.separate(problem.comm(), options);
-  separate_rows(b, problem.on_support() ? problem.support().curve.vertices : problem.dual_size(),
-                problem.dual_size(), options, apart, result);
+  separate_rows(b, problem.contact().nodes(), problem.dual_size(), options, apart, result);
   result.f = f.separate(problem.comm(), options);
   result.g = g.separate(MPI_COMM_SELF, options);
-  result.sample_a = sample_domain(problem, result.a.entries, true);
-  result.sample_f = sample_domain(problem, result.f.entries, false);
+  result.sample_a = {sample_domain(problem, result.a.entries, true)};
+  result.sample_f = {sample_domain(problem, result.f.entries, false)};
   if (without_b) return result;
-  if (problem.on_support()) {
-    const SupportCurve &curve = problem.support().curve;
-    result.sample_b = sample_support(curve, problem.dual_size(), entries_of_b(result), true);
-    result.sample_g = sample_support(curve, problem.dual_size(), result.g.entries, false);
-    return result;
-  }
-  result.sample_b = sample_contact(problem.contact(), result.b.entries, true);
+  result.sample_b = sample_contact(problem.contact(), entries_of_b(result), true);
   result.sample_g = sample_contact(problem.contact(), result.g.entries, false);
   return result;
 }

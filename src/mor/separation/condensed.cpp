@@ -15,22 +15,22 @@ namespace rbvi {
 
 namespace {
 
-bool mirrored(const SupportCurve &curve) {
-  const auto count = static_cast<std::size_t>(curve.vertices);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Point &x = curve.points[i], &y = curve.points[count - 1 - i];
+/// Whether node i is the mirror image of node count - 1 - i.
+bool mirrored(const std::vector<Point> &points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point &x = points[i], &y = points[points.size() - 1 - i];
     if (std::hypot(x[0] + y[0], x[1] - y[1]) > 1e-12) return false;
   }
   return true;
 }
 
-/// lambda_n even, lambda_tau odd about the middle, to 1e-8 of the largest.
-bool symmetric(const Matrix &snapshots, Index vertices) {
-  for (Index first = 0; first < snapshots.rows(); first += vertices) {
-    const Matrix part = snapshots.middleRows(first, vertices);
+/// lambda_n even, lambda_tau odd about the middle, to 1e-8 of the largest of all.
+bool symmetric(const Matrix &snapshots, Index nodes, double largest) {
+  for (Index first = 0; first < snapshots.rows(); first += nodes) {
+    const Matrix part = snapshots.middleRows(first, nodes);
     const double sign = first == 0 ? 1 : -1;
     const double defect = (part - sign * part.colwise().reverse()).cwiseAbs().maxCoeff();
-    if (defect > 1e-8 * snapshots.cwiseAbs().maxCoeff()) return false;
+    if (defect > 1e-8 * largest) return false;
   }
   return true;
 }
@@ -122,18 +122,33 @@ std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &
 
 } // namespace
 
-Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots) {
-  const SupportCurve &curve = problem.support().curve;
-  const Index vertices = curve.vertices, parts = problem.dual_size() / vertices;
-  if (!problem.scene().symmetric || !mirrored(curve) || !symmetric(snapshots, vertices))
-    return Matrix::Identity(problem.dual_size(), problem.dual_size());
-  const Index half = (vertices + 1) / 2;
-  Matrix basis = Matrix::Zero(parts * vertices, parts * half);
-  for (Index part = 0; part < parts; ++part)
-    for (Index i = 0; i < half; ++i) {
-      basis(part * vertices + vertices - 1 - i, part * half + i) = part == 0 ? 1 : -1;
-      basis(part * vertices + i, part * half + i) = 1;
+Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots) {
+  const Contact &contact = problem.contact();
+  const double largest = snapshots.cwiseAbs().maxCoeff();
+  bool halves = problem.scene().symmetric;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const DualSpace &dual = contact.interfaces[i]->dual();
+    halves =
+        halves && dual.components <= 2 && mirrored(dual.points) &&
+        symmetric(snapshots.middleRows(contact.first_row[i], dual.size()), dual.nodes(), largest);
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  Index column = 0;
+  for (int component = 0; component < 3; ++component) // normal multipliers first
+    for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+      const DualSpace &dual = contact.interfaces[i]->dual();
+      if (component >= dual.components) continue;
+      const Index nodes = dual.nodes(), first = contact.first_row[i] + component * nodes;
+      const Index count = halves ? (nodes + 1) / 2 : nodes;
+      for (Index k = 0; k < count; ++k, ++column) {
+        if (halves && nodes - 1 - k != k)
+          entries.emplace_back(first + nodes - 1 - k, column, component == 0 ? 1 : -1);
+        entries.emplace_back(first + k, column, 1);
+      }
     }
+  Matrix basis = Matrix::Zero(problem.dual_size(), column);
+  for (const auto &entry : entries)
+    basis(entry.row(), entry.col()) = entry.value();
   return basis;
 }
 

@@ -16,21 +16,6 @@ namespace rbvi {
 
 namespace {
 
-void describe_curve(const ContactLayer &layer, const ReducedModel &model, NitscheModel &nitsche) {
-  const auto cells = static_cast<Index>(layer.cells.size());
-  nitsche.vertices.resize(3 * cells, 2);
-  for (Index k = 0; k < cells; ++k) {
-    const CurveCell &cell = layer.cells[static_cast<std::size_t>(k)];
-    for (Index v = 0; v < 3; ++v)
-      for (Index c = 0; c < 2; ++c)
-        nitsche.vertices(3 * k + v, c) =
-            cell.cell.reference[static_cast<std::size_t>(v)][static_cast<std::size_t>(c)];
-    nitsche.edges.push_back(cell.edge);
-    nitsche.dofs.insert(nitsche.dofs.end(), cell.dofs.begin(), cell.dofs.end());
-  }
-  nitsche.trace = model.primal_basis(layer.natural, Eigen::all);
-}
-
 constexpr double round_off = 1e-10; ///< of an answer: where the modes leave less, enough
 
 /// Most that the two halves of a symmetric curve add to an answer differently, relative: more is a
@@ -40,10 +25,12 @@ constexpr double mirrored = 1e-7;
 /// The model with all points: its answers, and what each point adds to them.
 class AllPoints {
 public:
-  AllPoints(const ReducedModel &model, const Scene &scene, const std::vector<CurveCell> &cells,
+  AllPoints(const ReducedModel &model, const NitscheCurve &curve,
             const std::vector<Sample> &samples)
-      : model_(model), solver_(model_, scene), scene_(scene), samples_(samples),
-        symmetric_(scene.symmetric) {
+      : model_(model), solver_(model_, curve), scene_(curve.scene), samples_(samples),
+        of_curve_(4 * static_cast<Index>(curve.cells.size())),
+        symmetric_(curve.scene.symmetric) {
+    const std::vector<CurveCell> &cells = curve.cells;
     const auto count = static_cast<Index>(samples.size());
     answers_.resize(model.primal_size(), count);
     std::vector<char> met(4 * cells.size(), 0); // some answer has contact or friction there
@@ -64,6 +51,7 @@ public:
   const Matrix &answers() const { return answers_; } ///< n x P
   /// The points that matter; on a symmetric curve the points of one half stand for both.
   const std::vector<int> &points() const { return points_; }
+  Index of_curve() const { return of_curve_; } ///< all points
   double share() const { return symmetric_ ? 2 : 1; }
   /// What each of them adds to answer p to first order: tangent^-1 residual, relative to |u|.
   Matrix effects(Index p) {
@@ -80,6 +68,7 @@ private:
   ReducedNitsche solver_;
   const Scene &scene_;
   const std::vector<Sample> &samples_;
+  Index of_curve_;
   bool symmetric_; ///< scene and mesh, hence each answer: both halves of the curve add the same
   Matrix answers_;
   std::vector<int> points_;
@@ -137,7 +126,7 @@ void set_points(const AllPoints &all, const Vector &factors, const Matrix &press
   }
   nitsche.factors = Eigen::Map<const Vector>(positive.data(), static_cast<Index>(positive.size()));
   std::vector<int> rows = nitsche.points;
-  const Index count = 4 * static_cast<Index>(nitsche.edges.size());
+  const Index count = all.of_curve();
   for (std::size_t k = 0; k < nitsche.points.size() && pressures.rows() > count; ++k)
     rows.push_back(static_cast<int>(count) + nitsche.points[k]);
   nitsche.starts = pressures(rows, Eigen::all);
@@ -145,15 +134,15 @@ void set_points(const AllPoints &all, const Vector &factors, const Matrix &press
 
 /// Relative distance of each answer of the model, with the points it has, to that with all;
 /// infinite where it has none.
-Vector errors_of_points(const ReducedModel &model, const Scene &scene,
+Vector errors_of_points(const ReducedModel &model, const NitscheCurve &curve,
                         const std::vector<Sample> &samples, const Matrix &answers) {
-  ReducedNitsche solver(model, scene);
+  ReducedNitsche solver(model, curve);
   Vector errors(answers.cols());
   for (Index p = 0; p < errors.size(); ++p) {
     const auto all = answers.col(p);
     try {
       const Mu &mu = samples[static_cast<std::size_t>(p)].mu;
-      errors[p] = (solver.solve(expand(scene.parameters, mu)).u - all).norm() /
+      errors[p] = (solver.solve(expand(curve.scene.parameters, mu)).u - all).norm() /
                   std::max(all.norm(), 1e-300);
     } catch (const Error &) {
       errors[p] = std::numeric_limits<double>::infinity();
@@ -165,7 +154,7 @@ Vector errors_of_points(const ReducedModel &model, const Scene &scene,
 /// Non-negative least squares, point by point, until every answer of the model itself is met: to
 /// first order, at some training parameters and at those that turn out worst. `pressures`: at all
 /// points, of the samples.
-void choose_points(AllPoints &all, double tolerance, const Scene &scene,
+void choose_points(AllPoints &all, double tolerance, const NitscheCurve &curve,
                    const std::vector<Sample> &samples, const Matrix &pressures, ReducedModel &model,
                    CurveReport &report) {
   constexpr Index few = 64;
@@ -186,7 +175,7 @@ void choose_points(AllPoints &all, double tolerance, const Scene &scene,
   for (double first_order = tolerance;;) {
     fit.improve(first_order);
     set_points(all, fit.factors(), pressures, *model.nitsche);
-    const Vector errors = errors_of_points(model, scene, samples, all.answers());
+    const Vector errors = errors_of_points(model, curve, samples, all.answers());
     Index worst = 0;
     report.points.push_back(static_cast<int>(model.nitsche->points.size()));
     report.error.push_back(errors.maxCoeff(&worst));
@@ -201,14 +190,14 @@ void choose_points(AllPoints &all, double tolerance, const Scene &scene,
 }
 
 /// P_n and, with friction, P_tau of the samples at all points.
-Matrix pressures_of(const Scene &scene, const ContactLayer &layer,
-                    const std::vector<Sample> &samples) {
-  const bool friction = scene.support->friction.law != FrictionLaw::none;
-  const Index points = 4 * static_cast<Index>(layer.cells.size());
-  Matrix result(friction ? 2 * points : points, static_cast<Index>(samples.size()));
+Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) {
+  const NitscheCurve &curve = *problem.nitsche();
+  const Index points = 4 * static_cast<Index>(curve.cells.size());
+  Matrix result(curve.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    const auto faces = nitsche_faces(scene, expand(scene.parameters, samples[p].mu), layer.cells);
-    const Vector u = samples[p].u(layer.natural);
+    const auto faces =
+        nitsche_faces(curve, expand(curve.scene.parameters, samples[p].mu), curve.cells);
+    const Vector u = samples[p].u(problem.places().natural_dofs);
     result.col(static_cast<Index>(p)) = nitsche_pressures(faces, u).reshaped().head(result.rows());
   }
   return result;
@@ -219,31 +208,28 @@ Matrix pressures_of(const Scene &scene, const ContactLayer &layer,
 CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model) {
-  const Scene &scene = problem.scene();
-  const ContactLayer layer =
-      make_contact_layer(problem.mesh(), problem.dofs(), scene.support->boundary);
+  const NitscheCurve &curve = *problem.nitsche();
   CurveReport report;
   model.nitsche = NitscheModel{};
   NitscheModel &nitsche = *model.nitsche;
-  describe_curve(layer, model, nitsche);
-  nitsche.consistency = interpolate_consistency(scene, layer, samples, nitsche.trace);
-  nitsche.starts_mu.resize(scene.parameters.size(), static_cast<Index>(samples.size()));
+  nitsche.consistency = interpolate_consistency(curve, samples, model.contact_trace);
+  nitsche.starts_mu.resize(model.parameters.size(), static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p)
     std::copy(samples[p].mu.begin(), samples[p].mu.end(),
               nitsche.starts_mu.col(static_cast<Index>(p)).begin());
   nitsche.rule = CurveRule::full;
-  nitsche.starts = pressures_of(scene, layer, samples);
+  nitsche.starts = pressures_of(problem, samples);
   if (options.rule == CurveRule::empirical) {
-    AllPoints all(model, scene, layer.cells, samples);
+    AllPoints all(model, curve, samples);
     const Matrix pressures = nitsche.starts;
     if (all.points().empty())
       throw failure("there is no contact at any training mu, and nothing to integrate: widen the "
                     "parameter box");
     nitsche.rule = CurveRule::empirical;
     choose_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, round_off),
-                  scene, samples, pressures, model, report);
+                  curve, samples, pressures, model, report);
   } else if (options.rule == CurveRule::interpolated) {
-    interpolate_terms(problem, samples, options, nitsche, report);
+    interpolate_terms(problem, samples, options, model, report);
     nitsche.rule = CurveRule::interpolated;
     nitsche.starts = coefficients;
   }

@@ -131,11 +131,12 @@ void add_state(const LayerPattern &pattern, const std::vector<CurveCell> &cells,
 
 States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pattern,
                  const std::vector<Mu> &all_mu) {
-  const std::vector<CurveCell> &cells = solver.layer().cells;
+  const NitscheCurve &curve = *problem.nitsche();
+  const std::vector<CurveCell> &cells = curve.cells;
   States states;
   for (const Mu &mu : all_mu) {
     const Operators &op = problem.assemble(mu);
-    const std::vector<NitscheFace> faces = nitsche_faces(problem.scene(), op.mu, cells);
+    const std::vector<NitscheFace> faces = nitsche_faces(curve, op.mu, cells);
     solver.watch = [&](const Vector &layer, const Vector &bounds) {
       add_state(pattern, cells, faces, layer, bounds, states);
     };
@@ -148,14 +149,13 @@ States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pa
 
 } // namespace
 
-LayerTerms interpolate_consistency(const Scene &scene, const ContactLayer &layer,
-                                   const std::vector<Sample> &samples, const Matrix &trace) {
-  const LayerPattern pattern(layer.cells);
-  const bool friction = scene.support->friction.law != FrictionLaw::none;
+LayerTerms interpolate_consistency(const NitscheCurve &curve, const std::vector<Sample> &samples,
+                                   const Matrix &trace) {
+  const LayerPattern pattern(curve.cells);
   std::vector<Vector> values;
   for (const Sample &sample : samples) {
-    const auto faces = nitsche_faces(scene, expand(scene.parameters, sample.mu), layer.cells);
-    values.push_back(pattern.values(layer.cells, nitsche_consistency(faces, friction)));
+    const auto faces = nitsche_faces(curve, expand(curve.scene.parameters, sample.mu), curve.cells);
+    values.push_back(pattern.values(curve.cells, nitsche_consistency(faces, curve.friction())));
   }
   return interpolated(side_by_side(values), pattern.keys(), true, exact,
                       [&](const Vector &column) { return pattern.projected(column, trace); })
@@ -163,17 +163,19 @@ LayerTerms interpolate_consistency(const Scene &scene, const ContactLayer &layer
 }
 
 void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
-                       const CurveOptions &options, NitscheModel &nitsche, CurveReport &report) {
+                       const CurveOptions &options, ReducedModel &model, CurveReport &report) {
+  NitscheModel &nitsche = *model.nitsche;
+  const Matrix &trace = model.contact_trace;
   // The steps as printed; with friction they can cycle without line search.
-  const bool friction = problem.scene().support->friction.law != FrictionLaw::none;
+  const bool friction = problem.nitsche()->friction();
   NitscheSolver solver(problem, {.full_steps = !friction});
-  const LayerPattern pattern(solver.layer().cells);
+  const LayerPattern pattern(problem.nitsche()->cells);
   const std::vector<Mu> training = parameters_of(samples);
   const States states = states_at(problem, solver, pattern, training);
   const States others = states_at(problem, solver, pattern, options.eim_validation);
   report.states = static_cast<int>(states.values[0].size());
   std::vector<EntryKey> dofs;
-  for (PetscInt i = 0; i < solver.layer().trace.size; ++i)
+  for (PetscInt i = 0; i < problem.trace().size; ++i)
     dofs.push_back({i, 0});
   const std::array<LayerTerms *, 4> terms{&nitsche.contact_matrix, &nitsche.contact_vector,
                                           &nitsche.friction_matrix, &nitsche.friction_vector};
@@ -183,8 +185,7 @@ void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
     const Matrix values = side_by_side(states.values[k]);
     Interpolation found =
         interpolated(values, keys, matrix, options.eim_tolerance, [&](const Vector &column) {
-          return matrix ? pattern.projected(column, nitsche.trace)
-                        : Vector(nitsche.trace.transpose() * column);
+          return matrix ? pattern.projected(column, trace) : Vector(trace.transpose() * column);
         });
     *terms[k] = std::move(found.terms);
     report.eim_errors[k].training = found.eim.error;

@@ -14,12 +14,11 @@ namespace {
 constexpr double round_off = 1e-10;         ///< of a singular value, relative to the largest
 constexpr double largest_tolerance = 0.999; ///< sigma never exceeds 1
 
-/// Multipliers whose support has a partner everywhere; of one body all.
-std::vector<Index> covered_multipliers(const Problem &problem, const Operators &op) {
-  const Vector whole = problem.w_product() * Vector::Ones(problem.dual_size());
+/// Multipliers that face a partner everywhere.
+std::vector<Index> covered_multipliers(const Operators &op) {
   std::vector<Index> rows;
-  for (Index i = 0; i < whole.size(); ++i)
-    if (!problem.two_bodies() || op.weights[i] > (1 - 1e-9) * whole[i]) rows.push_back(i);
+  for (Index i = 0; i < op.b.rows(); ++i)
+    if (!std::ranges::binary_search(op.uncovered, i)) rows.push_back(i);
   return rows;
 }
 
@@ -44,7 +43,7 @@ std::optional<SparseInfSup> sparse_infsup(Problem &problem) {
 
 PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space,
                                  const Operators &op, const std::optional<SparseInfSup> &sparse) {
-  const std::vector<Index> rows = covered_multipliers(problem, op);
+  const std::vector<Index> rows = covered_multipliers(op);
   if (rows.empty()) throw failure("no multiplier has a partner: there is no inf-sup constant");
   if (sparse) {
     const SparseMatrix chosen = rows_of_identity(rows, problem.dual_size());

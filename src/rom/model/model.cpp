@@ -5,6 +5,7 @@
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace rbvi {
 
@@ -46,22 +47,47 @@ void require_indices(const std::vector<int> &indices, Index bound, const std::st
           name + " points outside 0.." + std::to_string(bound - 1));
 }
 
-/// `corners`: vertices of a sampled cell, 2 of an edge of a support.
-void check_terms(const AffineTerms &terms, Index rows, int dim, int corners,
+/// `samples`: of how many meshes the entries are.
+void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samples,
                  const std::string &name) {
   const Index size = terms.interpolation.rows();
   require_shape(terms.interpolation, size, size, name + "/interpolation");
   require_shape(terms.reduced, size == 0 ? terms.reduced.rows() : rows, size, name + "/reduced");
-  const Matrix &vertices = terms.sample.vertices;
-  require(vertices.rows() % corners == 0, name + "/vertices is not a list of cells");
-  require_shape(vertices, vertices.rows(), size == 0 ? vertices.cols() : dim, name + "/vertices");
-  int previous = 0;
-  for (const SampleMesh::Contribution &c : terms.sample.contributions) {
-    require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
-                c.cell < vertices.rows() / corners,
-            name + "/contributions point nowhere or are not ordered by entry");
-    previous = c.entry;
+  require(size == 0 || terms.samples.size() == samples, name + " has sampled entries elsewhere");
+  for (const SampleMesh &sample : terms.samples) {
+    const Matrix &vertices = sample.vertices;
+    require(sample.corners > 1 && vertices.rows() % sample.corners == 0,
+            name + "/vertices is not a list of cells");
+    require_shape(vertices, vertices.rows(), vertices.rows() == 0 ? vertices.cols() : dim,
+                  name + "/vertices");
+    int previous = 0;
+    for (const SampleMesh::Contribution &c : sample.contributions) {
+      require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
+                  c.cell < vertices.rows() / sample.corners,
+              name + "/contributions point nowhere or are not ordered by entry");
+      previous = c.entry;
+    }
   }
+}
+
+void check_interface(const InterfaceModel &interface, int dim, Index columns) {
+  const InterfaceMesh &mesh = interface.mesh;
+  const Index nodes = mesh.nodes();
+  require(mesh.dim == dim && (mesh.degree == 1 || mesh.degree == 2) && mesh.components > 0 &&
+              mesh.components <= 3 && mesh.per_entity > 1 && mesh.columns == columns,
+          "interfaces/sizes do not fit");
+  require(mesh.count() > 0 && static_cast<Index>(mesh.entities.size()) % mesh.per_entity == 0,
+          "interfaces/entities is not a list of them");
+  require_indices(mesh.entities, nodes, "interfaces/entities");
+  require(mesh.edges.empty() || static_cast<Index>(mesh.edges.size()) == mesh.count(),
+          "interfaces/edges does not fit");
+  require_indices(mesh.edges, 3, "interfaces/edges");
+  require(std::accumulate(mesh.parts.begin(), mesh.parts.end(), Index{0}) == nodes,
+          "interfaces/parts does not fit");
+  require(static_cast<Index>(mesh.dofs.size()) == nodes * mesh.components &&
+              std::ranges::all_of(mesh.dofs, [&](int d) { return d >= -1 && d < columns; }),
+          "interfaces/dofs does not fit");
+  require(static_cast<Index>(interface.nodes.size()) == nodes, "interfaces/nodes does not fit");
 }
 
 void check_fields(const ReducedModel &model, int dim) {
@@ -72,10 +98,10 @@ void check_fields(const ReducedModel &model, int dim) {
           "fields/primal_basis has no whole number of rows per node");
   require_shape(model.primal_basis, model.primal_basis.rows(), model.primal_size(),
                 "fields/primal_basis");
-  require_indices(model.contact_nodes, nodes, "contact/nodes");
+  for (const InterfaceModel &interface : model.interfaces)
+    require_indices(interface.nodes, nodes, "interfaces/nodes");
   require_indices(model.mesh_cells, nodes, "fields/cells");
-  const bool on_support = model.support || model.nitsche;
-  const int degree = on_support ? make_scene(model.scene_name, model.scene_options).degree : 1;
+  const int degree = model.interfaces.front().mesh.degree;
   require(model.mesh_cells.size() % static_cast<std::size_t>(nodes_per_cell(dim, degree)) == 0,
           "fields/cells is not a list of cells");
 }
@@ -83,7 +109,6 @@ void check_fields(const ReducedModel &model, int dim) {
 void check_support(const ReducedModel &model, const SupportModel &support) {
   const CondensedOperator &condensed = support.condensed;
   const Index m = model.generators, blocks = Index{model.b.size()} * (model.b.size() + 1) / 2;
-  require(support.vertices == model.contact_points.rows(), "support/vertices does not fit");
   require(support.normal > 0 && m % support.normal == 0, "support/normal does not fit");
   require(support.reduction >= MultiplierReduction::condensed &&
               support.reduction <= MultiplierReduction::joint,
@@ -115,7 +140,6 @@ void check_support(const ReducedModel &model, const SupportModel &support) {
           "support/apart does not fit");
   require(model.b.interpolation.bottomLeftCorner(all - apart, apart).isZero(0),
           "b/interpolation mixes terms of B^n and of B^tau");
-  require_shape(support.lift, model.dual_basis.rows(), model.b.size(), "support/lift");
   require_shape(support.starts, m, support.starts.cols(), "support/starts");
   require_shape(support.starts_mu, model.parameters.size(), support.starts.cols(),
                 "support/starts_mu");
@@ -135,16 +159,8 @@ void check_layer_terms(const LayerTerms &terms, Index entries, Index dofs,
 }
 
 void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
-  const auto cells = static_cast<Index>(nitsche.edges.size());
-  const Index n = model.primal_size(), packed = n * (n + 1) / 2, dofs = nitsche.trace.rows();
-  require(cells + 1 == model.contact_points.rows(), "nitsche/edges does not fit contact/points");
-  require_indices(nitsche.edges, 3, "nitsche/edges");
-  require_shape(nitsche.vertices, 3 * cells, 2, "nitsche/vertices");
-  require_shape(nitsche.trace, dofs, n, "nitsche/trace");
-  require(static_cast<Index>(nitsche.dofs.size()) == 12 * cells &&
-              std::all_of(nitsche.dofs.begin(), nitsche.dofs.end(),
-                          [&](int dof) { return dof >= -1 && dof < dofs; }),
-          "nitsche/dofs does not fit");
+  const Index cells = model.interfaces.front().mesh.count(), n = model.primal_size(),
+              packed = n * (n + 1) / 2, dofs = model.contact_trace.rows();
   check_layer_terms(nitsche.consistency, packed, dofs, "nitsche/consistency");
   check_layer_terms(nitsche.contact_matrix, packed, dofs, "nitsche/contact_matrix");
   check_layer_terms(nitsche.contact_vector, n, dofs, "nitsche/contact_vector");
@@ -173,7 +189,6 @@ LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
 
 NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
   NitscheModel result = nitsche;
-  result.trace = nitsche.trace.leftCols(size);
   if (nitsche.rule == CurveRule::interpolated) result.starts = nitsche.starts.topRows(size);
   for (LayerTerms NitscheModel::*terms :
        {&NitscheModel::consistency, &NitscheModel::contact_matrix, &NitscheModel::contact_vector,
@@ -185,40 +200,29 @@ NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
 } // namespace
 
 void check_model(const ReducedModel &model) {
-  const int dim = static_cast<int>(model.contact_points.cols());
+  require(!model.interfaces.empty(), "it has no contact interface");
+  const int dim = model.interfaces.front().mesh.dim;
   const Index n = model.primal_size(), r = model.generators, dual = model.dual_basis.rows(),
-              contact = model.contact_points.rows();
-  require(dim == 2 || dim == 3, "contact/points has neither 2 nor 3 columns");
+              contact = model.contact_trace.rows();
+  require(dim == 2 || dim == 3, "interfaces have neither 2 nor 3 dimensions");
   require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || model.nitsche),
           "it has no modes or no generators");
   require(model.a.size() > 0, "a has no terms");
-  require(model.slave_nodes >= 0 && model.slave_nodes <= contact,
-          "contact/slave_nodes does not fit");
-  require(model.two_bodies() || model.nitsche ? model.b.size() + model.g.size() == 0
-                                              : model.b.size() > 0,
-          "b has no terms, or two bodies have some, or Nitsche's method");
-  require(model.two_bodies() || contact == dual ||
-              ((model.support || model.nitsche) && dual % contact == 0 && dual / contact <= dim),
-          "contact/points does not fit contact/dual_basis");
-  const int corners = model.support ? dim : dim + 1;
-  check_terms(model.a, n * (n + 1) / 2, dim, dim + 1, "a");
-  check_terms(model.b, r * n, dim, corners, "b");
-  check_terms(model.f, n, dim, dim + 1, "f");
-  check_terms(model.g, r, dim, corners, "g");
+  require(model.evaluates_contact() || model.nitsche ? model.b.size() + model.g.size() == 0
+                                                     : model.b.size() > 0 && model.g.size() > 0,
+          "b has terms and g has not, or the other way round");
+  const std::size_t interfaces = model.interfaces.size();
+  for (const InterfaceModel &interface : model.interfaces)
+    check_interface(interface, dim, contact);
+  check_terms(model.a, n * (n + 1) / 2, dim, 1, "a");
+  check_terms(model.b, r * n, dim, interfaces, "b");
+  check_terms(model.f, n, dim, 1, "f");
+  check_terms(model.g, r, dim, interfaces, "g");
   if (model.support) check_support(model, *model.support);
   if (model.nitsche) check_nitsche(model, *model.nitsche);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
-  require_shape(model.contact_trace, model.support || model.nitsche ? contact * dim : contact, n,
-                "contact/trace");
-  require(static_cast<Index>(model.contact_nodes.size()) == contact,
-          "contact/nodes does not fit contact/points");
-  require_shape(model.contact_points, contact, dim, "contact/points");
-  require_indices(model.contact_cells, contact, "fields/contact_cells");
-  require(model.contact_cells.size() % static_cast<std::size_t>(dim + 1) == 0,
-          "fields/contact_cells is not a list of cells");
-  if (!model.support && !model.nitsche)
-    require_shape(model.lumped_weights, dual, model.b.size(), "contact/lumped_weights");
+  require_shape(model.contact_trace, contact, n, "contact/trace");
   const Index free = model.parameters.size();
   for (const auto &[mu, name] :
        {std::pair{&model.trained_mu, "training/mu"}, {&model.failed_mu, "training/failed"}})
@@ -280,6 +284,17 @@ Point point_of(const Matrix &points, Index i) {
   for (Index k = 0; k < points.cols(); ++k)
     point[static_cast<std::size_t>(k)] = points(i, k);
   return point;
+}
+
+Contact contact_of(const ReducedModel &model, const Scene &scene) {
+  std::vector<InterfaceMesh> meshes;
+  for (const InterfaceModel &interface : model.interfaces)
+    meshes.push_back(interface.mesh);
+  Contact contact = make_contact(scene, std::move(meshes));
+  if (contact.dual_size() != model.dual_basis.rows() ||
+      by_nitsche(scene) != model.nitsche.has_value())
+    throw bad_input("the contact of the model does not fit its scene in this build");
+  return contact;
 }
 
 Scene scene_of(const ReducedModel &model) {

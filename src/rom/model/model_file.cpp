@@ -3,6 +3,7 @@
 #include "rbvi/io/h5.hpp"
 #include "rbvi/rom/model/model.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace rbvi {
@@ -78,28 +79,94 @@ ParameterSpace read_parameters(const H5Reader &file) {
   return space;
 }
 
-void write_terms(H5Writer &file, const std::string &group, const AffineTerms &terms) {
+/// Of sampled entries on one mesh.
+void write_sample(H5Writer &file, const std::string &group, const SampleMesh &sample) {
   std::vector<int> triples;
-  for (const SampleMesh::Contribution &c : terms.sample.contributions)
+  for (const SampleMesh::Contribution &c : sample.contributions)
     triples.insert(triples.end(), {c.entry, c.cell, c.local});
+  file.write(group + "/vertices", sample.vertices);
+  file.write(group + "/corners", sample.corners);
+  file.write(group + "/contributions", triples);
+}
+
+SampleMesh read_sample(const H5Reader &file, const std::string &group) {
+  SampleMesh sample;
+  sample.vertices = file.matrix(group + "/vertices");
+  sample.corners = file.integer(group + "/corners");
+  const std::vector<int> triples = file.ints(group + "/contributions");
+  if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
+  for (std::size_t i = 0; i < triples.size(); i += 3)
+    sample.contributions.push_back({triples[i], triples[i + 1], triples[i + 2]});
+  return sample;
+}
+
+void write_terms(H5Writer &file, const std::string &group, const AffineTerms &terms) {
   file.write(group + "/reduced", terms.reduced);
   file.write(group + "/interpolation", terms.interpolation);
-  file.write(group + "/vertices", terms.sample.vertices);
-  file.write(group + "/contributions", triples);
   file.write(group + "/error", terms.error);
+  file.write(group + "/samples", static_cast<int>(terms.samples.size()));
+  for (std::size_t i = 0; i < terms.samples.size(); ++i)
+    write_sample(file, group + "/" + std::to_string(i), terms.samples[i]);
 }
 
 AffineTerms read_terms(const H5Reader &file, const std::string &group) {
   AffineTerms terms;
   terms.reduced = file.matrix(group + "/reduced");
   terms.interpolation = file.matrix(group + "/interpolation");
-  terms.sample.vertices = file.matrix(group + "/vertices");
   terms.error = file.number(group + "/error");
-  const std::vector<int> triples = file.ints(group + "/contributions");
-  if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
-  for (std::size_t i = 0; i < triples.size(); i += 3)
-    terms.sample.contributions.push_back({triples[i], triples[i + 1], triples[i + 2]});
+  for (int i = 0; i < file.integer(group + "/samples"); ++i)
+    terms.samples.push_back(read_sample(file, group + "/" + std::to_string(i)));
   return terms;
+}
+
+Matrix as_matrix(const std::vector<Point> &points, int dim) {
+  Matrix result(static_cast<Index>(points.size()), dim);
+  for (Index i = 0; i < result.rows(); ++i)
+    for (Index c = 0; c < dim; ++c)
+      result(i, c) = points[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+  return result;
+}
+
+void write_interfaces(H5Writer &file, const std::vector<InterfaceModel> &interfaces) {
+  file.write("interfaces/count", static_cast<int>(interfaces.size()));
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
+    const std::string group = "interfaces/" + std::to_string(i);
+    const InterfaceMesh &mesh = interfaces[i].mesh;
+    file.write(group + "/sizes",
+               std::vector<int>{mesh.dim, mesh.degree, mesh.components, mesh.per_entity});
+    file.write(group + "/points", as_matrix(mesh.points, mesh.dim));
+    file.write(group + "/entities", mesh.entities);
+    file.write(group + "/edges", mesh.edges);
+    file.write(group + "/parts", mesh.parts);
+    file.write(group + "/dofs", mesh.dofs);
+    file.write(group + "/nodes", interfaces[i].nodes);
+  }
+}
+
+std::vector<InterfaceModel> read_interfaces(const H5Reader &file, Index columns) {
+  std::vector<InterfaceModel> interfaces;
+  for (int i = 0; i < file.integer("interfaces/count"); ++i) {
+    const std::string group = "interfaces/" + std::to_string(i);
+    const std::vector<int> sizes = file.ints(group + "/sizes");
+    if (sizes.size() != 4) throw bad_input(group + "/sizes has not 4 entries");
+    InterfaceModel interface;
+    InterfaceMesh &mesh = interface.mesh;
+    mesh.dim = sizes[0];
+    mesh.degree = sizes[1];
+    mesh.components = sizes[2];
+    mesh.per_entity = std::max(1, sizes[3]);
+    mesh.columns = columns;
+    const Matrix points = file.matrix(group + "/points");
+    for (Index k = 0; k < points.rows(); ++k)
+      mesh.points.push_back(point_of(points, k));
+    mesh.entities = file.ints(group + "/entities");
+    mesh.edges = file.ints(group + "/edges");
+    mesh.parts = file.ints(group + "/parts");
+    mesh.dofs = file.ints(group + "/dofs");
+    interface.nodes = file.ints(group + "/nodes");
+    interfaces.push_back(std::move(interface));
+  }
+  return interfaces;
 }
 
 void write_validation(H5Writer &file, const std::string &name, const ValidationErrors &errors) {
@@ -195,18 +262,16 @@ void read_history(const H5Reader &file, ReducedModel &model) {
 }
 
 void write_support(H5Writer &file, const std::optional<SupportModel> &support) {
-  file.write("support/vertices", support ? support->vertices : 0);
+  file.write("support/normal", support ? support->normal : 0);
   if (!support) return;
   std::vector<double> axes;
   for (const ChebyshevAxis &axis : support->condensed.axes)
     axes.insert(axes.end(), {static_cast<double>(axis.parameter), axis.lower, axis.upper,
                              static_cast<double>(axis.points)});
-  file.write("support/normal", support->normal);
   file.write("support/axes", axes);
   file.write("support/error", support->condensed.error);
   file.write("support/shape", support->condensed.shape);
   file.write("support/terms", support->condensed.terms);
-  file.write("support/lift", support->lift);
   const TermsApart &apart = support->apart;
   file.write("support/apart", std::vector<double>{static_cast<double>(apart.normal),
                                                   apart.normal_error, apart.tangential_error});
@@ -222,9 +287,8 @@ void write_support(H5Writer &file, const std::optional<SupportModel> &support) {
 
 std::optional<SupportModel> read_support(const H5Reader &file) {
   SupportModel support;
-  support.vertices = file.integer("support/vertices");
-  if (support.vertices == 0) return std::nullopt;
   support.normal = file.integer("support/normal");
+  if (support.normal == 0) return std::nullopt;
   const std::vector<double> axes = file.doubles("support/axes");
   if (axes.size() % 4 != 0) throw bad_input("support/axes are not groups of four");
   for (std::size_t i = 0; i < axes.size(); i += 4)
@@ -233,7 +297,6 @@ std::optional<SupportModel> read_support(const H5Reader &file) {
   support.condensed.error = file.number("support/error");
   support.condensed.shape = file.matrix("support/shape");
   support.condensed.terms = file.matrix("support/terms");
-  support.lift = file.matrix("support/lift");
   const std::vector<double> apart = file.doubles("support/apart");
   if (apart.size() != 3) throw bad_input("support/apart has not 3 entries");
   support.apart = {static_cast<int>(apart[0]), apart[1], apart[2]};
@@ -259,12 +322,8 @@ constexpr NamedTerms layer_terms[] = {{"nitsche/consistency", &NitscheModel::con
                                       {"nitsche/friction_vector", &NitscheModel::friction_vector}};
 
 void write_nitsche(H5Writer &file, const std::optional<NitscheModel> &nitsche) {
-  file.write("nitsche/edges", nitsche ? nitsche->edges : std::vector<int>{});
+  file.write("nitsche/rule", nitsche ? static_cast<int>(nitsche->rule) : -1);
   if (!nitsche) return;
-  file.write("nitsche/vertices", nitsche->vertices);
-  file.write("nitsche/dofs", nitsche->dofs);
-  file.write("nitsche/trace", nitsche->trace);
-  file.write("nitsche/rule", static_cast<int>(nitsche->rule));
   file.write("nitsche/points", nitsche->points);
   file.write("nitsche/factors", nitsche->factors);
   file.write("nitsche/starts", nitsche->starts);
@@ -282,12 +341,9 @@ void write_nitsche(H5Writer &file, const std::optional<NitscheModel> &nitsche) {
 
 std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
   NitscheModel nitsche;
-  nitsche.edges = file.ints("nitsche/edges");
-  if (nitsche.edges.empty()) return std::nullopt;
-  nitsche.vertices = file.matrix("nitsche/vertices");
-  nitsche.dofs = file.ints("nitsche/dofs");
-  nitsche.trace = file.matrix("nitsche/trace");
-  nitsche.rule = static_cast<CurveRule>(file.integer("nitsche/rule"));
+  const int rule = file.integer("nitsche/rule");
+  if (rule < 0) return std::nullopt;
+  nitsche.rule = static_cast<CurveRule>(rule);
   nitsche.points = file.ints("nitsche/points");
   nitsche.factors = file.vector("nitsche/factors");
   nitsche.starts = file.matrix("nitsche/starts");
@@ -305,26 +361,18 @@ std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
 }
 
 void write_fields(H5Writer &file, const ReducedModel &model) {
+  write_interfaces(file, model.interfaces);
   file.write("contact/dual_basis", model.dual_basis);
   file.write("contact/trace", model.contact_trace);
-  file.write("contact/points", model.contact_points);
-  file.write("contact/lumped_weights", model.lumped_weights);
-  file.write("contact/nodes", model.contact_nodes);
-  file.write("contact/slave_nodes", model.slave_nodes);
   file.write("fields/primal_basis", model.primal_basis);
   file.write("fields/points", model.mesh_points);
   file.write("fields/cells", model.mesh_cells);
-  file.write("fields/contact_cells", model.contact_cells);
 }
 
 void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
   model.dual_basis = file.matrix("contact/dual_basis");
   model.contact_trace = file.matrix("contact/trace");
-  model.contact_points = file.matrix("contact/points");
-  model.lumped_weights = file.matrix("contact/lumped_weights");
-  model.contact_nodes = file.ints("contact/nodes");
-  model.slave_nodes = file.integer("contact/slave_nodes");
-  model.contact_cells = file.ints("fields/contact_cells");
+  model.interfaces = read_interfaces(file, model.contact_trace.rows());
   if (!all) return;
   model.primal_basis = file.matrix("fields/primal_basis");
   model.mesh_points = file.matrix("fields/points");

@@ -7,19 +7,6 @@
 
 namespace rbvi {
 
-std::vector<CurveCell> curve_cells(const NitscheModel &model) {
-  std::vector<CurveCell> cells(model.edges.size());
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    cells[k].edge = model.edges[k];
-    std::copy_n(model.dofs.begin() + static_cast<std::ptrdiff_t>(12 * k), 12,
-                cells[k].dofs.begin());
-    for (std::size_t v = 0; v < 3; ++v)
-      cells[k].cell.reference[v] = point_of(model.vertices, static_cast<Index>(3 * k + v));
-    cells[k].cell.mapped = cells[k].cell.reference;
-  }
-  return cells;
-}
-
 Vector point_abscissae(const std::vector<CurveCell> &cells) {
   Vector x(4 * static_cast<Index>(cells.size()));
   Index next = 0;

@@ -36,16 +36,16 @@ void add_matrix(const LayerTerms &terms, const Vector &theta, Matrix &a) {
 
 } // namespace
 
-ReducedNitsche::Interpolated::Interpolated(const NitscheModel &of,
-                                           const std::vector<CurveCell> &all)
-    : model(of), cells(touched(of, all)), contact_matrix(of.contact_matrix, cells),
-      contact_vector(of.contact_vector, cells), friction_matrix(of.friction_matrix, cells),
-      friction_vector(of.friction_vector, cells) {}
+ReducedNitsche::Interpolated::Interpolated(const ReducedModel &of, const NitscheCurve &whole)
+    : model(*of.nitsche), trace(of.contact_trace), curve(whole), cells(touched(model, whole.cells)),
+      contact_matrix(model.contact_matrix, cells), contact_vector(model.contact_vector, cells),
+      friction_matrix(model.friction_matrix, cells), friction_vector(model.friction_vector, cells) {
+}
 
 ReducedNitsche::Interpolated::Terms
 ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const System &system,
                                     const Vector &u) const {
-  const Vector layer = model.trace * u;
+  const Vector layer = trace * u;
   const Matrix pressures = nitsche_pressures(faces, layer);
   const Vector contact = nitsche_residual(faces, layer, {});
   Vector sum = Vector::Zero(u.size());
@@ -61,7 +61,7 @@ ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const
 
 Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &faces,
                                              const System &system, const Vector &u) const {
-  const Matrix pressures = nitsche_pressures(faces, model.trace * u);
+  const Matrix pressures = nitsche_pressures(faces, trace * u);
   const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
   Matrix result = system.quadratic.a_gamma;
   add_matrix(model.contact_matrix,
@@ -80,7 +80,7 @@ Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &fac
 /// But for bounds that move.
 Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &faces,
                                                 const System &system, const Vector &u) const {
-  const Matrix pressures = nitsche_pressures(faces, model.trace * u);
+  const Matrix pressures = nitsche_pressures(faces, trace * u);
   const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
   Matrix result = system.quadratic.a_gamma;
   const auto add = [&](const LayerTerms &terms, const SampledLayer &sampled,
@@ -102,21 +102,21 @@ Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &
 
 /// The blocks of `cells` times the trace: a row for each dof of the layer.
 Matrix ReducedNitsche::Interpolated::times_trace(const std::vector<FaceBlock> &blocks) const {
-  Matrix result = Matrix::Zero(model.trace.rows(), model.trace.cols());
+  Matrix result = Matrix::Zero(trace.rows(), trace.cols());
   for (std::size_t k = 0; k < blocks.size(); ++k) {
     const std::array<int, 12> &dofs = cells[k].dofs;
     for (std::size_t i = 0; i < 12; ++i)
       for (std::size_t j = 0; j < 12; ++j)
         if (dofs[i] >= 0 && dofs[j] >= 0)
           result.row(dofs[i]) +=
-              blocks[k](static_cast<Index>(i), static_cast<Index>(j)) * model.trace.row(dofs[j]);
+              blocks[k](static_cast<Index>(i), static_cast<Index>(j)) * trace.row(dofs[j]);
   }
   return result;
 }
 
-int ReducedNitsche::Interpolated::solve(const Scene &scene, const FullMu &all_parameters,
-                                        const Vector &near, System &system) {
-  const std::vector<NitscheFace> faces = nitsche_faces(scene, all_parameters, cells);
+int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vector &near,
+                                        System &system) {
+  const std::vector<NitscheFace> faces = nitsche_faces(curve, all_parameters, cells);
   int steps = 0;
   for (const bool printed : {true, false}) {
     system.u = near;

@@ -8,14 +8,16 @@ namespace rbvi {
 
 struct ReducedNitsche::Interpolated {
   const NitscheModel &model;
+  const Matrix &trace; ///< contact dofs x n: the primal basis
+  const NitscheCurve &curve;
   std::vector<CurveCell> cells; ///< that some sampled entry touches
   SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
 
-  Interpolated(const NitscheModel &of, const std::vector<CurveCell> &all);
+  Interpolated(const ReducedModel &of, const NitscheCurve &whole);
   /// From the coefficients `near`, by (4.79); where that does not converge (its matrix is not the
   /// derivative of its vectors), by the derivative, with halved steps. Into system.u. Returns the
   /// steps.
-  int solve(const Scene &scene, const FullMu &all_parameters, const Vector &near, System &system);
+  int solve(const FullMu &all_parameters, const Vector &near, System &system);
 
 private:
   /// The interpolated terms at one iterate.

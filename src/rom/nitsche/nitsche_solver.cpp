@@ -12,32 +12,25 @@ namespace rbvi {
 
 namespace {
 
-const NitscheModel &checked(const ReducedModel &model, const Scene &scene) {
-  if (!scene.nitsche || !model.nitsche)
-    throw bad_input("the model and its scene in this build differ in the formulation of contact");
-  return *model.nitsche;
-}
-
 using ChosenPoints = std::vector<std::pair<int, double>>;
 
 /// The points that the model integrates at; none where it interpolates.
-ChosenPoints points_of(const NitscheModel &nitsche) {
+ChosenPoints points_of(const NitscheModel &nitsche, const NitscheCurve &curve) {
   ChosenPoints chosen;
   if (nitsche.rule == CurveRule::empirical)
     for (std::size_t k = 0; k < nitsche.points.size(); ++k)
       chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
   else if (nitsche.rule == CurveRule::full)
-    for (int k = 0; k < 4 * static_cast<int>(nitsche.edges.size()); ++k)
+    for (int k = 0; k < 4 * static_cast<int>(curve.cells.size()); ++k)
       chosen.emplace_back(k, 1.0);
   return chosen;
 }
 
 /// All points of the curve. Where scene and mesh are symmetric, so that the points of the model lie
 /// on one half, which stands for both: those of that half, which count twice.
-ChosenPoints whole_curve(const Scene &scene, const NitscheModel &nitsche,
-                         const std::vector<CurveCell> &cells) {
-  const Vector x = point_abscissae(cells);
-  const bool half = scene.symmetric && nitsche.rule == CurveRule::empirical &&
+ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheCurve &curve) {
+  const Vector x = point_abscissae(curve.cells);
+  const bool half = curve.scene.symmetric && nitsche.rule == CurveRule::empirical &&
                     std::all_of(nitsche.points.begin(), nitsche.points.end(),
                                 [&](int point) { return x[point] < 0; });
   ChosenPoints chosen;
@@ -48,28 +41,27 @@ ChosenPoints whole_curve(const Scene &scene, const NitscheModel &nitsche,
 
 } // namespace
 
-ReducedNitsche::ReducedNitsche(const ReducedModel &model, const Scene &scene)
-    : model_(model), scene_(scene), cells_(curve_cells(checked(model, scene))),
-      consistency_(model.nitsche->consistency, cells_) {
-  system_ = std::make_unique<System>(model, cells_, points_of(*model.nitsche));
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, const NitscheCurve &curve)
+    : model_(model), curve_(curve), consistency_(model.nitsche->consistency, curve.cells) {
+  system_ = std::make_unique<System>(model, curve.cells, points_of(*model.nitsche, curve));
   if (model.nitsche->rule == CurveRule::interpolated)
-    interpolated_ = std::make_unique<Interpolated>(*model.nitsche, cells_);
+    interpolated_ = std::make_unique<Interpolated>(model, curve);
 }
 
 ReducedNitsche::~ReducedNitsche() = default;
 
 ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_parameters) const {
   const Index n = model_.primal_size();
+  const Scene &scene = curve_.scene;
   Quadratic result;
-  result.a = unpacked(
-      model_.a.reduced * affine_coefficients(model_.a, scene_.a, scene_, all_parameters), n);
+  result.a =
+      unpacked(model_.a.reduced * affine_coefficients(model_.a, scene.a, scene, all_parameters), n);
   result.f = Vector::Zero(n);
   if (model_.f.size() > 0)
-    result.f = model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
+    result.f = model_.f.reduced * affine_coefficients(model_.f, scene.f, scene, all_parameters);
   const std::vector<NitscheFace> faces =
-      nitsche_faces(scene_, all_parameters, selected(cells_, consistency_.cells()));
-  const bool friction = scene_.support->friction.law != FrictionLaw::none;
-  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, friction));
+      nitsche_faces(curve_, all_parameters, selected(curve_.cells, consistency_.cells()));
+  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, curve_.friction()));
   result.a_gamma = result.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
   return result;
 }
@@ -77,20 +69,20 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_paramet
 Vector ReducedNitsche::predicted(const FullMu &all_parameters) const {
   const NitscheModel &nitsche = *model_.nitsche;
   if (nitsche.starts.cols() == 0) return {};
-  return local_fit(nitsche.starts, parts_of_box(scene_.parameters, nitsche.starts_mu),
-                   parts_of_box(scene_.parameters, all_parameters));
+  const ParameterSpace &space = curve_.scene.parameters;
+  return local_fit(nitsche.starts, parts_of_box(space, nitsche.starts_mu),
+                   parts_of_box(space, all_parameters));
 }
 
 NitscheAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
-  system.law = nitsche_law(scene_.support->friction, all_parameters);
+  system.law = nitsche_law(curve_, all_parameters);
   system.quadratic = quadratic_at(all_parameters);
   NitscheAnswer answer;
   if (interpolated_) {
-    answer.iterations =
-        interpolated_->solve(scene_, all_parameters, predicted(all_parameters), system);
+    answer.iterations = interpolated_->solve(all_parameters, predicted(all_parameters), system);
   } else {
-    system.set_points(scene_, all_parameters, cells_);
+    system.set_points(curve_, all_parameters);
     system.predict(predicted(all_parameters));
     answer.iterations = system.settle();
   }
@@ -116,17 +108,17 @@ Matrix ReducedNitsche::tangent() const {
 }
 
 CurveFields ReducedNitsche::fields(const FullMu &all_parameters, const Vector &u) const {
-  return nitsche_fields(scene_, all_parameters, cells_, model_.nitsche->trace * u);
+  return nitsche_fields(curve_, all_parameters, model_.contact_trace * u);
 }
 
 Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vector &u,
                                         Outputs &outputs) const {
   if (model_.nitsche->rule == CurveRule::full) return u;
   if (!whole_)
-    whole_ = std::make_unique<System>(model_, cells_, whole_curve(scene_, *model_.nitsche, cells_));
-  whole_->law = nitsche_law(scene_.support->friction, all_parameters);
+    whole_ = std::make_unique<System>(model_, curve_.cells, whole_curve(*model_.nitsche, curve_));
+  whole_->law = nitsche_law(curve_, all_parameters);
   whole_->quadratic = quadratic_at(all_parameters);
-  whole_->set_points(scene_, all_parameters, cells_);
+  whole_->set_points(curve_, all_parameters);
   whole_->set(u);
   whole_->bounds = nitsche_bounds(whole_->pressures, whole_->law);
   (void)whole_->residual();
@@ -137,11 +129,11 @@ Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vect
 
 void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
                              Outputs &outputs) const {
-  const Vector layer = model_.nitsche->trace * over_whole_curve(all_parameters, u, outputs);
-  const std::vector<NitscheFace> faces = nitsche_faces(scene_, all_parameters, cells_);
+  const Vector layer = model_.contact_trace * over_whole_curve(all_parameters, u, outputs);
+  const std::vector<NitscheFace> faces = nitsche_faces(curve_, all_parameters, curve_.cells);
   nitsche_outputs(faces, nitsche_pressures(faces, layer),
-                  nitsche_fields(scene_, all_parameters, cells_, layer),
-                  nitsche_law(scene_.support->friction, all_parameters), outputs);
+                  nitsche_fields(curve_, all_parameters, layer),
+                  nitsche_law(curve_, all_parameters), outputs);
 }
 
 } // namespace rbvi

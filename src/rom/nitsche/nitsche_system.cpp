@@ -36,15 +36,14 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
       parts.push_back(
           {cell,
            {},
-           basis_on(cells[static_cast<std::size_t>(cell)], model.nitsche->trace).transpose()});
+           basis_on(cells[static_cast<std::size_t>(cell)], model.contact_trace).transpose()});
     parts.back().points.emplace_back(number % 4, factor);
   }
   points = static_cast<Index>(chosen.size());
   u = Vector::Zero(model.primal_size());
 }
 
-void ReducedNitsche::System::set_points(const Scene &scene, const FullMu &all_parameters,
-                                        const std::vector<CurveCell> &cells) {
+void ReducedNitsche::System::set_points(const NitscheCurve &curve, const FullMu &all_parameters) {
   const bool friction = law.law != FrictionLaw::none;
   functionals.resize(u.size(), friction ? 2 * points : points);
   offsets.resize(functionals.cols());
@@ -52,15 +51,15 @@ void ReducedNitsche::System::set_points(const Scene &scene, const FullMu &all_pa
   gamma.resize(points);
   Index next = 0;
   for (const Part &part : parts) {
-    const CurveCell &beside = cells[static_cast<std::size_t>(part.cell)];
-    const CurveCellAtMu at = curve_cell_at(scene, all_parameters, beside);
+    const CurveCell &beside = curve.cells[static_cast<std::size_t>(part.cell)];
+    const CurveCellAtMu at = curve_cell_at(curve, all_parameters, beside);
     const auto count = static_cast<Index>(part.points.size());
     Eigen::Matrix<double, 12, Eigen::Dynamic> local(12, friction ? 2 * count : count);
     for (Index k = 0; k < count; ++k) {
       const auto [q, factor] = part.points[static_cast<std::size_t>(k)];
       const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
-      const NitschePoint point =
-          nitsche_point(scene, all_parameters, at.cell, beside.edge, at.material, rule.s);
+      const NitschePoint point = nitsche_point(curve.scene, curve.support, all_parameters, at.cell,
+                                               beside.edge, at.material, rule.s);
       local.col(k) = point.sigma_n - at.gamma * point.n;
       offsets[next + k] = at.gamma * point.gap;
       if (friction) {

@@ -39,8 +39,7 @@ struct ReducedNitsche::System {
   using ChosenPoints = std::vector<std::pair<int, double>>;
   System(const ReducedModel &model, const std::vector<CurveCell> &cells,
          const ChosenPoints &chosen);
-  void set_points(const Scene &scene, const FullMu &all_parameters,
-                  const std::vector<CurveCell> &cells);
+  void set_points(const NitscheCurve &curve, const FullMu &all_parameters);
   void set(const Vector &coefficients);
   /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.
   Vector weighted(double PointTerm::*part, const Matrix &at) const;

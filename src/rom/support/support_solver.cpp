@@ -1,6 +1,5 @@
 #include "rbvi/rom/support/support_solver.hpp"
 
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
@@ -16,58 +15,11 @@ namespace {
 constexpr double largest_residual = 1e-8;
 constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at all nodes
 
-/// The sampled edge as a curve of its own.
-SupportCurve sample_edge(const SampleMesh &sample, Index number, int degree) {
-  const Point a = point_of(sample.vertices, 2 * number);
-  const Point b = point_of(sample.vertices, 2 * number + 1);
-  SupportCurve curve{{a, b}, 2};
-  if (degree == 2) curve.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0});
-  return curve;
-}
-
 } // namespace
 
-Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
-                            const FullMu &all_parameters) {
-  Vector theta = Vector::Zero(terms.size());
-  const Index edges = terms.sample.vertices.rows() / 2;
-  std::vector<Vector> values;
-  for (Index e = 0; e < edges; ++e) {
-    const SupportOperators edge =
-        couple_with_support(scene, all_parameters, sample_edge(terms.sample, e, scene.degree));
-    values.push_back(matrix ? Vector(Matrix(edge.b).transpose().reshaped()) : edge.g);
-  }
-  for (const SampleMesh::Contribution &c : terms.sample.contributions)
-    theta[c.entry] += values[static_cast<std::size_t>(c.cell)][c.local];
-  terms.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
-  return theta;
-}
-
-MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene,
-                         const FullMu &all_parameters) {
-  MappedCurve curve;
-  const Index count = model.contact_points.rows();
-  for (Index i = 0; i < count; ++i)
-    curve.points.push_back(scene.map(all_parameters, point_of(model.contact_points, i)));
-  curve.weights = Vector::Zero(count);
-  for (Index i = 0; i + 1 < count; ++i) {
-    const Point &a = curve.points[static_cast<std::size_t>(i)];
-    const Point &b = curve.points[static_cast<std::size_t>(i) + 1];
-    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
-    curve.weights[i] += length / 2;
-    curve.weights[i + 1] += length / 2;
-  }
-  return curve;
-}
-
-SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene)
-    : model_(model), scene_(scene), stiffness_(model, scene) {
-  if (!scene.support || !model.support)
-    throw bad_input("the model has contact with a support, its scene in this build has not, or the "
-                    "other way round");
-  const SupportCurve curve{{}, model.support->vertices};
-  if (multiplier_count(curve, *scene.support) != model.dual_basis.rows())
-    throw bad_input("the multipliers of the model do not fit its scene in this build");
+SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene, const Contact &contact)
+    : model_(model), scene_(scene), contact_(contact), stiffness_(model, scene) {
+  if (!model.support) throw bad_input("the model has no law of contact at nodes");
   if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
   samples_ = parts_of_box(scene.parameters, model.support->starts_mu);
 }
@@ -104,13 +56,14 @@ BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, const Vector &thet
     stiffness_.restrict_to(enriched_subspace(
         multiplier_coefficients(support.basis).transpose() * body.b, model_.modes));
   body.stiffness = &stiffness_;
-  body.q = model_.g.reduced * support_coefficients(model_.g, false, scene_, all_parameters);
+  body.q =
+      model_.g.reduced * contact_coefficients(model_.g, Part::g, contact_, scene_, all_parameters);
   if (model_.f.size() > 0) {
     body.load = stiffness_.half_response(
         model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters));
     body.q -= stiffness_.half_response(body.b.transpose()).transpose() * body.load;
   }
-  body.bound = friction_bound(scene_.support->friction, all_parameters);
+  body.bound = contact_.interfaces.front()->bound(all_parameters);
   return body;
 }
 
@@ -123,8 +76,8 @@ SupportSolver::AtAllNodes SupportSolver::at_all_nodes(const BodyAtMu &body, cons
 }
 
 Vector SupportSolver::start_of(const FullMu &all_parameters, const Vector &x) {
-  const BodyAtMu body =
-      body_at(all_parameters, support_coefficients(model_.b, true, scene_, all_parameters));
+  const BodyAtMu body = body_at(
+      all_parameters, contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters));
   return at_all_nodes(body, x).start;
 }
 
@@ -177,7 +130,7 @@ void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters
 
 SupportAnswer SupportSolver::solve(const FullMu &all_parameters) {
   SupportAnswer answer;
-  answer.theta_b = support_coefficients(model_.b, true, scene_, all_parameters);
+  answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters);
   const BodyAtMu body = body_at(all_parameters, answer.theta_b);
   solve_law(body, all_parameters, answer);
   answer.u = -stiffness_.response(answer.theta_b, answer.x);

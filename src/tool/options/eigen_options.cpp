@@ -26,10 +26,10 @@ bool is_ineffective(const std::string &name) {
 /// Why a run makes no supremizers; "" where it does.
 std::string without_supremizers(const ToolOptions &options) {
   const Scene &scene = options.scene;
-  if (scene.nitsche) return "Nitsche's method has no multipliers to make supremizers for";
+  if (by_nitsche(scene)) return "Nitsche's method has no multipliers to make supremizers for";
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return "-pga_enrichment decorrelated makes no supremizers";
-  if (scene.support && options.reduce.multipliers.reduction != MultiplierReduction::collocated)
+  if (keeps_nodes(scene) && options.reduce.multipliers.reduction != MultiplierReduction::collocated)
     return "with a rigid support -multiplier_reduction collocated alone makes supremizers";
   return "";
 }
@@ -37,8 +37,8 @@ std::string without_supremizers(const ToolOptions &options) {
 /// Why a run computes no inf-sup constants; "" where it does.
 std::string without_constants(const ToolOptions &options) {
   const Scene &scene = options.scene;
-  if (scene.nitsche ||
-      (scene.support && options.reduce.multipliers.reduction != MultiplierReduction::collocated))
+  if (by_nitsche(scene) || (keeps_nodes(scene) && options.reduce.multipliers.reduction !=
+                                                      MultiplierReduction::collocated))
     return "inf-sup constants are of a reduced pair: with a rigid support that of "
            "-multiplier_reduction collocated";
   return options.stability ? "" : "-verify_stability no computes no inf-sup constants";

@@ -164,7 +164,7 @@ ToolOptions read_options(MPI_Comm comm) {
   options.valid = options.scene.validation;
   read_table(options);
   check_rules(options);
-  if (options.scene.support && !is_given("cone_type"))
+  if (keeps_nodes(options.scene) && !is_given("cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // a cone of snapshots; hybrid is for one body
   return options;
 }

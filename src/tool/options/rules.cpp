@@ -3,6 +3,7 @@
 #include "table.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
 
@@ -19,42 +20,26 @@ void check_mesh_options(const ToolOptions &options) {
                         "one of the two");
 }
 
-/// Throws bad_input where vi is asked for and constraints are not bounds at single nodes.
-void check_vi(const ToolOptions &options) {
-  if (options.hf.method != HfMethod::vi) return;
-  const Scene &scene = options.scene;
-  if (scene.pair)
-    throw bad_input("-hf_method vi needs a bound at each node, and contact of two bodies bounds "
-                    "integrals over several: use active_set or uzawa");
-  if (scene.support && (scene.support->friction.law != FrictionLaw::none || !scene.lumped))
-    throw bad_input("-hf_method vi on a rigid support needs a bound at each node and no friction: "
-                    "set -friction none and -lumped yes, or use active_set");
-  if (!scene.lumped)
-    throw bad_input("-hf_method vi needs a bound at each node: set -lumped yes, or use "
-                    "active_set");
-}
-
 /// Throws bad_input for tolerances of B^n and of B^tau where they are not apart.
 void check_rows_apart(const Scene &scene, const ReduceOptions &reduce) {
   if (!reduce.eim_normal && !reduce.eim_tangential) return;
-  if (!scene.support || scene.nitsche ||
-      reduce.multipliers.reduction != MultiplierReduction::collocated)
+  if (!keeps_nodes(scene) || reduce.multipliers.reduction != MultiplierReduction::collocated)
     throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for contact with a "
                     "rigid support and -multiplier_reduction collocated: use -eim_tolerance");
-  if (reduce.eim_tangential && scene.support->friction.law == FrictionLaw::none)
+  if (reduce.eim_tangential && !has_friction(scene))
     throw bad_input("-eim_tangential_tolerance is for contact with friction, which this scene has "
                     "not");
 }
 
 /// Throws bad_input for options of a formulation that the scene has not.
 void check_formulation(const Scene &scene) {
-  if (scene.nitsche && is_given("hf_method"))
+  if (by_nitsche(scene) && is_given("hf_method"))
     throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
                     "-nitsche_snes_type");
-  if ((!scene.support || scene.nitsche) && is_given("multiplier_reduction"))
+  if (!keeps_nodes(scene) && is_given("multiplier_reduction"))
     throw bad_input("-multiplier_reduction is for contact with a rigid support by multipliers, "
                     "which this scene has not");
-  if (!scene.nitsche && is_given("nitsche_quadrature"))
+  if (!by_nitsche(scene) && is_given("nitsche_quadrature"))
     throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
 }
 
@@ -64,7 +49,7 @@ void check_rules(const ToolOptions &options) {
   const ReduceOptions &reduce = options.reduce;
   check_mesh_options(options);
   check_formulation(options.scene);
-  check_vi(options);
+  if (options.hf.method == HfMethod::vi) require_bounds_at_nodes(options.scene);
   if (reduce.enrichment == Enrichment::online && reduce.product == SupremizerProduct::energy)
     throw bad_input("-pga_enrichment online takes supremizers in the V product: leave out "
                     "-pga_product energy");

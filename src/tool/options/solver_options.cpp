@@ -41,12 +41,12 @@ void check_solver_of(const std::string &name, const Scene &scene, const HfOption
   for (const Ineffective &option : ineffective)
     if (name.starts_with(option.name))
       throw bad_input("-" + name + " has no effect: " + option.instead);
-  if (name.starts_with("nitsche_") && !scene.nitsche)
+  if (name.starts_with("nitsche_") && !by_nitsche(scene))
     throw bad_input("-" + name + " is for Nitsche's method: set -formulation nitsche");
-  if (name.starts_with("hf_") && scene.nitsche)
+  if (name.starts_with("hf_") && by_nitsche(scene))
     throw bad_input("-" + name + " is for the mixed formulation: Nitsche's method has -nitsche_" +
                     name.substr(3));
-  if (name.starts_with("vi_") && (scene.nitsche || options.method != HfMethod::vi))
+  if (name.starts_with("vi_") && (by_nitsche(scene) || options.method != HfMethod::vi))
     throw bad_input("-" + name + " is for -hf_method vi");
 }
 

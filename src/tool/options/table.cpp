@@ -27,11 +27,11 @@ bool always(const ToolOptions & /*options*/) {
 }
 
 bool with_nitsche(const ToolOptions &options) {
-  return options.scene.nitsche.has_value();
+  return by_nitsche(options.scene);
 }
 
 bool with_support(const ToolOptions &options) {
-  return options.scene.support && !options.scene.nitsche;
+  return keeps_nodes(options.scene);
 }
 
 bool with_reduced_support(const ToolOptions &options) {
@@ -40,7 +40,8 @@ bool with_reduced_support(const ToolOptions &options) {
 }
 
 bool with_dual_basis(const ToolOptions &options) {
-  return !options.scene.support || with_reduced_support(options);
+  return !by_nitsche(options.scene) &&
+         (!keeps_nodes(options.scene) || with_reduced_support(options));
 }
 
 /// Models keep the value where `when` says so.

@@ -9,8 +9,8 @@
 // models use the same functions. gamma is a pressure over a length.
 #pragma once
 
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/dense.hpp"
-#include "rbvi/core/scene.hpp"
 
 #include <array>
 
@@ -45,14 +45,15 @@ struct NitschePoint {
 };
 
 /// What point s of [0, 1] on edge `edge` (Lagrange order) of a triangle sees, of degree
-/// scene.degree; weight: the length of the mapped edge. Normal and gap are the scene's at the
+/// scene.degree; weight: the length of the mapped edge. Normal and gap are the support's at the
 /// reference point, in u_n, sigma_n and the gap alike; edges are straight.
-NitschePoint nitsche_point(const Scene &scene, const FullMu &all_parameters, const Cell &cell,
-                           int edge, const Lame &material, double s);
+NitschePoint nitsche_point(const Scene &scene, const Support &support, const FullMu &mu,
+                           const Cell &cell, int edge, const Lame &material, double s);
 
 /// The Gauss points of the edge, with their weights. Throws failure, naming mu, for an inverted
 /// cell.
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const FullMu &all_parameters,
-                                           const Cell &cell, int edge, const Lame &material);
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Support &support,
+                                           const FullMu &mu, const Cell &cell, int edge,
+                                           const Lame &material);
 
 } // namespace rbvi

@@ -20,6 +20,16 @@ struct CurveCell {
   std::array<int, 12> dofs;
 };
 
+/// The curve of one interface. gamma = gamma0 (lambda + 2 shear) / h on each edge, h its length in
+/// the reference domain. `scene` has a material and outlives it.
+struct NitscheCurve {
+  const Scene &scene;
+  Support support;
+  double gamma0;
+  std::vector<CurveCell> cells; ///< along the curve, by increasing x
+  bool friction() const { return support.friction.law != FrictionLaw::none; }
+};
+
 /// What it sees at one mu. Rows of NitschePoint are for these dofs.
 struct NitscheFace {
   std::array<NitschePoint, 4> points;
@@ -29,17 +39,17 @@ struct NitscheFace {
 
 using FaceBlock = Eigen::Matrix<double, 12, 12>;
 
-/// A cell at mu: mapped, with its material and its gamma (NitscheRecipe).
+/// A cell at mu: mapped, with its material and its gamma.
 struct CurveCellAtMu {
   Cell cell;
   Lame material;
   double gamma;
 };
-CurveCellAtMu curve_cell_at(const Scene &scene, const FullMu &all_parameters,
-                            const CurveCell &cell);
+CurveCellAtMu curve_cell_at(const NitscheCurve &curve, const FullMu &mu, const CurveCell &cell);
 
-/// All faces at mu, in the order of the cells. Throws failure, naming mu, for an inverted cell.
-std::vector<NitscheFace> nitsche_faces(const Scene &scene, const FullMu &all_parameters,
+/// The faces of some cells of the curve, in their order. Throws failure, naming mu, for an inverted
+/// cell.
+std::vector<NitscheFace> nitsche_faces(const NitscheCurve &curve, const FullMu &mu,
                                        const std::vector<CurveCell> &cells);
 
 /// Friction::law with its threshold or coefficient at one mu.
@@ -52,7 +62,7 @@ struct NitscheLaw {
 };
 
 /// Throws failure, naming the value, for a negative one.
-NitscheLaw nitsche_law(const Friction &friction, const FullMu &all_parameters);
+NitscheLaw nitsche_law(const NitscheCurve &curve, const FullMu &mu);
 
 /// P_n (4.19a) and P_tau (4.35) at every point, face by face: 4 * faces rows, 2 columns.
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u);
@@ -105,8 +115,7 @@ struct CurveFields {
   Vector sigma_n, sigma_tau, p_n, p_tau, excess;
   Vector arc_length; ///< from the middle, mapped
 };
-CurveFields nitsche_fields(const Scene &scene, const FullMu &all_parameters,
-                           const std::vector<CurveCell> &cells, const Vector &u);
+CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Vector &u);
 
 /// -sigma_n, then with friction -sigma_tau at the vertices: what stands for the multipliers of the
 /// mixed method.

@@ -18,6 +18,28 @@
 
 namespace rbvi {
 
+/// Where multipliers live.
+enum class MultiplierSpace {
+  macro_edges, ///< constant on macro-edges (local average contact, LAC): two slave edges, of
+               ///< degree 2 one
+  nodes        ///< continuous, linear on each slave edge
+};
+
+/// How the integrals over two meshes that do not match are taken.
+enum class PairQuadrature {
+  intersection, ///< exact: slave and master edges are intersected
+  direct        ///< Gauss points of the slave edges alone
+};
+
+struct PairDiscretisation {
+  MultiplierSpace multiplier = MultiplierSpace::macro_edges;
+  PairQuadrature quadrature = PairQuadrature::intersection;
+};
+
+/// The options `multiplier` and `integration` of scenes with a pair, and what they say.
+std::vector<SceneOption> pair_options();
+PairDiscretisation pair_discretisation(const SceneOptions &options);
+
 /// The constraint, weak and at vertices. Columns are the vertical displacements of the slave nodes,
 /// then of the master nodes, each in the order of their curve; eta are the basis functions of the
 /// multipliers. A slave point beyond the ends of the master curve has no partner and contributes
@@ -44,12 +66,6 @@ Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
 /// Integrals are in arc length of the straight slave edges. O(slave + master nodes).
 PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &master,
                      const PairDiscretisation &discretisation, int degree = 1);
-
-/// The operators of a scene with a pair: its curves mapped by h(mu), its motion taken into both
-/// gaps. `points`: reference nodes of the slave curve, then of the master curve. Throws failure,
-/// naming mu, if the map leaves no curve.
-PairOperators couple_at(const Scene &scene, const FullMu &all_parameters,
-                        const std::vector<Point> &points, Index slave_nodes);
 
 /// Gram matrix of the multipliers in L2 of the slave polygon; an entry (possibly zero) for every
 /// pair of neighbours.

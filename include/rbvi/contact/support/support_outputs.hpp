@@ -1,14 +1,11 @@
 // What people ask of contact with a rigid support: forces, half-widths, pressures.
 #pragma once
 
+#include "rbvi/core/dense.hpp"
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/core/scene.hpp"
 #include "rbvi/law/friction/friction.hpp"
 
 namespace rbvi {
-
-/// The bound at one mu. Throws failure, naming the value, for a negative one.
-FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters);
 
 /// Bound of the tangential multipliers at each node: c lambda_n + t.
 Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n);
@@ -22,8 +19,8 @@ struct SupportState {
   const Vector &lambda;  ///< normal multipliers, then tangential ones if there are any
   const Vector &weights; ///< vertices: integral of the hat function
   const Vector &lift;    ///< multipliers: their work on a unit vertical displacement, B e_y
-  const FrictionBound &bound;
-  const std::vector<Point> &points; ///< mapped vertices, in the order of the curve
+  FrictionBound bound;
+  const Matrix &points; ///< mapped vertices x dim, in the order of the curve
 };
 
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,

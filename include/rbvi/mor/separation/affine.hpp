@@ -11,10 +11,10 @@
 namespace rbvi {
 
 struct AffineOperators {
-  Eim a, b, f, g;   ///< size 0: f without a load; b and g of two bodies (assembled exactly online)
-                    ///< and of Nitsche's method (there are none)
+  Eim a, b, f, g;   ///< size 0: f without a load; b and g that do not separate
   Eim b_tangential; ///< B^tau, where b is B^n alone; size 0 where b is all rows
-  SampleMesh sample_a, sample_b, sample_f, sample_g; ///< sample_b: entries of b, then b_tangential
+  /// Of the domain (a, f), of each interface (b, g); sample_b: entries of b, then b_tangential.
+  std::vector<SampleMesh> sample_a, sample_b, sample_f, sample_g;
   int b_size() const { return b.size() + b_tangential.size(); }
 };
 
@@ -33,9 +33,9 @@ struct RowsOfB {
 std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem);
 
 /// Collective. Assembles the operators at every mu of `training` (A: its lower triangle, where the
-/// parameters that it depends on differ) and interpolates each. `apart`: of B on a rigid support,
-/// in place of `options`. B stays one where it is a multiple of one form at all `training`, since
-/// then one term serves all rows, and without friction, where there is only B^n.
+/// parameters that it depends on differ) and interpolates each. `apart`: of B in place of
+/// `options`, where there is one interface. B stays one where it is a multiple of one form at all
+/// `training`, since then one term serves all rows, and without friction, where there is only B^n.
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart = {});
 

@@ -1,6 +1,5 @@
-// The condensed operator H = B A^-1 B^T on a basis of the multipliers, for contact with a rigid
-// support: what changes with mu in A is interpolated at Chebyshev points, what changes in B is
-// separated already.
+// The condensed operator H = B A^-1 B^T on a basis of the multipliers: what changes with mu in A is
+// interpolated at Chebyshev points, what changes in B is separated already.
 //
 // The law of contact and friction is not smooth in mu, and no linear space or cone of few functions
 // follows it; H is, and converges exponentially. So the multipliers keep their nodes, and the body
@@ -21,7 +20,7 @@ struct CondensedOptions {
 /// Multipliers of mirror images in one column each where the scene is symmetric, the mesh is, and
 /// the multipliers in `snapshots` (dual dofs x P) are to 1e-8; else one column for each dual dof.
 /// Columns for lambda_n first, as many again with friction.
-Matrix support_dual_basis(const Problem &problem, const Matrix &snapshots);
+Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots);
 
 /// Coefficients of multipliers (dual dofs x P) in a basis of disjoint columns.
 Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);

@@ -5,14 +5,14 @@
 //
 // u: n coefficients of the primal basis (N POD modes, then S supremizers or responses), x: R
 // coefficients of the generators of the dual cone. theta comes from empirical interpolation (B.36):
-// a few entries of the full operator are re-assembled on their few cells. B and G of two bodies do
-// not separate: they are assembled for each mu on the two contact curves alone, exactly, from the
-// trace of the basis. Other full-order data are there for outputs and for reconstruction alone. All
+// a few entries of the full operator are re-assembled on their few cells. Where B and G do not
+// separate, they are evaluated for each mu on the contact interfaces alone, exactly, from the trace
+// of the basis. Other full-order data are there for outputs and for reconstruction alone. All
 // fields are numbered by the undistributed mesh. Where the scene has a motion, u is what is left
 // beside it.
 #pragma once
 
-#include "rbvi/core/dense.hpp"
+#include "rbvi/contact/contact.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
 #include "rbvi/rom/model/chebyshev.hpp"
@@ -30,16 +30,17 @@ struct SampleMesh {
   struct Contribution {
     int entry, cell, local;
   };
-  Matrix vertices;                         ///< (cells * (dim + 1)) x dim reference coordinates
+  Matrix vertices;                         ///< (cells * corners) x dim reference coordinates
+  int corners = 3;                         ///< vertices of each cell or edge
   std::vector<Contribution> contributions; ///< ordered by entry
 };
 
 /// One operator as sum_q theta_q(mu) (reduced term q), with theta from empirical interpolation.
 struct AffineTerms {
-  Matrix reduced;       ///< (entries of the reduced operator) x J, see ReducedModel
-  Matrix interpolation; ///< J x J, lower triangular with unit diagonal (B.34)
-  SampleMesh sample;    ///< J entries
-  double error = 0;     ///< e_EIM reached (B.32)
+  Matrix reduced;                  ///< (entries of the reduced operator) x J, see ReducedModel
+  Matrix interpolation;            ///< J x J, lower triangular with unit diagonal (B.34)
+  std::vector<SampleMesh> samples; ///< J entries: on the domain (a, f), on each interface (b, g)
+  double error = 0;                ///< e_EIM reached (B.32)
   int size() const { return static_cast<int>(interpolation.rows()); }
 };
 
@@ -117,14 +118,12 @@ struct TermsApart {
 /// Contact with a rigid support. The dual basis of the model is nodal: a column for every node of
 /// the curve, or pair of mirror images.
 struct SupportModel {
-  int vertices = 0; ///< of the contact curve
-  int normal = 0;   ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
+  int normal = 0; ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
   MultiplierReduction reduction = MultiplierReduction::condensed;
   MultiplierBasis basis;       ///< empty where reduction is condensed
   CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
   bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
   TermsApart apart;
-  Matrix lift;      ///< dual dofs x b.size(): B e_y, term by term
   Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
                     ///< operator their multipliers), where a query starts from
   Matrix starts_mu; ///< free parameters x P: where they are
@@ -140,22 +139,19 @@ enum class CurveRule {
 /// "empirical", "full", "interpolated".
 const std::vector<std::string> &curve_rule_names();
 
-/// An operator on the contact layer by empirical interpolation (B.36): sum_q theta_q (term q), with
+/// An operator on the contact dofs by empirical interpolation (B.36): sum_q theta_q (term q), with
 /// theta from J of its entries.
 struct LayerTerms {
   Matrix reduced;                 ///< n x J, or of a matrix: a packed lower triangle by columns x J
   Matrix interpolation;           ///< J x J unit lower triangular
-  std::vector<int> rows, columns; ///< J dofs of the layer; a vector has no columns
+  std::vector<int> rows, columns; ///< J contact dofs; a vector has no columns
   double error = 0;               ///< e_EIM reached
   Index size() const { return interpolation.rows(); }
 };
 
-/// Nitsche's method: the cells beside the contact curve, and what of them is integrated online.
+/// Nitsche's method: what of the cells beside the contact curve is integrated online. Their dofs
+/// are the contact dofs.
 struct NitscheModel {
-  Matrix vertices;        ///< (3 * cells) x 2, reference, along the curve by increasing x
-  std::vector<int> edges; ///< cells: the one on the curve
-  std::vector<int> dofs;  ///< 12 * cells: rows of trace, see CurveCell
-  Matrix trace;           ///< dofs of the layer x n: primal basis
   LayerTerms consistency; ///< a_gamma - a, a matrix
   CurveRule rule = CurveRule::empirical;
   std::vector<int> points;                     ///< empirical: 4 * cell + Gauss point
@@ -166,6 +162,12 @@ struct NitscheModel {
   /// Interpolated: their n coefficients.
   Matrix starts;
   Matrix starts_mu; ///< free parameters x P: where they are
+};
+
+/// A contact interface of the model.
+struct InterfaceModel {
+  InterfaceMesh mesh;
+  std::vector<int> nodes; ///< numbers of its nodes in the whole mesh
 };
 
 struct ReducedModel {
@@ -188,25 +190,18 @@ struct ReducedModel {
   AffineTerms f; ///< n x J; J = 0: no load
   AffineTerms g; ///< R x J
 
-  // The contact nodes: the dual dofs of an obstacle's region; of two bodies those of the slave
-  // curve, then those of the master curve, each by increasing x; on a support the vertices of its
-  // curve by increasing x, and there the dual dofs are those of lambda_n, then of lambda_tau.
-  int slave_nodes = 0;   ///< two bodies: number of nodes of the slave curve; 0: one body
-  Matrix dual_basis;     ///< dual dofs x R; entries >= 0 but for hybrid cones
-  Matrix contact_trace;  ///< contact nodes x n: primal basis there, of two bodies its vertical
-                         ///< part; on a support (contact nodes * components) x n
-  Matrix contact_points; ///< contact nodes x dim, reference coordinates
-  Matrix lumped_weights; ///< dual dofs x b.size(): integral of each hat function, per term of b
-  bool two_bodies() const { return slave_nodes > 0; }
+  std::vector<InterfaceModel> interfaces;
+  Matrix dual_basis;    ///< dual dofs x R; entries >= 0 but for hybrid cones
+  Matrix contact_trace; ///< contact dofs x n: the primal basis there
+  /// B and G do not separate: they are evaluated for each mu on the interfaces.
+  bool evaluates_contact() const { return b.size() == 0 && !nitsche; }
   std::optional<SupportModel> support;
   std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
 
   // Full order, for reconstruction.
-  Matrix primal_basis;            ///< dofs x n, fixed dofs included
-  Matrix mesh_points;             ///< nodes x dim, reference coordinates
-  std::vector<int> mesh_cells;    ///< node numbers of each cell, nodes_per_cell of them
-  std::vector<int> contact_nodes; ///< mesh node of each contact node
-  std::vector<int> contact_cells; ///< one body: (dim + 1) contact nodes per cell of the region
+  Matrix primal_basis;         ///< dofs x n, fixed dofs included
+  Matrix mesh_points;          ///< nodes x dim, reference coordinates
+  std::vector<int> mesh_cells; ///< node numbers of each cell, nodes_per_cell of them
 
   ValidationErrors validation_enriched, validation_decorrelated;
   SelfCheck self_check;
@@ -216,7 +211,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 7;
+inline constexpr int model_schema = 8;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).
@@ -242,8 +237,11 @@ const ValidationErrors &expected_errors(const ReducedModel &model);
 /// none.
 ErrorOfOutput errors_of_outputs(const ReducedModel &model);
 
-/// Row `i` of contact_points or mesh_points as a point.
+/// Row `i` of mesh_points as a point.
 Point point_of(const Matrix &points, Index i);
+
+/// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.
+Contact contact_of(const ReducedModel &model, const Scene &scene);
 
 /// The scene of the model, with its options and the model's free and fixed parameters.
 Scene scene_of(const ReducedModel &model);

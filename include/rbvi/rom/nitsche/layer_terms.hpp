@@ -6,9 +6,6 @@
 
 namespace rbvi {
 
-/// The cells beside the contact curve, as the model holds them.
-std::vector<CurveCell> curve_cells(const NitscheModel &model);
-
 /// Reference abscissa of each Gauss point of the curve: 4 * cells.
 Vector point_abscissae(const std::vector<CurveCell> &cells);
 

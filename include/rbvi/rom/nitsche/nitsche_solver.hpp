@@ -26,8 +26,8 @@ struct NitscheAnswer {
 
 class ReducedNitsche {
 public:
-  /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
-  ReducedNitsche(const ReducedModel &model, const Scene &scene);
+  /// `model` and `curve` must outlive it.
+  ReducedNitsche(const ReducedModel &model, const NitscheCurve &curve);
   ~ReducedNitsche();
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
@@ -62,8 +62,7 @@ private:
   Vector over_whole_curve(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
 
   const ReducedModel &model_;
-  const Scene &scene_;
-  std::vector<CurveCell> cells_;
+  const NitscheCurve &curve_;
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
   std::unique_ptr<Interpolated> interpolated_;

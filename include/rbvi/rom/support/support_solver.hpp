@@ -5,7 +5,6 @@
 // mended by solve_friction, which starts from it, where it fails.
 #pragma once
 
-#include "rbvi/contact/support/support.hpp"
 #include "rbvi/rom/support/reduced_law.hpp"
 
 namespace rbvi {
@@ -25,8 +24,8 @@ struct SupportAnswer {
 /// query if that is far nearer.
 class SupportSolver {
 public:
-  /// `model` and `scene` must outlive it. Throws bad_input where they do not fit.
-  SupportSolver(const ReducedModel &model, const Scene &scene);
+  /// `model`, `scene` and `contact` must outlive it. Throws bad_input where they do not fit.
+  SupportSolver(const ReducedModel &model, const Scene &scene, const Contact &contact);
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
   SupportAnswer solve(const FullMu &all_parameters);
   /// What the elastic body says at mu; valid until the next call of either.
@@ -50,23 +49,11 @@ private:
 
   const ReducedModel &model_;
   const Scene &scene_;
+  const Contact &contact_;
   std::optional<ReducedLaw> law_;
   Matrix samples_;           ///< where the starts are, as parts of the box
   Vector last_start_, last_; ///< of the last query, and where it was
   ReducedStiffness stiffness_;
 };
-
-/// theta_q(mu) of b (`matrix`) or g: the sampled entries integrated again on their one or two
-/// edges, then the triangular solve (B.36).
-Vector support_coefficients(const AffineTerms &terms, bool matrix, const Scene &scene,
-                            const FullMu &all_parameters);
-
-/// Vertices and weights (integrals of the hat functions) of the mapped curve of a support.
-struct MappedCurve {
-  std::vector<Point> points;
-  Vector weights;
-};
-MappedCurve mapped_curve(const ReducedModel &model, const Scene &scene,
-                         const FullMu &all_parameters);
 
 } // namespace rbvi

@@ -1,0 +1,38 @@
+// The interfaces of a problem, one after the other: the multipliers of interface i are the rows
+// [first_row[i], first_row[i + 1]) of B. On a rank or in the online program.
+#pragma once
+
+#include "rbvi/contact/interface.hpp"
+
+namespace rbvi {
+
+struct Contact {
+  std::vector<std::unique_ptr<ContactInterface>> interfaces;
+  std::vector<Index> first_row; ///< interfaces + 1
+  SparseMatrix w_product;       ///< Gram matrix of W, dual x dual
+
+  Index dual_size() const { return first_row.back(); }
+  /// All normal multipliers, over the interfaces.
+  Index nodes() const;
+};
+
+/// `meshes`: of each contact of the scene, with the columns of the problem. `scene` must outlive
+/// it. Throws bad_input where a mesh does not suit its recipe.
+Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes);
+
+/// The operators of all interfaces together.
+void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
+              ContactOperators &operators);
+/// weights, nodal_b and nodal_gap alone.
+void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
+                    ContactOperators &operators);
+
+/// Fills the outputs of contact: with several interfaces those that are sums or maxima over them.
+/// See ContactInterface::outputs.
+void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
+                     const Vector &lambda, double least, Outputs &outputs);
+
+/// Reference points of the dual nodes.
+std::vector<Point> dual_points(const Contact &contact);
+
+} // namespace rbvi

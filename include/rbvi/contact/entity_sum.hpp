@@ -1,0 +1,57 @@
+// Interfaces whose B and g are sums over their entities, of a pattern that does not depend on mu. A
+// kind gives what one entity adds; the rest is here: assembly, and (mor/separation, rom) empirical
+// interpolation from a few entities.
+#pragma once
+
+#include "rbvi/contact/interface.hpp"
+
+namespace rbvi {
+
+/// What one entity adds. Rows: normal multipliers of its vertices, then their tangential ones;
+/// columns: node * components + component.
+struct EntityValues {
+  using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, 12, 30>;
+  Block b;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 12, 1> g;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1> weights; ///< of its vertices
+};
+
+class EntitySum : public ContactInterface {
+public:
+  /// Sets b and g of `values`, which has its shape. `entity`: its vertices, reference and mapped.
+  virtual void integrate(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
+  /// Sets the weights.
+  virtual void weigh(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
+
+  void assemble(const FullMu &mu, const ContactState &state, ContactOperators &operators) override;
+  void assemble_nodal(const FullMu &mu, const ContactState &state,
+                      ContactOperators &operators) override;
+  const EntitySum *entity_sum() const override { return this; }
+
+  int entity_dim() const { return entity_dim_; }
+  /// Zero values of the shape of an entity.
+  EntityValues shape() const;
+  /// The dual rows of an entity, in the order of EntityValues.
+  std::vector<Index> rows_of(Index entity) const;
+  /// Its columns of B, -1 where there is none.
+  std::vector<Index> columns_of(Index entity) const;
+  /// Its reference vertices.
+  Cell reference_entity(Index entity) const;
+
+protected:
+  EntitySum(const Scene &scene, InterfaceMesh mesh, int entity_dim);
+  /// The dual functions are the hats of the first `vertices` nodes of the mesh.
+  void set_dual(Index vertices, int components, SparseMatrix gram);
+
+private:
+  Index rows() const { return (entity_dim_ + 1) * dual_.components; }
+  std::vector<Cell> mapped_entities(const FullMu &mu) const;
+  void set_nodal(const FullMu &mu, const std::vector<Cell> &cells,
+                 ContactOperators &operators) const;
+
+  int entity_dim_;
+  SparseMatrix pattern_;        ///< of b, zero values
+  std::vector<Index> position_; ///< per kernel value: where in b it is added, -1 nowhere
+};
+
+} // namespace rbvi

@@ -1,0 +1,21 @@
+// The law of friction that a scene poses on an interface.
+#pragma once
+
+#include "rbvi/core/contact_recipe.hpp"
+#include "rbvi/core/parameters.hpp"
+#include "rbvi/law/friction/friction.hpp"
+
+namespace rbvi {
+
+/// |sigma_tau| <= bound: Tresca's threshold (a pressure), or Coulomb's coefficient times the normal
+/// pressure.
+struct Friction {
+  FrictionLaw law = FrictionLaw::none;
+  std::function<double(const FullMu &)> value; ///< threshold or coefficient, >= 0
+  bool only_in_contact = false;                ///< Tresca: zero where a node carries no pressure
+};
+
+/// The bound at one mu. Throws failure, naming the value, for a negative one.
+FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters);
+
+} // namespace rbvi

@@ -1,0 +1,139 @@
+// A contact interface on a mesh, evaluated at (mu, state). It owns the entities that its kernels
+// see (cells of a region, edges of one or two boundaries, cells beside a boundary) and a dual
+// space, and returns the operators of the linearised condition
+//
+//   B(mu, s) u <= g(mu, s),   lambda >= 0,   and with friction |lambda_tau| <= bound(mu)
+//
+// on the displacement dofs that it sees (the columns of B). Solvers, sweep, reduction and the
+// online solver see operators and laws, never kinds of contact. Serial: whoever holds the
+// interface's mesh, a rank or the online program, evaluates it alike.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/scene.hpp"
+#include "rbvi/io/vtu.hpp"
+#include "rbvi/law/friction/friction.hpp"
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace rbvi {
+
+/// The entities of an interface with their nodes, in the order of the undistributed mesh: vertices
+/// first, then (degree 2) the middles of edges; two boundaries one after the other.
+struct InterfaceMesh {
+  int dim = 2, degree = 1;
+  int components = 1;        ///< of the displacement
+  std::vector<Point> points; ///< of the nodes, reference coordinates
+  std::vector<int> entities; ///< nodes of each entity, `per_entity` of them
+  int per_entity = 2;
+  std::vector<int> edges; ///< cells beside a boundary: the local edge of each that is on it
+  std::vector<int> parts; ///< number of nodes of each boundary, or region
+  /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
+  std::vector<int> dofs;
+  Index columns = 0; ///< of the problem
+
+  Index nodes() const { return static_cast<Index>(points.size()); }
+  Index count() const { return static_cast<Index>(entities.size()) / per_entity; }
+  const int *nodes_of(Index entity) const { return entities.data() + entity * per_entity; }
+};
+
+/// Where multipliers live.
+struct DualSpace {
+  std::vector<Point> points;   ///< of its nodes, reference coordinates
+  std::vector<Index> vertices; ///< its nodes in the mesh; empty where they are none of its nodes
+  int components = 1;          ///< multipliers of a node: normal, and with friction tangential ones
+  /// Gram matrix of W. Rows: the normal multipliers of all nodes, then the tangential ones.
+  SparseMatrix gram;
+  Index nodes() const { return static_cast<Index>(points.size()); }
+  Index size() const { return nodes() * components; }
+};
+
+/// What the condition may depend on beside mu: where the bodies are now. Small deformations ignore
+/// it.
+struct ContactState {
+  Vector displacement; ///< at the columns of B
+};
+
+struct ContactOperators {
+  SparseMatrix b;       ///< dual x columns
+  Vector g;             ///< dual; with what linearisation adds
+  Vector weights;       ///< normal multipliers: integral of the basis function, mapped surface
+  SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
+  Vector nodal_gap;
+  std::vector<Index> uncovered; ///< multipliers that do not face a partner everywhere
+};
+
+/// At one point: direction . u <= gap, u the displacement without the motion of the scene.
+struct PointConstraint {
+  Point direction;
+  double gap;
+};
+
+class EntitySum;
+struct NitscheCurve;
+
+class ContactInterface {
+public:
+  ContactInterface(const Scene &scene, InterfaceMesh mesh)
+      : scene_(scene), mesh_(std::move(mesh)) {}
+  virtual ~ContactInterface() = default;
+  ContactInterface(const ContactInterface &) = delete;
+  ContactInterface &operator=(const ContactInterface &) = delete;
+
+  const InterfaceMesh &mesh() const { return mesh_; }
+  const DualSpace &dual() const { return dual_; }
+
+  /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone.
+  virtual void assemble(const FullMu &mu, const ContactState &state,
+                        ContactOperators &operators) = 0;
+  /// weights, nodal_b and nodal_gap alone, which `outputs` and gaps need.
+  virtual void assemble_nodal(const FullMu &mu, const ContactState &state,
+                              ContactOperators &operators) {
+    assemble(mu, state, operators);
+  }
+  /// Of |lambda_tau| at every node. Throws failure, naming the value, for a negative one.
+  virtual FrictionBound bound(const FullMu &mu) const;
+  /// The constraint at a point of the reference boundary or region.
+  virtual PointConstraint constraint_at(const FullMu &mu, const Point &x) const;
+
+  /// Fills the outputs of contact. `operators`: at least those of assemble_nodal; `lambda`: a node
+  /// with at most `least` counts as free.
+  virtual void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
+                       double least, Outputs &outputs) const = 0;
+  /// The mapped interface with its pressure, gap, ...; no cell where nothing can touch. `u`: at its
+  /// nodes, node * components + c, without the motion.
+  virtual Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) = 0;
+
+  /// Separable interfaces: this one, as the sum over its entities. Null: the others.
+  virtual const EntitySum *entity_sum() const { return nullptr; }
+  /// Nitsche's method: the terms along its curve. Null: mixed interfaces.
+  virtual const NitscheCurve *nitsche() const { return nullptr; }
+
+protected:
+  /// nodal_b and nodal_gap from constraint_at at the vertices of the dual space.
+  void set_constraints(const FullMu &mu, ContactOperators &operators) const;
+
+  const Scene &scene_;
+  const InterfaceMesh mesh_;
+  DualSpace dual_;
+};
+
+/// u at the columns that a mesh sees, zero at the others, from u at its nodes.
+Vector at_columns(const InterfaceMesh &mesh, const Vector &nodal);
+
+/// Points mapped by h(mu): points x dim.
+Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Point> &points);
+
+/// Forces and measures of a pressure without friction: normal_force, contact_measure (the weights
+/// of the active nodes), contact_nodes, peak_pressure; of `images` mirror images together.
+void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
+                      Outputs &outputs);
+
+/// motion + u at nodes of the mesh, three components each, for pictures.
+Vector moved_nodes(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
+                   const Vector &nodal);
+
+} // namespace rbvi

@@ -1,0 +1,59 @@
+// What a scene says of one contact interface before there is a mesh. Recipes are made by the kinds
+// of contact (contact/*/): obstacle(), two_bodies(), rigid_support(), nitsche_support(), ...
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+struct Scene;
+struct InterfaceMesh;
+class ContactInterface;
+
+enum class FrictionLaw { none, tresca, coulomb };
+
+enum class Formulation {
+  mixed,  ///< multipliers: B u <= G, lambda >= 0
+  nitsche ///< Nitsche's method: residual and tangent on the cells beside the interface
+};
+
+/// The part of a mesh that an interface is posed on.
+struct InterfaceEntities {
+  enum class Kind {
+    cells,       ///< of the region parts[0]
+    curves,      ///< edges of the boundaries `parts`, each a graph over x (2D)
+    cells_beside ///< the boundary parts[0]: cells with an edge on it, a graph over x (2D)
+  };
+  Kind kind = Kind::cells;
+  std::vector<std::string> parts;
+  std::vector<int> components{}; ///< of the displacement that its kernels see; empty: all
+  bool snapped = false;          ///< Scene::snap brings the middles of edges onto the curves
+};
+
+struct ContactRecipe {
+  InterfaceEntities entities;
+  Formulation formulation = Formulation::mixed;
+  FrictionLaw friction = FrictionLaw::none;
+  /// Vertex quadrature: every row of B has one node, so that the constraint is a bound there.
+  bool nodal = false;
+  /// B and G are sums over the entities, of a pattern that does not depend on mu: empirical
+  /// interpolation over mu separates them. Otherwise they are evaluated at each mu, online too.
+  bool separable = true;
+  /// A reduced model keeps a multiplier at every node, unless asked otherwise: the law is exact.
+  bool keeps_nodes = false;
+  /// `scene` must outlive the interface. Throws bad_input where the mesh does not suit it.
+  std::function<std::unique_ptr<ContactInterface>(const Scene &scene, InterfaceMesh mesh)> make;
+};
+
+/// Whether some interface has friction; whether all are by Nitsche's method, separable, ...
+bool has_friction(const Scene &scene);
+bool by_nitsche(const Scene &scene);
+bool separable_contact(const Scene &scene);
+bool keeps_nodes(const Scene &scene);
+/// Whether every interface bounds single nodes, without friction.
+bool bounds_nodes(const Scene &scene);
+
+} // namespace rbvi

@@ -1,0 +1,140 @@
+#include "rbvi/contact/contact.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+namespace rbvi {
+
+namespace {
+
+/// Matrices below each other; `diagonal`: their columns side by side, too.
+SparseMatrix stacked(const std::vector<SparseMatrix> &parts, bool diagonal) {
+  Index rows = 0, columns = diagonal ? 0 : parts.front().cols();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const SparseMatrix &part : parts) {
+    const Index first_column = diagonal ? columns : 0;
+    for (Index row = 0; row < part.rows(); ++row)
+      for (SparseMatrix::InnerIterator entry(part, row); entry; ++entry)
+        entries.emplace_back(rows + row, first_column + entry.col(), entry.value());
+    rows += part.rows();
+    if (diagonal) columns += part.cols();
+  }
+  SparseMatrix result(rows, columns);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+Vector stacked(const std::vector<Vector> &parts) {
+  const Index size = std::accumulate(parts.begin(), parts.end(), Index{0},
+                                     [](Index n, const Vector &part) { return n + part.size(); });
+  Vector result(size);
+  Index first = 0;
+  for (const Vector &part : parts) {
+    result.segment(first, part.size()) = part;
+    first += part.size();
+  }
+  return result;
+}
+
+/// One member of all.
+template <class Member>
+std::vector<Member> each(const std::vector<ContactOperators> &all,
+                         Member ContactOperators::*member) {
+  std::vector<Member> result;
+  for (const ContactOperators &operators : all)
+    result.push_back(operators.*member);
+  return result;
+}
+
+} // namespace
+
+Index Contact::nodes() const {
+  Index count = 0;
+  for (const auto &interface : interfaces)
+    count += interface->dual().nodes();
+  return count;
+}
+
+Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
+  if (meshes.empty() || meshes.size() != scene.contacts.size())
+    throw bad_input("scene " + scene.name + " has " + std::to_string(scene.contacts.size()) +
+                    " contact interfaces, on " + std::to_string(meshes.size()) + " meshes");
+  Contact contact;
+  std::vector<SparseMatrix> grams;
+  contact.first_row.push_back(0);
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    contact.interfaces.push_back(scene.contacts[i].make(scene, std::move(meshes[i])));
+    const DualSpace &dual = contact.interfaces.back()->dual();
+    contact.first_row.push_back(contact.first_row.back() + dual.size());
+    grams.push_back(dual.gram);
+  }
+  contact.w_product = grams.size() == 1 ? grams.front() : stacked(grams, true);
+  return contact;
+}
+
+void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
+              ContactOperators &operators) {
+  if (contact.interfaces.size() == 1)
+    return contact.interfaces.front()->assemble(mu, state, operators);
+  std::vector<ContactOperators> all(contact.interfaces.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    contact.interfaces[i]->assemble(mu, state, all[i]);
+  operators.b = stacked(each(all, &ContactOperators::b), false);
+  operators.g = stacked(each(all, &ContactOperators::g));
+  operators.weights = stacked(each(all, &ContactOperators::weights));
+  operators.nodal_b = stacked(each(all, &ContactOperators::nodal_b), false);
+  operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
+  operators.uncovered.clear();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const Index row : all[i].uncovered)
+      operators.uncovered.push_back(contact.first_row[i] + row);
+}
+
+void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
+                    ContactOperators &operators) {
+  if (contact.interfaces.size() == 1)
+    return contact.interfaces.front()->assemble_nodal(mu, state, operators);
+  std::vector<ContactOperators> all(contact.interfaces.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    contact.interfaces[i]->assemble_nodal(mu, state, all[i]);
+  operators.weights = stacked(each(all, &ContactOperators::weights));
+  operators.nodal_b = stacked(each(all, &ContactOperators::nodal_b), false);
+  operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
+}
+
+void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
+                     const Vector &lambda, double least, Outputs &outputs) {
+  if (contact.interfaces.size() == 1)
+    return contact.interfaces.front()->outputs(mu, operators, lambda, least, outputs);
+  const auto combine = [](std::optional<double> &all, const std::optional<double> &one, bool sum) {
+    if (one) all = !all ? *one : sum ? *all + *one : std::max(*all, *one);
+  };
+  Index node = 0;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const ContactInterface &interface = *contact.interfaces[i];
+    ContactOperators part;
+    part.weights = operators.weights.segment(node, interface.dual().nodes());
+    node += interface.dual().nodes();
+    Outputs one;
+    interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
+                      least, one);
+    for (const auto member :
+         {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
+          &Outputs::contact_measure, &Outputs::contact_nodes, &Outputs::stick_nodes})
+      combine(outputs.*member, one.*member, true);
+    for (const auto member : {&Outputs::peak_pressure, &Outputs::friction_violation})
+      combine(outputs.*member, one.*member, false);
+  }
+}
+
+std::vector<Point> dual_points(const Contact &contact) {
+  std::vector<Point> points;
+  for (const auto &interface : contact.interfaces)
+    points.insert(points.end(), interface->dual().points.begin(), interface->dual().points.end());
+  return points;
+}
+
+} // namespace rbvi

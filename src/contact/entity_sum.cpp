@@ -1,0 +1,152 @@
+#include "rbvi/contact/entity_sum.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+/// Copies a pattern; where the target has it already, its values alone are set to zero.
+void clear(const SparseMatrix &pattern, SparseMatrix &target) {
+  if (target.rows() == pattern.rows() && target.nonZeros() == pattern.nonZeros())
+    std::fill_n(target.valuePtr(), target.nonZeros(), 0.0);
+  else
+    target = pattern;
+}
+
+double length_of(const Cell &edge) {
+  return std::hypot(edge.mapped[1][0] - edge.mapped[0][0], edge.mapped[1][1] - edge.mapped[0][1]);
+}
+
+/// Throws failure, naming mu, where the map leaves nothing of an edge.
+void check_lengths(const Scene &scene, const FullMu &mu, const std::vector<Cell> &edges) {
+  double longest = 0;
+  for (const Cell &edge : edges)
+    longest = std::max(longest, length_of(edge));
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (!(length_of(edges[e]) > 1e-12 * longest))
+      throw failure("edge " + std::to_string(e) +
+                    " of the contact boundary has no length, mapped at " +
+                    describe(scene.parameters, mu));
+}
+
+} // namespace
+
+EntityValues EntitySum::shape() const {
+  EntityValues values;
+  values.b.setZero(rows(), mesh_.per_entity * mesh_.components);
+  values.g.setZero(rows());
+  values.weights.setZero(entity_dim_ + 1);
+  return values;
+}
+
+EntitySum::EntitySum(const Scene &scene, InterfaceMesh interface_mesh, int entity_dim)
+    : ContactInterface(scene, std::move(interface_mesh)), entity_dim_(entity_dim) {}
+
+std::vector<Index> EntitySum::rows_of(Index entity) const {
+  const int *nodes = mesh_.nodes_of(entity);
+  std::vector<Index> result(nodes, nodes + entity_dim_ + 1);
+  const Index tangents = dual_.components - 1;
+  for (int a = 0; a <= entity_dim_; ++a)
+    for (Index k = 0; k < tangents; ++k)
+      result.push_back(dual_.nodes() + nodes[a] * tangents + k);
+  return result;
+}
+
+std::vector<Index> EntitySum::columns_of(Index entity) const {
+  const int *nodes = mesh_.nodes_of(entity);
+  std::vector<Index> result;
+  for (int i = 0; i < mesh_.per_entity; ++i)
+    for (int c = 0; c < mesh_.components; ++c)
+      result.push_back(mesh_.dofs[static_cast<std::size_t>(nodes[i] * mesh_.components + c)]);
+  return result;
+}
+
+Cell EntitySum::reference_entity(Index entity) const {
+  Cell cell{entity_dim_, {}, {}};
+  const int *nodes = mesh_.nodes_of(entity);
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
+    cell.reference[i] = mesh_.points[static_cast<std::size_t>(nodes[i])];
+  return cell;
+}
+
+void EntitySum::set_dual(Index vertices, int components, SparseMatrix gram) {
+  for (Index i = 0; i < vertices; ++i) {
+    dual_.vertices.push_back(i);
+    dual_.points.push_back(mesh_.points[static_cast<std::size_t>(i)]);
+  }
+  dual_.components = components;
+  dual_.gram = std::move(gram);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index e = 0; e < mesh_.count(); ++e)
+    for (const Index row : rows_of(e))
+      for (const Index column : columns_of(e))
+        if (column >= 0) entries.emplace_back(row, column, 0.0);
+  pattern_.resize(dual_.size(), mesh_.columns);
+  pattern_.setFromTriplets(entries.begin(), entries.end());
+  pattern_.makeCompressed();
+  for (Index e = 0; e < mesh_.count(); ++e)
+    for (const Index row : rows_of(e))
+      for (const Index column : columns_of(e))
+        position_.push_back(column < 0 ? -1
+                                       : &pattern_.coeffRef(row, column) - pattern_.valuePtr());
+}
+
+std::vector<Cell> EntitySum::mapped_entities(const FullMu &mu) const {
+  std::vector<Point> mapped;
+  mapped.reserve(static_cast<std::size_t>(dual_.nodes()));
+  for (Index i = 0; i < dual_.nodes(); ++i)
+    mapped.push_back(scene_.map(mu, mesh_.points[static_cast<std::size_t>(i)]));
+  std::vector<Cell> cells;
+  cells.reserve(static_cast<std::size_t>(mesh_.count()));
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    Cell cell = reference_entity(e);
+    const int *nodes = mesh_.nodes_of(e);
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
+      cell.mapped[i] = mapped[static_cast<std::size_t>(nodes[i])];
+    if (entity_dim_ > 1) check_orientation(scene_, mu, cell);
+    cells.push_back(cell);
+  }
+  if (entity_dim_ == 1) check_lengths(scene_, mu, cells);
+  return cells;
+}
+
+void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperators &operators) {
+  const std::vector<Cell> cells = mapped_entities(mu);
+  clear(pattern_, operators.b);
+  operators.g = Vector::Zero(dual_.size());
+  EntityValues values = shape();
+  const Index *position = position_.data();
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    integrate(mu, cells[static_cast<std::size_t>(e)], values);
+    for (Index k = 0; k < values.b.size(); ++k, ++position)
+      if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
+    const std::vector<Index> dual = rows_of(e);
+    for (std::size_t i = 0; i < dual.size(); ++i)
+      operators.g[dual[i]] += values.g[static_cast<Index>(i)];
+  }
+  set_nodal(mu, cells, operators);
+}
+
+void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &,
+                               ContactOperators &operators) {
+  set_nodal(mu, mapped_entities(mu), operators);
+}
+
+void EntitySum::set_nodal(const FullMu &mu, const std::vector<Cell> &cells,
+                          ContactOperators &operators) const {
+  operators.weights = Vector::Zero(dual_.nodes());
+  EntityValues values = shape();
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    weigh(mu, cells[static_cast<std::size_t>(e)], values);
+    for (int a = 0; a <= entity_dim_; ++a)
+      operators.weights[mesh_.nodes_of(e)[a]] += values.weights[a];
+  }
+  set_constraints(mu, operators);
+}
+
+} // namespace rbvi

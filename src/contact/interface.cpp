@@ -1,0 +1,97 @@
+#include "rbvi/contact/interface.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+bool has_friction(const Scene &scene) {
+  return std::ranges::any_of(scene.contacts, [](const ContactRecipe &contact) {
+    return contact.friction != FrictionLaw::none;
+  });
+}
+
+bool by_nitsche(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
+    return contact.formulation == Formulation::nitsche;
+  });
+}
+
+bool separable_contact(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, &ContactRecipe::separable);
+}
+
+bool keeps_nodes(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, &ContactRecipe::keeps_nodes);
+}
+
+bool bounds_nodes(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, &ContactRecipe::nodal) && !has_friction(scene);
+}
+
+FrictionBound ContactInterface::bound(const FullMu &) const {
+  return {};
+}
+
+PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &) const {
+  throw failure("this kind of contact has no constraint at single points");
+}
+
+void ContactInterface::set_constraints(const FullMu &mu, ContactOperators &operators) const {
+  const auto rows = static_cast<Index>(dual_.vertices.size());
+  SparseMatrix b(rows, mesh_.columns);
+  b.reserve(Eigen::VectorXi::Constant(rows, mesh_.components));
+  operators.nodal_gap.resize(rows);
+  for (Index i = 0; i < rows; ++i) {
+    const Index node = dual_.vertices[static_cast<std::size_t>(i)];
+    const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)]);
+    operators.nodal_gap[i] = at.gap;
+    for (int c = 0; c < mesh_.components; ++c)
+      if (const int dof = mesh_.dofs[static_cast<std::size_t>(node * mesh_.components + c)];
+          dof >= 0)
+        b.insert(i, dof) = at.direction[static_cast<std::size_t>(c)];
+  }
+  b.makeCompressed();
+  operators.nodal_b = std::move(b);
+}
+
+Vector at_columns(const InterfaceMesh &mesh, const Vector &nodal) {
+  Vector result = Vector::Zero(mesh.columns);
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
+    if (mesh.dofs[i] >= 0) result[mesh.dofs[i]] = nodal[static_cast<Index>(i)];
+  return result;
+}
+
+Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Point> &points) {
+  Matrix result(static_cast<Index>(points.size()), scene.dim);
+  for (Index i = 0; i < result.rows(); ++i) {
+    const Point image = scene.map(mu, points[static_cast<std::size_t>(i)]);
+    for (Index k = 0; k < result.cols(); ++k)
+      result(i, k) = image[static_cast<std::size_t>(k)];
+  }
+  return result;
+}
+
+void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
+                      Outputs &outputs) {
+  const auto active = lambda.array() > least;
+  outputs.normal_force = images * weights.dot(lambda);
+  outputs.contact_measure = images * active.select(weights, 0).sum();
+  outputs.contact_nodes = images * static_cast<double>(active.count());
+  outputs.peak_pressure = lambda.maxCoeff();
+}
+
+Vector moved_nodes(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
+                   const Vector &nodal) {
+  Vector moved = Vector::Zero(3 * mesh.nodes());
+  for (Index i = 0; i < mesh.nodes(); ++i) {
+    const Point motion =
+        scene.motion ? scene.motion(mu, mesh.points[static_cast<std::size_t>(i)]) : Point{};
+    for (Index c = 0; c < mesh.components; ++c)
+      moved[3 * i + c] = motion[static_cast<std::size_t>(c)] + nodal[i * mesh.components + c];
+  }
+  return moved;
+}
+
+} // namespace rbvi

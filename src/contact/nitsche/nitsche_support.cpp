@@ -1,0 +1,119 @@
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
+
+#include "rbvi/contact/curve.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/lagrange.hpp"
+
+#include <utility>
+
+namespace rbvi {
+
+namespace {
+
+/// The cells of the mesh as the terms take them.
+std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
+  if (mesh.dim != 2 || mesh.components != 2)
+    throw bad_input("Nitsche's method is for two dimensions: the mesh has " +
+                    std::to_string(mesh.dim));
+  std::vector<CurveCell> cells;
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const int *nodes = mesh.nodes_of(e);
+    CurveCell cell{{2, {}, {}}, mesh.edges[static_cast<std::size_t>(e)], {}};
+    cell.dofs.fill(-1);
+    for (std::size_t v = 0; v < 3; ++v)
+      cell.cell.reference[v] = mesh.points[static_cast<std::size_t>(nodes[v])];
+    cell.cell.mapped = cell.cell.reference;
+    for (int i = 0; i < 2 * mesh.per_entity; ++i)
+      cell.dofs[static_cast<std::size_t>(i)] =
+          mesh.dofs[static_cast<std::size_t>(2 * nodes[i / 2] + i % 2)];
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// The vertices of the curve, nodes of the mesh, by increasing x.
+std::vector<Index> curve_vertices(const InterfaceMesh &mesh) {
+  std::vector<Index> vertices;
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const auto [i, j] =
+        simplex_edges[static_cast<std::size_t>(mesh.edges[static_cast<std::size_t>(e)])];
+    Index a = mesh.nodes_of(e)[i], b = mesh.nodes_of(e)[j];
+    if (mesh.points[static_cast<std::size_t>(a)][0] > mesh.points[static_cast<std::size_t>(b)][0])
+      std::swap(a, b);
+    if (e == 0) vertices.push_back(a);
+    vertices.push_back(b);
+  }
+  return vertices;
+}
+
+class NitscheInterface : public ContactInterface {
+public:
+  NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, Support support, double gamma0)
+      : ContactInterface(scene, std::move(interface_mesh)), curve_{scene, std::move(support),
+                                                                   gamma0, curve_cells(mesh_)} {
+    dual_.vertices = curve_vertices(mesh_);
+    for (const Index node : dual_.vertices)
+      dual_.points.push_back(mesh_.points[static_cast<std::size_t>(node)]);
+    dual_.components = curve_.friction() ? 2 : 1;
+    dual_.gram = linear_gram(dual_.points, dual_.components);
+  }
+
+  const NitscheCurve *nitsche() const override { return &curve_; }
+  void assemble(const FullMu &mu, const ContactState &, ContactOperators &operators) override {
+    set_constraints(mu, operators);
+  }
+  FrictionBound bound(const FullMu &mu) const override {
+    return friction_bound(curve_.support.friction, mu);
+  }
+  PointConstraint constraint_at(const FullMu &mu, const Point &x) const override {
+    const SupportPoint at = support_point(scene_, curve_.support, mu, x);
+    return {at.normal, at.gap};
+  }
+  /// They come from the pressures along the curve: nitsche_outputs.
+  void outputs(const FullMu &, const ContactOperators &, const Vector &, double,
+               Outputs &) const override {}
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
+    return support_fields(scene_, mu, *this, u, lambda);
+  }
+
+private:
+  NitscheCurve curve_;
+};
+
+} // namespace
+
+ContactRecipe nitsche_support(Support support, double gamma0) {
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::cells_beside, {support.boundary}};
+  recipe.formulation = Formulation::nitsche;
+  recipe.friction = support.friction.law;
+  recipe.separable = false;
+  recipe.make = [support, gamma0](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<NitscheInterface>(scene, std::move(mesh), support, gamma0);
+  };
+  return recipe;
+}
+
+std::vector<SceneOption> nitsche_options() {
+  return {{"formulation",
+           "mixed",
+           "of contact: with multipliers, or by Nitsche's method",
+           {"mixed", "nitsche"}},
+          {"nitsche_gamma0",
+           "11.54",
+           "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge",
+           {},
+           {0.1, 2000}}};
+}
+
+bool asks_for_nitsche(const SceneOptions &options) {
+  return options.at("formulation") == "nitsche";
+}
+
+ContactRecipe support_contact(Support support, const SceneOptions &options) {
+  const double gamma0 = number_in(options, "nitsche_gamma0");
+  return asks_for_nitsche(options) ? nitsche_support(std::move(support), gamma0)
+                                   : rigid_support(std::move(support));
+}
+
+} // namespace rbvi

@@ -1,0 +1,94 @@
+#include "rbvi/contact/obstacle/obstacle.hpp"
+
+#include "rbvi/contact/obstacle/contact_area.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/geometry.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+
+namespace rbvi {
+
+namespace {
+
+class ObstacleInterface : public EntitySum {
+public:
+  ObstacleInterface(const Scene &scene, InterfaceMesh interface_mesh, Obstacle obstacle)
+      : EntitySum(scene, std::move(interface_mesh), scene.dim), obstacle_(std::move(obstacle)),
+        b_(mass("", Domain::mapped, -1, obstacle_.lumped)),
+        g_(function_load("", -1, obstacle_.height, obstacle_.lumped)) {
+    if (mesh_.components != 1 || mesh_.degree != 1)
+      throw bad_input("scene " + scene.name +
+                      ": an obstacle is for scalar displacements of degree 1");
+    set_dual(mesh_.nodes(), 1, gram());
+  }
+
+  void integrate(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
+    b_.kernel(mu, cell, values.b.data());
+    g_.kernel(mu, cell, values.g.data());
+  }
+  void weigh(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
+    static const Form hat_integrals = constant_load("", 1);
+    hat_integrals.kernel(mu, cell, values.weights.data());
+  }
+  PointConstraint constraint_at(const FullMu &mu, const Point &x) const override {
+    return {{-1, 0, 0}, -obstacle_.height(mu, scene_.map(mu, x))};
+  }
+
+  void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
+               double least, Outputs &outputs) const override;
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override;
+
+private:
+  SparseMatrix gram() const;
+
+  Obstacle obstacle_;
+  Form b_, g_;
+};
+
+SparseMatrix ObstacleInterface::gram() const {
+  const Form product = mass("", Domain::reference, 1);
+  const Index corners = mesh_.dim + 1;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values(corners, corners);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    product.kernel({}, reference_entity(e), values.data());
+    for (Index i = 0; i < corners; ++i)
+      for (Index j = 0; j < corners; ++j)
+        entries.emplace_back(mesh_.nodes_of(e)[i], mesh_.nodes_of(e)[j], values(i, j));
+  }
+  SparseMatrix result(mesh_.nodes(), mesh_.nodes());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+void ObstacleInterface::outputs(const FullMu &, const ContactOperators &operators,
+                                const Vector &lambda, double least, Outputs &outputs) const {
+  pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
+  if (obstacle_.lumped)
+    outputs.contact_measure =
+        scene_.mirror_images * contact_area(operators.weights,
+                                            (lambda.array() > least).select(lambda, 0),
+                                            mesh_.entities, mesh_.per_entity);
+}
+
+Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
+  Grid grid{mapped_points(scene_, mu, mesh_.points), mesh_.entities, mesh_.per_entity, {}, {}, {}};
+  ContactOperators operators;
+  set_constraints(mu, operators);
+  grid.of_nodes = {{"pressure", lambda, "Pa"},
+                   {"gap", operators.nodal_gap - operators.nodal_b * at_columns(mesh_, u), "m"}};
+  return grid;
+}
+
+} // namespace
+
+ContactRecipe obstacle(Obstacle obstacle) {
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::cells, {obstacle.region}};
+  recipe.nodal = obstacle.lumped;
+  recipe.make = [obstacle](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<ObstacleInterface>(scene, std::move(mesh), obstacle);
+  };
+  return recipe;
+}
+
+} // namespace rbvi
