@@ -115,10 +115,10 @@ Scene make(const SceneOptions &options) {
   const double load = number_in(options, "load");
   scene.a = laplace("");
   if (load != 0) scene.f = constant_load("", load);
-  scene.b = mass("obstacle", Domain::mapped, -1, scene.lumped);
+  scene.b = hat_coupling("obstacle", -1, scene.degree, scene.lumped);
   scene.g = function_load("obstacle", -1, obstacle, scene.lumped);
   scene.v_product = h1_product(1);
-  scene.w_product = mass("obstacle", Domain::reference, 1);
+  scene.w_product = l2_product("obstacle");
   scene.obstacle = obstacle;
   return scene;
 }

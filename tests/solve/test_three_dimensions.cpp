@@ -80,9 +80,9 @@ Scene cube_scene() {
   scene.obstacle = [](const FullMu &, const Point &) { return -0.5; };
   scene.a = laplace("");
   scene.f = constant_load("", -25);
-  scene.b = mass("core", Domain::mapped, -1);
+  scene.b = hat_coupling("core", -1, 1, false);
   scene.g = function_load("core", -1, scene.obstacle);
-  scene.w_product = mass("core", Domain::reference, 1);
+  scene.w_product = l2_product("core");
   return scene;
 }
 
