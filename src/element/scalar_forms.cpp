@@ -10,102 +10,108 @@ namespace rbvi {
 
 namespace {
 
-const std::array<Point, 4> &vertices(const Cell &cell, Domain domain) {
-  return domain == Domain::mapped ? cell.mapped : cell.reference;
+/// A matrix of the nodes of a cell, without a heap.
+using CellMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, most_nodes, most_nodes>;
+
+/// What a form needs of triangles and of tetrahedra, made once: make(dim).
+template <class Make> auto of_both(const Make &make) {
+  return std::array{make(2), make(3)};
 }
 
-/// int phi_i phi_j over a simplex, relative to its volume (P1).
-double mass_entry(int dim, int i, int j) {
-  return (i == j ? 2.0 : 1.0) / ((dim + 1) * (dim + 2));
+template <class Data> const Data &of(const std::array<Data, 2> &both, const Cell &cell) {
+  return both[static_cast<std::size_t>(cell.dim) - 2];
 }
 
-/// A matrix of all nodes of a cell, without a heap.
-using CellMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_nodes, most_nodes>;
-
-/// What the H1 product needs of every simplex of one dimension.
-struct ScalarCell {
-  int dim, degree;
-  CellMatrix mass;                   ///< relative to the volume
-  std::vector<QuadraturePoint> rule; ///< for products of gradients
-};
-
-ScalarCell scalar_cell(int dim, int degree) {
-  const Index nodes = nodes_per_cell(dim, degree);
-  ScalarCell cell{dim, degree, CellMatrix::Zero(nodes, nodes),
-                  degree == 1 ? simplex_quadrature(dim, 1) : positive_quadrature(dim)};
-  if (degree == 1) {
-    for (int i = 0; i <= dim; ++i)
-      for (int j = 0; j <= dim; ++j)
-        cell.mass(i, j) = mass_entry(dim, i, j);
-    return cell;
+/// int psi_i phi_j over a simplex, relative to its volume: psi of degree `rows`, phi of `columns`.
+CellMatrix products(int dim, int rows, int columns) {
+  Vector psi(nodes_per_cell(dim, rows)), phi(nodes_per_cell(dim, columns));
+  CellMatrix sum = CellMatrix::Zero(psi.size(), phi.size());
+  for (const QuadraturePoint &q : simplex_quadrature(dim, rows + columns)) {
+    lagrange_values(dim, rows, q.barycentric, {psi.data(), psi.data() + psi.size()});
+    lagrange_values(dim, columns, q.barycentric, {phi.data(), phi.data() + phi.size()});
+    sum += q.weight * (psi * phi.transpose());
   }
-  Vector phi(nodes);
-  for (const QuadraturePoint &q : simplex_quadrature(dim, 5)) {
-    lagrange_values(dim, degree, q.barycentric, {phi.data(), phi.data() + nodes});
-    cell.mass += q.weight * phi * phi.transpose();
-  }
-  return cell;
+  return sum;
+}
+
+/// Exact for products of gradients.
+std::vector<QuadraturePoint> gradient_rule(int dim, int degree) {
+  return degree == 1 ? simplex_quadrature(dim, 1) : positive_quadrature(dim);
 }
 
 /// int grad phi_i . grad phi_j over a simplex, relative to its volume.
-CellMatrix stiffness(const ScalarCell &cell, const Simplex &geometry) {
+CellMatrix stiffness(int dim, int degree, const std::vector<QuadraturePoint> &rule,
+                     const Simplex &geometry) {
   std::array<std::array<double, 3>, most_nodes> gradients;
   const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic>> g(gradients[0].data(), 3,
-                                                                     cell.mass.rows());
+                                                                     nodes_per_cell(dim, degree));
   CellMatrix sum = CellMatrix::Zero(g.cols(), g.cols());
-  for (const QuadraturePoint &q : cell.rule) {
-    lagrange_gradients(cell.dim, cell.degree, q.barycentric, geometry, gradients);
+  for (const QuadraturePoint &q : rule) {
+    lagrange_gradients(dim, degree, q.barycentric, geometry, gradients);
     sum += q.weight * g.transpose().lazyProduct(g);
   }
   return sum;
 }
 
-} // namespace
-
-Form laplace(const std::string &region) {
-  return {region, [](const FullMu &, const Cell &cell, double *values) {
-            const Simplex s = simplex(cell.dim, cell.mapped);
-            for (int i = 0; i <= cell.dim; ++i)
-              for (int j = 0; j <= cell.dim; ++j)
-                *values++ = s.volume * s.gradients.row(i).dot(s.gradients.row(j));
-          }};
+void fill(double *values, double scale, const CellMatrix &matrix) {
+  for (Index i = 0; i < matrix.size(); ++i)
+    values[i] = scale * matrix.data()[i];
 }
 
-Form mass(const std::string &region, Domain domain, double factor, bool lumped) {
-  return {region, [domain, factor, lumped](const FullMu &, const Cell &cell, double *values) {
-            const int dim = cell.dim;
-            const double scale = factor * simplex(dim, vertices(cell, domain)).volume;
-            for (int i = 0; i <= dim; ++i)
-              for (int j = 0; j <= dim; ++j)
-                *values++ =
-                    scale * (lumped ? (i == j ? 1.0 / (dim + 1) : 0) : mass_entry(dim, i, j));
+} // namespace
+
+Form laplace(const std::string &region, int degree) {
+  check_degree(degree);
+  return {region, [degree, rules = of_both([&](int dim) { return gradient_rule(dim, degree); })](
+                      const FullMu &, const Cell &cell, double *values) {
+            const Simplex s = simplex(cell.dim, cell.mapped);
+            fill(values, s.volume, stiffness(cell.dim, degree, of(rules, cell), s));
           }};
 }
 
 Form h1_product(double length, int components, int degree) {
   check_degree(degree);
-  return {
-      "", [length, components, cells = std::array{scalar_cell(2, degree), scalar_cell(3, degree)}](
-              const FullMu &, const Cell &cell, double *values) {
-        const ScalarCell &scalar = cells[static_cast<std::size_t>(cell.dim) - 2];
-        const Simplex s = simplex(cell.dim, cell.reference);
-        const CellMatrix gradients = stiffness(scalar, s);
-        const Index nodes = gradients.rows(), stride = nodes * components;
-        std::fill_n(values, stride * stride, 0.0);
-        for (Index i = 0; i < nodes; ++i)
-          for (Index j = 0; j < nodes; ++j) {
-            const double entry = s.volume * (scalar.mass(i, j) + length * length * gradients(i, j));
-            for (int c = 0; c < components; ++c)
-              values[(i * components + c) * stride + j * components + c] = entry;
-          }
-      }};
+  const auto mass = of_both([&](int dim) { return products(dim, degree, degree); });
+  const auto rules = of_both([&](int dim) { return gradient_rule(dim, degree); });
+  return {"", [=](const FullMu &, const Cell &cell, double *values) {
+            const Simplex s = simplex(cell.dim, cell.reference);
+            const CellMatrix product =
+                s.volume * (of(mass, cell) +
+                            length * length * stiffness(cell.dim, degree, of(rules, cell), s));
+            const Index nodes = product.rows(), stride = nodes * components;
+            std::fill_n(values, stride * stride, 0.0);
+            for (Index i = 0; i < nodes; ++i)
+              for (Index j = 0; j < nodes; ++j)
+                for (int c = 0; c < components; ++c)
+                  values[(i * components + c) * stride + j * components + c] = product(i, j);
+          }};
 }
 
-Form constant_load(const std::string &region, double value) {
-  return {region, [value](const FullMu &, const Cell &cell, double *values) {
-            const double share = value * simplex(cell.dim, cell.mapped).volume / (cell.dim + 1);
-            for (int i = 0; i <= cell.dim; ++i)
-              *values++ = share;
+Form constant_load(const std::string &region, double value, int degree) {
+  check_degree(degree);
+  return {region, [value, shares = of_both([&](int dim) -> CellMatrix {
+                            return products(dim, 1, degree).colwise().sum(); // the hats sum to 1
+                          })](const FullMu &, const Cell &cell, double *values) {
+            fill(values, value * simplex(cell.dim, cell.mapped).volume, of(shares, cell));
+          }};
+}
+
+Form l2_product(const std::string &region) {
+  return {region, [mass = of_both([](int dim) { return products(dim, 1, 1); })](
+                      const FullMu &, const Cell &cell, double *values) {
+            fill(values, simplex(cell.dim, cell.reference).volume, of(mass, cell));
+          }};
+}
+
+Form hat_coupling(const std::string &region, double factor, int degree, bool lumped) {
+  check_degree(degree);
+  const auto entries = of_both([&](int dim) -> CellMatrix {
+    if (!lumped) return products(dim, 1, degree);
+    return CellMatrix::Identity(dim + 1, nodes_per_cell(dim, degree)) / (dim + 1);
+  });
+  return {region, [=](const FullMu &, const Cell &cell, double *values) {
+            fill(values, factor * simplex(cell.dim, cell.mapped).volume, of(entries, cell));
           }};
 }
 

@@ -1,8 +1,7 @@
-// Quadrature, simplex geometry, form kernels: against closed forms.
+// Quadrature, simplex geometry and maps: against closed forms.
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/quadrature.hpp"
-#include "rbvi/element/scalar_forms.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,47 +71,6 @@ TEST(AspectRatio, IsOneForRegularSimplices) {
       aspect_ratio(3, {Point{1, 1, 1}, Point{1, -1, -1}, Point{-1, 1, -1}, Point{-1, -1, 1}}), 1,
       1e-14);
   EXPECT_GT(aspect_ratio(2, {Point{0, 0, 0}, Point{1, 0, 0}, Point{0.5, 0.1, 0}, Point{}}), 3);
-}
-
-TEST(Forms, RepresentPolynomialsExactly) {
-  for (int dim : {2, 3}) {
-    Cell cell{dim, dim == 2 ? triangle : tetrahedron, dim == 2 ? triangle : tetrahedron};
-    const int k = dim + 1;
-    const double volume = simplex(dim, cell.mapped).volume;
-    Vector u(k), v(k); // linear functions u = x + 2 y, v = 3 - y at the vertices
-    for (int i = 0; i < k; ++i) {
-      const Point &x = cell.mapped[static_cast<std::size_t>(i)];
-      u[i] = x[0] + 2 * x[1];
-      v[i] = 3 - x[1];
-    }
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> m(k, k);
-    laplace("").kernel({}, cell, m.data());
-    EXPECT_NEAR(v.dot(m * u), -2 * volume, 1e-13);
-    mass("", Domain::mapped, -1).kernel({}, cell, m.data());
-    double exact = 0;
-    Vector load(k);
-    const auto psi = [](const FullMu &, const Point &x) { return (x[0] + 2 * x[1]) * x[1]; };
-    double exact_load = 0;
-    for (const auto &q : simplex_quadrature(dim, 5)) {
-      double uq = 0, vq = 0, y = 0;
-      for (int i = 0; i < k; ++i) {
-        const double b = q.barycentric[static_cast<std::size_t>(i)];
-        uq += b * u[i];
-        vq += b * v[i];
-        y += b * cell.mapped[static_cast<std::size_t>(i)][1];
-      }
-      exact += volume * q.weight * uq * vq;
-      exact_load += volume * q.weight * uq * y * vq;
-    }
-    EXPECT_NEAR(v.dot(m * u), -exact, 1e-13);
-    function_load("", 1, psi).kernel({}, cell, load.data());
-    EXPECT_NEAR(load.dot(v), exact_load, 1e-13);
-    constant_load("", 2).kernel({}, cell, load.data());
-    EXPECT_NEAR(load.sum(), 2 * volume, 1e-14);
-    mass("", Domain::mapped, 1, true).kernel({}, cell, m.data());
-    EXPECT_NEAR(m.sum(), volume, 1e-14);
-    EXPECT_NEAR(m.trace(), volume, 1e-14);
-  }
 }
 
 TEST(MembraneScene, MapsMoveTheDiscAndLeaveTheBoundary) {

@@ -114,5 +114,17 @@ TEST(ContactSupport, RefusesACurveThatIsHeld) {
   EXPECT_THROW(make_contact_support(disk.mesh, held, *disk.scene.support), Error);
 }
 
+TEST(ContactSupport, IsForTwoDimensions) {
+  Body disk("rigid_disk", {{"arc_edges", "20"}});
+  disk.mesh.dim = 3;
+  try {
+    (void)make_contact_support(disk.mesh, disk.dofs, *disk.scene.support);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_NE(std::string(error.what()).find("two dimensions"), std::string::npos);
+  }
+}
+
 } // namespace
 } // namespace rbvi

@@ -152,6 +152,19 @@ TEST_F(VtuFile, LargeGridsAreAppended) {
   EXPECT_EQ(vtu_format(grid), VtuFormat::appended);
 }
 
+TEST_F(VtuFile, CellsHaveTheTypesOfVtk) {
+  // VTK_LINE, VTK_TRIANGLE, VTK_TETRA, VTK_QUADRATIC_TRIANGLE, VTK_QUADRATIC_TETRA
+  const std::vector<std::pair<int, int>> types{{2, 3}, {3, 5}, {4, 10}, {6, 22}, {10, 24}};
+  for (const auto &[nodes, type] : types) {
+    Grid grid;
+    grid.points = Matrix::Zero(nodes, 3);
+    grid.per_cell = nodes;
+    for (int i = 0; i < nodes; ++i)
+      grid.cells.push_back(i);
+    EXPECT_EQ(values_of(written(grid, VtuFormat::ascii), "types"), std::vector<double>{1.0 * type});
+  }
+}
+
 TEST_F(VtuFile, SizesThatDoNotFitAreRefused) {
   Grid grid = random_grid(2);
   grid.of_cells[0].values.conservativeResize(7);
@@ -234,15 +247,17 @@ TEST(CentreStresses, OfALinearDisplacementAreExact) {
 
 /// u_x = x^2: eps_xx = 2 x at the centre, which a linear cell through the vertices would miss.
 TEST(CentreStresses, OfAQuadraticDisplacementAreThoseOfTheCentre) {
-  const OneCell cell(2, 2);
   const FullMu mu{1};
-  const Vector u = cell.displacement(mu, [](const Point &x) -> Point {
-    return {x[0] * x[0], 0, 0};
-  });
-  const double centre = (0 + 1 + 0.3) / 3; // of the mapped vertices
-  const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
-  EXPECT_NEAR(s(0, 0), (OneCell::lambda + 2 * OneCell::shear) * 2 * centre, 1e-12);
-  EXPECT_NEAR(s(0, 1), OneCell::lambda * 2 * centre, 1e-12);
+  for (const int dim : {2, 3}) {
+    const OneCell cell(dim, 2);
+    const Vector u = cell.displacement(mu, [](const Point &x) -> Point {
+      return {x[0] * x[0], 0, 0};
+    });
+    const double centre = (1 + 0.3) / (dim + 1); // of the mapped vertices
+    const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
+    EXPECT_NEAR(s(0, 0), (OneCell::lambda + 2 * OneCell::shear) * 2 * centre, 1e-12);
+    EXPECT_NEAR(s(0, 1), OneCell::lambda * 2 * centre, 1e-12);
+  }
 }
 
 /// Every elastic scene has a material; the core of the half-disk is stiffer.

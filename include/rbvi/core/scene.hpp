@@ -30,9 +30,11 @@ struct Cell {
 };
 
 /// An integral over the cells of a region, evaluated cell by cell.
-/// A bilinear form fills k*k values (row-major, test function first), a linear form k values, with
-/// k = nodes * components of the spaces it couples. Nodes of a cell: its vertices and, of degree 2,
-/// the middles of its edges (0,1), (1,2), (2,0) and, of a tetrahedron, (0,3), (1,3), (2,3).
+/// A bilinear form fills rows * columns values (row-major), a linear form rows values: rows for the
+/// functions of the cell that it tests with, columns for those it couples them with, nodes *
+/// components of either space; a form on one space is square. Nodes of a cell: its vertices and, of
+/// degree 2, the middles of its edges (0,1), (1,2), (2,0) and, of a tetrahedron, (0,3), (1,3),
+/// (2,3).
 struct Form {
   std::string region; ///< "" for the whole domain
   std::function<void(const FullMu &mu, const Cell &cell, double *values)> kernel;

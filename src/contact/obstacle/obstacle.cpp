@@ -13,7 +13,7 @@ class ObstacleInterface : public EntitySum {
 public:
   ObstacleInterface(const Scene &scene, InterfaceMesh interface_mesh, Obstacle obstacle)
       : EntitySum(scene, std::move(interface_mesh), scene.dim), obstacle_(std::move(obstacle)),
-        b_(mass("", Domain::mapped, -1, obstacle_.lumped)),
+        b_(hat_coupling("", -1, mesh_.degree, obstacle_.lumped)),
         g_(function_load("", -1, obstacle_.height, obstacle_.lumped)) {
     if (mesh_.components != 1 || mesh_.degree != 1)
       throw bad_input("scene " + scene.name +
@@ -45,7 +45,7 @@ private:
 };
 
 SparseMatrix ObstacleInterface::gram() const {
-  const Form product = mass("", Domain::reference, 1);
+  const Form product = l2_product("");
   const Index corners = mesh_.dim + 1;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values(corners, corners);
   std::vector<Eigen::Triplet<double>> entries;

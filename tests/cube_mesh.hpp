@@ -1,0 +1,73 @@
+// The unit cube as a Gmsh mesh, for tests in three dimensions.
+#pragma once
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// Gmsh text of the unit cube in n^3 boxes of six tetrahedra; region "core": the middle third,
+/// boundary "boundary": all sides. Vertices inside are moved by up to `shake` lengths of a box.
+inline std::string cube_mesh(int n, double shake = 0) {
+  std::ostringstream nodes, elements;
+  int element = 0;
+  const auto node = [n](int i, int j, int k) { return 1 + i + (n + 1) * (j + (n + 1) * k); };
+  const auto moved = [n, shake](int i, int j, int k) {
+    const bool inner = i % n != 0 && j % n != 0 && k % n != 0;
+    return inner ? shake * std::sin(1.0 + 3 * i + 5 * j + 7 * k) : 0;
+  };
+  nodes << std::setprecision(17);
+  for (int k = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i)
+        nodes << node(i, j, k) << " " << (i + moved(i, j, k)) / n << " " << (j + moved(j, k, i)) / n
+              << " " << (k + moved(k, i, j)) / n << "\n";
+  const auto add = [&](int type, int tag, const std::vector<int> &vertices) {
+    elements << ++element << " " << type << " 2 " << tag << " 1";
+    for (const int v : vertices)
+      elements << " " << v;
+    elements << "\n";
+  };
+  const auto inside = [n](int i) { return 3 * i >= n && 3 * (i + 1) <= 2 * n; };
+  const int steps[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        for (const auto &step :
+             steps) { // Kuhn: from corner to corner along the axes in every order
+          int at[3] = {i, j, k};
+          std::vector<int> vertices{node(at[0], at[1], at[2])};
+          for (const int axis : step) {
+            ++at[axis];
+            vertices.push_back(node(at[0], at[1], at[2]));
+          }
+          add(4, inside(i) && inside(j) && inside(k) ? 2 : 3, vertices);
+        }
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, n})
+      for (int p = 0; p < n; ++p)
+        for (int q = 0; q < n; ++q) {
+          const auto corner = [&](int a, int b) {
+            int at[3];
+            at[axis] = side;
+            at[(axis + 1) % 3] = p + a;
+            at[(axis + 2) % 3] = q + b;
+            return node(at[0], at[1], at[2]);
+          };
+          add(2, 1, {corner(0, 0), corner(1, 0), corner(1, 1)});
+          add(2, 1, {corner(0, 0), corner(0, 1), corner(1, 1)});
+        }
+  std::ostringstream out;
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"boundary\"\n3 2 \"core\"\n"
+      << "3 3 \"rest\"\n$EndPhysicalNames\n$Nodes\n"
+      << (n + 1) * (n + 1) * (n + 1) << "\n"
+      << nodes.str() << "$EndNodes\n$Elements\n"
+      << element << "\n"
+      << elements.str() << "$EndElements\n";
+  return out.str();
+}
+
+} // namespace rbvi
