@@ -165,9 +165,9 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   model.modes = bases.modes;
   model.supremizers = bases.supremizers + bases.responses;
   model.online_enriched = bases.online_enriched;
-  model.dual_basis = by_nitsche(scene)    ? Matrix(problem.dual_size(), 0)
-                     : keeps_nodes(scene) ? bases.support_dual
-                                          : bases.cone.all();
+  model.dual_basis = by_nitsche(scene)               ? Matrix(problem.dual_size(), 0)
+                     : bases.support_dual.size() > 0 ? bases.support_dual
+                                                     : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
   return model;
@@ -198,7 +198,7 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
   model.b = start_terms_of_b(affine, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n);
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  if (keeps_nodes(problem.scene()))
+  if (bases.support_dual.size() > 0)
     model.support = start_support(problem, samples, affine, bases, model);
 }
 

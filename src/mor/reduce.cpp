@@ -312,9 +312,9 @@ std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
   return apart;
 }
 
-/// Contact with a rigid support.
-void reduce_on_support(Problem &problem, const std::vector<Sample> &samples,
-                       const ReduceOptions &options, Reduction &result) {
+/// The law at nodes.
+void reduce_law(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
+                Reduction &result) {
   result.bases = build_support_bases(problem, samples, options, result.affine, result.stages);
   {
     const Stage stage(result.stages, stage::projection);
@@ -327,8 +327,10 @@ void reduce_on_support(Problem &problem, const std::vector<Sample> &samples,
 
 } // namespace
 
-Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
-                 const ReduceOptions &options) {
+Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &given) {
+  ReduceOptions options = given;
+  options.multipliers.reduction = reduction_of(problem.scene(), given.multipliers.reduction);
+  check_reduction(problem.scene(), options);
   const std::vector<Mu> training = parameters_of(samples);
   if (training.empty()) throw failure("there is no sample to build a basis from");
   Reduction result;
@@ -336,13 +338,13 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
   result.affine = timed(result.stages, stage::interpolation, [&] {
     return separate(problem, training, options.eim, rows_apart(options));
   });
-  const bool pair = !by_nitsche(problem.scene()) && !keeps_nodes(problem.scene());
+  const bool pair = !by_nitsche(problem.scene()) && !keeps_law(options.multipliers.reduction);
   if (pair)
     reduce_pair(problem, samples, options, result);
   else if (by_nitsche(problem.scene()))
     reduce_nitsche(problem, samples, options, result);
   else
-    reduce_on_support(problem, samples, options, result);
+    reduce_law(problem, samples, options, result);
   if (!pair) check_answers(problem, result.model, result.stages);
   result.stages =
       finished_stages(result.stages, reduction_stages(problem.scene(), options, &result));

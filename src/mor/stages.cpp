@@ -153,7 +153,7 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
 
 constexpr StageName pair_stages("cone, PGA");
 
-/// Contact with a rigid support: the condensed operator in place of a reduced pair, or beside it.
+/// The law at nodes: the condensed operator in place of a reduced pair, or beside it.
 void add_support_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
                       StageTable &rows) {
   const MultiplierReduction reduction = options.multipliers.reduction;
@@ -206,7 +206,7 @@ StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
   rows.push_back(pod_row(options, made));
   if (by_nitsche(scene)) {
     add_curve_rows(options, made, rows);
-  } else if (keeps_nodes(scene)) {
+  } else if (keeps_law(reduction_of(scene, options.multipliers.reduction))) {
     add_support_rows(scene, options, made, rows);
   } else {
     rows.push_back(cone_row(options, made));

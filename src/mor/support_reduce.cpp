@@ -20,8 +20,22 @@ std::vector<FrictionBound> bounds_at(const Scene &scene, const Contact &contact,
 
 } // namespace
 
-void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
-  const MultiplierReduction reduction = options.multipliers.reduction;
+MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen) {
+  if (chosen != MultiplierReduction::automatic) return chosen;
+  return keeps_nodes(scene) ? MultiplierReduction::condensed : MultiplierReduction::cone;
+}
+
+bool keeps_law(MultiplierReduction reduction) {
+  return reduction >= MultiplierReduction::condensed;
+}
+
+void check_reduction(const Scene &scene, const ReduceOptions &options) {
+  const MultiplierReduction reduction = reduction_of(scene, options.multipliers.reduction);
+  if (by_nitsche(scene)) return;
+  if (reduction == MultiplierReduction::cone && has_friction(scene))
+    throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
+                    "collocated, cones or joint");
+  if (!keeps_law(reduction)) return;
   const bool reduced_body =
       reduction == MultiplierReduction::collocated && !options.multipliers.exact;
   if (scene.f && !reduced_body)
@@ -29,6 +43,9 @@ void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
                     " has a load, which the condensed operator does not see: use "
                     "-multiplier_reduction collocated -multiplier_exact no");
   if (reduction == MultiplierReduction::condensed) return;
+  if (!separable_contact(scene))
+    throw bad_input("B of this contact does not separate: use -multiplier_reduction cone or "
+                    "condensed");
   if (!has_friction(scene) && reduction != MultiplierReduction::collocated)
     throw bad_input("the scene has no friction: use -multiplier_reduction condensed or collocated");
   if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
@@ -42,7 +59,6 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
                                  StageTable &stages) {
   const Matrix multipliers = multipliers_of(samples);
   const Scene &scene = problem.scene();
-  check_support_reduction(scene, options);
   const MultiplierOptions &choice = options.multipliers;
   const bool collocated = choice.reduction == MultiplierReduction::collocated;
   std::vector<Mu> training = parameters_of(samples);
@@ -55,7 +71,10 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
-    Condensation made = condense(problem, affine, training, nodal, options.condensed, modes);
+    const CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
+    Condensation made =
+        condense(problem, loads, separable_contact(scene) ? nodal.cols() : loads.columns.cols(),
+                 expand(scene.parameters, training.front()), options.condensed, modes);
     bases.condensed = std::move(made.condensed);
     bases.responses = made.responses;
   }
@@ -97,8 +116,8 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
-    const BodyAtMu body =
-        solver.body_at(all, contact_coefficients(model.b, Part::b, problem.contact(), scene, all));
+    SupportAnswer unused;
+    const BodyAtMu body = solver.body_at(all, unused);
     CollocatedProblem reduced = collocated_problem(support.basis, body);
     problems.push_back({std::move(reduced.h), std::move(reduced.q), body.bound,
                         coefficients.col(static_cast<Index>(p)).tail(nodes)});

@@ -192,6 +192,7 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
     solution.u = std::move(answer.u);
     solution.x = std::move(answer.x);
     solution.theta_b = std::move(answer.theta_b);
+    solution.contact = std::move(answer.contact);
     solution.energy = answer.energy;
     solution.kkt_residual = answer.residual;
     solution.iterations = answer.iterations;

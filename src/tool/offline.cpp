@@ -33,7 +33,7 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
 void command_offline(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   const std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
-  if (keeps_nodes(options.scene)) check_support_reduction(options.scene, options.reduce);
+  check_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
   const Groups groups(world, options.ranks_per_solve);
   const int rank = rank_of(world);

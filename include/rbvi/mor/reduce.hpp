@@ -39,8 +39,8 @@ struct ReduceOptions {
   EimOptions eim;
   /// MultiplierReduction::collocated: tolerances of B^n and of B^tau, where not that of eim.
   std::optional<double> eim_normal, eim_tangential;
-  CondensedOptions condensed;    ///< contact with a rigid support
-  MultiplierOptions multipliers; ///< contact with a rigid support
+  CondensedOptions condensed; ///< the law at nodes
+  MultiplierOptions multipliers;
   GcnsOptions gcns;
   CurveOptions curve; ///< Nitsche's method
   Enrichment enrichment = Enrichment::offline;
@@ -53,21 +53,25 @@ struct ReducedBases {
   Pod pod; ///< basis: N modes, then the S supremizers or responses, V-orthonormal
   Cone cone;
   Pga pga;
-  Matrix support_dual; ///< contact with a rigid support: the nodal dual basis; cone is empty
+  Matrix support_dual; ///< the law at nodes: the nodal dual basis; cone is empty
   CondensedOperator condensed;
   MultiplierReduction reduction = MultiplierReduction::condensed;
   bool mended = true; ///< SupportModel::mended
   MultiplierBases multipliers;
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
-  int responses = 0;   ///< contact with a rigid support: S functions of `condense` in their place
+  int responses = 0;   ///< the law at nodes: S functions of `condense` in their place
   bool online_enriched = false;
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };
 
-/// Contact with a rigid support: throws bad_input for reductions of the multipliers that a load of
-/// the scene, its law of friction or the type of the cones does not allow.
-void check_support_reduction(const Scene &scene, const ReduceOptions &options);
+/// What `automatic` means for a scene; else `chosen`.
+MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen);
+/// Whether a reduction is one of the law at nodes (SupportModel), not of a pair of spaces.
+bool keeps_law(MultiplierReduction reduction);
+/// Throws bad_input for reductions of the multipliers that a load of the scene, its law of
+/// friction, its B or the type of the cones does not allow.
+void check_reduction(const Scene &scene, const ReduceOptions &options);
 
 /// All of the offline stage behind the snapshots. The model is complete on every rank, but for its
 /// settings, validation errors and stage times, and for the self-check, which rank 0 has.
@@ -86,14 +90,14 @@ struct Reduction {
 Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
                  const ReduceOptions &options);
 
-/// Contact with a rigid support: POD, the condensed operator, and, where the multipliers are
+/// The law at nodes: POD, the condensed operator, and, where the multipliers are
 /// reduced further, their functions and (collocated) the supremizers of the pair. Collective.
 ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
                                  const ReduceOptions &options, const AffineOperators &affine,
                                  StageTable &stages);
 
-/// Every other scene: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a factor
-/// only, so one training mu serves the supremizers. Collective.
+/// A reduced pair of spaces: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a
+/// factor only, so one training mu serves the supremizers. Collective.
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTable &stages);
 
@@ -101,7 +105,7 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
 Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
                const GcnsOptions &options);
 
-/// Contact with a rigid support, with the condensed operator: the training multipliers that
+/// The law at nodes, with the condensed operator: the training multipliers that
 /// `project` has left in the model become what a query starts from. Serial.
 void add_starts(ReducedModel &model, const Problem &problem);
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace rbvi {
 
@@ -55,8 +56,8 @@ std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
 }
 
 /// The terms of b on the basis, side by side: contact dofs x (multipliers * terms).
-Matrix loads_of(Problem &problem, const AffineOperators &affine, const std::vector<Mu> &training,
-                const Matrix &basis) {
+Matrix separated_loads(Problem &problem, const AffineOperators &affine,
+                       const std::vector<Mu> &training, const Matrix &basis) {
   const Index m = basis.cols();
   Matrix loads = Matrix::Zero(problem.trace().size, m * affine.b_size());
   Operators op;
@@ -73,6 +74,26 @@ Matrix loads_of(Problem &problem, const AffineOperators &affine, const std::vect
     first += rows.eim.size();
   }
   return loads;
+}
+
+/// Contact dofs that b couples with multipliers that are positive in a sample, and with their two
+/// neighbours on either side: where contact is at other mu. Increasing.
+std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training,
+                               const Matrix &multipliers) {
+  constexpr Index neighbours = 2;
+  std::set<Index> dofs;
+  Operators op;
+  for (std::size_t p = 0; p < training.size(); ++p) {
+    problem.assemble_contact(training[p], op);
+    for (Index i = 0; i < multipliers.rows(); ++i) {
+      const Index first = std::max<Index>(0, i - neighbours);
+      const Index count = std::min(multipliers.rows(), i + neighbours + 1) - first;
+      if (!(multipliers.col(static_cast<Index>(p)).segment(first, count).maxCoeff() > 0)) continue;
+      for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
+        if (entry.value() != 0) dofs.insert(entry.col());
+    }
+  }
+  return {dofs.begin(), dofs.end()};
 }
 
 /// The blocks of H = `loads`^T A^-1 `loads`, below each other: column by column, m^2 entries each.
@@ -157,35 +178,52 @@ Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers) {
          (basis.transpose() * multipliers);
 }
 
-Condensation condense(Problem &problem, const AffineOperators &affine,
-                      const std::vector<Mu> &training, const Matrix &basis,
-                      const CondensedOptions &options, LinearBasis *modes) {
+CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
+                               const std::vector<Mu> &training, const Matrix &multipliers,
+                               const Matrix &basis) {
+  if (!separable_contact(problem.scene())) {
+    const Index dofs = problem.trace().size;
+    return {Matrix::Identity(dofs, dofs), loaded_dofs(problem, training, multipliers)};
+  }
+  CondensedLoads loads{separated_loads(problem, affine, training, basis), {}};
+  for (Index k = 0; k < loads.columns.cols() && affine.b_size() == 1; ++k)
+    loads.appended.push_back(k);
+  return loads;
+}
+
+Condensation condense(Problem &problem, const CondensedLoads &of, Index size,
+                      const FullMu &all_parameters, const CondensedOptions &options,
+                      LinearBasis *modes) {
   const Scene &scene = problem.scene();
-  const FullMu all = expand(scene.parameters, training.front());
-  const Matrix loads = loads_of(problem, affine, training, basis);
-  const bool appends = modes != nullptr && affine.b_size() == 1 && options.responses > 0;
-  const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all);
+  const Matrix &loads = of.columns;
+  const bool appends = modes != nullptr && !of.appended.empty() && options.responses > 0;
+  const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all_parameters);
   Condensation result;
   CondensedOperator &condensed = result.condensed;
 
+  const auto append = [&](Mat fields) {
+    const double least = result.responses == 0 ? 1e-8 : options.responses;
+    result.responses += static_cast<int>(append_orthonormalised(*modes, fields, least).size());
+  };
   /// H of one A, factorised once.
   const auto blocks_at = [&](const Mu &mu) {
     ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
     if (!appends || std::find(ends.begin(), ends.end(), mu) == ends.end())
-      return blocks_of(loads.transpose() * solver.responses(loads), basis.cols());
+      return blocks_of(loads.transpose() * solver.responses(loads), size);
+    if (of.appended.size() < static_cast<std::size_t>(loads.cols())) {
+      const Handle<Mat> fields = solver.fields(loads(Eigen::all, of.appended));
+      append(fields.get());
+      return blocks_of(loads.transpose() * solver.responses(loads), size);
+    }
     const Handle<Mat> fields = solver.fields(loads);
-    const double least = result.responses == 0 ? 1e-8 : options.responses;
-    const Vector blocks =
-        blocks_of(loads.transpose() * restrict_to(problem.trace(), fields.get()), basis.cols());
-    result.responses +=
-        static_cast<int>(append_orthonormalised(*modes, fields.get(), least).size());
-    return blocks;
+    append(fields.get());
+    return blocks_of(loads.transpose() * restrict_to(problem.trace(), fields.get()), size);
   };
   std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
   Matrix values;
   for (int points = 5;; points = 2 * points - 1) {
     condensed.axes = axes_of(scene, points);
-    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
+    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all_parameters);
     for (const Mu &mu : grid)
       if (!known.contains(mu)) known.emplace(mu, blocks_at(mu));
     values.resize(known.begin()->second.size(), static_cast<Index>(grid.size()));
@@ -199,7 +237,7 @@ Condensation condense(Problem &problem, const AffineOperators &affine,
                     " points along each parameter of the stiffness: narrow their bounds, or raise "
                     "-condensed_tolerance");
   }
-  compress(values, basis.cols() * basis.cols(), options.tolerance, condensed);
+  compress(values, size * size, options.tolerance, condensed);
   return result;
 }
 

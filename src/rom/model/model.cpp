@@ -108,7 +108,9 @@ void check_fields(const ReducedModel &model, int dim) {
 
 void check_support(const ReducedModel &model, const SupportModel &support) {
   const CondensedOperator &condensed = support.condensed;
-  const Index m = model.generators, blocks = Index{model.b.size()} * (model.b.size() + 1) / 2;
+  const Index m = model.generators, b = model.b.size();
+  const Index blocks = model.evaluates_contact() ? 1 : b * (b + 1) / 2;
+  const Index size = model.evaluates_contact() ? model.contact_trace.rows() : m;
   require(support.normal > 0 && m % support.normal == 0, "support/normal does not fit");
   require(support.reduction >= MultiplierReduction::condensed &&
               support.reduction <= MultiplierReduction::joint,
@@ -120,7 +122,7 @@ void check_support(const ReducedModel &model, const SupportModel &support) {
   if (condensed.terms.size() > 0) {
     require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes),
                   "support/shape");
-    require_shape(condensed.terms, m * m, blocks * condensed.shape.rows(), "support/terms");
+    require_shape(condensed.terms, size * size, blocks * condensed.shape.rows(), "support/terms");
   } else {
     require(support.reduction == MultiplierReduction::collocated, "it has no condensed operator");
   }
@@ -231,7 +233,8 @@ void check_model(const ReducedModel &model) {
 }
 
 const std::vector<std::string> &multiplier_reduction_names() {
-  static const std::vector<std::string> names{"condensed", "collocated", "cones", "joint"};
+  static const std::vector<std::string> names{"auto",       "cone",  "condensed",
+                                              "collocated", "cones", "joint"};
   return names;
 }
 

@@ -112,9 +112,14 @@ Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const 
     load.noalias() +=
         theta_b[p] * (Eigen::Map<const Matrix>(values, model_.generators, n).transpose() * x);
   }
+  if (turned) return eigenvectors_ * load.cwiseQuotient(diagonal_);
+  return response(load);
+}
+
+Vector ReducedStiffness::response(const Vector &load) const {
   if (model_.online_enriched) return subspace_ * factor_.solve(subspace_.transpose() * load);
-  if (!turned) return factor_.solve(load);
-  return eigenvectors_ * load.cwiseQuotient(diagonal_);
+  if (eigenvectors_.size() == 0) return factor_.solve(load);
+  return eigenvectors_ * (eigenvectors_.transpose() * load).cwiseQuotient(diagonal_);
 }
 
 Matrix ReducedStiffness::half_response(const Matrix &loads) const {

@@ -5,8 +5,10 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace rbvi {
 
@@ -22,6 +24,7 @@ SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene, cons
   if (!model.support) throw bad_input("the model has no law of contact at nodes");
   if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
   samples_ = parts_of_box(scene.parameters, model.support->starts_mu);
+  if (model.evaluates_contact()) nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
 }
 
 /// The free parameters as parts of the box.
@@ -37,6 +40,7 @@ Vector SupportSolver::start_at(const Vector &here) const {
 Vector SupportSolver::term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const {
   const CondensedOperator &condensed = model_.support->condensed;
   const Vector shape = condensed.shape * grid_weights(scene_, condensed.axes, all_parameters);
+  if (model_.evaluates_contact()) return shape;
   Vector result(condensed.terms.cols());
   Index at = 0;
   for (Index p = 0; p < theta_b.size(); ++p)
@@ -45,9 +49,19 @@ Vector SupportSolver::term_coefficients(const FullMu &all_parameters, const Vect
   return result;
 }
 
-BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, const Vector &theta_b) {
+BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, SupportAnswer &answer) {
   const SupportModel &support = *model_.support;
   BodyAtMu body;
+  if (model_.evaluates_contact()) {
+    assemble(contact_, all_parameters, {}, answer.contact);
+    body.b_contact = nodal_ * answer.contact.b;
+    body.q = nodal_ * answer.contact.g;
+  } else {
+    answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters);
+    body.q = model_.g.reduced *
+             contact_coefficients(model_.g, Part::g, contact_, scene_, all_parameters);
+  }
+  const Vector &theta_b = answer.theta_b;
   if (support.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
   if (support.reduction == MultiplierReduction::collocated)
     body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
@@ -56,8 +70,6 @@ BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, const Vector &thet
     stiffness_.restrict_to(enriched_subspace(
         multiplier_coefficients(support.basis).transpose() * body.b, model_.modes));
   body.stiffness = &stiffness_;
-  body.q =
-      model_.g.reduced * contact_coefficients(model_.g, Part::g, contact_, scene_, all_parameters);
   if (model_.f.size() > 0) {
     body.load = stiffness_.half_response(
         model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters));
@@ -67,17 +79,41 @@ BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, const Vector &thet
   return body;
 }
 
+Matrix SupportSolver::condensed_columns(const BodyAtMu &body,
+                                        const std::vector<Index> &which) const {
+  const Matrix &terms = model_.support->condensed.terms;
+  const auto count = static_cast<Index>(which.size());
+  if (!model_.evaluates_contact()) {
+    const Index m = model_.generators;
+    Matrix result(m, count);
+    for (Index k = 0; k < count; ++k)
+      result.col(k).noalias() =
+          terms.middleRows(which[static_cast<std::size_t>(k)] * m, m) * body.terms;
+    return result;
+  }
+  const Index dofs = model_.contact_trace.rows();
+  Matrix moved = Matrix::Zero(dofs, count); // contact dofs, by unit multipliers
+  for (Index k = 0; k < count; ++k)
+    for (SparseMatrix::InnerIterator entry(body.b_contact, which[static_cast<std::size_t>(k)]);
+         entry; ++entry)
+      moved.col(k).noalias() +=
+          terms.middleRows(entry.col() * dofs, dofs) * (entry.value() * body.terms);
+  return body.b_contact * moved;
+}
+
 SupportSolver::AtAllNodes SupportSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) const {
-  const Index m = model_.generators;
-  const Matrix h = (model_.support->condensed.terms * body.terms).reshaped(m, m);
-  AtAllNodes result{h * x + body.q, h.diagonal(), {}};
+  std::vector<Index> all(static_cast<std::size_t>(model_.generators));
+  std::iota(all.begin(), all.end(), 0);
+  const Matrix h = condensed_columns(body, all);
+  // A multiplier that faces no partner has no row.
+  AtAllNodes result{h * x + body.q, (h.diagonal().array() > 0).select(h.diagonal(), 1), {}};
   result.start = x - result.w.cwiseQuotient(result.diagonal);
   return result;
 }
 
 Vector SupportSolver::start_of(const FullMu &all_parameters, const Vector &x) {
-  const BodyAtMu body = body_at(
-      all_parameters, contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters));
+  SupportAnswer answer;
+  const BodyAtMu body = body_at(all_parameters, answer);
   return at_all_nodes(body, x).start;
 }
 
@@ -105,19 +141,16 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
 void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters,
                               SupportAnswer &answer) {
   if (law_ && solve_reduced_law(body, answer)) return;
-  const Index m = model_.generators;
-  const Matrix &terms = model_.support->condensed.terms;
   const auto columns = [&](const std::vector<Index> &which) {
-    Matrix result(m, static_cast<Index>(which.size()));
-    for (std::size_t k = 0; k < which.size(); ++k)
-      result.col(static_cast<Index>(k)).noalias() = terms.middleRows(which[k] * m, m) * body.terms;
-    return result;
+    return condensed_columns(body, which);
   };
-  const Vector start = answer.start.size() > 0
-                           ? answer.start
-                           : start_at(parts_of_box(scene_.parameters, all_parameters));
-  FrictionResult found = solve_friction(
-      columns, body.q, static_cast<int>(m) / model_.support->normal, body.bound, start);
+  Vector start = answer.start.size() > 0
+                     ? answer.start
+                     : start_at(parts_of_box(scene_.parameters, all_parameters));
+  for (Index i = 0; i < body.b_contact.rows() && start.size() > 0; ++i)
+    if (body.b_contact.row(i).norm() == 0) start[i] = std::min(start[i], 0.0); // faces no partner
+  FrictionResult found = solve_friction(columns, body.q, model_.generators / model_.support->normal,
+                                        body.bound, start);
   if (!found.converged || !(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
@@ -130,10 +163,13 @@ void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters
 
 SupportAnswer SupportSolver::solve(const FullMu &all_parameters) {
   SupportAnswer answer;
-  answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters);
-  const BodyAtMu body = body_at(all_parameters, answer.theta_b);
+  const BodyAtMu body = body_at(all_parameters, answer);
   solve_law(body, all_parameters, answer);
-  answer.u = -stiffness_.response(answer.theta_b, answer.x);
+  if (model_.evaluates_contact())
+    answer.u = -stiffness_.response(model_.contact_trace.transpose() *
+                                    (body.b_contact.transpose() * answer.x));
+  else
+    answer.u = -stiffness_.response(answer.theta_b, answer.x);
   if (body.load.size() > 0) answer.u += stiffness_.transposed_half_response(body.load);
   if (model_.support->condensed.terms.size() == 0)
     answer.energy = 0.5 * (stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm() -

@@ -23,24 +23,27 @@ bool is_ineffective(const std::string &name) {
   return false;
 }
 
+/// Whether there is a reduced pair of spaces.
+bool has_pair(const ToolOptions &options) {
+  const MultiplierReduction reduction = options.reduce.multipliers.reduction;
+  return !by_nitsche(options.scene) &&
+         (reduction == MultiplierReduction::cone || reduction == MultiplierReduction::collocated);
+}
+
 /// Why a run makes no supremizers; "" where it does.
 std::string without_supremizers(const ToolOptions &options) {
   const Scene &scene = options.scene;
   if (by_nitsche(scene)) return "Nitsche's method has no multipliers to make supremizers for";
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return "-pga_enrichment decorrelated makes no supremizers";
-  if (keeps_nodes(scene) && options.reduce.multipliers.reduction != MultiplierReduction::collocated)
-    return "with a rigid support -multiplier_reduction collocated alone makes supremizers";
+  if (!has_pair(options)) return "-multiplier_reduction cone and collocated alone make supremizers";
   return "";
 }
 
 /// Why a run computes no inf-sup constants; "" where it does.
 std::string without_constants(const ToolOptions &options) {
-  const Scene &scene = options.scene;
-  if (by_nitsche(scene) || (keeps_nodes(scene) && options.reduce.multipliers.reduction !=
-                                                      MultiplierReduction::collocated))
-    return "inf-sup constants are of a reduced pair: with a rigid support that of "
-           "-multiplier_reduction collocated";
+  if (!has_pair(options))
+    return "inf-sup constants are of a reduced pair: -multiplier_reduction cone or collocated";
   return options.stability ? "" : "-verify_stability no computes no inf-sup constants";
 }
 

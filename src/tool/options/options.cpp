@@ -163,9 +163,11 @@ ToolOptions read_options(MPI_Comm comm) {
   options.train = options.scene.training;
   options.valid = options.scene.validation;
   read_table(options);
+  MultiplierReduction &reduction = options.reduce.multipliers.reduction;
+  reduction = reduction_of(options.scene, reduction);
   check_rules(options);
-  if (keeps_nodes(options.scene) && !is_given("cone_type"))
-    options.reduce.cone.type = ConeType::mcpg; // a cone of snapshots; hybrid is for one body
+  if (keeps_law(reduction) && !is_given("cone_type"))
+    options.reduce.cone.type = ConeType::mcpg; // hybrid has functions of either sign
   return options;
 }
 

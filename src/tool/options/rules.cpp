@@ -23,9 +23,9 @@ void check_mesh_options(const ToolOptions &options) {
 /// Throws bad_input for tolerances of B^n and of B^tau where they are not apart.
 void check_rows_apart(const Scene &scene, const ReduceOptions &reduce) {
   if (!reduce.eim_normal && !reduce.eim_tangential) return;
-  if (!keeps_nodes(scene) || reduce.multipliers.reduction != MultiplierReduction::collocated)
-    throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for contact with a "
-                    "rigid support and -multiplier_reduction collocated: use -eim_tolerance");
+  if (reduce.multipliers.reduction != MultiplierReduction::collocated)
+    throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for "
+                    "-multiplier_reduction collocated: use -eim_tolerance");
   if (reduce.eim_tangential && !has_friction(scene))
     throw bad_input("-eim_tangential_tolerance is for contact with friction, which this scene has "
                     "not");
@@ -36,9 +36,9 @@ void check_formulation(const Scene &scene) {
   if (by_nitsche(scene) && is_given("hf_method"))
     throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
                     "-nitsche_snes_type");
-  if (!keeps_nodes(scene) && is_given("multiplier_reduction"))
-    throw bad_input("-multiplier_reduction is for contact with a rigid support by multipliers, "
-                    "which this scene has not");
+  if (by_nitsche(scene) && is_given("multiplier_reduction"))
+    throw bad_input("-multiplier_reduction is for the mixed formulation: Nitsche's method has no "
+                    "multipliers");
   if (!by_nitsche(scene) && is_given("nitsche_quadrature"))
     throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
 }

@@ -30,18 +30,17 @@ bool with_nitsche(const ToolOptions &options) {
   return by_nitsche(options.scene);
 }
 
-bool with_support(const ToolOptions &options) {
-  return keeps_nodes(options.scene);
+bool with_law(const ToolOptions &options) {
+  return !by_nitsche(options.scene) && keeps_law(options.reduce.multipliers.reduction);
 }
 
-bool with_reduced_support(const ToolOptions &options) {
-  return with_support(options) &&
+bool with_reduced_law(const ToolOptions &options) {
+  return with_law(options) &&
          options.reduce.multipliers.reduction != MultiplierReduction::condensed;
 }
 
 bool with_dual_basis(const ToolOptions &options) {
-  return !by_nitsche(options.scene) &&
-         (!keeps_nodes(options.scene) || with_reduced_support(options));
+  return !by_nitsche(options.scene) && (!with_law(options) || with_reduced_law(options));
 }
 
 /// Models keep the value where `when` says so.
@@ -171,7 +170,7 @@ std::vector<Option> of_sweeps() {
 std::vector<Option> of_bases() {
   const std::vector<std::string> cones{
       "greedy choice of snapshots, cone-projected (B.2)",
-      "the same, modified (Algorithm 2); the default with a rigid support",
+      "the same, modified (Algorithm 2); the default of -multiplier_reduction but cone",
       "the snapshot farthest in angle from the span of those taken (Haasdonk, Salomon, Wohlmuth "
       "2012)",
       "non-negative factorisation of the snapshots (Lee, Seung 2000), by HALS",
@@ -221,17 +220,19 @@ std::vector<Option> of_separation() {
                           "relative error of the separated operators (B.32)")),
       number("eim_max_size", size, AT(reduce.eim.max_size), "most terms; 0: no bound"),
       otherwise("-eim_tolerance",
-                kept(with_reduced_support,
+                kept(with_reduced_law,
                      number("eim_normal_tolerance", relative_error, AT(reduce.eim_normal),
                             "collocated: that of B^n, the rows of lambda_n (3.61a)"))),
       otherwise("-eim_tolerance",
-                kept(with_reduced_support,
+                kept(with_reduced_law,
                      number("eim_tangential_tolerance", relative_error, AT(reduce.eim_tangential),
                             "collocated: that of B^tau, the rows of lambda_tau (3.61b)")))};
 }
 
-std::vector<Option> of_supports() {
+std::vector<Option> of_multipliers() {
   const std::vector<std::string> reductions{
+      "condensed on rigid supports, else cone",
+      "a cone (-cone_type), stable by supremizers; without friction",
       "not at all: the law of contact and friction is exact at every node (or pair of mirror "
       "images), and the elastic body between them is reduced to its condensed operator B A^-1 B^T, "
       "interpolated in the parameters of A. The best by orders of magnitude: see "
@@ -245,19 +246,18 @@ std::vector<Option> of_supports() {
       "modes of both multipliers together, by least squares on the law at nodes chosen by pivoted "
       "QR"};
   return {
-      kept(with_support,
-           number("condensed_tolerance", relative_error, AT(reduce.condensed.tolerance),
-                  "relative error of the condensed operator as a function of mu")),
+      kept(with_law, number("condensed_tolerance", relative_error, AT(reduce.condensed.tolerance),
+                            "relative error of the condensed operator as a function of mu")),
       number("response_tolerance", relative_error, AT(reduce.condensed.responses),
              "responses A^-1 B^T of the multipliers join the displacement modes, those of further "
              "A down to this remainder; 0: none"),
-      kept(with_support,
+      kept(with_law,
            choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
                   AT(reduce.multipliers.reduction), "how the multipliers are reduced")),
       flag("multiplier_exact", AT(reduce.multipliers.exact),
            "collocated, cones, joint: answers that break the law at some node are mended by exact "
            "steps on the condensed operator"),
-      kept(with_reduced_support,
+      kept(with_reduced_law,
            number("tangential_tolerance", relative_error, AT(reduce.multipliers.tangential),
                   "relative error of the modes of lambda_tau (collocated), of both multipliers "
                   "(joint)")),
@@ -320,7 +320,7 @@ const std::vector<Option> &tool_options() {
     add("Bases", of_bases(), all);
     add("Stability", of_stability(), all);
     add("Separation", of_separation(), all);
-    add("Rigid support", of_supports(), all);
+    add("Multipliers", of_multipliers(), all);
     add("Nitsche's method", of_nitsche(), all);
     return all;
   }();

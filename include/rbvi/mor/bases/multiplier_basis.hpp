@@ -14,7 +14,7 @@
 namespace rbvi {
 
 struct MultiplierOptions {
-  MultiplierReduction reduction = MultiplierReduction::condensed;
+  MultiplierReduction reduction = MultiplierReduction::automatic;
   double tangential = 1e-4; ///< tolerance of POD: collocated of lambda_tau, joint of both
   int extra_nodes = 4;      ///< joint: collocation nodes beyond the number of modes
   bool exact = true;        ///< answers that break the law are mended on the condensed operator

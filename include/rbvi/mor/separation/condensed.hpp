@@ -30,17 +30,30 @@ struct Condensation {
   int responses = 0; ///< functions appended to the modes
 };
 
-/// `affine`: the separation of b over the samples at `training`. One factorisation and
-/// basis.cols() * affine.b_size() solves for each Chebyshev point, shared among the ranks.
-/// Collective. Throws failure where the tolerance needs more points.
+/// What A^-1 is asked for on the contact dofs.
+struct CondensedLoads {
+  Matrix columns;              ///< contact dofs x any number
+  std::vector<Index> appended; ///< those whose responses can join the modes
+};
+
+/// Where b separates (`affine`, over the samples at `training`): its terms on the basis, side by
+/// side; all of them can join where there is one term. Where it is evaluated at each mu: the unit
+/// vectors of the contact dofs, those that can join are beside multipliers that are positive in
+/// some sample. `multipliers`: dual dofs x P. Not collective.
+CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
+                               const std::vector<Mu> &training, const Matrix &multipliers,
+                               const Matrix &basis);
+
+/// H = loads^T A^-1 loads in blocks of `size` columns. One factorisation and a solve for each load
+/// at each Chebyshev point, shared among the ranks. Collective. Throws failure where the tolerance
+/// needs more points.
 ///
-/// `modes`, where given and b has one term: the responses A^-1 B^T `basis` are appended to them, at
-/// the ends and in the middle of each free parameter of A. The displacement is then as exact as the
-/// multipliers, which no set of snapshots makes it where active sets are new. Of the first A all
-/// are taken (down to a remainder of 1e-8 of their norm), of the others what is left above
-/// options.responses.
-Condensation condense(Problem &problem, const AffineOperators &affine,
-                      const std::vector<Mu> &training, const Matrix &basis,
-                      const CondensedOptions &options, LinearBasis *modes = nullptr);
+/// `modes`, where given: the responses A^-1 (loads appended) are appended to them, at the ends and
+/// in the middle of each free parameter of A. The displacement is then as exact as the multipliers,
+/// which no set of snapshots makes it where active sets are new. Of the first A all are taken (down
+/// to a remainder of 1e-8 of their norm), of the others what is left above options.responses.
+Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
+                      const FullMu &all_parameters, const CondensedOptions &options,
+                      LinearBasis *modes = nullptr);
 
 } // namespace rbvi

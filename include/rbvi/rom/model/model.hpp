@@ -81,7 +81,8 @@ struct SelfCheck {
 /// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
 /// H(mu) = sum over t of coefficient_t(mu) terms_t. The terms come in blocks, one for each pair of
 /// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
-/// the grid at mu.
+/// the grid at mu. Where b does not separate, the terms are those of E^T A^-1 E on the contact dofs
+/// (m of them), in one block, and H = B (sum of terms) B^T.
 struct CondensedOperator {
   std::vector<ChebyshevAxis> axes; ///< of the free parameters that a depends on
   Matrix shape;                    ///< J x grid points
@@ -89,15 +90,17 @@ struct CondensedOperator {
   double error = 0;                ///< of the interpolation over the grid, relative, estimated
 };
 
-/// What the multipliers of contact with a rigid support are combined from.
+/// What the multipliers are combined from.
 enum class MultiplierReduction {
+  automatic,  ///< condensed where every interface keeps its nodes (ContactRecipe), else cone
+  cone,       ///< a cone, stable with supremizers; without friction
   condensed,  ///< every node: the law of contact and friction is exact, the body is reduced
   collocated, ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
   cones,      ///< cones for lambda_n and for what is left to the bound of friction
   joint       ///< modes of both together, by least squares on the law at collocation nodes
 };
 
-/// "condensed", "collocated", "cones", "joint".
+/// "auto", "cone", "condensed", "collocated", "cones", "joint".
 const std::vector<std::string> &multiplier_reduction_names();
 
 /// The functions of these reductions by their coefficients in the nodal dual basis, k nodes.
@@ -115,11 +118,11 @@ struct TermsApart {
   double normal_error = 0, tangential_error = 0; ///< e_EIM reached of each (3.61)
 };
 
-/// Contact with a rigid support. The dual basis of the model is nodal: a column for every node of
-/// the curve, or pair of mirror images.
+/// The law of contact and friction at every node, or on functions of the nodes. The dual basis of
+/// the model is nodal: a column for every node of the interfaces, or pair of mirror images.
 struct SupportModel {
   int normal = 0; ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
-  MultiplierReduction reduction = MultiplierReduction::condensed;
+  MultiplierReduction reduction = MultiplierReduction::condensed; ///< neither of the first two
   MultiplierBasis basis;       ///< empty where reduction is condensed
   CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
   bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps

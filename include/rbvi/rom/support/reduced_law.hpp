@@ -13,6 +13,7 @@ namespace rbvi {
 struct BodyAtMu {
   Vector terms;                      ///< coefficient of each term of the condensed operator
   Matrix b;                          ///< m x n, reduced; collocated alone
+  SparseMatrix b_contact;            ///< m x contact dofs, where b does not separate
   const ReducedStiffness *stiffness; ///< set to mu
   Vector q;                          ///< m: the gap, and the slip, of no multipliers
   Vector load;                       ///< half response to the load; empty without one

@@ -26,6 +26,7 @@ public:
 
   /// A_N^-1 B_N^T x, B_N of the coefficients `theta_b`.
   Vector response(const Vector &theta_b, const Vector &x) const;
+  Vector response(const Vector &load) const; ///< A_N^-1 load, n entries
   /// Some root of it: L loads, L^T L = A_N^-1. `loads`: n x any number.
   Matrix half_response(const Matrix &loads) const;
   /// L^T half: of half_response(load) it is A_N^-1 load.

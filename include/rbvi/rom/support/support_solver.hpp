@@ -18,6 +18,7 @@ struct SupportAnswer {
       0; ///< largest relative violation of the laws, at all nodes where they are known
   int iterations = 0;
   Vector start; ///< for a nearby query, as FrictionResult::start; empty where none is known
+  ContactOperators contact; ///< at mu, where they do not separate
 };
 
 /// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
@@ -28,8 +29,9 @@ public:
   SupportSolver(const ReducedModel &model, const Scene &scene, const Contact &contact);
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
   SupportAnswer solve(const FullMu &all_parameters);
-  /// What the elastic body says at mu; valid until the next call of either.
-  BodyAtMu body_at(const FullMu &all_parameters, const Vector &theta_b);
+  /// What the elastic body says at mu; valid until the next call of either. Sets theta_b or contact
+  /// of the answer.
+  BodyAtMu body_at(const FullMu &all_parameters, SupportAnswer &answer);
   /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
   /// operator.
   Vector start_of(const FullMu &all_parameters, const Vector &x);
@@ -41,6 +43,8 @@ private:
     Vector start;       ///< x - w / H_jj
   };
   AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x) const;
+  /// H(:, which), m x which.size().
+  Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) const;
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
   void solve_law(const BodyAtMu &body, const FullMu &all_parameters, SupportAnswer &answer);
@@ -51,6 +55,7 @@ private:
   const Scene &scene_;
   const Contact &contact_;
   std::optional<ReducedLaw> law_;
+  SparseMatrix nodal_;       ///< the dual basis transposed, where b does not separate
   Matrix samples_;           ///< where the starts are, as parts of the box
   Vector last_start_, last_; ///< of the last query, and where it was
   ReducedStiffness stiffness_;
