@@ -113,11 +113,11 @@ Scene make(const SceneOptions &options) {
   scene.fixed = {{"boundary", {}}};
   scene.contact_region = "obstacle";
   const double load = number_in(options, "load");
-  scene.a = laplace("");
-  if (load != 0) scene.f = constant_load("", load);
+  scene.a = {mapped_term(laplace(""))};
+  if (load != 0) scene.f = {mapped_term(constant_load("", load))};
   scene.b = mass("obstacle", Domain::mapped, -1, scene.lumped);
   scene.g = function_load("obstacle", -1, obstacle, scene.lumped);
-  scene.v_product = h1_product(1);
+  scene.v_product = {exact_term(h1_product(1))};
   scene.w_product = mass("obstacle", Domain::reference, 1);
   scene.obstacle = obstacle;
   return scene;

@@ -50,17 +50,25 @@ void add_contact(const ReducedModel &model, const Scene &scene, std::vector<Sepa
                    [=](const FullMu &all) -> Vector { return theta(all).tail(tangential); }});
 }
 
-/// The operators with terms. `triangle`, `scene` and `model` must outlive them.
-std::vector<Separated> separated(const LowerTriangle &triangle, const Scene &scene,
+/// The interpolated operators. `triangle`, `problem` and `model` must outlive them.
+std::vector<Separated> separated(const LowerTriangle &triangle, const Problem &problem,
                                  const ReducedModel &model) {
+  const Scene &scene = problem.scene();
   std::vector<Separated> parts;
+  const auto theta = [&scene](const AffineTerms &terms, const Sum &sum) {
+    return [&](const FullMu &all) -> Vector {
+      return affine_coefficients(terms, sum, scene, all).tail(terms.size() - terms.exact);
+    };
+  };
   parts.push_back(
-      {"a", model.a.size(), [&triangle](const Operators &op) { return triangle.values(op.a); },
-       [&](const FullMu &all) { return affine_coefficients(model.a, scene.a, scene, all); }});
+      {"a", model.a.size() - model.a.exact,
+       [&](const Operators &) { return triangle.values(problem.a_terms().mapped.get()); },
+       theta(model.a, scene.a)});
   add_contact(model, scene, parts);
   parts.push_back(
-      {"f", model.f.size(), [](const Operators &op) { return local_values(op.f); },
-       [&](const FullMu &all) { return affine_coefficients(model.f, scene.f, scene, all); }});
+      {"f", model.f.size() - model.f.exact,
+       [&problem](const Operators &) { return local_values(problem.f_terms().mapped.get()); },
+       theta(model.f, scene.f)});
   parts.push_back({"g", model.g.size(), [](const Operators &op) { return op.g; },
                    [&](const FullMu &all) {
                      return model.support ? support_coefficients(model.g, false, scene, all)
@@ -115,7 +123,7 @@ std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedM
                                                 const std::vector<Mu> &validation) {
   if (validation.empty()) return {};
   const LowerTriangle triangle(problem.assemble(validation.front()).a, problem.dofs());
-  const std::vector<Separated> parts = separated(triangle, problem.scene(), model);
+  const std::vector<Separated> parts = separated(triangle, problem, model);
   std::vector<Matrix> functions;
   std::vector<Vector> largest;
   for (const Separated &part : parts) {

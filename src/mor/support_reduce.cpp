@@ -24,7 +24,7 @@ void check_support_reduction(const Scene &scene, const ReduceOptions &options) {
   const MultiplierReduction reduction = options.multipliers.reduction;
   const bool reduced_body =
       reduction == MultiplierReduction::collocated && !options.multipliers.exact;
-  if (scene.f && !reduced_body)
+  if (!scene.f.empty() && !reduced_body)
     throw bad_input("scene " + scene.name +
                     " has a load, which the condensed operator does not see: use "
                     "-multiplier_reduction collocated -multiplier_exact no");

@@ -69,7 +69,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scen
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     : model_(model), scene_(std::move(scene)), qp_(solved_size(model), model.free_modes) {
-  check_kernel(model.a, scene_.a, "a");
+  check_terms_of(model.a, scene_.a, scene_.parameters, "a");
+  check_terms_of(model.f, scene_.f, scene_.parameters, "f");
   if (scene_.nitsche || model.nitsche) {
     nitsche_ = std::make_unique<ReducedNitsche>(model, scene_);
     return;
@@ -79,7 +80,6 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     return;
   }
   check_kernel(model.b, scene_.b, "b");
-  check_kernel(model.f, scene_.f, "f");
   check_kernel(model.g, scene_.g, "g");
   if (model.two_bodies() != scene_.pair.has_value() ||
       (scene_.pair && multiplier_count(model.slave_nodes, scene_.pair->discretisation.multiplier,
@@ -202,7 +202,7 @@ void OnlineSolver::check(ReducedSolution &solution) {
 }
 
 ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
-  const auto theta = [&](const AffineTerms &terms, const Form &form) {
+  const auto theta = [&](const AffineTerms &terms, const auto &form) {
     return affine_coefficients(terms, form, scene_, all_parameters);
   };
   ReducedSolution solution;

@@ -78,8 +78,8 @@ Scene cube_scene() {
   };
   scene.snap = {};
   scene.obstacle = [](const FullMu &, const Point &) { return -0.5; };
-  scene.a = laplace("");
-  scene.f = constant_load("", -25);
+  scene.a = {mapped_term(laplace(""))};
+  scene.f = {mapped_term(constant_load("", -25))};
   scene.b = mass("core", Domain::mapped, -1);
   scene.g = function_load("core", -1, scene.obstacle);
   scene.w_product = mass("core", Domain::reference, 1);

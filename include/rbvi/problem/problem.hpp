@@ -12,7 +12,8 @@
 
 #include "rbvi/law/friction/friction.hpp"
 
-#include "rbvi/fem/assembly.hpp"
+#include "rbvi/problem/summed.hpp"
+
 #include "rbvi/fem/contact_curves.hpp"
 #include "rbvi/fem/contact_region.hpp"
 #include "rbvi/fem/contact_support.hpp"
@@ -54,14 +55,16 @@ public:
   const Trace &trace() const;
   Index dual_size() const { return w_product_.rows(); }
 
-  /// Collective. `mu`: the free parameters, inside or outside the box. A is assembled again only
-  /// where the parameters that it depends on have changed. Throws failure if a cell is inverted.
+  /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
+  /// only where the parameters that they depend on have changed. Throws failure if a cell is
+  /// inverted, bad_input for a coefficient that is not finite.
   const Operators &assemble(const Mu &mu);
   /// Not collective: the contact operators alone, B, G, weights and the nodal constraint.
   void assemble_contact(const Mu &mu, Operators &operators);
 
-  /// Values of the parameters that a depends on.
-  std::vector<double> stiffness_values(const FullMu &all_parameters) const;
+  /// A and F of the last mu term by term.
+  const Summed<Mat> &a_terms() const { return a_; }
+  const Summed<Vec> &f_terms() const { return f_; }
 
   Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
   const SparseMatrix &w_product() const { return w_product_; } ///< dual x dual
@@ -78,9 +81,9 @@ private:
   std::optional<ContactCurves> curves_;
   std::optional<ContactSupport> support_;
   MappedCells cells_;
-  Handle<Mat> a_, v_product_;
-  std::optional<std::vector<double>> a_made_at_; ///< stiffness_values
-  Handle<Vec> f_;
+  Summed<Mat> a_;
+  Summed<Vec> f_;
+  Handle<Mat> v_product_;
   std::optional<ContactMatrix> b_; ///< an obstacle
   SparseMatrix w_product_;
   Operators operators_;

@@ -35,20 +35,15 @@ bool symmetric(const Matrix &snapshots, Index vertices) {
   return true;
 }
 
-bool contains(const std::vector<int> &list, int i) {
-  return std::find(list.begin(), list.end(), i) != list.end();
-}
-
 /// The parameters of a that are free, each with so many points.
 std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   std::vector<ChebyshevAxis> axes;
   for (const int i : scene.parameters.free) {
-    if (scene.a_parameters && !contains(*scene.a_parameters, i)) continue;
+    if (!depends_on(scene.a, i)) continue;
     const Parameter &p = scene.parameters.all[static_cast<std::size_t>(i)];
-    const auto found = scene.a_coordinates.find(i);
-    const bool own = found != scene.a_coordinates.end();
-    const double lower = own ? found->second.of(p.lower) : p.lower;
-    const double upper = own ? found->second.of(p.upper) : p.upper;
+    const Coordinate *own = coordinate_of(scene.a, i);
+    const double lower = own == nullptr ? p.lower : own->of(p.lower);
+    const double upper = own == nullptr ? p.upper : own->of(p.upper);
     axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});
   }
   return axes;

@@ -51,10 +51,15 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, int corners,
                  const std::string &name) {
   const Index size = terms.interpolation.rows();
   require_shape(terms.interpolation, size, size, name + "/interpolation");
-  require_shape(terms.reduced, size == 0 ? terms.reduced.rows() : rows, size, name + "/reduced");
+  require(terms.exact >= 0, name + "/exact is negative");
+  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : rows, terms.size(),
+                name + "/reduced");
   const Matrix &vertices = terms.sample.vertices;
   require(vertices.rows() % corners == 0, name + "/vertices is not a list of cells");
   require_shape(vertices, vertices.rows(), size == 0 ? vertices.cols() : dim, name + "/vertices");
+  require(terms.sample.terms.empty() ||
+              static_cast<Index>(terms.sample.terms.size()) * corners == vertices.rows(),
+          name + "/cell_terms does not fit");
   int previous = 0;
   for (const SampleMesh::Contribution &c : terms.sample.contributions) {
     require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&

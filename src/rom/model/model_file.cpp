@@ -87,6 +87,8 @@ void write_terms(H5Writer &file, const std::string &group, const AffineTerms &te
   file.write(group + "/vertices", terms.sample.vertices);
   file.write(group + "/contributions", triples);
   file.write(group + "/error", terms.error);
+  file.write(group + "/exact", terms.exact);
+  file.write(group + "/cell_terms", terms.sample.terms);
 }
 
 AffineTerms read_terms(const H5Reader &file, const std::string &group) {
@@ -95,6 +97,8 @@ AffineTerms read_terms(const H5Reader &file, const std::string &group) {
   terms.interpolation = file.matrix(group + "/interpolation");
   terms.sample.vertices = file.matrix(group + "/vertices");
   terms.error = file.number(group + "/error");
+  terms.exact = file.integer(group + "/exact");
+  terms.sample.terms = file.ints(group + "/cell_terms");
   const std::vector<int> triples = file.ints(group + "/contributions");
   if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
   for (std::size_t i = 0; i < triples.size(); i += 3)
