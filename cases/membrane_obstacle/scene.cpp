@@ -115,9 +115,9 @@ Scene make(const SceneOptions &options) {
   scene.fixed = {{"boundary", {}}};
   scene.contacts = {obstacle({"obstacle", height, lumped})};
   const double load = number_in(options, "load");
-  scene.a = laplace("");
-  if (load != 0) scene.f = constant_load("", load);
-  scene.v_product = h1_product(1);
+  scene.a = {mapped_term(laplace(""))};
+  if (load != 0) scene.f = {mapped_term(constant_load("", load))};
+  scene.v_product = {exact_term(h1_product(1))};
   return scene;
 }
 

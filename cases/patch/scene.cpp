@@ -15,7 +15,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
 #include <algorithm>
@@ -27,7 +27,6 @@ namespace {
 
 constexpr double apart = 0.25; ///< of each reference block from the contact line y = 0
 constexpr double height = 0.5;
-constexpr double on_side = 1e-6; ///< of the sides: how far a vertex of a mesh file may lie beside
 constexpr double largest_strain = 0.25;
 
 /// Positions of the parameters of one body.
@@ -86,37 +85,26 @@ Scene make_two(const SceneOptions &options) {
   return scene;
 }
 
-/// The exact stress on the right side: (sigma_xx, sigma_xy); on the left one its opposite.
-Point side_traction(const Lame &material, bool frictionless, const FullMu &mu) {
-  const double strain = mu[indentation] / height;
-  const double pressure = (material.lambda + 2 * material.shear) * strain;
-  const double most = frictionless ? 0 : mu[friction] * pressure;
-  return {-material.lambda * strain, std::clamp(material.shear * mu[shear] / height, -most, most),
-          0};
-}
-
-/// int t . v over the edges of the cells on the sides x = 0 and x = 1.
-Form side_load(const Lame &material, bool frictionless, int degree) {
-  return {"", [=](const FullMu &mu, const Cell &cell, double *values) {
-            const Point t = side_traction(material, frictionless, mu);
-            std::fill_n(values, 2 * nodes_per_cell(2, degree), 0.0);
-            for (std::size_t e = 0; e < 3; ++e) {
-              const auto i = static_cast<std::size_t>(simplex_edges[e][0]);
-              const auto j = static_cast<std::size_t>(simplex_edges[e][1]);
-              const Point &a = cell.mapped[i], &b = cell.mapped[j];
-              const double side = std::round(a[0]);
-              if ((side != 0 && side != 1) || std::abs(a[0] - side) > on_side ||
-                  std::abs(b[0] - side) > on_side)
-                continue;
-              const double share =
-                  (side == 0 ? -1 : 1) * std::abs(a[1] - b[1]) / (degree == 2 ? 6 : 2);
-              for (std::size_t c = 0; c < 2; ++c) {
-                values[2 * i + c] += share * t[c];
-                values[2 * j + c] += share * t[c];
-                if (degree == 2) values[2 * (3 + e) + c] += 4 * share * t[c];
-              }
-            }
-          }};
+/// int sigma n . v over the sides, sigma the exact stress: sigma_xx = - lambda strain, sigma_xy the
+/// shear stress that friction at the foot allows.
+Sum side_load(const Lame &material, bool frictionless, int degree) {
+  const auto strain = [](const FullMu &mu) { return mu[indentation] / height; };
+  const auto shear_stress = [=](const FullMu &mu) {
+    const double pressure = (material.lambda + 2 * material.shear) * strain(mu);
+    const double most = frictionless ? 0 : mu[friction] * pressure;
+    return std::clamp(material.shear * mu[shear] / height, -most, most);
+  };
+  const auto across = [](const FullMu &, const Point &, const Point &n) -> Point {
+    return {n[0], 0, 0};
+  };
+  const auto along = [](const FullMu &, const Point &, const Point &n) -> Point {
+    return {0, n[0], 0};
+  };
+  return {exact_term(traction_load("sides", across, 2, degree),
+                     {{"minus lambda", [=](const FullMu &) { return -material.lambda; }, {}},
+                      {"strain", strain, {indentation}}}),
+          exact_term(traction_load("sides", along, 2, degree),
+                     {{"shear stress", shear_stress, {indentation, shear, friction}}})};
 }
 
 Scene make_one(const SceneOptions &options) {
@@ -145,10 +133,9 @@ Scene make_one(const SceneOptions &options) {
   scene.motion = [](const FullMu &mu, const Point &) -> Point {
     return {mu[shear], -mu[indentation], 0};
   };
-  scene.a = elasticity("", material, scene.degree);
-  scene.a_parameters = std::vector<int>{};
+  scene.a = {exact_term(elasticity("", material, scene.degree))};
   scene.f = side_load(material, frictionless, scene.degree);
-  scene.v_product = h1_product(1, 2, scene.degree);
+  scene.v_product = {exact_term(h1_product(1, 2, scene.degree))};
   return scene;
 }
 

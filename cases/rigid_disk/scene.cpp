@@ -142,6 +142,42 @@ void check_indentation(const FullMu &all) {
                     ": contact would reach the ends of the arc");
 }
 
+bool in_core(const Point &centre) {
+  return norm(centre) < core_radius;
+}
+
+/// A = lambda A_lambda + shear A_shear on the ring and, times the core's stiffness, on the core; a
+/// similarity leaves a plane stiffness as it is.
+Sum stiffness(double young) {
+  const Coordinate near_half{[](double x) { return std::log(1 - 2 * x); },
+                             [](double y) { return (1 - std::exp(y)) / 2; }};
+  const Coordinate logarithm{[](double x) { return std::log(x); },
+                             [](double y) { return std::exp(y); }};
+  const Factor lambda{"lambda",
+                      [=](const FullMu &mu) { return lame(young, mu[poisson_ratio]).lambda; },
+                      {poisson_ratio},
+                      {{poisson_ratio, near_half}}};
+  const Factor shear{"shear",
+                     [=](const FullMu &mu) { return lame(young, mu[poisson_ratio]).shear; },
+                     {poisson_ratio}};
+  const Factor core{"core_stiffness",
+                    [](const FullMu &mu) { return mu[core_stiffness]; },
+                    {core_stiffness},
+                    {{core_stiffness, logarithm}}};
+  const auto part = [](bool inside, const Lame &material) {
+    return elasticity(
+        "",
+        [=](const FullMu &, const Point &centre) {
+          return in_core(centre) == inside ? material : Lame{0, 0};
+        },
+        2);
+  };
+  const Lame of_lambda{1, 0}, of_shear{0, 1};
+  return {exact_term(part(false, of_lambda), {lambda}), exact_term(part(false, of_shear), {shear}),
+          exact_term(part(true, of_lambda), {core, lambda}),
+          exact_term(part(true, of_shear), {core, shear})};
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   const int edges = arc_edges(options);
@@ -157,7 +193,7 @@ Scene make(const SceneOptions &options) {
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   scene.contacts = {support_contact(support, options)};
   scene.material = [young](const FullMu &mu, const Point &centre) {
-    const double stiffness = norm(centre) < core_radius ? mu[core_stiffness] : 1;
+    const double stiffness = in_core(centre) ? mu[core_stiffness] : 1;
     return lame(stiffness * young, mu[poisson_ratio]);
   };
   scene.parameters = parameters(support.friction.law, nitsche, young);
@@ -171,15 +207,9 @@ Scene make(const SceneOptions &options) {
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
   scene.motion = [](const FullMu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
-  scene.a = elasticity("", scene.material, 2);
-  scene.a_parameters = {core_stiffness, poisson_ratio};
-  scene.part_stiffness = core_stiffness;
-  scene.a_coordinates[core_stiffness] = {[](double x) { return std::log(x); },
-                                         [](double y) { return std::exp(y); }};
-  scene.a_coordinates[poisson_ratio] = {[](double x) { return std::log(1 - 2 * x); },
-                                        [](double y) { return (1 - std::exp(y)) / 2; }};
+  scene.a = stiffness(young);
   scene.symmetric = true;
-  scene.v_product = h1_product(1, 2, 2);
+  scene.v_product = {exact_term(h1_product(1, 2, 2))};
   return scene;
 }
 

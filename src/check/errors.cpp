@@ -100,25 +100,16 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
   const Scene &scene = problem.scene();
   const Mesh &mesh = problem.mesh();
   const FullMu all = expand(scene.parameters, mu);
-  const Index nodes = nodes_per_cell(mesh.dim, mesh.degree), count = nodes * scene.components;
-  Matrix product_of_cell(count, count);
-  Vector local(count);
-  double square = 0;
-  const MappedCells cells = reference_cells(mesh);
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    const Cell &cell = cells.cells[k];
-    const auto node_of = nodes_of(mesh, k);
-    for (Index i = 0; i < nodes; ++i) {
-      const auto at = static_cast<std::size_t>(node_of[static_cast<std::size_t>(i)]);
-      const Point motion = scene.motion ? scene.motion(all, mesh.points[at]) : Point{};
-      const PetscInt node = mesh.natural_node[at];
-      for (Index c = 0; c < scene.components; ++c)
-        local[i * scene.components + c] =
-            motion[static_cast<std::size_t>(c)] + u[node * scene.components + c];
-    }
-    scene.v_product.kernel({}, cell, product_of_cell.data());
-    square += local.dot(product_of_cell * local);
+  const auto count = static_cast<std::size_t>(scene.components);
+  Vector whole(std::ssize(mesh.points) * scene.components);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Point motion = scene.motion ? scene.motion(all, mesh.points[v]) : Point{};
+    for (std::size_t c = 0; c < count; ++c)
+      whole[static_cast<Index>(v * count + c)] =
+          motion[c] + u[mesh.natural_node[v] * scene.components + static_cast<Index>(c)];
   }
+  double square = whole.dot(product_with(forms_of(scene.v_product), {}, mesh, problem.dofs(),
+                                         reference_cells(mesh), whole));
   MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, problem.comm());
   return std::sqrt(square);
 }

@@ -34,7 +34,7 @@ void add_contact(const ReducedModel &model, const Problem &problem, std::vector<
     return;
   }
   const auto entries_of_normal = [](const Operators &op) {
-    return Index{op.b.outerIndexPtr()[op.normal]};
+    return Index{op.b.outerIndexPtr()[op.laws.nodes()]};
   };
   const Index tangential = model.b.size() - normal;
   parts.push_back({"b_normal", normal,
@@ -49,18 +49,25 @@ void add_contact(const ReducedModel &model, const Problem &problem, std::vector<
                    [=](const FullMu &all) -> Vector { return theta(all).tail(tangential); }});
 }
 
-/// The operators with terms. `triangle`, `problem` and `model` must outlive them.
+/// The interpolated operators. `triangle`, `problem` and `model` must outlive them.
 std::vector<Separated> separated(const LowerTriangle &triangle, const Problem &problem,
                                  const ReducedModel &model) {
   const Scene &scene = problem.scene();
   std::vector<Separated> parts;
+  const auto theta = [&scene](const AffineTerms &terms, const Sum &sum) {
+    return [&](const FullMu &all) -> Vector {
+      return affine_coefficients(terms, sum, scene, all).tail(terms.size() - terms.exact);
+    };
+  };
   parts.push_back(
-      {"a", model.a.size(), [&triangle](const Operators &op) { return triangle.values(op.a); },
-       [&](const FullMu &all) { return affine_coefficients(model.a, scene.a, scene, all); }});
+      {"a", model.a.size() - model.a.exact,
+       [&](const Operators &) { return triangle.values(problem.a_terms().mapped.get()); },
+       theta(model.a, scene.a)});
   add_contact(model, problem, parts);
   parts.push_back(
-      {"f", model.f.size(), [](const Operators &op) { return local_values(op.f); },
-       [&](const FullMu &all) { return affine_coefficients(model.f, scene.f, scene, all); }});
+      {"f", model.f.size() - model.f.exact,
+       [&problem](const Operators &) { return local_values(problem.f_terms().mapped.get()); },
+       theta(model.f, scene.f)});
   parts.push_back({"g", model.g.size(), [](const Operators &op) { return op.g; },
                    [&](const FullMu &all) {
                      return contact_coefficients(model.g, Part::g, problem.contact(), scene, all);

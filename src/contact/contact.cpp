@@ -105,6 +105,15 @@ void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState
   operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
 }
 
+NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
+  NodeLaws laws;
+  for (const auto &interface : contact.interfaces) {
+    const DualSpace &dual = interface->dual();
+    append(uniform_laws(dual.nodes(), dual.components, interface->bound(mu)), laws);
+  }
+  return laws;
+}
+
 void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
                      const Vector &lambda, double least, Outputs &outputs) {
   if (contact.interfaces.size() == 1)
@@ -128,6 +137,16 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     for (const auto member : {&Outputs::peak_pressure, &Outputs::friction_violation})
       combine(outputs.*member, one.*member, false);
   }
+}
+
+DualRow dual_row(const Contact &contact, Index row) {
+  std::size_t i = 0;
+  while (row >= contact.first_row[i + 1])
+    ++i;
+  const DualSpace &dual = contact.interfaces[i]->dual();
+  const Index local = row - contact.first_row[i], tangents = dual.components - 1;
+  if (local < dual.nodes()) return {i, local, true};
+  return {i, (local - dual.nodes()) / tangents, false};
 }
 
 std::vector<Point> dual_points(const Contact &contact) {

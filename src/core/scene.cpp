@@ -24,10 +24,7 @@ void check_option(const SceneOption &option, const std::string &value) {
 } // namespace
 
 bool constant_stiffness(const Scene &scene) {
-  if (!scene.a_parameters) return false;
-  const std::vector<int> &free = scene.parameters.free;
-  return std::none_of(scene.a_parameters->begin(), scene.a_parameters->end(),
-                      [&](int i) { return std::find(free.begin(), free.end(), i) != free.end(); });
+  return is_constant(scene.a, scene.parameters);
 }
 
 double number_in(const SceneOptions &options, const std::string &name) {

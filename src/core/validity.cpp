@@ -39,6 +39,8 @@ void check_range(const Range &range, double value, const std::string &what) {
 
 void check_together(const Scene &scene, const FullMu &all) {
   if (scene.check_parameters) scene.check_parameters(all);
+  for (const Sum *sum : {&scene.a, &scene.f})
+    check_coefficients(*sum, scene.parameters, all);
 }
 
 void check_query(const Scene &scene, const Mu &mu, bool allow_outside) {

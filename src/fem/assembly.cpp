@@ -1,8 +1,10 @@
 #include "rbvi/fem/assembly.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/geometry.hpp"
+#include "rbvi/element/facets.hpp"
 #include "rbvi/par/collective.hpp"
+
+#include <numeric>
 
 namespace rbvi {
 
@@ -55,7 +57,14 @@ void map_cells(const Scene &scene, const FullMu &mu, const Mesh &mesh, MappedCel
   });
 }
 
-Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &region) {
+std::vector<WeightedForm> forms_of(const Sum &sum) {
+  std::vector<WeightedForm> forms;
+  for (const Term &term : sum)
+    forms.push_back({&term.form});
+  return forms;
+}
+
+Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs) {
   const auto owned = static_cast<PetscInt>(dofs.natural_owned.size());
   Handle<Mat> matrix;
   RBVI_CALL(MatCreate(dofs.comm, matrix.put()));
@@ -64,7 +73,6 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &r
   std::vector<PetscInt> rows, columns;
   CellRows cell{};
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    if (!in_region(mesh, region, k)) continue;
     const std::size_t count = cell_rows(mesh, dofs, k, cell);
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < count; ++j) {
@@ -80,35 +88,89 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &r
   return matrix;
 }
 
-void assemble_matrix(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
-                     const MappedCells &cells, Mat matrix) {
-  const auto count =
-      static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
-  std::vector<PetscScalar> values;
-  values.reserve(mesh.cells.size() * count * count);
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    if (!in_region(mesh, form.region, k)) continue;
-    values.resize(values.size() + count * count);
-    form.kernel(mu, cells.cells[k], values.data() + values.size() - count * count);
+namespace {
+
+/// Calls visitor(cell number, local dofs of the cell, values of the kernel) for each cell or facet
+/// of a form: the values belong to these dofs alone.
+template <class Visitor>
+void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
+                  const MappedCells &cells, Visitor &&visitor) {
+  std::array<double, CellRows{}.size() * CellRows{}.size()> values;
+  const auto visit = [&](const Cell &cell, std::size_t number, const std::vector<int> &nodes) {
+    form.kernel(mu, cell, values.data());
+    std::vector<int> local;
+    for (const int node : nodes)
+      for (int c = 0; c < dofs.components; ++c)
+        local.push_back(node * dofs.components + c);
+    visitor(number, local, values.data());
+  };
+  if (!form.boundary.empty()) {
+    for (const auto &[cell, facet] : mesh.facets.at(form.boundary))
+      visit(facet_cell(cells.cells[cell], facet), cell, facet_nodes(mesh.dim, mesh.degree, facet));
+    return;
   }
-  RBVI_CALL(MatSetValuesCOO(matrix, values.data(), INSERT_VALUES));
+  std::vector<int> all(static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree)));
+  std::iota(all.begin(), all.end(), 0);
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+    if (in_region(mesh, form.region, k)) visit(cells.cells[k], k, all);
 }
 
-void assemble_vector(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
-                     const MappedCells &cells, Vec vector) {
+} // namespace
+
+void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+              const Dofs &dofs, const MappedCells &cells, Mat matrix) {
+  const auto count =
+      static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
+  std::vector<PetscScalar> all(mesh.cells.size() * count * count, 0);
+  for (const WeightedForm &weighted : forms)
+    visit_values(*weighted.form, mu, mesh, dofs, cells,
+                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+                   double *block = all.data() + cell * count * count;
+                   for (const int i : local)
+                     for (const int j : local)
+                       block[static_cast<std::size_t>(i) * count + static_cast<std::size_t>(j)] +=
+                           weighted.weight * *values++;
+                 });
+  RBVI_CALL(MatSetValuesCOO(matrix, all.data(), INSERT_VALUES));
+}
+
+void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+              const Dofs &dofs, const MappedCells &cells, Vec vector) {
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   CellRows rows{};
-  std::array<double, std::size_t{3} * most_nodes> values{};
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    if (!in_region(mesh, form.region, k)) continue;
-    const std::size_t count = cell_rows(mesh, dofs, k, rows);
-    form.kernel(mu, cells.cells[k], values.data());
-    RBVI_CALL(
-        VecSetValues(vector, static_cast<PetscInt>(count), rows.data(), values.data(), ADD_VALUES));
-  }
+  for (const WeightedForm &weighted : forms)
+    visit_values(*weighted.form, mu, mesh, dofs, cells,
+                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+                   cell_rows(mesh, dofs, cell, rows);
+                   for (const int i : local)
+                     RBVI_CALL(VecSetValue(vector, rows[static_cast<std::size_t>(i)],
+                                           weighted.weight * *values++, ADD_VALUES));
+                 });
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));
+}
+
+Vector product_with(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+                    const Dofs &dofs, const MappedCells &cells, const Vector &field) {
+  Vector result = Vector::Zero(field.size());
+  for (const WeightedForm &weighted : forms)
+    visit_values(*weighted.form, mu, mesh, dofs, cells,
+                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+                   const auto nodes = nodes_of(mesh, cell);
+                   std::vector<Index> at;
+                   for (const int i : local)
+                     at.push_back(Index{nodes[static_cast<std::size_t>(i / dofs.components)]} *
+                                      dofs.components +
+                                  i % dofs.components);
+                   const Vector in = field(at);
+                   for (const Index i : at) {
+                     result[i] +=
+                         weighted.weight * in.dot(Eigen::Map<const Vector>(values, in.size()));
+                     values += in.size();
+                   }
+                 });
+  return result;
 }
 
 } // namespace rbvi

@@ -1,6 +1,7 @@
 #include "rbvi/mesh/mesh.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/facets.hpp"
 #include "rbvi/mesh/serial.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -52,7 +53,12 @@ constexpr std::array generators{
                 return recipe.edges == 0 ? half_disc() : half_disc(recipe.edges);
               },
               true},
-    Generator{"one_block", [](const MeshRecipe &) { return one_block(); }}};
+    Generator{"one_block", [](const MeshRecipe &) { return one_block(); }},
+    Generator{"annulus",
+              [](const MeshRecipe &recipe) {
+                return recipe.edges == 0 ? annulus() : annulus(recipe.edges);
+              },
+              true}};
 
 /// Throws bad_input if a built-in mesh lacks a name of the scene's recipe.
 void check_labels(const SerialMesh &mesh, const Scene &scene) {
@@ -181,8 +187,8 @@ void fill_middles(Mesh &mesh, const std::vector<PetscInt> &original, const EdgeP
   }
 }
 
-void find_owned_nodes(Mesh &mesh) {
-  mesh.owned_node.assign(mesh.points.size(), true);
+/// Per local DMPlex point: whether another rank owns it.
+std::vector<bool> owned_elsewhere(const Mesh &mesh) {
   PetscSF shared = nullptr;
   PetscInt leaves = 0, chart = 0;
   const PetscInt *leaf = nullptr;
@@ -192,8 +198,30 @@ void find_owned_nodes(Mesh &mesh) {
   std::vector<bool> elsewhere(static_cast<std::size_t>(chart), false);
   for (PetscInt i = 0; i < leaves; ++i)
     elsewhere[static_cast<std::size_t>(leaf != nullptr ? leaf[i] : i)] = true;
-  for (std::size_t node = 0; node < mesh.points.size(); ++node)
-    mesh.owned_node[node] = !elsewhere[static_cast<std::size_t>(mesh.dm_point[node])];
+  return elsewhere;
+}
+
+/// The facets of a boundary, by the vertices of each.
+std::vector<CellFacet> boundary_facets(const Mesh &mesh, const std::string &name,
+                                       const std::vector<bool> &elsewhere, PetscInt first_vertex) {
+  std::vector<CellFacet> result;
+  for (const PetscInt point : labelled_points(mesh.dm.get(), name, 1)) {
+    const PetscInt *support = nullptr;
+    RBVI_CALL(DMPlexGetSupport(mesh.dm.get(), point, &support));
+    if (elsewhere[static_cast<std::size_t>(point)]) continue;
+    const auto vertices = vertices_of(mesh.dm.get(), point);
+    const auto end = vertices.begin() + mesh.dim;
+    const auto cell = static_cast<std::size_t>(support[0]);
+    for (int facet = 0; facet <= mesh.dim; ++facet) {
+      const std::vector<int> nodes = facet_nodes(mesh.dim, 1, facet);
+      if (std::all_of(nodes.begin(), nodes.end(), [&](int i) {
+            const PetscInt vertex = mesh.cells[cell][static_cast<std::size_t>(i)] + first_vertex;
+            return std::find(vertices.begin(), end, vertex) != end;
+          }))
+        result.push_back({cell, facet});
+    }
+  }
+  return result;
 }
 
 void fill_cells(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt first_vertex) {
@@ -287,13 +315,17 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
     fill_cell_middles(mesh, begin);
     mesh.total_nodes += edges.end - edges.begin;
   }
-  find_owned_nodes(mesh);
+  const std::vector<bool> elsewhere = owned_elsewhere(mesh);
+  for (const PetscInt point : mesh.dm_point)
+    mesh.owned_node.push_back(!elsewhere[static_cast<std::size_t>(point)]);
   std::vector<PetscInt> cells(mesh.cells.size());
   std::iota(cells.begin(), cells.end(), 0);
   for (const std::string &name : scene.mesh.regions)
     mesh.region[name] = marks(mesh.dm.get(), name, cells);
-  for (const std::string &name : scene.mesh.boundaries)
+  for (const std::string &name : scene.mesh.boundaries) {
     mesh.boundary[name] = marks(mesh.dm.get(), name, mesh.dm_point);
+    mesh.facets[name] = boundary_facets(mesh, name, elsewhere, begin);
+  }
   return mesh;
 }
 

@@ -49,7 +49,8 @@ void label_facets(DM dm, DMLabel label, const SerialMesh &mesh,
   }
 }
 
-/// Points of one height that carry the label.
+} // namespace
+
 std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt height) {
   std::vector<PetscInt> points;
   DMLabel label = nullptr;
@@ -64,8 +65,6 @@ std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt h
   }
   return points;
 }
-
-} // namespace
 
 Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe) {
   Handle<DM> dm = plex_from_cells(comm, mesh);

@@ -1,5 +1,6 @@
 #include "rbvi/mor/reduce.hpp"
 
+#include "dense_rows.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/packed.hpp"
@@ -12,36 +13,17 @@ namespace rbvi {
 
 namespace {
 
-using Stride = Eigen::OuterStride<>;
-using LocalRows = Eigen::Map<const Matrix, 0, Stride>;
-
-/// This rank's rows of a dense matrix, borrowed until destruction.
-class BorrowedRows {
-public:
-  explicit BorrowedRows(Mat dense) : dense_(dense) {
-    RBVI_CALL(MatGetLocalSize(dense, &rows_, nullptr));
-    RBVI_CALL(MatGetSize(dense, nullptr, &columns_));
-    RBVI_CALL(MatDenseGetLDA(dense, &stride_));
-    RBVI_CALL(MatDenseGetArrayRead(dense, &values_));
-  }
-  ~BorrowedRows() { (void)MatDenseRestoreArrayRead(dense_, &values_); }
-  BorrowedRows(const BorrowedRows &) = delete;
-  BorrowedRows &operator=(const BorrowedRows &) = delete;
-  LocalRows rows() const { return {values_, rows_, columns_, Stride(stride_)}; }
-
-private:
-  Mat dense_;
-  PetscInt rows_ = 0, columns_ = 0, stride_ = 0;
-  const PetscScalar *values_ = nullptr;
-};
-
 /// V^T A V, its lower triangle column by column. Collective.
-Vector project_stiffness(MPI_Comm comm, Mat a, Mat basis) {
-  Handle<Mat> product;
-  RBVI_CALL(MatMatMult(a, basis, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
-  Matrix full = BorrowedRows(basis).rows().transpose() * BorrowedRows(product.get()).rows();
-  over_ranks(comm, MPI_SUM, full);
+Vector project_stiffness(Mat a, Mat basis) {
+  const Matrix full = projected(basis, a, basis);
   return pack((full + full.transpose()) / 2);
+}
+
+/// V^T F. Collective.
+Vector project_load(MPI_Comm comm, Vec f, Mat basis) {
+  Vector result = BorrowedRows(basis).rows().transpose() * local_values(f);
+  over_ranks(comm, MPI_SUM, result);
+  return result;
 }
 
 /// The training numbers that some operator was sampled at, each once.
@@ -58,8 +40,10 @@ double error_of(const Eim &eim) {
   return eim.error.empty() ? 0 : eim.error.back();
 }
 
-AffineTerms start_terms(const Eim &eim, const std::vector<SampleMesh> &samples, Index entries) {
-  return {Matrix::Zero(entries, eim.size()), eim.interpolation, samples, error_of(eim)};
+AffineTerms start_terms(const Eim &eim, const std::vector<SampleMesh> &samples, Index entries,
+                        Index exact = 0) {
+  return {Matrix::Zero(entries, exact + eim.size()), eim.interpolation, samples, error_of(eim),
+          static_cast<int>(exact)};
 }
 
 /// B^n and B^tau apart have one interpolation matrix, block diagonal.
@@ -177,8 +161,11 @@ SupportModel start_support(const Problem &problem, const std::vector<Sample> &sa
                            const AffineOperators &affine, const ReducedBases &bases,
                            const ReducedModel &model) {
   SupportModel support;
-  const Index parts = problem.dual_size() / problem.contact().nodes();
-  support.normal = model.generators / static_cast<int>(parts);
+  for (Index column = 0; column < model.generators; ++column) {
+    Index row = 0;
+    model.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
+    if (dual_row(problem.contact(), row).normal) ++support.normal;
+  }
   support.reduction = bases.reduction;
   support.mended = bases.mended;
   support.basis = bases.multipliers.basis;
@@ -194,9 +181,10 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases,
                      ReducedModel &model) {
   const Index n = model.primal_size(), generators = model.generators;
-  model.a = start_terms(affine.a, affine.sample_a, n * (n + 1) / 2);
+  model.a =
+      start_terms(affine.a, affine.sample_a, n * (n + 1) / 2, std::ssize(problem.a_terms().exact));
   model.b = start_terms_of_b(affine, generators * n);
-  model.f = start_terms(affine.f, affine.sample_f, n);
+  model.f = start_terms(affine.f, affine.sample_f, n, std::ssize(problem.f_terms().exact));
   model.g = start_terms(affine.g, affine.sample_g, generators);
   if (bases.support_dual.size() > 0)
     model.support = start_support(problem, samples, affine, bases, model);
@@ -209,16 +197,25 @@ void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
     if (uses(affine.a, p))
-      accumulate(affine.a, p, project_stiffness(problem.comm(), op.a, basis), model.a.reduced);
+      accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),
+                 model.a.reduced.rightCols(affine.a.size()));
     if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, trace, model);
     if (uses(affine.g, p))
       accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
-    if (uses(affine.f, p)) {
-      Matrix f = BorrowedRows(basis).rows().transpose() * local_values(op.f);
-      over_ranks(problem.comm(), MPI_SUM, f);
-      accumulate(affine.f, p, f, model.f.reduced);
-    }
+    if (uses(affine.f, p))
+      accumulate(affine.f, p, project_load(problem.comm(), problem.f_terms().mapped.get(), basis),
+                 model.f.reduced.rightCols(affine.f.size()));
   }
+}
+
+/// The exact terms of A and F. Collective.
+void project_exact(const Problem &problem, Mat basis, ReducedModel &model) {
+  Index q = 0;
+  for (const Handle<Mat> &term : problem.a_terms().exact)
+    model.a.reduced.col(q++) = project_stiffness(term.get(), basis);
+  q = 0;
+  for (const Handle<Vec> &term : problem.f_terms().exact)
+    model.f.reduced.col(q++) = project_load(problem.comm(), term.get(), basis);
 }
 
 /// The basis functions as fields, in the numbers of the undistributed mesh. Collective.
@@ -259,6 +256,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   start_operators(problem, samples, affine, bases, model);
   Mat basis = nullptr;
   RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
+  project_exact(problem, basis, model);
   project_snapshots(problem, samples, affine, basis, model);
   store_fields(problem, basis, model);
   RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));

@@ -3,6 +3,8 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/rom/print.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -26,23 +28,45 @@ std::string terms_of_b(const AffineOperators &affine) {
   return terms("B^n", affine.b) + ", " + terms("B^tau", affine.b_tangential);
 }
 
+/// "A: exact sum of 4 terms; " of an operator that has exact terms.
+std::string exact_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
+  const SplitSum split = split_sum(sum, space);
+  if (split.exact.empty()) return "";
+  return std::string(name) + (split.mapped.empty() ? ": exact sum of " : ": in part exact, ") +
+         counted(std::ssize(split.exact), "term") + "; ";
+}
+
+bool has_mapped_terms(const Sum &sum) {
+  return std::any_of(sum.begin(), sum.end(), [](const Term &term) { return !term.theta; });
+}
+
 StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
                            const Reduction *made) {
-  const std::string tolerance = interpolation_tolerance(options);
-  const bool load = static_cast<bool>(scene.f);
   const bool apart = !separable_contact(scene), evaluated = apart && !by_nitsche(scene);
-  const std::string exact = evaluated ? "; B, G are assembled exactly online" : "";
-  if (constant_stiffness(scene) && apart && !load)
-    return {stage::interpolation, "A does not depend on mu" + exact, nothing_to_do};
-  if (made == nullptr)
-    return {stage::interpolation, std::string("A") + (apart ? "" : ", B") + (load ? ", F" : "") +
-                                      (apart ? " " : ", G ") + tolerance +
-                                      "; a sum of few terms ends there" + exact};
-  const AffineOperators &affine = made->affine;
+  const bool a = has_mapped_terms(scene.a), f = has_mapped_terms(scene.f);
+  const std::string assembled = evaluated ? "; B, G are assembled exactly online" : "";
+  const std::string exact =
+      exact_sum("A", scene.a, scene.parameters) + exact_sum("F", scene.f, scene.parameters);
+  if (!a && !f && apart)
+    return {stage::interpolation,
+            (constant_stiffness(scene) && scene.f.empty() ? "A does not depend on mu"
+                                                          : exact.substr(0, exact.size() - 2)) +
+                assembled,
+            nothing_to_do};
+  std::vector<std::string> names;
+  const auto add = [&](const char *name, const Eim AffineOperators::*eim) {
+    names.push_back(made == nullptr ? name : terms(name, made->affine.*eim));
+  };
+  if (a) add("A", &AffineOperators::a);
+  if (!apart) names.push_back(made == nullptr ? "B" : terms_of_b(made->affine));
+  if (f) add("F", &AffineOperators::f);
+  if (!apart) add("G", &AffineOperators::g);
+  const std::string tolerance = interpolation_tolerance(options);
   return {stage::interpolation,
-          "terms: " + terms("A", affine.a) + (apart ? "" : ", " + terms_of_b(affine)) +
-              (load ? ", " + terms("F", affine.f) : "") +
-              (apart ? "" : ", " + terms("G", affine.g)) + "; " + tolerance + exact};
+          exact + (made == nullptr ? "" : "terms: ") + joined(names) +
+              (made == nullptr ? " " + tolerance + "; a sum of few terms ends there"
+                               : "; " + tolerance) +
+              assembled};
 }
 
 StageRow pod_row(const ReduceOptions &options, const Reduction *made) {
@@ -202,7 +226,7 @@ std::string self_check_text(const Reduction *made) {
 StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
                             const Reduction *made) {
   StageTable rows{interpolation_row(scene, options, made)};
-  if (!scene.f) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
+  if (scene.f.empty()) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
   rows.push_back(pod_row(options, made));
   if (by_nitsche(scene)) {
     add_curve_rows(options, made, rows);

@@ -38,11 +38,14 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
   if (!keeps_law(reduction)) return;
   const bool reduced_body =
       reduction == MultiplierReduction::collocated && !options.multipliers.exact;
-  if (scene.f && !reduced_body)
+  if (!scene.f.empty() && !reduced_body)
     throw bad_input("scene " + scene.name +
                     " has a load, which the condensed operator does not see: use "
                     "-multiplier_reduction collocated -multiplier_exact no");
   if (reduction == MultiplierReduction::condensed) return;
+  if (scene.contacts.size() > 1)
+    throw bad_input("several contact interfaces have laws of their own: use -multiplier_reduction "
+                    "condensed, or cone without friction");
   if (!separable_contact(scene))
     throw bad_input("B of this contact does not separate: use -multiplier_reduction cone or "
                     "condensed");

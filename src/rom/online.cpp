@@ -31,11 +31,6 @@ Index solved_size(const ReducedModel &model) {
   return model.modes + std::min(model.supremizers, model.generators);
 }
 
-void check_kernel(const AffineTerms &terms, const Form &form, const std::string &name) {
-  if (terms.size() > 0 && !form)
-    throw bad_input("the model has terms of " + name + ", its scene in this build has not");
-}
-
 } // namespace
 
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
@@ -43,8 +38,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scen
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     : model_(model), scene_(std::move(scene)), contact_(contact_of(model, scene_)),
       qp_(solved_size(model), model.free_modes) {
-  check_kernel(model.a, scene_.a, "a");
-  check_kernel(model.f, scene_.f, "f");
+  check_terms_of(model.a, scene_.a, scene_.parameters, "a");
+  check_terms_of(model.f, scene_.f, scene_.parameters, "f");
   if (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche)
     throw bad_input("the contact of the model does not fit its scene in this build");
   if (model.nitsche) {
@@ -171,7 +166,7 @@ void OnlineSolver::check(ReducedSolution &solution) {
 }
 
 ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
-  const auto theta = [&](const AffineTerms &terms, const Form &form) {
+  const auto theta = [&](const AffineTerms &terms, const auto &form) {
     return affine_coefficients(terms, form, scene_, all_parameters);
   };
   const auto of_contact = [&](const AffineTerms &terms, Part part) {

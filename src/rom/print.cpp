@@ -52,8 +52,11 @@ void print_parameters(std::ostream &out, const ParameterSpace &space) {
 }
 
 void print_terms(std::ostream &out, const std::string &name, const AffineTerms &terms) {
+  const int interpolated = terms.size() - terms.exact;
   label(out, "terms of " + name) << terms.size();
-  if (terms.size() > 0) out << " (interpolation error " << terms.error << ')';
+  if (terms.exact > 0 && interpolated == 0) out << " (exact sum)";
+  if (terms.exact > 0 && interpolated > 0) out << " (" << terms.exact << " exact)";
+  if (interpolated > 0) out << " (interpolation error " << terms.error << ')';
   out << '\n';
 }
 

@@ -1,3 +1,4 @@
+#include "rbvi/law/friction/friction.hpp"
 #include "rbvi/law/lcp.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -91,11 +92,10 @@ MethodResult solve_condensed(const ColumnSource &columns, const Vector &q, const
                              const Start &start) {
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));
-  if (op.normal == q.size()) {
+  if (!op.laws.has_tangents()) {
     take(solve_lcp(columns, q, start.active), result);
   } else {
-    FrictionResult found =
-        solve_friction(columns, q, static_cast<int>(q.size() / op.normal), op.bound, start.lambda);
+    FrictionResult found = solve_friction(columns, q, op.laws, start.lambda);
     result.start = std::move(found.start);
     take(std::move(found), result);
   }

@@ -1,6 +1,5 @@
 #include "rbvi/solve/high_fidelity.hpp"
 
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
@@ -53,12 +52,14 @@ Start rough_start(KSP ksp, const Problem &problem, const Operators &op) {
 /// KktResidual::friction. `excess`: B u - G, in its tangential rows the slip; `scale`: |l| |G|.
 double friction_residual(const Operators &op, const Vector &lambda, const Vector &excess,
                          double scale) {
-  const Index components = lambda.size() / op.normal - 1;
-  const Vector bounds = friction_bounds(op.bound, lambda.head(op.normal));
+  const NodeLaws &laws = op.laws;
+  const Vector bounds = bounds_of(laws, lambda);
   double above = 0, idle = 0;
-  for (Index i = 0; i < op.normal; ++i) {
-    const auto stress = lambda.segment(op.normal + i * components, components);
-    const auto slip = excess.segment(op.normal + i * components, components);
+  for (Index i = 0; i < laws.nodes(); ++i) {
+    if (!laws.has_tangent(i)) continue;
+    const Index row = laws.tangent[static_cast<std::size_t>(i)];
+    const auto stress = lambda.segment(row, laws.tangents);
+    const auto slip = excess.segment(row, laws.tangents);
     above = std::max(above, stress.norm() - bounds[i]);
     idle += std::abs(bounds[i] * slip.norm() - stress.dot(slip));
   }
@@ -89,19 +90,20 @@ KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const V
 
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
   double penetration = 0, gap = 0; // a multiplier without weight has no constraint
-  for (Index i = 0; i < op.normal; ++i) {
+  for (Index i = 0; i < op.laws.nodes(); ++i) {
     if (!(op.weights[i] > 0)) continue;
-    penetration = std::max(penetration, excess[i] / op.weights[i]);
-    gap = std::max(gap, std::abs(op.g[i]) / op.weights[i]);
+    const Index row = op.laws.normal[static_cast<std::size_t>(i)];
+    penetration = std::max(penetration, excess[row] / op.weights[i]);
+    gap = std::max(gap, std::abs(op.g[row]) / op.weights[i]);
   }
   KktResidual kkt;
   kkt.stationarity = ratio(norm(r.get()), norm(op.f) + norm(reaction.get()));
   kkt.feasibility = ratio(penetration, gap);
-  const auto normal = lambda.head(op.normal);
+  const Vector normal = lambda(op.laws.normal), left = excess(op.laws.normal);
   const double scale = lambda.norm() * op.g.norm();
-  kkt.complementarity = ratio(normal.cwiseProduct(excess.head(op.normal)).cwiseAbs().sum(), scale);
+  kkt.complementarity = ratio(normal.cwiseProduct(left).cwiseAbs().sum(), scale);
   kkt.sign = std::max(0.0, ratio(-normal.minCoeff(), normal.cwiseAbs().maxCoeff()));
-  if (op.normal < lambda.size()) kkt.friction = friction_residual(op, lambda, excess, scale);
+  if (op.laws.has_tangents()) kkt.friction = friction_residual(op, lambda, excess, scale);
   return kkt;
 }
 

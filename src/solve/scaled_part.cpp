@@ -5,60 +5,63 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <cmath>
 
 namespace rbvi {
 
 namespace {
 
-constexpr double round_off = 1e-12; ///< of the entries of A, relative to the largest of their row
-
-Handle<Mat> copy_of(Mat a) {
-  Handle<Mat> copy;
-  RBVI_CALL(MatDuplicate(a, MAT_COPY_VALUES, copy.put()));
-  return copy;
-}
-
-/// Largest entry of each local row of a - factor * b, which have the same pattern.
-Vector largest_in_rows(Mat a, double factor, Mat b) {
-  const Handle<Mat> difference = copy_of(a);
-  RBVI_CALL(MatAXPY(difference.get(), -factor, b, SAME_NONZERO_PATTERN));
+/// Whether each local row of A has an entry.
+std::vector<bool> rows_with_entries(Mat a) {
   PetscInt rows = 0;
   RBVI_CALL(MatGetLocalSize(a, &rows, nullptr));
   Handle<Vec> largest;
   RBVI_CALL(MatCreateVecs(a, nullptr, largest.put()));
-  RBVI_CALL(MatGetRowMaxAbs(difference.get(), largest.get(), nullptr));
-  Vector result(rows);
+  RBVI_CALL(MatGetRowMaxAbs(a, largest.get(), nullptr));
+  std::vector<bool> result;
   const PetscScalar *values = nullptr;
   RBVI_CALL(VecGetArrayRead(largest.get(), &values));
-  std::copy_n(values, rows, result.data());
+  for (PetscInt i = 0; i < rows; ++i)
+    result.push_back(values[i] > 0);
   RBVI_CALL(VecRestoreArrayRead(largest.get(), &values));
   return result;
+}
+
+/// theta at the two bounds of all free parameters, the smaller one first.
+std::pair<double, double> range_of_coefficient(const Scene &scene, const SplitSum &split) {
+  const ParameterSpace &space = scene.parameters;
+  Mu lower, upper;
+  for (int i = 0; i < space.size(); ++i) {
+    lower.push_back(space.at(i).lower);
+    upper.push_back(space.at(i).upper);
+  }
+  const auto theta = [&](const Mu &mu) {
+    return exact_coefficients(scene.a, split, space, expand(space, mu)).back();
+  };
+  return std::minmax({theta(lower), theta(upper)});
 }
 
 } // namespace
 
 bool ScaledPart::fits(const Scene &scene) {
-  if (!scene.part_stiffness || !scene.a_parameters || scene.f) return false;
-  const std::vector<int> &free = scene.parameters.free, &of_a = *scene.a_parameters;
-  const auto is_free = [&](int i) { return std::find(free.begin(), free.end(), i) != free.end(); };
-  return is_free(*scene.part_stiffness) && std::count_if(of_a.begin(), of_a.end(), is_free) == 1;
+  const SplitSum split = split_sum(scene.a, scene.parameters);
+  if (!scene.f.empty() || !split.mapped.empty() || split.exact.size() != 2 ||
+      !split.exact.front().factors.empty())
+    return false;
+  const auto [lower, upper] = range_of_coefficient(scene, split);
+  return lower > 0 && lower < upper;
 }
 
-/// The dofs of the part (their rows change with kappa) that the rest holds too (their rows are not
-/// multiples of kappa), or contact.
-void ScaledPart::find_interface(const Problem &problem, Mat lower, Mat upper) {
-  const Vector size = largest_in_rows(upper, 0, upper);
-  const Vector change = largest_in_rows(upper, 1, lower);
-  const Vector rest = largest_in_rows(upper, (lower_ + width_) / lower_, lower);
-  std::vector<char> in_contact(static_cast<std::size_t>(size.size()), 0);
+/// The dofs of the part that the rest holds too, or contact.
+void ScaledPart::find_interface(const Problem &problem) {
+  const std::vector<bool> rest = rows_with_entries(problem.a_terms().exact.front().get());
+  const std::vector<bool> part = rows_with_entries(problem.a_terms().exact.back().get());
+  std::vector<bool> in_contact(part.size(), false);
   for (const PetscInt row : contact_.local_row)
-    in_contact[static_cast<std::size_t>(row)] = 1;
-  interface_.comm = both_.comm = problem.comm();
-  for (Index i = 0; i < size.size(); ++i)
-    if (change[i] > round_off * size[i] &&
-        (rest[i] > round_off * size[i] || in_contact[static_cast<std::size_t>(i)] != 0))
+    in_contact[static_cast<std::size_t>(row)] = true;
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (part[i] && (rest[i] || in_contact[i]))
       interface_.local_row.push_back(static_cast<PetscInt>(i));
+  interface_.comm = both_.comm = problem.comm();
   const auto mine = static_cast<PetscInt>(interface_.local_row.size());
   PetscInt end = 0;
   MPI_Scan(&mine, &end, 1, MPIU_INT, MPI_SUM, problem.comm());
@@ -72,22 +75,21 @@ void ScaledPart::find_interface(const Problem &problem, Mat lower, Mat upper) {
   }
 }
 
-ScaledPart::ScaledPart(Problem &problem)
-    : parameter_(problem.scene().part_stiffness.value()), contact_(problem.trace()) {
-  const Parameter &parameter = problem.scene().parameters.all[static_cast<std::size_t>(parameter_)];
-  lower_ = parameter.lower;
-  width_ = parameter.upper - parameter.lower;
-  const auto stiffness_at = [&](double value) {
-    const ParameterSpace &space = problem.scene().parameters;
-    Mu mu;
-    for (const int i : space.free)
-      mu.push_back(i == parameter_ ? value : space.all[static_cast<std::size_t>(i)].lower);
-    return copy_of(problem.assemble(mu).a);
+ScaledPart::ScaledPart(const Problem &problem) : problem_(problem), contact_(problem.trace()) {
+  const Summed<Mat> &a = problem.a_terms();
+  const auto [lowest, highest] = range_of_coefficient(problem.scene(), a.split);
+  lower_ = lowest;
+  width_ = highest - lowest;
+  const auto stiffness_at = [&](double theta) {
+    Handle<Mat> sum;
+    RBVI_CALL(MatDuplicate(a.exact.front().get(), MAT_COPY_VALUES, sum.put()));
+    RBVI_CALL(MatAXPY(sum.get(), theta, a.exact.back().get(), SAME_NONZERO_PATTERN));
+    return sum;
   };
-  const Handle<Mat> lower = stiffness_at(parameter.lower), upper = stiffness_at(parameter.upper);
-  find_interface(problem, lower.get(), upper.get());
+  const Handle<Mat> lower = stiffness_at(lowest), upper = stiffness_at(highest);
+  find_interface(problem);
   if (interface_.size == 0)
-    throw failure("no part of the body has the stiffness " + parameter.name);
+    throw failure("the part of the stiffness that a parameter scales is zero");
 
   const PetscInt c = contact_.size, n = interface_.size;
   solver_ = std::make_unique<ReplicatedSolver>(lower.get(), both_, "hf_");
@@ -98,8 +100,7 @@ ScaledPart::ScaledPart(Problem &problem)
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(g_upper, g.bottomRightCorner(n, n));
   if (solver.info() != Eigen::Success)
     throw failure("the stiffness matrix is not positive definite on the interface of the part "
-                  "that " +
-                  parameter.name + " scales");
+                  "that a parameter scales");
   compliance_ = g.topLeftCorner(c, c);
   w_ = solver.eigenvectors();
   y_ = g.topRightCorner(c, n) * w_;
@@ -108,7 +109,10 @@ ScaledPart::ScaledPart(Problem &problem)
 
 void ScaledPart::set(const Operators &op) {
   op_ = &op;
-  const double step = (op.mu[static_cast<std::size_t>(parameter_)] - lower_) / width_;
+  const Scene &scene = problem_.scene();
+  const double theta =
+      exact_coefficients(scene.a, problem_.a_terms().split, scene.parameters, op.mu).back();
+  const double step = (theta - lower_) / width_;
   phi_ = (step * sigma_.array()) / (1 + step * sigma_.array());
   by_ = op.b * y_;
 }

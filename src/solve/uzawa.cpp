@@ -1,4 +1,3 @@
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -12,9 +11,13 @@ namespace {
 double largest_eigenvalue(KSP ksp, const Trace &trace, const Operators &op, Vec scratch) {
   Handle<Vec> load;
   RBVI_CALL(VecDuplicate(scratch, load.put()));
-  Vector x = Vector::Ones(op.g.size());
-  for (Index i = 0; i < x.size(); ++i)
-    x[i] = op.weights[i % op.weights.size()];
+  Vector x(op.g.size());
+  for (Index i = 0; i < op.laws.nodes(); ++i) {
+    const auto node = static_cast<std::size_t>(i);
+    x[op.laws.normal[node]] = op.weights[i];
+    if (op.laws.has_tangent(i))
+      x.segment(op.laws.tangent[node], op.laws.tangents).setConstant(op.weights[i]);
+  }
   x.normalize();
   double estimate = 0;
   for (int k = 0; k < 100; ++k) {
@@ -31,29 +34,14 @@ double largest_eigenvalue(KSP ksp, const Trace &trace, const Operators &op, Vec 
   return 1.01 * estimate;
 }
 
-/// Onto lambda_n >= 0 and then |lambda_tau| <= its bound, node by node (corrected (3.32)).
-Vector admissible(const Operators &op, Vector lambda) {
-  lambda.head(op.normal) = lambda.head(op.normal).cwiseMax(0);
-  const Index components = lambda.size() / op.normal - 1;
-  if (components == 0) return lambda;
-  const Vector bounds = friction_bounds(op.bound, lambda.head(op.normal));
-  for (Index i = 0; i < op.normal; ++i) {
-    auto tangential = lambda.segment(op.normal + i * components, components);
-    if (const double size = tangential.norm(); size > bounds[i]) tangential *= bounds[i] / size;
-  }
-  return lambda;
-}
-
 /// (3.19): the changes of the normal and of the tangential part, each against its own size.
-bool small_change(const SparseMatrix &w, Index normal, const Vector &change, const Vector &lambda,
-                  double tolerance) {
-  const Vector wc = w * change, wl = w * lambda;
-  const auto small = [&](Index first, Index count) {
-    const double square = change.segment(first, count).dot(wc.segment(first, count));
-    const double size = lambda.segment(first, count).dot(wl.segment(first, count));
-    return std::sqrt(square) <= tolerance * std::sqrt(size);
+bool small_change(const SparseMatrix &w, const NodeLaws &laws, const Vector &change,
+                  const Vector &lambda, double tolerance) {
+  const Vector normal = normal_part(laws, change), of_lambda = normal_part(laws, lambda);
+  const auto small = [&](const Vector &part, const Vector &whole) {
+    return std::sqrt(part.dot(w * part)) <= tolerance * std::sqrt(whole.dot(w * whole));
   };
-  return small(0, normal) && small(normal, lambda.size() - normal);
+  return small(normal, of_lambda) && small(change - normal, lambda - of_lambda);
 }
 
 } // namespace
@@ -71,9 +59,9 @@ MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
        ++result.iterations) {
     solve_linear(ksp, reaction_rhs(trace, op, extrapolated).get(), u);
     const Vector violation = op.b * restrict_to(trace, u) - op.g;
-    const Vector next = admissible(op, extrapolated + step * violation);
+    const Vector next = admissible(op.laws, extrapolated + step * violation);
     const Vector change = next - lambda;
-    const bool small = small_change(w_product, op.normal, change, next, options.uzawa_tolerance);
+    const bool small = small_change(w_product, op.laws, change, next, options.uzawa_tolerance);
     if (small && (result.iterations > 1 || (next.array() == 0).all())) result.converged = true;
     if (options.uzawa_accelerated) {
       const bool overshot = (extrapolated - next).dot(change) > 0;
@@ -87,8 +75,8 @@ MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
     if (result.converged) break;
   }
   solve_linear(ksp, reaction_rhs(trace, op, lambda).get(), u);
-  for (Index i = 0; i < op.normal; ++i)
-    if (lambda[i] > 0) result.active.push_back(i);
+  for (Index i = 0; i < op.laws.nodes(); ++i)
+    if (lambda[op.laws.normal[static_cast<std::size_t>(i)]] > 0) result.active.push_back(i);
   result.lambda = std::move(lambda);
   result.reason = result.converged
                       ? "relative change of lambda below -uzawa_tolerance"

@@ -227,6 +227,10 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
       line += (line.empty() ? "" : ", ") + name + ' ' + short_number(errors.back());
     }
     write_atomically(path, text.str());
+    for (const auto &[name, terms] : {std::pair{"a", &model.a}, {"f", &model.f}})
+      if (terms->exact > 0)
+        line += (line.empty() ? "" : ", ") + std::string(name) + ": " +
+                counted(terms->exact, "exact term");
     std::printf("Interpolation over %zu validation mu, largest error: %s\n", validation.size(),
                 line.c_str());
   });

@@ -71,8 +71,8 @@ TEST(Dofs, NaturalFieldsSurviveTheRoundTrip) {
 TEST(Assembly, H1ProductConvergesToTheIntegral) {
   // int w^2 = (1/30)^2 and int |grad w|^2 = 2 (1/3) (1/30) for w = (1/4 - x^2)(1/4 - y^2).
   const Membrane m;
-  const Handle<Mat> v = make_matrix(m.mesh, m.dofs, "");
-  assemble_matrix(m.scene.v_product, {}, m.mesh, m.dofs, reference_cells(m.mesh), v.get());
+  const Handle<Mat> v = make_matrix(m.mesh, m.dofs);
+  assemble(forms_of(m.scene.v_product), {}, m.mesh, m.dofs, reference_cells(m.mesh), v.get());
   const double exact = 1.0 / 900 + 2.0 / 90;
   EXPECT_NEAR(quadratic(m, v.get(), bubble, bubble), exact, 2e-3 * exact);
 }
@@ -80,16 +80,16 @@ TEST(Assembly, H1ProductConvergesToTheIntegral) {
 TEST(Assembly, ASecondFillOverwritesTheFirst) {
   const Membrane m;
   MappedCells cells = reference_cells(m.mesh);
-  const Handle<Mat> a = make_matrix(m.mesh, m.dofs, "");
+  const Handle<Mat> a = make_matrix(m.mesh, m.dofs);
   const FullMu one{0.2, 0, 0}, other{0.23, 0.03, -0.04};
   map_cells(m.scene, one, m.mesh, cells);
-  assemble_matrix(m.scene.a, one, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), one, m.mesh, m.dofs, cells, a.get());
   const double first = quadratic(m, a.get(), bubble, bubble);
   map_cells(m.scene, other, m.mesh, cells);
-  assemble_matrix(m.scene.a, other, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), other, m.mesh, m.dofs, cells, a.get());
   EXPECT_GT(std::abs(quadratic(m, a.get(), bubble, bubble) - first), 1e-3 * first);
   map_cells(m.scene, one, m.mesh, cells);
-  assemble_matrix(m.scene.a, one, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), one, m.mesh, m.dofs, cells, a.get());
   EXPECT_NEAR(quadratic(m, a.get(), bubble, bubble), first, 1e-14 * first);
 }
 
@@ -98,9 +98,9 @@ TEST(Assembly, TheMapKeepsEnergiesOfMappedFunctions) {
   const Membrane m;
   const FullMu mu{0.24, 0.05, 0.05};
   MappedCells cells = reference_cells(m.mesh);
-  const Handle<Mat> a = make_matrix(m.mesh, m.dofs, "");
+  const Handle<Mat> a = make_matrix(m.mesh, m.dofs);
   map_cells(m.scene, mu, m.mesh, cells);
-  assemble_matrix(m.scene.a, mu, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), mu, m.mesh, m.dofs, cells, a.get());
   const auto mapped_bubble = [&](const Point &x) { return bubble(m.scene.map(mu, x)); };
   EXPECT_NEAR(quadratic(m, a.get(), mapped_bubble, mapped_bubble), 2.0 / 90, 3e-3 * 2.0 / 90);
 }

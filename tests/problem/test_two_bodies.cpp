@@ -35,7 +35,7 @@ double difference(Mat a, Mat b) {
 /// the same, however large the lower disk is.
 TEST(TwoBodyProblem, TheStiffnessDoesNotDependOnTheRadius) {
   Scene every_time = discs();
-  every_time.a_parameters.reset();
+  every_time.a = {mapped_term(every_time.a.front().form)};
   Problem problem(PETSC_COMM_WORLD, every_time, {}), once(PETSC_COMM_WORLD, discs(), {});
   Mat reference = once.assemble({1}).a;
   for (const double radius : {0.7, 0.9, 1.0, 1.3})
@@ -47,8 +47,8 @@ struct Calls {
   std::shared_ptr<int> kernel = std::make_shared<int>(0), map = std::make_shared<int>(0);
 
   Scene counted(Scene scene) const {
-    scene.a.kernel = [count = kernel, inner = scene.a.kernel](const FullMu &mu, const Cell &cell,
-                                                              double *values) {
+    auto &own = scene.a.front().form.kernel;
+    own = [count = kernel, inner = own](const FullMu &mu, const Cell &cell, double *values) {
       ++*count;
       inner(mu, cell, values);
     };
@@ -77,7 +77,7 @@ TEST(TwoBodyProblem, TheStiffnessIsAssembledOnce) {
 TEST(TwoBodyProblem, TheStiffnessIsAssembledWhereItsParametersChange) {
   const Calls calls;
   Scene scene = calls.counted(discs());
-  scene.a_parameters = {0};
+  scene.a = {mapped_term(scene.a.front().form, std::vector<int>{0})};
   EXPECT_FALSE(constant_stiffness(scene));
   Problem problem(PETSC_COMM_WORLD, scene, {});
   const int cells = static_cast<int>(problem.mesh().cells.size());
@@ -93,9 +93,9 @@ TEST(TwoBodyProblem, TheStiffnessIsAssembledWhereItsParametersChange) {
 TEST(TwoBodyProblem, AStiffnessOfFixedParametersIsConstant) {
   Scene scene = discs();
   EXPECT_TRUE(constant_stiffness(scene));
-  scene.a_parameters.reset();
+  scene.a = {mapped_term(scene.a.front().form)};
   EXPECT_FALSE(constant_stiffness(scene));
-  scene.a_parameters = {0};
+  scene.a = {mapped_term(scene.a.front().form, std::vector<int>{0})};
   EXPECT_FALSE(constant_stiffness(scene));
   scene.parameters.free.clear();
   EXPECT_TRUE(constant_stiffness(scene));
@@ -189,7 +189,7 @@ TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
     double largest = 0;
     for (const Cell &cell : cells.cells) {
       Eigen::Matrix<double, 6, 6, Eigen::RowMajor> stiffness;
-      scene.a.kernel({mu}, cell, stiffness.data());
+      scene.a.front().form.kernel({mu}, cell, stiffness.data());
       Vector motion(6);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t c = 0; c < 2; ++c)

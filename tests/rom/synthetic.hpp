@@ -36,6 +36,7 @@ inline SampleMesh random_sample(std::mt19937 &random, int size, int per_entry) {
     sample.vertices.middleRows(3 * cell, 3) << x, y, x + 0.02, y + 0.004, x + 0.003, y + 0.03;
     sample.contributions.push_back({cell / per_entry, cell, 0});
   }
+  sample.terms.assign(static_cast<std::size_t>(size * per_entry), 0);
   return sample;
 }
 
@@ -71,12 +72,13 @@ inline void sample_one_cell(AffineTerms &terms) {
   terms.sample.vertices.resize(3, 2);
   terms.sample.vertices << 0, 0, 1, 0, 0, 1;
   terms.sample.contributions.clear();
+  terms.sample.terms = {0};
   for (int q = 0; q < terms.size(); ++q)
     terms.sample.contributions.push_back({q, 0, q});
 }
 
 /// Divides each term by its theta in the middle of the box, so that all weigh alike there.
-inline void scale_terms(AffineTerms &terms, const Form &form, const Scene &scene) {
+template <class Forms> void scale_terms(AffineTerms &terms, const Forms &form, const Scene &scene) {
   FullMu middle;
   for (const Parameter &p : scene.parameters.all)
     middle.push_back(0.5 * (p.lower + p.upper));
@@ -146,9 +148,9 @@ template <Value value> Scene toy_scene() {
         values[i] = value(form, i, mu);
     };
   };
-  scene.a.kernel = filled(0, 9);
+  scene.a = {mapped_term({"", filled(0, 9)})};
   scene.b.kernel = filled(1, 9);
-  scene.f.kernel = filled(2, 3);
+  scene.f = {mapped_term({"", filled(2, 3)})};
   scene.g.kernel = filled(3, 3);
   return scene;
 }

@@ -5,7 +5,6 @@
 #include "brute_force.hpp"
 
 #include "rbvi/contact/pair/contact_pair.hpp"
-#include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include <algorithm>
 
@@ -50,11 +49,8 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
   std::mt19937 random(seed);
   ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size();
-  model.a = random_terms(random, n * (n + 1) / 2, 1, 1);
-  model.a.reduced.col(0) = pack(random_spd(random, n));
-  sample_one_cell(model.a);
-  model.a.sample.vertices << 0, 1, 0.2, 1, 0, 1.2; // in the upper disk
-  scale_terms(model.a, scene.a, scene);
+  model.a.reduced = pack(random_spd(random, n));
+  model.a.exact = 1;
 
   model.slave_nodes = static_cast<int>(sizes.slave);
   std::vector<Point> points = arc_points(random, sizes.slave, 1);
@@ -89,8 +85,7 @@ inline brute::Operators pair_operators(const ReducedModel &model, const Scene &s
   const PairOperators pair = couple(slave, master, scene.pair->discretisation);
   const Matrix b = pair.b;
   const Index n = model.primal_size();
-  const Vector packed =
-      affine_coefficients(model.a, scene.a, scene, mu)[0] * model.a.reduced.col(0);
+  const Vector packed = model.a.reduced.col(0);
   brute::Operators result;
   result.a.resize(n, n);
   for (Index j = 0, at = 0; j < n; ++j)

@@ -12,8 +12,10 @@ namespace {
 Scene two_parameters() {
   Scene scene;
   scene.parameters = all_free({{"x", "", -1, 2, 0}, {"y", "", 0.2, 5, 1}});
-  scene.a_coordinates[1] = {[](double y) { return std::log(y); },
-                            [](double t) { return std::exp(t); }};
+  const Coordinate logarithm{[](double y) { return std::log(y); },
+                             [](double t) { return std::exp(t); }};
+  scene.a = {
+      exact_term({}, {{"y", [](const FullMu &mu) { return mu[1]; }, {1}, {{1, logarithm}}}})};
   return scene;
 }
 

@@ -55,12 +55,16 @@ TEST(ScaledPart, IsTheBodyOfEveryStiffness) {
 
 TEST(ScaledPart, MayReachWhereContactIs) {
   Scene scene = disk("radius,core_stiffness");
-  scene.a = elasticity(
-      "",
-      [](const FullMu &mu, const Point &centre) {
-        return lame(centre[1] < -0.8 ? 15 * mu[3] : 15, mu[4]); // what lies below y = -0.8
-      },
-      2);
+  const auto part = [](bool below) { // y = -0.8
+    return elasticity(
+        "",
+        [below](const FullMu &, const Point &centre) {
+          return (centre[1] < -0.8) == below ? lame(15, 0.35) : Lame{0, 0};
+        },
+        2);
+  };
+  scene.a = {exact_term(part(false)),
+             exact_term(part(true), {{"scale", [](const FullMu &mu) { return mu[3]; }, {3}}})};
   Problem problem(PETSC_COMM_WORLD, scene, {});
   expect_agreement(problem, {{1, 0.3}, {1.1, 4}});
 }
@@ -68,7 +72,7 @@ TEST(ScaledPart, MayReachWhereContactIs) {
 /// The first solve factorises, the others use the part: all as single solves find them.
 TEST(ScaledPart, ChangesNoAnswerOfASweep) {
   Scene every_time = disk("radius,core_stiffness");
-  every_time.part_stiffness.reset();
+  every_time.a = {mapped_term(elasticity("", every_time.material, 2))}; // from the mapped mesh
   Problem with(PETSC_COMM_WORLD, disk("radius,core_stiffness"), {}),
       without(PETSC_COMM_WORLD, every_time, {});
   HighFidelity eliminates(with, {}), factorises(without, {});
@@ -96,8 +100,8 @@ TEST(ScaledPart, FitsWhereNothingElseChangesInTheStiffness) {
 
 TEST(ScaledPart, AScaleOfNothingIsSaid) {
   Scene scene = disk("core_stiffness");
-  scene.part_stiffness = 0; // the radius, which scales no stiffness
-  scene.parameters = free_only(scene.parameters, "radius");
+  scene.a.pop_back();
+  scene.a.back().form = elasticity("", Lame{0, 0}, 2);
   Problem problem(PETSC_COMM_WORLD, scene, {});
   EXPECT_THROW(ScaledPart{problem}, Error);
 }

@@ -19,8 +19,8 @@ Scene cube_scene() {
   };
   scene.snap = {};
   scene.obstacle = [](const FullMu &, const Point &) { return -0.5; };
-  scene.a = laplace("");
-  scene.f = constant_load("", -25);
+  scene.a = {mapped_term(laplace(""))};
+  scene.f = {mapped_term(constant_load("", -25))};
   scene.b = hat_coupling("core", -1, 1, false);
   scene.g = function_load("core", -1, scene.obstacle);
   scene.w_product = l2_product("core");

@@ -141,7 +141,7 @@ double reaction(const Problem &problem, const FullMu &mu, const HfSolution &s, d
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     Eigen::Matrix<double, 6, 6, Eigen::RowMajor> stiffness;
     Eigen::Vector<double, 6> u;
-    problem.scene().a.kernel(mu, cells.cells[k], stiffness.data());
+    problem.scene().a.front().form.kernel(mu, cells.cells[k], stiffness.data());
     for (std::size_t i = 0; i < 3; ++i) {
       const auto v = static_cast<std::size_t>(mesh.cells[k][i]);
       const Point motion = problem.scene().motion(mu, mesh.points[v]);

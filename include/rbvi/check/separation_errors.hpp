@@ -16,7 +16,8 @@ struct SeparationErrors {
   std::vector<double> training, validation; ///< with 0, 1, ..., J terms
 };
 
-/// Collective. Of every operator of the model that has terms. `problem`: of the model's scene and
+/// Collective. Of every operator of the model that has interpolated terms, of a and f the sum of
+/// those alone. `problem`: of the model's scene and
 /// mesh; `validation`: free parameters. The terms are assembled again at the training mu that they
 /// were chosen at, their coefficients are those of a query. Throws failure if the model does not
 /// say which these mu are.

@@ -27,10 +27,21 @@ void assemble(const Contact &contact, const FullMu &mu, const ContactState &stat
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
                     ContactOperators &operators);
 
+/// The laws of all multipliers at mu. Throws failure for a bound that is negative.
+NodeLaws laws_at(const Contact &contact, const FullMu &mu);
+
 /// Fills the outputs of contact: with several interfaces those that are sums or maxima over them.
 /// See ContactInterface::outputs.
 void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
                      const Vector &lambda, double least, Outputs &outputs);
+
+/// Whose multiplier a row of B is.
+struct DualRow {
+  std::size_t interface;
+  Index node; ///< of the interface
+  bool normal;
+};
+DualRow dual_row(const Contact &contact, Index row);
 
 /// Reference points of the dual nodes.
 std::vector<Point> dual_points(const Contact &contact);

@@ -3,7 +3,7 @@
 
 #include "rbvi/core/contact_recipe.hpp"
 #include "rbvi/core/parameters.hpp"
-#include "rbvi/law/friction/friction.hpp"
+#include "rbvi/law/node_laws.hpp"
 
 namespace rbvi {
 

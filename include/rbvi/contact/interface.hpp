@@ -13,7 +13,7 @@
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
 #include "rbvi/io/vtu.hpp"
-#include "rbvi/law/friction/friction.hpp"
+#include "rbvi/law/node_laws.hpp"
 
 #include <array>
 #include <memory>

@@ -8,38 +8,9 @@
 #pragma once
 
 #include "rbvi/core/contact_recipe.hpp"
-#include "rbvi/core/parameters.hpp"
-
-#include <array>
-#include <functional>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
+#include "rbvi/core/terms.hpp"
 
 namespace rbvi {
-
-/// Coordinates; in 2D the third is zero.
-using Point = std::array<double, 3>;
-
-/// One simplex: dim + 1 vertices, in the reference and in the mapped domain.
-struct Cell {
-  int dim = 2;
-  std::array<Point, 4> reference; ///< vertices xhat
-  std::array<Point, 4> mapped;    ///< h(mu)(xhat)
-};
-
-/// An integral over the cells of a region, evaluated cell by cell.
-/// A bilinear form fills rows * columns values (row-major), a linear form rows values: rows for the
-/// functions of the cell that it tests with, columns for those it couples them with, nodes *
-/// components of either space; a form on one space is square. Nodes of a cell: its vertices and, of
-/// degree 2, the middles of its edges (0,1), (1,2), (2,0) and, of a tetrahedron, (0,3), (1,3),
-/// (2,3).
-struct Form {
-  std::string region; ///< "" for the whole domain
-  std::function<void(const FullMu &mu, const Cell &cell, double *values)> kernel;
-  explicit operator bool() const { return static_cast<bool>(kernel); }
-};
 
 /// Options of a scene as text, resolved (defaults filled in): "load" -> "-25".
 using SceneOptions = std::map<std::string, std::string>;
@@ -96,12 +67,6 @@ struct Lame {
   double lambda, shear;
 };
 
-/// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
-/// decreasing, value = back(x).
-struct Coordinate {
-  std::function<double(double)> of, back;
-};
-
 struct Scene {
   std::string name;
   std::string summary; ///< one line
@@ -139,15 +104,9 @@ struct Scene {
   /// plane strain. Empty: not elastic (a membrane), then there are no stresses.
   std::function<Lame(const FullMu &, const Point &centre)> material;
 
-  Form a;
-  /// Parameters (indices into parameters.all) that a depends on; unset: all.
-  std::optional<std::vector<int>> a_parameters;
-  /// The one that scales the stiffness of a part of the body, if there is one: a = a_rest + value
-  /// a_part.
-  std::optional<int> part_stiffness;
-  std::map<int, Coordinate> a_coordinates; ///< of some of these parameters; the others: themselves
-  Form f;                                  ///< empty: no load
-  Form v_product;                          ///< inner product of V on the reference domain
+  Sum a;         ///< symmetric
+  Sum f;         ///< empty: no load
+  Sum v_product; ///< inner product of V, exact terms; mu is empty there
 };
 
 struct SceneEntry {

@@ -11,8 +11,8 @@ std::string describe(const Range &range);
 /// Throws bad_input unless `value` is in the range; `what` begins the message: "option -young".
 void check_range(const Range &range, double value, const std::string &what);
 
-/// Throws bad_input where parameters that are valid one by one make no sense together.
-/// `all`: the values of all parameters.
+/// Throws bad_input where parameters that are valid one by one make no sense together, or where a
+/// coefficient of a or f is not finite. `all`: the values of all parameters.
 void check_together(const Scene &scene, const FullMu &all);
 
 /// Throws bad_input unless mu (the free parameters) is in the box, or with `allow_outside` in the

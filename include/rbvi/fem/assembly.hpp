@@ -1,5 +1,5 @@
-// Cell loops: matrices and vectors of free dofs from Forms. The pattern is set once; a sweep only
-// fills values (PETSc's COO assembly).
+// Loops over cells and facets: matrices and vectors of free dofs from Forms. The pattern is set
+// once; a sweep only fills values (PETSc's COO assembly).
 #pragma once
 
 #include "rbvi/core/scene.hpp"
@@ -20,16 +20,29 @@ MappedCells reference_cells(const Mesh &mesh);
 /// rank if a cell of any rank is inverted.
 void map_cells(const Scene &scene, const FullMu &mu, const Mesh &mesh, MappedCells &cells);
 
-/// A square matrix of free dofs whose pattern is fixed by the cells of `region` ("": all).
-/// Collective.
-Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs, const std::string &region);
+/// A multiple of a form.
+struct WeightedForm {
+  const Form *form;
+  double weight = 1;
+};
 
-/// Fills a matrix made for form.region. Collective.
-void assemble_matrix(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
-                     const MappedCells &cells, Mat matrix);
+/// All terms of a sum with the weight 1, whatever their coefficients. `sum` must outlive them.
+std::vector<WeightedForm> forms_of(const Sum &sum);
 
-/// Overwrites `vector` by the values of a linear form. Collective.
-void assemble_vector(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
-                     const MappedCells &cells, Vec vector);
+/// A square matrix of free dofs whose pattern is that of all cells. Collective.
+Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs);
+
+/// Overwrites the values of a matrix by the sum of bilinear forms. Collective.
+void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+              const Dofs &dofs, const MappedCells &cells, Mat matrix);
+
+/// Overwrites a vector by the sum of linear forms. Collective.
+void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+              const Dofs &dofs, const MappedCells &cells, Vec vector);
+
+/// The share of this rank's cells in the sum of bilinear forms times a field; both by local node *
+/// components, fixed dofs included. Not collective.
+Vector product_with(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+                    const Dofs &dofs, const MappedCells &cells, const Vector &field);
 
 } // namespace rbvi

@@ -17,6 +17,12 @@ struct MeshOptions {
   int refine = 0;   ///< uniform refinements; vertices of curves are brought back (snap_curves)
 };
 
+/// A facet of a cell: owned cell, and which of its facets (facet_cell).
+struct CellFacet {
+  std::size_t cell;
+  int facet;
+};
+
 /// This rank's part of the mesh: its own cells and their nodes. Nodes are the vertices and, where
 /// the displacement of the scene has degree 2, the middles of the edges behind them. Numbers called
 /// `natural` are those of the undistributed mesh, the same for any number of ranks.
@@ -37,8 +43,9 @@ struct Mesh {
   std::vector<std::array<int, 6>> cell_middles; ///< degree 2: local nodes of their edges, rest -1
   std::vector<PetscInt> natural_cell;           ///< per owned cell
 
-  std::map<std::string, std::vector<bool>> region;   ///< per name: owned cells in it
-  std::map<std::string, std::vector<bool>> boundary; ///< per name: local nodes on it
+  std::map<std::string, std::vector<bool>> region;      ///< per name: owned cells in it
+  std::map<std::string, std::vector<bool>> boundary;    ///< per name: local nodes on it
+  std::map<std::string, std::vector<CellFacet>> facets; ///< per boundary: each has one owner
 };
 
 /// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,
@@ -103,6 +110,12 @@ SerialMesh half_disc(int edges = 100);
 /// "contact" (y = 0, 8 edges of four different lengths). 54 nodes, irregular spacing mirrored about
 /// x = 1/2, aspect ratios <= 1.9.
 SerialMesh one_block();
+
+/// The disc of radius 1 about the origin without the disc of radius 0.3. Boundaries: "rim" (the
+/// outer circle), "top" and "bottom" (its arcs within 45 degrees of (0, 1) and (0, -1), `edges`
+/// equal edges each), "hub" (the inner circle). Deterministic: rings that coarsen towards the hub.
+/// Throws bad_input for fewer than 8 edges.
+SerialMesh annulus(int edges = 48);
 
 /// Collective on `comm`. Builds or reads the mesh on the first rank, refines it, partitions the
 /// cell graph by METIS (more than one rank) through a shell partitioner, and distributes it. Throws

@@ -59,6 +59,9 @@ std::vector<int> partition_cells(const SerialMesh &mesh, int parts);
 /// mesh that the recipe does not name are left out.
 Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe);
 
+/// Local points of one height that carry a label of make_plex, none where there is no such label.
+std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt height);
+
 /// The way back, for a DM that one process holds whole: the labels of `recipe` that it has.
 SerialMesh from_plex(DM dm, const MeshRecipe &recipe);
 

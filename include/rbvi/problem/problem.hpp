@@ -11,8 +11,8 @@
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
+#include "rbvi/problem/summed.hpp"
 
 #include <memory>
 #include <optional>
@@ -24,9 +24,8 @@ namespace rbvi {
 struct Operators : ContactOperators {
   FullMu mu;
   Mat a = nullptr;
-  Vec f = nullptr;     ///< zero where the scene has no load
-  Index normal = 0;    ///< normal multipliers: the first of the dual dofs
-  FrictionBound bound; ///< of the others
+  Vec f = nullptr; ///< zero where the scene has no load
+  NodeLaws laws;   ///< of the multipliers
 };
 
 class Problem {
@@ -45,14 +44,16 @@ public:
   /// Nitsche's method: the terms along the contact curve; null: by multipliers.
   const NitscheCurve *nitsche() const { return contact_.interfaces.front()->nitsche(); }
 
-  /// Collective. `mu`: the free parameters, inside or outside the box. A is assembled again only
-  /// where the parameters that it depends on have changed. Throws failure if a cell is inverted.
+  /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
+  /// only where the parameters that they depend on have changed. Throws failure if a cell is
+  /// inverted, bad_input for a coefficient that is not finite.
   const Operators &assemble(const Mu &mu);
   /// Not collective: the contact operators alone, B, G, weights and the nodal constraint.
   void assemble_contact(const Mu &mu, Operators &operators);
 
-  /// Values of the parameters that a depends on.
-  std::vector<double> stiffness_values(const FullMu &all_parameters) const;
+  /// A and F of the last mu term by term.
+  const Summed<Mat> &a_terms() const { return a_; }
+  const Summed<Vec> &f_terms() const { return f_; }
 
   Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
   const SparseMatrix &w_product() const { return contact_.w_product; } ///< dual x dual
@@ -64,9 +65,9 @@ private:
   InterfacePlaces places_;
   Contact contact_;
   MappedCells cells_;
-  Handle<Mat> a_, v_product_;
-  std::optional<std::vector<double>> a_made_at_; ///< stiffness_values
-  Handle<Vec> f_;
+  Summed<Mat> a_;
+  Summed<Vec> f_;
+  Handle<Mat> v_product_;
   Operators operators_;
 };
 

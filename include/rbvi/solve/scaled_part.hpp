@@ -1,7 +1,8 @@
-// A body with a part whose stiffness a parameter scales, A(kappa) = A_rest + kappa A_part, no load
-// inside that part. The part acts on the rest through its interface alone, by kappa S, S its Schur
-// complement there. So one factorisation, at kappa_0, serves every kappa: with delta = kappa -
-// kappa_0, G = E^T A(kappa_0)^-1 E on the contact dofs c and the interface i, and the eigenvectors
+// A body with a part whose stiffness a coefficient scales, A(kappa) = A_rest + kappa A_part, both
+// sums of exact terms, and no load. The part acts on the rest through its interface alone, by kappa
+// S, S its Schur complement there. So one factorisation, at kappa_0, serves every kappa: with delta
+// = kappa - kappa_0, G = E^T A(kappa_0)^-1 E on the contact dofs c and the interface i, and the
+// eigenvectors
 //
 //   S v = sigma G_ii^-1 v,   W = G_ii^-1 V,   Y = G_ci W,   phi = delta sigma / (1 + delta sigma),
 //
@@ -21,13 +22,13 @@ namespace rbvi {
 
 class ScaledPart {
 public:
-  /// Whether the stiffness of a part is all that changes in A over the free parameters, and nothing
-  /// loads the body but contact.
+  /// Whether over the free parameters A = A_0 + theta(mu) A_1 of exact terms, theta > 0 and not the
+  /// same at the two bounds of all of them, and nothing loads the body but contact.
   static bool fits(const Scene &scene);
 
-  /// Two factorisations, at the bounds of the parameter, and n_c + 2 n_i solves, shared among the
-  /// ranks. Assembles `problem`. Collective.
-  explicit ScaledPart(Problem &problem);
+  /// Two factorisations, at the bounds of theta, and n_c + 2 n_i solves, shared among the ranks.
+  /// `problem` must outlive it. Collective.
+  explicit ScaledPart(const Problem &problem);
   /// The operators of the next calls. Not collective.
   void set(const Operators &op);
 
@@ -37,15 +38,15 @@ public:
   void displacement(const Vector &lambda, Vec u);
 
 private:
-  void find_interface(const Problem &problem, Mat lower, Mat upper);
+  void find_interface(const Problem &problem);
 
-  int parameter_;
-  double lower_, width_;
+  const Problem &problem_;
+  double lower_ = 0, width_ = 0;             ///< of the range of theta
   Trace contact_, interface_, both_;         ///< both_: contact dofs, then the interface
   std::unique_ptr<ReplicatedSolver> solver_; ///< at kappa_0, the lower bound
   Matrix compliance_;                        ///< G_cc
   Matrix w_, y_;
-  Vector sigma_; ///< times the width of the parameter's range
+  Vector sigma_; ///< times the width of the range of theta
 
   // At the current mu.
   const Operators *op_ = nullptr;

@@ -39,9 +39,8 @@ void set_elastic_pair(const SceneOptions &options, Scene &scene) {
   scene.contacts = {two_bodies({"slave", "master", pair_discretisation(options)})};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = [material](const FullMu &, const Point &) { return material; };
-  scene.a = elasticity("", material, scene.degree);
-  scene.a_parameters = std::vector<int>{};
-  scene.v_product = h1_product(1, 2, scene.degree);
+  scene.a = {exact_term(elasticity("", material, scene.degree))};
+  scene.v_product = {exact_term(h1_product(1, 2, scene.degree))};
 }
 
 } // namespace rbvi

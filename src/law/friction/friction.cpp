@@ -14,17 +14,73 @@ namespace {
 
 using namespace friction;
 
-void check(const Vector &q, int dim, const FrictionBound &bound, const Vector &start) {
-  if (dim < 1 || dim > 3) throw failure("friction: the dimension is not 1, 2 or 3");
-  if (q.size() % dim != 0)
+void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
+  rbvi::check(laws);
+  if (q.size() != laws.rows)
     throw failure("friction: the right-hand side has " + std::to_string(q.size()) +
-                  " entries, which is not a multiple of the dimension");
+                  " entries, and the laws " + std::to_string(laws.rows));
   if (start.size() != 0 && start.size() != q.size())
     throw failure("friction: the first guess has " + std::to_string(start.size()) +
                   " entries instead of " + std::to_string(q.size()));
   if (!q.allFinite()) throw failure("friction: the right-hand side is not finite");
   if (!start.allFinite()) throw failure("friction: the first guess is not finite");
-  bound.check();
+}
+
+/// The order of entries that Laws has: x_n of all nodes, then x_tau of all nodes; those of nodes
+/// with a sign alone are zero, and never asked for.
+class Order {
+public:
+  explicit Order(const NodeLaws &laws) : rows_(laws.rows) {
+    for (const Index row : laws.normal)
+      of_.push_back(row);
+    for (Index i = 0; i < laws.nodes() && laws.has_tangents(); ++i)
+      for (int k = 0; k < laws.tangents; ++k)
+        of_.push_back(laws.has_tangent(i) ? laws.tangent[at(i)] + k : -1);
+    same_ = std::ssize(of_) == rows_;
+    for (std::size_t j = 0; j < of_.size(); ++j)
+      same_ = same_ && of_[j] == static_cast<Index>(j);
+  }
+  bool same() const { return same_; }
+  Matrix inwards(const Matrix &values) const {
+    Matrix result = Matrix::Zero(std::ssize(of_), values.cols());
+    for (std::size_t j = 0; j < of_.size(); ++j)
+      if (of_[j] >= 0) result.row(static_cast<Index>(j)) = values.row(of_[j]);
+    return result;
+  }
+  Vector outwards(const Vector &values) const {
+    Vector result = Vector::Zero(values.size() > 0 ? rows_ : 0);
+    for (std::size_t j = 0; j < of_.size() && values.size() > 0; ++j)
+      if (of_[j] >= 0) result[of_[j]] = values[static_cast<Index>(j)];
+    return result;
+  }
+  ColumnSource inwards(const ColumnSource &columns) const {
+    return [this, &columns](std::vector<Index> which) {
+      for (Index &j : which)
+        j = of_[at(j)];
+      return inwards(columns(which));
+    };
+  }
+
+private:
+  Index rows_;
+  std::vector<Index> of_; ///< entry of the system, -1: none
+  bool same_;
+};
+
+Laws laws_of(const NodeLaws &of) {
+  const Index nodes = of.nodes();
+  Laws laws{.nodes = nodes,
+            .dim = of.has_tangents() ? 1 + of.tangents : 1,
+            .coefficient = Vector(nodes),
+            .threshold = Vector(nodes),
+            .only_in_contact = std::vector<char>(at(nodes))};
+  for (Index i = 0; i < nodes; ++i) {
+    const FrictionBound bound = of.has_tangent(i) ? of.bound[at(i)] : FrictionBound{};
+    laws.coefficient[i] = bound.coefficient;
+    laws.threshold[i] = bound.threshold;
+    laws.only_in_contact[at(i)] = bound.only_in_contact;
+  }
+  return laws;
 }
 
 /// Fills in the list of nodes in contact and the states of all nodes.
@@ -172,8 +228,8 @@ private:
   Outcome backup(Point point) {
     double near = 0.1, part = 1, before = std::numeric_limits<double>::infinity();
     Laws frozen = laws_;
-    frozen.coefficient = 0;
-    frozen.only_in_contact = false;
+    frozen.coefficient.setZero();
+    frozen.only_in_contact.assign(at(laws_.nodes), 0);
     frozen.threshold = laws_.bounds(point.x);
     while (systems_left_ > 0) {
       ++result_.backup_steps;
@@ -257,24 +313,22 @@ private:
 
 } // namespace
 
-void FrictionBound::check() const {
-  const bool valid =
-      std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 && threshold >= 0;
-  if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
-}
-
-FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
-                              const FrictionBound &bound, const Vector &start,
-                              const FrictionOptions &options) {
-  check(q, dim, bound, start);
-  const Laws laws{.nodes = q.size() / dim,
-                  .dim = dim,
-                  .coefficient = bound.coefficient,
-                  .threshold = Vector::Constant(q.size() / dim, bound.threshold),
-                  .only_in_contact = bound.only_in_contact};
-  if (dim == 1 || (bound.coefficient == 0 && bound.threshold == 0))
-    return without_friction(columns, q, laws, start, options);
-  return Solver(columns, q, laws, options).run(start);
+FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                              const Vector &start, const FrictionOptions &options) {
+  check(q, laws, start);
+  const Laws inner = laws_of(laws);
+  const auto solve = [&](const ColumnSource &source, const Vector &right, const Vector &from) {
+    return laws.friction() ? Solver(source, right, inner, options).run(from)
+                           : without_friction(source, right, inner, from, options);
+  };
+  const Order order(laws);
+  if (order.same()) return solve(columns, q, start);
+  const ColumnSource ordered = order.inwards(columns);
+  FrictionResult result = solve(ordered, order.inwards(Matrix(q)),
+                                start.size() > 0 ? Vector(order.inwards(Matrix(start))) : start);
+  for (Vector *part : {&result.x, &result.w, &result.start})
+    *part = order.outwards(*part);
+  return result;
 }
 
 } // namespace rbvi

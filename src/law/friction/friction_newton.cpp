@@ -32,7 +32,7 @@ std::vector<Unknown> unknowns(const LazyColumns &h, const Laws &laws, const Acti
     const bool slips = sets.tangent_at(i) == Tangent::slip;
     if (sets.is_active(i)) {
       result.push_back({.node = i, .first = i, .second = i, .unit = 1 / std::sqrt(h.diagonal(i))});
-      if (slips) result.back().slope = laws.coefficient;
+      if (slips) result.back().slope = laws.coefficient[i];
     }
     if (sets.tangent_at(i) == Tangent::none) continue;
     const double unit = 1 / std::sqrt(tangential_diagonal(h, laws, i));

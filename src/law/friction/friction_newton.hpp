@@ -14,20 +14,18 @@
 
 namespace rbvi::friction {
 
-/// |x_tau,i| <= c x_n,i + t_i.
+/// |x_tau,i| <= c_i x_n,i + t_i. Entries of x: x_n of all nodes, then x_tau of all nodes.
 struct Laws {
   Index nodes = 0;
   int dim = 2;
-  double coefficient = 0;
-  Vector threshold; ///< t of every node
-  bool only_in_contact = false;
+  Vector coefficient, threshold; ///< c and t of every node
+  std::vector<char> only_in_contact;
 
   Index tangent(Index i) const { return nodes + i * (dim - 1); }
-  FrictionBound at_node(Index i) const { return {coefficient, threshold[i], only_in_contact}; }
-  double bound(Index i, double normal) const {
-    return coefficient * std::max(normal, 0.0) +
-           (normal > 0 || !only_in_contact ? threshold[i] : 0.0);
+  FrictionBound at_node(Index i) const {
+    return {coefficient[i], threshold[i], only_in_contact[at(i)] != 0};
   }
+  double bound(Index i, double normal) const { return at_node(i).value(normal); }
   Vector bounds(const Vector &x) const;
   /// The nearest x that keeps the signs, and then the bounds.
   Vector feasible(Vector x) const;

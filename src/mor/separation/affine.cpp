@@ -1,6 +1,7 @@
 #include "rbvi/mor/separation/affine.hpp"
 
 #include "rbvi/contact/entity_sum.hpp"
+#include "rbvi/element/facets.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 
@@ -12,17 +13,20 @@ namespace rbvi {
 
 namespace {
 
-/// One cell that touches sampled entries: its number, its vertices, and (entry, local) pairs.
+/// One cell that touches sampled entries: its number, its vertices, (entry, local) pairs, and of a
+/// and f the term that it is a cell of, or has a facet of.
 struct TouchedCell {
   PetscInt number;
   std::array<Point, 4> vertices;
   std::vector<std::pair<int, int>> entries;
+  int term = -1;
 };
 
 /// `corners`: vertices of each cell.
 SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) {
-  std::sort(cells.begin(), cells.end(),
-            [](const TouchedCell &x, const TouchedCell &y) { return x.number < y.number; });
+  std::stable_sort(cells.begin(), cells.end(), [](const TouchedCell &x, const TouchedCell &y) {
+    return std::pair(x.number, x.term) < std::pair(y.number, y.term);
+  });
   SampleMesh sample;
   sample.corners = corners;
   sample.vertices.resize(static_cast<Index>(cells.size()) * corners, dim);
@@ -33,6 +37,7 @@ SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) 
             cells[k].vertices[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
     for (const auto &[entry, local] : cells[k].entries)
       sample.contributions.push_back({entry, static_cast<int>(k), local});
+    if (cells[k].term >= 0) sample.terms.push_back(cells[k].term);
   }
   std::stable_sort(sample.contributions.begin(), sample.contributions.end(),
                    [](const auto &x, const auto &y) { return x.entry < y.entry; });
@@ -83,9 +88,10 @@ std::vector<SampleMesh> sample_contact(const Contact &contact, const std::vector
 
 /// Flattens the cells of all ranks onto every rank.
 std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCell> &mine) {
-  std::vector<double> packed; // number, 12 coordinates, count, pairs
+  std::vector<double> packed; // number, term, 12 coordinates, count, pairs
   for (const TouchedCell &cell : mine) {
     packed.push_back(static_cast<double>(cell.number));
+    packed.push_back(cell.term);
     for (const Point &x : cell.vertices)
       packed.insert(packed.end(), x.begin(), x.end());
     packed.push_back(static_cast<double>(cell.entries.size()));
@@ -98,6 +104,7 @@ std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCe
   std::vector<TouchedCell> cells;
   for (auto at = all.begin(); at != all.end();) {
     TouchedCell cell{static_cast<PetscInt>(*at++), {}, {}};
+    cell.term = static_cast<int>(*at++);
     for (Point &x : cell.vertices)
       for (double &coordinate : x)
         coordinate = *at++;
@@ -110,34 +117,57 @@ std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCe
   return cells;
 }
 
-/// Cells of the whole mesh; matrix: rows and columns are natural dofs, vector: column 0.
-SampleMesh sample_domain(const Problem &problem, const std::vector<EntryKey> &entries,
-                         bool matrix) {
+/// Adds a cell, or a facet of it, whose kernel has these nodes: its first vertices, then middles.
+void add_touched(const Problem &problem, const std::vector<EntryKey> &entries, bool matrix,
+                 const std::vector<int> &nodes, TouchedCell cell,
+                 std::vector<TouchedCell> &touched_cells) {
   const Mesh &mesh = problem.mesh();
-  const auto components = problem.dofs().components;
+  const int components = problem.dofs().components;
+  std::vector<PetscInt> rows;
+  for (const int node : nodes)
+    for (int c = 0; c < components; ++c)
+      rows.push_back(mesh.natural_node[static_cast<std::size_t>(node)] * components + c);
+  cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
+  if (!cell.entries.empty()) touched_cells.push_back(std::move(cell));
+}
+
+/// Cells and facets of the terms of a sum that depend on the map; matrix: rows and columns are
+/// natural dofs, vector: column 0.
+SampleMesh sample_domain(const Problem &problem, const Sum &sum, const std::vector<int> &terms,
+                         const std::vector<EntryKey> &entries, bool matrix) {
+  const Mesh &mesh = problem.mesh();
+  const MappedCells cells = reference_cells(mesh);
+  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
   std::vector<TouchedCell> mine;
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    std::vector<PetscInt> rows;
-    TouchedCell cell{mesh.natural_cell[k], {}, {}};
-    const auto nodes = nodes_of(mesh, k);
-    for (std::size_t i = 0; i < nodes.size() && nodes[i] >= 0; ++i) {
-      const auto node = static_cast<std::size_t>(nodes[i]);
-      if (i <= static_cast<std::size_t>(mesh.dim)) cell.vertices[i] = mesh.points[node];
-      for (int c = 0; c < components; ++c)
-        rows.push_back(mesh.natural_node[node] * components + c);
+  for (const int term : terms) {
+    const Form &form = sum[static_cast<std::size_t>(term)].form;
+    for (std::size_t k = 0; k < mesh.cells.size() && form.boundary.empty(); ++k) {
+      if (!form.region.empty() && !mesh.region.at(form.region)[k]) continue;
+      const auto nodes = nodes_of(mesh, k);
+      add_touched(problem, entries, matrix, {nodes.begin(), nodes.begin() + per_cell},
+                  {mesh.natural_cell[k], cells.cells[k].reference, {}, term}, mine);
     }
-    cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
-    if (!cell.entries.empty()) mine.push_back(std::move(cell));
+    if (form.boundary.empty()) continue;
+    for (const auto &[k, facet] : mesh.facets.at(form.boundary)) {
+      std::vector<int> nodes = facet_nodes(mesh.dim, mesh.degree, facet);
+      for (int &node : nodes)
+        node = nodes_of(mesh, k)[static_cast<std::size_t>(node)];
+      add_touched(problem, entries, matrix, nodes,
+                  {mesh.natural_cell[k], facet_cell(cells.cells[k], facet).reference, {}, term},
+                  mine);
+    }
   }
   return to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine));
 }
 
-/// The first mu of the set with each value of the parameters that a depends on, by number.
-std::vector<int> different_stiffness(const Problem &problem, const std::vector<Mu> &set) {
+/// Of terms that depend on the map: the first mu of the set with each value of the parameters that
+/// the sum depends on, by number.
+std::vector<int> different(const SplitSum &split, const Sum &sum, const ParameterSpace &space,
+                           const std::vector<Mu> &set) {
   std::set<std::vector<double>> seen;
   std::vector<int> result;
-  for (std::size_t p = 0; p < set.size(); ++p)
-    if (seen.insert(problem.stiffness_values(expand(problem.scene().parameters, set[p]))).second)
+  for (std::size_t p = 0; p < set.size() && !split.mapped.empty(); ++p)
+    if (seen.insert(values_of_dependence(sum, expand(space, set[p]))).second)
       result.push_back(static_cast<int>(p));
   return result;
 }
@@ -150,6 +180,9 @@ struct Snapshots {
 
   Snapshots(std::vector<EntryKey> k, std::vector<int> n)
       : keys(std::move(k)), numbers(std::move(n)), values(keys.size(), numbers.size()) {}
+  bool has(std::size_t number) const {
+    return std::find(numbers.begin(), numbers.end(), static_cast<int>(number)) != numbers.end();
+  }
   template <class Values> void add(std::size_t number, Values &&values_at) {
     const auto found = std::find(numbers.begin(), numbers.end(), static_cast<int>(number));
     if (found != numbers.end()) values.col(found - numbers.begin()) = values_at();
@@ -214,8 +247,10 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart) {
   std::vector<int> all(training.size()), none;
   std::iota(all.begin(), all.end(), 0);
-  const bool without_b = !separable_contact(problem.scene()),
-             load = static_cast<bool>(problem.scene().f);
+  const Scene &scene = problem.scene();
+  const bool without_b = !separable_contact(scene);
+  const Summed<Mat> &a_terms = problem.a_terms();
+  const Summed<Vec> &f_terms = problem.f_terms();
   const Operators &op = problem.assemble(training.front());
   const LowerTriangle triangle(op.a, problem.dofs());
   std::vector<EntryKey> f_keys, g_keys;
@@ -223,14 +258,15 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
     f_keys.push_back({natural, 0});
   for (PetscInt i = 0; i < op.g.size(); ++i)
     g_keys.push_back({i, 0});
-  Snapshots a(triangle.keys(), different_stiffness(problem, training));
-  Snapshots f(f_keys, load ? all : none), b(nonzero_keys(op.b), without_b ? none : all),
-      g(g_keys, without_b ? none : all);
-  for (const int number : load || !without_b ? all : a.numbers) {
+  Snapshots a(triangle.keys(), different(a_terms.split, scene.a, scene.parameters, training));
+  Snapshots f(f_keys, different(f_terms.split, scene.f, scene.parameters, training)),
+      b(nonzero_keys(op.b), without_b ? none : all), g(g_keys, without_b ? none : all);
+  for (const int number : all) {
     const auto p = static_cast<std::size_t>(number);
+    if (without_b && !a.has(p) && !f.has(p)) continue;
     problem.assemble(training[p]);
-    a.add(p, [&] { return triangle.values(op.a); });
-    f.add(p, [&] { return local_values(op.f); });
+    a.add(p, [&] { return triangle.values(a_terms.mapped.get()); });
+    f.add(p, [&] { return local_values(f_terms.mapped.get()); });
     b.add(p, [&] { return nonzero_values(op.b); });
     g.add(p, [&] { return op.g; });
   }
@@ -240,8 +276,9 @@ AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
   separate_rows(b, problem.contact().nodes(), problem.dual_size(), options, apart, result);
   result.f = f.separate(problem.comm(), options);
   result.g = g.separate(MPI_COMM_SELF, options);
-  result.sample_a = {sample_domain(problem, result.a.entries, true)};
-  result.sample_f = {sample_domain(problem, result.f.entries, false)};
+  result.sample_a = {sample_domain(problem, scene.a, a_terms.split.mapped, result.a.entries, true)};
+  result.sample_f = {
+      sample_domain(problem, scene.f, f_terms.split.mapped, result.f.entries, false)};
   if (without_b) return result;
   result.sample_b = sample_contact(problem.contact(), entries_of_b(result), true);
   result.sample_g = sample_contact(problem.contact(), result.g.entries, false);

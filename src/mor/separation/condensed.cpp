@@ -36,20 +36,15 @@ bool symmetric(const Matrix &snapshots, Index nodes, double largest) {
   return true;
 }
 
-bool contains(const std::vector<int> &list, int i) {
-  return std::find(list.begin(), list.end(), i) != list.end();
-}
-
 /// The parameters of a that are free, each with so many points.
 std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   std::vector<ChebyshevAxis> axes;
   for (const int i : scene.parameters.free) {
-    if (scene.a_parameters && !contains(*scene.a_parameters, i)) continue;
+    if (!depends_on(scene.a, i)) continue;
     const Parameter &p = scene.parameters.all[static_cast<std::size_t>(i)];
-    const auto found = scene.a_coordinates.find(i);
-    const bool own = found != scene.a_coordinates.end();
-    const double lower = own ? found->second.of(p.lower) : p.lower;
-    const double upper = own ? found->second.of(p.upper) : p.upper;
+    const Coordinate *own = coordinate_of(scene.a, i);
+    const double lower = own == nullptr ? p.lower : own->of(p.lower);
+    const double upper = own == nullptr ? p.upper : own->of(p.upper);
     axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});
   }
   return axes;
@@ -183,11 +178,10 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const Matrix &basis) {
   if (!separable_contact(problem.scene())) {
     const Index dofs = problem.trace().size;
-    return {Matrix::Identity(dofs, dofs), loaded_dofs(problem, training, multipliers)};
+    return {Matrix::Identity(dofs, dofs), false, loaded_dofs(problem, training, multipliers)};
   }
-  CondensedLoads loads{separated_loads(problem, affine, training, basis), {}};
-  for (Index k = 0; k < loads.columns.cols() && affine.b_size() == 1; ++k)
-    loads.appended.push_back(k);
+  CondensedLoads loads{separated_loads(problem, affine, training, basis), affine.b_size() == 1};
+  if (!loads.join && affine.b.exact()) loads.dofs = loaded_dofs(problem, training, multipliers);
   return loads;
 }
 
@@ -196,7 +190,7 @@ Condensation condense(Problem &problem, const CondensedLoads &of, Index size,
                       LinearBasis *modes) {
   const Scene &scene = problem.scene();
   const Matrix &loads = of.columns;
-  const bool appends = modes != nullptr && !of.appended.empty() && options.responses > 0;
+  const bool appends = modes != nullptr && (of.join || !of.dofs.empty()) && options.responses > 0;
   const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all_parameters);
   Condensation result;
   CondensedOperator &condensed = result.condensed;
@@ -210,9 +204,9 @@ Condensation condense(Problem &problem, const CondensedLoads &of, Index size,
     ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
     if (!appends || std::find(ends.begin(), ends.end(), mu) == ends.end())
       return blocks_of(loads.transpose() * solver.responses(loads), size);
-    if (of.appended.size() < static_cast<std::size_t>(loads.cols())) {
-      const Handle<Mat> fields = solver.fields(loads(Eigen::all, of.appended));
-      append(fields.get());
+    if (!of.join) {
+      const Matrix units = Matrix::Identity(loads.rows(), loads.rows());
+      append(solver.fields(units(Eigen::all, of.dofs)).get());
       return blocks_of(loads.transpose() * solver.responses(loads), size);
     }
     const Handle<Mat> fields = solver.fields(loads);

@@ -4,6 +4,8 @@
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/lagrange.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -22,21 +24,29 @@ Cell sample_cell(const SampleMesh &sample, const Scene &scene, const FullMu &mu,
 
 } // namespace
 
-Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
+Vector affine_coefficients(const AffineTerms &terms, const Sum &sum, const Scene &scene,
                            const FullMu &all_parameters) {
-  Vector theta = Vector::Zero(terms.size());
-  if (terms.size() == 0) return theta;
+  const std::vector<double> exact =
+      exact_coefficients(sum, split_sum(sum, scene.parameters), scene.parameters, all_parameters);
+  Vector result(terms.size());
+  result.head(terms.exact) = Eigen::Map<const Vector>(exact.data(), std::ssize(exact));
+  auto theta = result.tail(terms.size() - terms.exact);
+  theta.setZero();
+  if (theta.size() == 0) return result;
   const SampleMesh &sample = terms.samples.front();
   const Index cells = sample.vertices.rows() / sample.corners;
   const Index dofs = Index{nodes_per_cell(scene.dim, scene.degree)} * scene.components;
-  Matrix values(dofs * dofs, cells); // a linear form fills the first rows only
-  for (Index number = 0; number < cells; ++number)
-    form.kernel(all_parameters, sample_cell(sample, scene, all_parameters, number),
-                values.col(number).data());
+  Matrix values(dofs * dofs, cells); // a linear form, or one on a facet, fills the first rows only
+  for (Index number = 0; number < cells; ++number) {
+    const int term = sample.terms[static_cast<std::size_t>(number)];
+    sum[static_cast<std::size_t>(term)].form.kernel(
+        all_parameters, sample_cell(sample, scene, all_parameters, number),
+        values.col(number).data());
+  }
   for (const SampleMesh::Contribution &c : sample.contributions)
     theta[c.entry] += values(c.local, c.cell);
   terms.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
-  return theta;
+  return result;
 }
 
 Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &contact,
@@ -58,6 +68,20 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
   }
   terms.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
   return theta;
+}
+
+void check_terms_of(const AffineTerms &terms, const Sum &sum, const ParameterSpace &space,
+                    const std::string &name) {
+  const SplitSum split = split_sum(sum, space);
+  bool fits = terms.exact == std::ssize(split.exact);
+  for (const SampleMesh &sample : terms.samples) {
+    fits = fits && std::ssize(sample.terms) * sample.corners == sample.vertices.rows();
+    for (const int term : sample.terms)
+      fits = fits && std::ranges::find(split.mapped, term) != split.mapped.end();
+  }
+  if (!fits)
+    throw bad_input("the terms of " + name +
+                    " of the model are not those of its scene in this build");
 }
 
 } // namespace rbvi

@@ -52,7 +52,9 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samp
                  const std::string &name) {
   const Index size = terms.interpolation.rows();
   require_shape(terms.interpolation, size, size, name + "/interpolation");
-  require_shape(terms.reduced, size == 0 ? terms.reduced.rows() : rows, size, name + "/reduced");
+  require(terms.exact >= 0, name + "/exact is negative");
+  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : rows, terms.size(),
+                name + "/reduced");
   require(size == 0 || terms.samples.size() == samples, name + " has sampled entries elsewhere");
   for (const SampleMesh &sample : terms.samples) {
     const Matrix &vertices = sample.vertices;
@@ -60,6 +62,8 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samp
             name + "/vertices is not a list of cells");
     require_shape(vertices, vertices.rows(), vertices.rows() == 0 ? vertices.cols() : dim,
                   name + "/vertices");
+    require(sample.terms.empty() || std::ssize(sample.terms) * sample.corners == vertices.rows(),
+            name + "/cell_terms does not fit");
     int previous = 0;
     for (const SampleMesh::Contribution &c : sample.contributions) {
       require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
@@ -111,7 +115,7 @@ void check_support(const ReducedModel &model, const SupportModel &support) {
   const Index m = model.generators, b = model.b.size();
   const Index blocks = model.evaluates_contact() ? 1 : b * (b + 1) / 2;
   const Index size = model.evaluates_contact() ? model.contact_trace.rows() : m;
-  require(support.normal > 0 && m % support.normal == 0, "support/normal does not fit");
+  require(support.normal > 0 && support.normal <= m, "support/normal does not fit");
   require(support.reduction >= MultiplierReduction::condensed &&
               support.reduction <= MultiplierReduction::joint,
           "support/reduction is none that this build has");

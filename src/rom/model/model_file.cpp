@@ -87,6 +87,7 @@ void write_sample(H5Writer &file, const std::string &group, const SampleMesh &sa
   file.write(group + "/vertices", sample.vertices);
   file.write(group + "/corners", sample.corners);
   file.write(group + "/contributions", triples);
+  file.write(group + "/cell_terms", sample.terms);
 }
 
 SampleMesh read_sample(const H5Reader &file, const std::string &group) {
@@ -94,6 +95,7 @@ SampleMesh read_sample(const H5Reader &file, const std::string &group) {
   sample.vertices = file.matrix(group + "/vertices");
   sample.corners = file.integer(group + "/corners");
   const std::vector<int> triples = file.ints(group + "/contributions");
+  sample.terms = file.ints(group + "/cell_terms");
   if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
   for (std::size_t i = 0; i < triples.size(); i += 3)
     sample.contributions.push_back({triples[i], triples[i + 1], triples[i + 2]});
@@ -107,6 +109,7 @@ void write_terms(H5Writer &file, const std::string &group, const AffineTerms &te
   file.write(group + "/samples", static_cast<int>(terms.samples.size()));
   for (std::size_t i = 0; i < terms.samples.size(); ++i)
     write_sample(file, group + "/" + std::to_string(i), terms.samples[i]);
+  file.write(group + "/exact", terms.exact);
 }
 
 AffineTerms read_terms(const H5Reader &file, const std::string &group) {
@@ -116,6 +119,7 @@ AffineTerms read_terms(const H5Reader &file, const std::string &group) {
   terms.error = file.number(group + "/error");
   for (int i = 0; i < file.integer(group + "/samples"); ++i)
     terms.samples.push_back(read_sample(file, group + "/" + std::to_string(i)));
+  terms.exact = file.integer(group + "/exact");
   return terms;
 }
 

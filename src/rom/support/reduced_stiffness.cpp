@@ -72,16 +72,9 @@ void ReducedStiffness::find_common_eigenvectors() {
         model_.b.reduced.col(p).reshaped(model_.generators, n) * eigenvectors_;
 }
 
-bool ReducedStiffness::depends_on_change(const FullMu &all_parameters) const {
-  if (at_.empty()) return true;
-  if (!scene_.a_parameters) return at_ != all_parameters;
-  return std::any_of(scene_.a_parameters->begin(), scene_.a_parameters->end(), [&](int i) {
-    return at_[static_cast<std::size_t>(i)] != all_parameters[static_cast<std::size_t>(i)];
-  });
-}
-
 void ReducedStiffness::set(const FullMu &all_parameters) {
-  if (!depends_on_change(all_parameters)) return;
+  std::vector<double> values = values_of_dependence(scene_.a, all_parameters);
+  if (at_ == values) return;
   const Vector theta = affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
   if (eigenvectors_.size() > 0) {
     diagonal_ = eigenvalues_ * theta;
@@ -90,7 +83,7 @@ void ReducedStiffness::set(const FullMu &all_parameters) {
     a_ = unpacked(model_.a.reduced * theta, model_.primal_size());
     if (!model_.online_enriched) factorise(a_);
   }
-  at_ = all_parameters;
+  at_ = std::move(values);
 }
 
 void ReducedStiffness::factorise(const Matrix &stiffness) {

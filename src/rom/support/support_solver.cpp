@@ -24,7 +24,39 @@ SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene, cons
   if (!model.support) throw bad_input("the model has no law of contact at nodes");
   if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
   samples_ = parts_of_box(scene.parameters, model.support->starts_mu);
+  set_laws();
   if (model.evaluates_contact()) nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
+}
+
+/// A column of the dual basis is a node, or a pair of mirror images, of one interface: x_n of all
+/// come first, then x_tau in the same order.
+void SupportSolver::set_laws() {
+  const std::size_t interfaces = contact_.interfaces.size();
+  std::vector<std::vector<Index>> normal(interfaces), tangent(interfaces);
+  for (Index column = 0; column < model_.generators; ++column) {
+    Index row = 0;
+    model_.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
+    const DualRow of = dual_row(contact_, row);
+    (of.normal ? normal : tangent)[of.interface].push_back(column);
+  }
+  laws_.rows = model_.generators;
+  for (std::size_t i = 0; i < interfaces; ++i)
+    for (std::size_t k = 0; k < normal[i].size(); ++k) {
+      laws_.normal.push_back(normal[i][k]);
+      laws_.tangent.push_back(tangent[i].empty() ? -1 : tangent[i].at(k));
+      interface_of_.push_back(static_cast<int>(i));
+    }
+  laws_.bound.resize(laws_.normal.size());
+}
+
+NodeLaws SupportSolver::laws_at(const FullMu &all_parameters) const {
+  NodeLaws laws = laws_;
+  for (std::size_t i = 0; i < contact_.interfaces.size(); ++i) {
+    const FrictionBound bound = contact_.interfaces[i]->bound(all_parameters);
+    for (std::size_t k = 0; k < laws.bound.size(); ++k)
+      if (interface_of_[k] == static_cast<int>(i)) laws.bound[k] = bound;
+  }
+  return laws;
 }
 
 /// The free parameters as parts of the box.
@@ -149,8 +181,7 @@ void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters
                      : start_at(parts_of_box(scene_.parameters, all_parameters));
   for (Index i = 0; i < body.b_contact.rows() && start.size() > 0; ++i)
     if (body.b_contact.row(i).norm() == 0) start[i] = std::min(start[i], 0.0); // faces no partner
-  FrictionResult found = solve_friction(columns, body.q, model_.generators / model_.support->normal,
-                                        body.bound, start);
+  FrictionResult found = solve_friction(columns, body.q, laws_at(all_parameters), start);
   if (!found.converged || !(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);

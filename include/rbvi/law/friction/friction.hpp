@@ -14,30 +14,9 @@
 #pragma once
 
 #include "rbvi/law/lcp.hpp"
-
-#include <algorithm>
+#include "rbvi/law/node_laws.hpp"
 
 namespace rbvi {
-
-/// The bound s = c x_n + t of |x_tau| at every node.
-struct FrictionBound {
-  double coefficient = 0;       ///< c >= 0
-  double threshold = 0;         ///< t >= 0
-  bool only_in_contact = false; ///< t = 0 at nodes that carry no pressure
-
-  double threshold_at(double x_n) const { return x_n > 0 || !only_in_contact ? threshold : 0.0; }
-  /// s; a negative x_n counts as zero.
-  double value(double x_n) const { return coefficient * std::max(x_n, 0.0) + threshold_at(x_n); }
-  /// Whether t appears only when the node touches, so that s is not continuous.
-  bool jumps() const { return only_in_contact && threshold > 0; }
-  /// Whether x_tau of a node can differ from zero.
-  bool carries_traction(bool in_contact) const {
-    if (threshold > 0) return in_contact || !only_in_contact;
-    return in_contact && coefficient > 0;
-  }
-  /// Throws bad_input for a coefficient or a threshold that is negative or not finite.
-  void check() const;
-};
 
 /// Where a node is: apart or together, sticking or slipping.
 enum class NodeState : char { open, stick, slip };
@@ -48,7 +27,7 @@ struct FrictionOptions {
 };
 
 struct FrictionResult {
-  Vector x, w;  ///< m * dim entries each
+  Vector x, w;  ///< laws.rows entries each
   Vector start; ///< x - w / H_jj (the mean of a node's tangential H_jj; where they were not asked
                 ///< for, of all others): its signs and its sizes against the bound tell every
                 ///< state. Smooth where x and w are not: start nearby problems from it, or from
@@ -64,12 +43,10 @@ struct FrictionResult {
   std::string reason; ///< why it stopped; not converged: what to try
 };
 
-/// `q`: m * dim entries (m nodes), dim = 2 or 3; 1: there is no tangential part. `start`: a first
-/// guess of x, or better of FrictionResult::start, or empty. Without a bound (c = t = 0) this is
-/// solve_lcp on the normal part. Throws failure for entries that are not finite or sizes that do
-/// not fit; bad_input for a negative bound.
-FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
-                              const FrictionBound &bound, const Vector &start = {},
-                              const FrictionOptions &options = {});
+/// `q`: laws.rows entries. `start`: a first guess of x, or better of FrictionResult::start, or
+/// empty. Where no node has a bound above zero this is solve_lcp on the normal part. Throws failure
+/// for entries that are not finite or sizes that do not fit; bad_input for a negative bound.
+FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                              const Vector &start = {}, const FrictionOptions &options = {});
 
 } // namespace rbvi

@@ -1,5 +1,6 @@
-// Separation of mu and space: empirical interpolation of A, B, F, G over the training set, with the
-// small meshes on which the sampled entries are re-assembled online.
+// Separation of mu and space: empirical interpolation over the training set of B, G and of what is
+// not a sum of exact terms in A and F, with the small meshes on which the sampled entries are
+// re-assembled online.
 #pragma once
 
 #include "rbvi/mor/separation/eim.hpp"
@@ -11,7 +12,8 @@
 namespace rbvi {
 
 struct AffineOperators {
-  Eim a, b, f, g;   ///< size 0: f without a load; b and g that do not separate
+  Eim a, f;         ///< of the terms that depend on the map alone; size 0: all are exact
+  Eim b, g;         ///< size 0: they do not separate
   Eim b_tangential; ///< B^tau, where b is B^n alone; size 0 where b is all rows
   /// Of the domain (a, f), of each interface (b, g); sample_b: entries of b, then b_tangential.
   std::vector<SampleMesh> sample_a, sample_b, sample_f, sample_g;
@@ -32,10 +34,11 @@ struct RowsOfB {
 /// All rows together, or B^n and B^tau. `affine` must outlive it.
 std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &problem);
 
-/// Collective. Assembles the operators at every mu of `training` (A: its lower triangle, where the
-/// parameters that it depends on differ) and interpolates each. `apart`: of B in place of
-/// `options`, where there is one interface. B stays one where it is a multiple of one form at all
-/// `training`, since then one term serves all rows, and without friction, where there is only B^n.
+/// Collective. Assembles the operators at every mu of `training` (of A and F the terms that are not
+/// exact, of A the lower triangle, where the parameters that they depend on differ) and
+/// interpolates each. `apart`: of B in place of `options`, where there is one interface. B stays
+/// one where it is a multiple of one form at all `training`, since then one term serves all rows,
+/// and without friction, where there is only B^n.
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart = {});
 

@@ -32,14 +32,17 @@ struct Condensation {
 
 /// What A^-1 is asked for on the contact dofs.
 struct CondensedLoads {
-  Matrix columns;              ///< contact dofs x any number
-  std::vector<Index> appended; ///< those whose responses can join the modes
+  Matrix columns;    ///< contact dofs x any number
+  bool join = false; ///< the responses to all of them can join the modes
+  /// Contact dofs the responses to whose unit loads can join the modes instead: those beside
+  /// multipliers that are positive in some sample.
+  std::vector<Index> dofs{};
 };
 
 /// Where b separates (`affine`, over the samples at `training`): its terms on the basis, side by
-/// side; all of them can join where there is one term. Where it is evaluated at each mu: the unit
-/// vectors of the contact dofs, those that can join are beside multipliers that are positive in
-/// some sample. `multipliers`: dual dofs x P. Not collective.
+/// side; all of them join where there is one term, single dofs where it is an exact sum of more:
+/// where it is interpolated no response makes the displacement more exact. Where b is evaluated at
+/// each mu: the unit vectors of the contact dofs. `multipliers`: dual dofs x P. Not collective.
 CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,
                                const Matrix &basis);
@@ -48,7 +51,7 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
 /// at each Chebyshev point, shared among the ranks. Collective. Throws failure where the tolerance
 /// needs more points.
 ///
-/// `modes`, where given: the responses A^-1 (loads appended) are appended to them, at the ends and
+/// `modes`, where given: these responses are appended to them, at the ends and
 /// in the middle of each free parameter of A. The displacement is then as exact as the multipliers,
 /// which no set of snapshots makes it where active sets are new. Of the first A all are taken (down
 /// to a remainder of 1e-8 of their norm), of the others what is left above options.responses.

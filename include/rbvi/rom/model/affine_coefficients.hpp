@@ -5,7 +5,13 @@
 
 namespace rbvi {
 
-/// theta_q(mu): the sampled entries re-assembled, then the triangular solve (B.36). J numbers.
+/// theta_q(mu) of a or f: the coefficients of the scene, then those of empirical interpolation, the
+/// sampled entries re-assembled, then the triangular solve (B.36). terms.size() numbers. Throws
+/// bad_input for a coefficient that is not finite.
+Vector affine_coefficients(const AffineTerms &terms, const Sum &sum, const Scene &scene,
+                           const FullMu &all_parameters);
+
+/// Likewise of b or g, which are one form.
 Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
                            const FullMu &all_parameters);
 
@@ -13,5 +19,9 @@ Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Sce
 enum class Part { b, g };
 Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &contact,
                             const Scene &scene, const FullMu &all_parameters);
+
+/// Throws bad_input, with the name of the operator, unless the terms are those of the sum.
+void check_terms_of(const AffineTerms &terms, const Sum &sum, const ParameterSpace &space,
+                    const std::string &name);
 
 } // namespace rbvi

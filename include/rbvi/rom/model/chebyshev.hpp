@@ -9,7 +9,7 @@
 namespace rbvi {
 
 /// One direction of the grid: `points` extremal Chebyshev points, from `upper` down to `lower`, in
-/// the coordinate that the scene gives the parameter (Scene::a_coordinates). One point: the middle.
+/// the coordinate that a factor of the scene's a gives the parameter. One point: the middle.
 struct ChebyshevAxis {
   int parameter = 0;           ///< index into all parameters
   double lower = 0, upper = 0; ///< of the coordinate

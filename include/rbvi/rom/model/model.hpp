@@ -4,12 +4,12 @@
 //   sum_q theta^b_q(mu) B_q u <= sum_q theta^g_q(mu) G_q,    x >= 0,  complementary
 //
 // u: n coefficients of the primal basis (N POD modes, then S supremizers or responses), x: R
-// coefficients of the generators of the dual cone. theta comes from empirical interpolation (B.36):
-// a few entries of the full operator are re-assembled on their few cells. Where B and G do not
-// separate, they are evaluated for each mu on the contact interfaces alone, exactly, from the trace
-// of the basis. Other full-order data are there for outputs and for reconstruction alone. All
-// fields are numbered by the undistributed mesh. Where the scene has a motion, u is what is left
-// beside it.
+// coefficients of the generators of the dual cone. theta is a known function of the scene, or comes
+// from empirical interpolation (B.36): a few entries of the full operator are re-assembled on their
+// few cells. Where B and G do not separate, they are evaluated for each mu on the contact
+// interfaces alone, exactly, from the trace of the basis. Other full-order data are there for
+// outputs and for reconstruction alone. All fields are numbered by the undistributed mesh. Where
+// the scene has a motion, u is what is left beside it.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
@@ -33,15 +33,19 @@ struct SampleMesh {
   Matrix vertices;                         ///< (cells * corners) x dim reference coordinates
   int corners = 3;                         ///< vertices of each cell or edge
   std::vector<Contribution> contributions; ///< ordered by entry
+  /// Of a and f: the term of the scene that each cell is a cell of, or (facet_cell) has a facet of.
+  std::vector<int> terms{};
 };
 
-/// One operator as sum_q theta_q(mu) (reduced term q), with theta from empirical interpolation.
+/// One operator as sum_q theta_q(mu) (reduced term q): first the exact terms, whose theta are known
+/// functions of the scene, then those of empirical interpolation, J of them.
 struct AffineTerms {
-  Matrix reduced;                  ///< (entries of the reduced operator) x J, see ReducedModel
+  Matrix reduced;                  ///< (entries of the reduced operator) x size(), see ReducedModel
   Matrix interpolation;            ///< J x J, lower triangular with unit diagonal (B.34)
   std::vector<SampleMesh> samples; ///< J entries: on the domain (a, f), on each interface (b, g)
   double error = 0;                ///< e_EIM reached (B.32)
-  int size() const { return static_cast<int>(interpolation.rows()); }
+  int exact = 0;                   ///< exact terms
+  int size() const { return exact + static_cast<int>(interpolation.rows()); }
 };
 
 /// Error of one output over the validation set.
@@ -188,9 +192,10 @@ struct ReducedModel {
   bool online_enriched = false;
   int primal_size() const { return modes + supremizers; }
 
-  AffineTerms a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x J
+  AffineTerms
+      a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x terms
   AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
-  AffineTerms f; ///< n x J; J = 0: no load
+  AffineTerms f; ///< n x terms; none: no load
   AffineTerms g; ///< R x J
 
   std::vector<InterfaceModel> interfaces;

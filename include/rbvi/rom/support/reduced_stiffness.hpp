@@ -33,13 +33,12 @@ public:
   Vector transposed_half_response(const Vector &half) const;
 
 private:
-  bool depends_on_change(const FullMu &all_parameters) const;
   void factorise(const Matrix &stiffness);
   void find_common_eigenvectors();
 
   const ReducedModel &model_;
   const Scene &scene_;
-  FullMu at_; ///< all parameters
+  std::optional<std::vector<double>> at_{}; ///< values of the parameters that a depends on
 
   Matrix eigenvectors_; ///< n x n; empty: A_N is factorised
   Matrix eigenvalues_;  ///< n x J: the diagonal of each term

@@ -55,9 +55,14 @@ private:
   const Scene &scene_;
   const Contact &contact_;
   std::optional<ReducedLaw> law_;
-  SparseMatrix nodal_;       ///< the dual basis transposed, where b does not separate
-  Matrix samples_;           ///< where the starts are, as parts of the box
-  Vector last_start_, last_; ///< of the last query, and where it was
+  void set_laws();
+  NodeLaws laws_at(const FullMu &all_parameters) const;
+
+  std::vector<int> interface_of_; ///< of each node of laws_
+  NodeLaws laws_;                 ///< of the columns of the dual basis, without bounds
+  SparseMatrix nodal_;            ///< the dual basis transposed, where b does not separate
+  Matrix samples_;                ///< where the starts are, as parts of the box
+  Vector last_start_, last_;      ///< of the last query, and where it was
   ReducedStiffness stiffness_;
 };
 

@@ -1,0 +1,112 @@
+// Operators as sums of terms, sum_q theta_q(mu) (form q): a, f and the product of V of a scene.
+//
+// A term with a coefficient theta, a known function of mu, is *exact*: its kernel does not depend
+// on mu and is integrated over the reference domain, once. The kernel of a term without one depends
+// on mu, on the mapped domain; empirical interpolation separates the sum of all of these.
+#pragma once
+
+#include "rbvi/core/parameters.hpp"
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// Coordinates; in 2D the third is zero.
+using Point = std::array<double, 3>;
+
+/// One simplex: dim + 1 vertices, in the reference and in the mapped domain.
+struct Cell {
+  int dim = 2;
+  std::array<Point, 4> reference; ///< vertices xhat
+  std::array<Point, 4> mapped;    ///< h(mu)(xhat)
+};
+
+/// An integral over the cells of a region or over the facets of a boundary, one by one.
+/// A bilinear form fills rows * columns values (row-major), a linear form rows values: rows for the
+/// functions of the cell that it tests with, columns for those it couples them with, nodes *
+/// components of either space; a form on one space is square. Nodes of a cell: its vertices and, of
+/// degree 2, the middles of its edges (0,1), (1,2), (2,0) and, of a tetrahedron, (0,3), (1,3),
+/// (2,3).
+struct Form {
+  std::string region; ///< "" for the whole domain
+  std::function<void(const FullMu &mu, const Cell &cell, double *values)> kernel;
+  /// Not "": over the facets of this boundary. `cell` is then the one behind the facet, whose
+  /// vertices come first and see it outwards (facet_measure); the nodes are the facet's alone.
+  std::string boundary = "";
+  explicit operator bool() const { return static_cast<bool>(kernel); }
+};
+
+/// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
+/// decreasing, value = back(x).
+struct Coordinate {
+  std::function<double(double)> of, back;
+};
+
+/// A factor of a coefficient.
+struct Factor {
+  std::string name; ///< two factors of one name are the same function
+  std::function<double(const FullMu &)> value;
+  std::vector<int> parameters;                ///< indices into parameters.all that it depends on
+  std::map<int, Coordinate> coordinates = {}; ///< of some of these; the others: themselves
+};
+
+struct Term {
+  Form form;
+  /// theta, the product of these; unset: the kernel depends on mu.
+  std::optional<std::vector<Factor>> theta;
+  /// Without theta: the parameters (as in Factor) that the kernel depends on; unset: all.
+  std::optional<std::vector<int>> parameters = {};
+};
+
+using Sum = std::vector<Term>;
+
+/// theta = the product of `factors`; without factors 1.
+Term exact_term(Form form, std::vector<Factor> factors = {});
+/// A kernel that depends on mu.
+Term mapped_term(Form form, std::optional<std::vector<int>> parameters = {});
+
+/// Exact terms whose coefficients are multiples of each other over the free parameters.
+struct ExactGroup {
+  struct Member {
+    int term;      ///< number in the sum
+    double weight; ///< product of its factors that the fixed parameters make constant
+  };
+  std::vector<Member> members;
+  std::vector<int> factors; ///< those of the first member that vary; none: it is constant
+};
+
+/// A sum over the free parameters of a space.
+struct SplitSum {
+  std::vector<ExactGroup> exact; ///< the constant one first, where there is one
+  std::vector<int> mapped;       ///< numbers of the terms without a coefficient
+};
+
+/// Throws bad_input for a factor that is not finite at the fixed parameters.
+SplitSum split_sum(const Sum &sum, const ParameterSpace &space);
+
+/// The coefficient of each group at mu: the product of its factors that vary. Throws bad_input
+/// where one is not finite.
+std::vector<double> exact_coefficients(const Sum &sum, const SplitSum &split,
+                                       const ParameterSpace &space, const FullMu &all_parameters);
+
+/// Whether some term depends on a parameter, an index into parameters.all.
+bool depends_on(const Sum &sum, int parameter);
+
+/// Whether the sum is the same for all values of the free parameters.
+bool is_constant(const Sum &sum, const ParameterSpace &space);
+
+/// Values of the parameters that some term depends on.
+std::vector<double> values_of_dependence(const Sum &sum, const FullMu &all_parameters);
+
+/// The coordinate that some factor gives a parameter; null: the parameter itself.
+const Coordinate *coordinate_of(const Sum &sum, int parameter);
+
+/// Throws bad_input where a factor is not finite.
+void check_coefficients(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters);
+
+} // namespace rbvi

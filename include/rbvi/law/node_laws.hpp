@@ -1,0 +1,65 @@
+// The laws of contact and friction as data, node by node: x_n >= 0, and at nodes with friction
+// |x_tau| <= c x_n + t, a ball of d - 1 dimensions. A system can have nodes of both kinds, from
+// interfaces with laws of their own, and rows in any order.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace rbvi {
+
+/// The bound s = c x_n + t of |x_tau| at a node.
+struct FrictionBound {
+  double coefficient = 0;       ///< c >= 0
+  double threshold = 0;         ///< t >= 0
+  bool only_in_contact = false; ///< t = 0 while the node carries no pressure
+
+  double threshold_at(double x_n) const { return x_n > 0 || !only_in_contact ? threshold : 0.0; }
+  /// s; a negative x_n counts as zero.
+  double value(double x_n) const { return coefficient * std::max(x_n, 0.0) + threshold_at(x_n); }
+  /// Whether t appears only when the node touches, so that s is not continuous.
+  bool jumps() const { return only_in_contact && threshold > 0; }
+  /// Whether x_tau of a node can differ from zero.
+  bool carries_traction(bool in_contact) const {
+    if (threshold > 0) return in_contact || !only_in_contact;
+    return in_contact && coefficient > 0;
+  }
+  /// Throws bad_input for a coefficient or a threshold that is negative or not finite.
+  void check() const;
+};
+
+struct NodeLaws {
+  int tangents = 1;                 ///< entries of x_tau of a node with friction, d - 1
+  Index rows = 0;                   ///< entries of x
+  std::vector<Index> normal;        ///< per node: its entry x_n
+  std::vector<Index> tangent;       ///< per node: the first entry of x_tau, -1: there is none
+  std::vector<FrictionBound> bound; ///< per node
+
+  Index nodes() const { return static_cast<Index>(normal.size()); }
+  bool has_tangent(Index node) const { return tangent[static_cast<std::size_t>(node)] >= 0; }
+  bool has_tangents() const; ///< some node
+  /// Whether some node can carry a tangential traction.
+  bool friction() const;
+};
+
+/// `nodes` nodes of one law: all x_n, then all x_tau, `components` entries of x in all for each.
+NodeLaws uniform_laws(Index nodes, int components, const FrictionBound &bound);
+
+/// Puts the nodes and rows of `part` behind those of `laws`.
+void append(const NodeLaws &part, NodeLaws &laws);
+
+/// Throws failure unless every row is that of one node; bad_input for a negative bound.
+void check(const NodeLaws &laws);
+
+/// s of every node at x.
+Vector bounds_of(const NodeLaws &laws, const Vector &x);
+
+/// The projection onto x_n >= 0, then |x_tau| <= s(x_n), node by node (corrected (3.32)).
+Vector admissible(const NodeLaws &laws, Vector x);
+
+/// Values of the rows x_n, or of the rows x_tau, alone; zero in the others.
+Vector normal_part(const NodeLaws &laws, const Vector &x);
+
+} // namespace rbvi

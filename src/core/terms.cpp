@@ -1,0 +1,135 @@
+#include "rbvi/core/terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+bool contains(const std::vector<int> &list, int i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
+
+bool varies(const Factor &factor, const ParameterSpace &space) {
+  return std::any_of(factor.parameters.begin(), factor.parameters.end(),
+                     [&](int i) { return contains(space.free, i); });
+}
+
+double value_of(const Factor &factor, const ParameterSpace &space, const FullMu &all_parameters) {
+  const double value = factor.value(all_parameters);
+  if (!std::isfinite(value))
+    throw bad_input("the coefficient " + factor.name + " is not finite at " +
+                    describe(space, all_parameters));
+  return value;
+}
+
+/// Sorted, so that the order of factors does not matter.
+std::vector<std::string> names_of(const std::vector<Factor> &factors,
+                                  const std::vector<int> &which) {
+  std::vector<std::string> names;
+  for (const int i : which)
+    names.push_back(factors[static_cast<std::size_t>(i)].name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+const std::vector<Factor> &factors_of(const Sum &sum, int term) {
+  return *sum[static_cast<std::size_t>(term)].theta;
+}
+
+} // namespace
+
+Term exact_term(Form form, std::vector<Factor> factors) {
+  return {std::move(form), std::move(factors)};
+}
+
+Term mapped_term(Form form, std::optional<std::vector<int>> parameters) {
+  return {std::move(form), std::nullopt, std::move(parameters)};
+}
+
+SplitSum split_sum(const Sum &sum, const ParameterSpace &space) {
+  FullMu fixed;
+  for (const Parameter &p : space.all)
+    fixed.push_back(p.value);
+  SplitSum split;
+  std::vector<std::vector<std::string>> names; // of the varying factors of each group
+  for (int t = 0; t < static_cast<int>(sum.size()); ++t) {
+    if (!sum[static_cast<std::size_t>(t)].theta) {
+      split.mapped.push_back(t);
+      continue;
+    }
+    const std::vector<Factor> &factors = factors_of(sum, t);
+    std::vector<int> varying;
+    double weight = 1;
+    for (int i = 0; i < static_cast<int>(factors.size()); ++i) {
+      const Factor &factor = factors[static_cast<std::size_t>(i)];
+      if (varies(factor, space))
+        varying.push_back(i);
+      else
+        weight *= value_of(factor, space, fixed);
+    }
+    const std::vector<std::string> own = names_of(factors, varying);
+    const auto found = std::find(names.begin(), names.end(), own);
+    if (found != names.end()) {
+      split.exact[static_cast<std::size_t>(found - names.begin())].members.push_back({t, weight});
+      continue;
+    }
+    const auto at = varying.empty() ? 0 : std::ssize(names);
+    names.insert(names.begin() + at, own);
+    split.exact.insert(split.exact.begin() + at, {{{t, weight}}, varying});
+  }
+  return split;
+}
+
+std::vector<double> exact_coefficients(const Sum &sum, const SplitSum &split,
+                                       const ParameterSpace &space, const FullMu &all_parameters) {
+  std::vector<double> result;
+  for (const ExactGroup &group : split.exact) {
+    double product = 1;
+    for (const int i : group.factors)
+      product *= value_of(factors_of(sum, group.members.front().term)[static_cast<std::size_t>(i)],
+                          space, all_parameters);
+    result.push_back(product);
+  }
+  return result;
+}
+
+bool depends_on(const Sum &sum, int parameter) {
+  return std::any_of(sum.begin(), sum.end(), [&](const Term &term) {
+    if (!term.theta) return !term.parameters || contains(*term.parameters, parameter);
+    return std::any_of(term.theta->begin(), term.theta->end(), [&](const Factor &factor) {
+      return contains(factor.parameters, parameter);
+    });
+  });
+}
+
+bool is_constant(const Sum &sum, const ParameterSpace &space) {
+  return std::none_of(space.free.begin(), space.free.end(),
+                      [&](int i) { return depends_on(sum, i); });
+}
+
+std::vector<double> values_of_dependence(const Sum &sum, const FullMu &all_parameters) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < all_parameters.size(); ++i)
+    if (depends_on(sum, static_cast<int>(i))) values.push_back(all_parameters[i]);
+  return values;
+}
+
+const Coordinate *coordinate_of(const Sum &sum, int parameter) {
+  for (const Term &term : sum)
+    for (std::size_t i = 0; term.theta && i < term.theta->size(); ++i) {
+      const auto &coordinates = (*term.theta)[i].coordinates;
+      const auto found = coordinates.find(parameter);
+      if (found != coordinates.end()) return &found->second;
+    }
+  return nullptr;
+}
+
+void check_coefficients(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters) {
+  for (const Term &term : sum)
+    for (std::size_t i = 0; term.theta && i < term.theta->size(); ++i)
+      (void)value_of((*term.theta)[i], space, all_parameters);
+}
+
+} // namespace rbvi

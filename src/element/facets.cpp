@@ -1,0 +1,61 @@
+#include "rbvi/element/facets.hpp"
+
+#include "rbvi/element/lagrange.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+/// Even permutations of the vertices of a triangle and of a tetrahedron.
+constexpr std::array<std::array<int, 4>, 3> of_triangle{{{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}}};
+constexpr std::array<std::array<int, 4>, 4> of_tetrahedron{
+    {{0, 1, 2, 3}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 2, 3, 1}}};
+
+const std::array<int, 4> &order_of(int dim, int facet) {
+  const auto number = static_cast<std::size_t>(facet);
+  return dim == 2 ? of_triangle[number] : of_tetrahedron[number];
+}
+
+} // namespace
+
+Cell facet_cell(const Cell &cell, int facet) {
+  Cell result{cell.dim, {}, {}};
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i) {
+    const auto from = static_cast<std::size_t>(order_of(cell.dim, facet)[i]);
+    result.reference[i] = cell.reference[from];
+    result.mapped[i] = cell.mapped[from];
+  }
+  return result;
+}
+
+std::vector<int> facet_nodes(int dim, int degree, int facet) {
+  const auto &order = order_of(dim, facet);
+  std::vector<int> nodes(order.begin(), order.begin() + dim);
+  if (degree == 1) return nodes;
+  for (std::size_t e = 0; e < (dim == 2 ? 1U : 3U); ++e) {
+    const std::array<int, 2> ends{order[static_cast<std::size_t>(simplex_edges[e][0])],
+                                  order[static_cast<std::size_t>(simplex_edges[e][1])]};
+    const auto edge = std::find_if(simplex_edges.begin(), simplex_edges.end(), [&](const auto &of) {
+      return of == ends || (of[0] == ends[1] && of[1] == ends[0]);
+    });
+    nodes.push_back(dim + 1 + static_cast<int>(edge - simplex_edges.begin()));
+  }
+  return nodes;
+}
+
+FacetMeasure facet_measure(int dim, const std::array<Point, 4> &vertices) {
+  const auto edge = [&](std::size_t end) {
+    return Eigen::Vector3d(vertices[end][0] - vertices[0][0], vertices[end][1] - vertices[0][1],
+                           vertices[end][2] - vertices[0][2]);
+  };
+  const Eigen::Vector3d first = edge(1);
+  const Eigen::Vector3d outwards =
+      dim == 2 ? Eigen::Vector3d(first[1], -first[0], 0) : (edge(2).cross(first) / 2).eval();
+  const double size = outwards.norm();
+  return {size, {outwards[0] / size, outwards[1] / size, outwards[2] / size}};
+}
+
+} // namespace rbvi

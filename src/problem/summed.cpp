@@ -1,0 +1,111 @@
+#include "rbvi/problem/summed.hpp"
+
+#include "rbvi/core/error.hpp"
+
+namespace rbvi {
+
+namespace {
+
+template <class Object> Handle<Object> make(const Mesh &mesh, const Dofs &dofs) {
+  if constexpr (std::is_same_v<Object, Mat>)
+    return make_matrix(mesh, dofs);
+  else
+    return make_vector(dofs);
+}
+
+Handle<Mat> copy_of(Mat matrix) {
+  Handle<Mat> copy;
+  RBVI_CALL(MatDuplicate(matrix, MAT_COPY_VALUES, copy.put()));
+  for (const MatOption option : {MAT_SYMMETRIC, MAT_SYMMETRY_ETERNAL, MAT_SPD})
+    RBVI_CALL(MatSetOption(copy.get(), option, PETSC_TRUE));
+  return copy;
+}
+
+Handle<Vec> copy_of(Vec vector) {
+  Handle<Vec> copy;
+  RBVI_CALL(VecDuplicate(vector, copy.put()));
+  return copy;
+}
+
+void set_zero(Mat matrix) {
+  RBVI_CALL(MatZeroEntries(matrix));
+}
+
+void set_zero(Vec vector) {
+  RBVI_CALL(VecZeroEntries(vector));
+}
+
+void add(double factor, Mat term, Mat total) {
+  RBVI_CALL(MatAXPY(total, factor, term, SAME_NONZERO_PATTERN));
+}
+
+void add(double factor, Vec term, Vec total) {
+  RBVI_CALL(VecAXPY(total, factor, term));
+}
+
+void check_boundaries(const Sum &sum, const Mesh &mesh) {
+  for (const Term &term : sum)
+    if (!term.form.boundary.empty() && !mesh.facets.contains(term.form.boundary))
+      throw bad_input("a term is an integral over the boundary '" + term.form.boundary +
+                      "', which the mesh of the scene does not have");
+}
+
+} // namespace
+
+template <class Object>
+Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Mesh &mesh,
+                           const Dofs &dofs) {
+  check_boundaries(sum, mesh);
+  Summed<Object> result{split_sum(sum, space), {}, {}, {}};
+  const MappedCells cells = reference_cells(mesh);
+  for (const ExactGroup &group : result.split.exact) {
+    std::vector<WeightedForm> forms;
+    for (const auto &[term, weight] : group.members)
+      forms.push_back({&sum[static_cast<std::size_t>(term)].form, weight});
+    result.exact.push_back(make<Object>(mesh, dofs));
+    assemble(forms, {}, mesh, dofs, cells, result.exact.back().get());
+  }
+  const bool mapped = !result.split.mapped.empty();
+  if (mapped) result.mapped = make<Object>(mesh, dofs);
+  if (mapped && result.exact.empty())
+    result.total = share(result.mapped);
+  else if (is_constant(sum, space) && result.exact.size() == 1)
+    result.total = share(result.exact.front());
+  else
+    result.total =
+        result.exact.empty() ? make<Object>(mesh, dofs) : copy_of(result.exact.front().get());
+  return result;
+}
+
+template <class Object>
+void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters,
+            const Mesh &mesh, const Dofs &dofs, const MappedCells &cells, Summed<Object> &summed) {
+  const std::vector<double> coefficients =
+      exact_coefficients(sum, summed.split, space, all_parameters);
+  summed.made_at.reset();
+  if (summed.mapped) {
+    std::vector<WeightedForm> forms;
+    for (const int term : summed.split.mapped)
+      forms.push_back({&sum[static_cast<std::size_t>(term)].form});
+    assemble(forms, all_parameters, mesh, dofs, cells, summed.mapped.get());
+  }
+  const Object total = summed.total.get();
+  const bool is_one = total == summed.mapped.get() ||
+                      (!summed.exact.empty() && total == summed.exact.front().get());
+  if (!is_one) {
+    set_zero(total);
+    for (std::size_t q = 0; q < summed.exact.size(); ++q)
+      add(coefficients[q], summed.exact[q].get(), total);
+    if (summed.mapped) add(1, summed.mapped.get(), total);
+  }
+  summed.made_at = values_of_dependence(sum, all_parameters);
+}
+
+template Summed<Mat> make_summed(const Sum &, const ParameterSpace &, const Mesh &, const Dofs &);
+template Summed<Vec> make_summed(const Sum &, const ParameterSpace &, const Mesh &, const Dofs &);
+template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
+                     const Dofs &, const MappedCells &, Summed<Mat> &);
+template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
+                     const Dofs &, const MappedCells &, Summed<Vec> &);
+
+} // namespace rbvi
