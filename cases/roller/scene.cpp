@@ -21,7 +21,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr double hub = 0.3;
+constexpr double hub = 0.3; // in the mesh a polygon with its vertices on the circle
 constexpr Range pushes{-0.2, 0.1}, tilts{-0.25, 0.25}; // from there on contact leaves the arcs
 
 /// Positions of the parameters.
@@ -35,10 +35,11 @@ Point on_circle(const Point &x) {
 MeshRecipe mesh(int edges) {
   constexpr double pi = std::numbers::pi;
   const Point centre{0, 0, 0};
+  const Place outside = [](const Point &x) { return hub - std::hypot(x[0], x[1]); };
   MeshRecipe recipe{"annulus", {}, {"hub", "rim", "top", "bottom"}, "rim", edges};
   recipe.facts = {
-      {"", "the disk of radius 1 m about the origin, without its hub", disk(centre, 1),
-       pi * (1 - hub * hub)},
+      {"", "the disk of radius 1 m about the origin, without its hub",
+       common_part(disk(centre, 1), outside), pi * (1 - 0.9 * hub * hub)},
       {"hub", "the circle of radius 0.3 m about the origin", arc(centre, hub, 0, pi), 2 * pi * hub},
       {"rim", "the circle of radius 1 m about the origin", arc(centre, 1, 0, pi), 2 * pi},
       {"top", "the arc of radius 1 m within 45 degrees of (0, 1)", arc(centre, 1, pi / 2, pi / 4),
