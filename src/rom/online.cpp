@@ -257,10 +257,6 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
     nitsche_->outputs(solution.mu, solution.u, result);
     return result;
   }
-  if (nitsche_) {
-    nitsche_->outputs(solution.mu, solution.u, result);
-    return result;
-  }
   const ContactOperators operators = nodal_operators(solution);
   const Vector excess =
       operators.nodal_b * (model_.contact_trace * solution.u) - operators.nodal_gap;
