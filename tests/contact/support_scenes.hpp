@@ -8,7 +8,7 @@
 
 namespace rbvi {
 
-using Field = std::function<Point(const Point &)>;
+using PointField = std::function<Point(const Point &)>;
 
 inline double dot(const Point &a, const Point &b) {
   return a[0] * b[0] + a[1] * b[1];
@@ -38,7 +38,7 @@ inline Index vertices_of(const InterfaceMesh &curve) {
 }
 
 /// Displacements of the nodes of a field.
-inline Vector nodal(const InterfaceMesh &curve, const Field &field) {
+inline Vector nodal(const InterfaceMesh &curve, const PointField &field) {
   Vector v(2 * curve.nodes());
   for (Index i = 0; i < curve.nodes(); ++i) {
     const Point value = field(curve.points[static_cast<std::size_t>(i)]);

@@ -48,7 +48,7 @@ Strip strip(int degree, const Curve &curve, Side side = Side::above) {
 }
 
 /// Displacements of the nodes by a field of the mapped domain.
-Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const Field &field) {
+Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const PointField &field) {
   Vector u(2 * static_cast<Index>(s.nodes.size()));
   for (std::size_t i = 0; i < s.nodes.size(); ++i) {
     const Point value = field(scene.map(mu, s.nodes[i]));
@@ -309,7 +309,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   const Eigen::Matrix2d strain = (m + m.transpose()) / 2;
   const Eigen::Matrix2d stress =
       material.lambda * strain.trace() * Eigen::Matrix2d::Identity() + 2 * material.shear * strain;
-  const Field linear = [&](const Point &x) {
+  const PointField linear = [&](const Point &x) {
     const Eigen::Vector2d value = m * Eigen::Vector2d(x[0], x[1]);
     return Point{value[0], value[1], 0};
   };

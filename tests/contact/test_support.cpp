@@ -45,7 +45,8 @@ struct Dense {
 };
 
 /// By the middles of equal parts of each edge: the error is a multiple of 1 / parts^2.
-Dense midpoint_sum(const SupportScene &scene, const FullMu &mu, const InterfaceMesh &curve, int parts) {
+Dense midpoint_sum(const SupportScene &scene, const FullMu &mu, const InterfaceMesh &curve,
+                   int parts) {
   const Index count = vertices_of(curve);
   Dense sum{Matrix::Zero(2 * count, 2 * curve.nodes()), Vector::Zero(2 * count),
             Vector::Zero(count)};
@@ -160,12 +161,12 @@ TEST(Support, MotionIsADisplacementOnTheOtherSide) {
     scene.motion = nullptr;
     const ContactOperators still = couple_with_support(scene, mu, curve);
     EXPECT_EQ(still.g.tail(7).norm(), 0) << "no slip";
-    for (const Field &motion : {Field([](const Point &) {
-                                  return Point{0.3, -0.2, 0};
-                                }),
-                                Field([](const Point &x) {
-                                  return Point{x[1], 1 - x[0], 0};
-                                })}) {
+    for (const PointField &motion : {PointField([](const Point &) {
+                                       return Point{0.3, -0.2, 0};
+                                     }),
+                                     PointField([](const Point &x) {
+                                       return Point{x[1], 1 - x[0], 0};
+                                     })}) {
       scene.motion = [&motion](const FullMu &, const Point &x) { return motion(x); };
       const ContactOperators of = couple_with_support(scene, mu, curve);
       const Vector at_nodes = nodal(curve, motion);
@@ -303,15 +304,15 @@ TEST(Support, RefusesWhatIsNoCurveOrNotOfItsDegree) {
 TEST(Support, NamesTheParameterWhoseMapLeavesNoEdge) {
   SupportScene scene = support_scene(2);
   const InterfaceMesh curve = support_curve(line(4, 0, 1, 0), 2);
-  for (const Field &map : {Field([](const Point &) {
-                             return Point{0.5, 0.5, 0};
-                           }),
-                           Field([](const Point &x) {
-                             return Point{std::max(x[0], 0.5), 0, 0};
-                           }),
-                           Field([](const Point &) {
-                             return Point{std::nan(""), 0, 0};
-                           })}) {
+  for (const PointField &map : {PointField([](const Point &) {
+                                  return Point{0.5, 0.5, 0};
+                                }),
+                                PointField([](const Point &x) {
+                                  return Point{std::max(x[0], 0.5), 0, 0};
+                                }),
+                                PointField([](const Point &) {
+                                  return Point{std::nan(""), 0, 0};
+                                })}) {
     scene.map = [&map](const FullMu &, const Point &x) { return map(x); };
     const std::string text = message(Status::failed, scene, curve);
     EXPECT_NE(text.find("edge 0"), std::string::npos) << text;

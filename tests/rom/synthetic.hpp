@@ -58,11 +58,15 @@ inline void add_fields(std::mt19937 &random, ReducedModel &model) {
   model.mesh_cells = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
   model.primal_basis = random_matrix(random, 5, n);
   model.dual_basis = random_matrix(random, 3, r).cwiseAbs();
-  InterfaceModel contact{{.entities = {0, 1, 2}, .per_entity = 3, .parts = {3}, .dofs = {0, 1, 2}},
-                         {0, 1, 4}};
-  contact.mesh.columns = 3;
+  InterfaceModel contact;
+  contact.nodes = {0, 1, 4};
+  InterfaceMesh &triangle = contact.mesh;
   for (const int node : contact.nodes)
-    contact.mesh.points.push_back(point_of(model.mesh_points, node));
+    triangle.points.push_back(point_of(model.mesh_points, node));
+  triangle.entities = triangle.dofs = {0, 1, 2};
+  triangle.per_entity = 3;
+  triangle.parts = {3};
+  triangle.columns = 3;
   model.contact_trace = model.primal_basis(contact.nodes, Eigen::all);
   model.interfaces = {contact};
 }
