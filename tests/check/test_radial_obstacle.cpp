@@ -1,7 +1,7 @@
 // The high-fidelity solution against a closed form: a membrane on a disc over a paraboloid.
 #include "rbvi/check/radial_obstacle.hpp"
-#include "rbvi/core/error.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>

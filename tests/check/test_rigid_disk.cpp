@@ -210,7 +210,8 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   for (std::size_t p = 0; p < set.size(); ++p) {
     r.problem.assemble_contact(set[p], op);
     const FullMu all = expand(r.problem.scene().parameters, set[p]);
-    const Vector theta = contact_coefficients(r.model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
+    const Vector theta =
+        contact_coefficients(r.model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
     const Matrix b =
         coefficients.transpose() *
         (r.model.b.reduced * theta).reshaped(r.model.generators, r.model.primal_size());

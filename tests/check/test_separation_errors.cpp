@@ -107,7 +107,8 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
   for (const double radius : {0.77, 1.19}) {
     r.problem.assemble_contact({radius}, op);
     const FullMu all = expand(r.problem.scene().parameters, {radius});
-    const Vector theta = contact_coefficients(model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
+    const Vector theta =
+        contact_coefficients(model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
     const Matrix found = (model.b.reduced * theta).reshaped(model.generators, model.primal_size());
     const Matrix exact =
         model.dual_basis.transpose() * (op.b * model.primal_basis(contact_dofs, Eigen::all));

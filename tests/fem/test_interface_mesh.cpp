@@ -35,7 +35,10 @@ Placed membrane(MPI_Comm comm = PETSC_COMM_WORLD) {
 }
 
 ContactRecipe flat_support(const std::string &boundary) {
-  return rigid_support({boundary, [](const FullMu &, const Point &) { return Point{0, -1, 0}; },
+  return rigid_support({boundary,
+                        [](const FullMu &, const Point &) {
+                          return Point{0, -1, 0};
+                        },
                         [](const FullMu &, const Point &) { return 0.0; }});
 }
 

@@ -1,7 +1,7 @@
 // Dirichlet conditions by component and the two contact curves: against the geometry of the quarter
 // discs, at any number of ranks.
-#include "rbvi/core/error.hpp"
 #include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
 #include "rbvi/par/gather.hpp"
 
@@ -246,8 +246,7 @@ TEST(ContactCurves, NeedToBeGraphsOverX) {
 TEST(ContactCurves, AreForTwoDimensions) {
   Discs d;
   d.mesh.dim = 3;
-  EXPECT_CONTAINS(refusal([&] { (void)curves_of(d.mesh, d.dofs, d.scene); }),
-                  "two dimensions");
+  EXPECT_CONTAINS(refusal([&] { (void)curves_of(d.mesh, d.dofs, d.scene); }), "two dimensions");
 }
 
 } // namespace
