@@ -8,6 +8,7 @@
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>

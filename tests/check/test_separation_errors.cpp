@@ -4,6 +4,7 @@
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/stages.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
