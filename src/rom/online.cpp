@@ -45,7 +45,9 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
       qp_(solved_size(model), model.free_modes) {
   check_kernel(model.a, scene_.a, "a");
   check_kernel(model.f, scene_.f, "f");
-  if (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche)
+  if (contact_.dual_size() != model.dual_basis.rows() ||
+      by_nitsche(scene_) != model.nitsche.has_value() ||
+      (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche))
     throw bad_input("the contact of the model does not fit its scene in this build");
   if (model.nitsche) {
     nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());

@@ -373,5 +373,21 @@ TEST_F(ModelFile, VtuHoldsTheMappedFieldAndContact) {
   EXPECT_THROW(write(path / "no" / "u.vtu"), Error);
 }
 
+/// A high-fidelity solution is written with a model that has nothing else.
+TEST_F(ModelFile, VtuReadsFieldsAndInterfacesAlone) {
+  const ReducedModel model = full_model();
+  ReducedModel bare;
+  bare.mesh_points = model.mesh_points;
+  bare.mesh_cells = model.mesh_cells;
+  bare.interfaces = model.interfaces;
+  const Scene scene = scene_of(model);
+  const Vector u = Vector::LinSpaced(5, 0, 1), lambda = Vector::LinSpaced(3, 1, 2);
+  const auto written = [&](const ReducedModel &of) {
+    write_vtu(directory / "u.vtu", scene, {0.2, 0, 0}, of, u, lambda);
+    return slurp(directory / "u.vtu") + slurp(directory / "u_contact.vtu");
+  };
+  EXPECT_EQ(written(bare), written(model));
+}
+
 } // namespace
 } // namespace rbvi
