@@ -37,6 +37,12 @@ def two_disks():
         yield Formulation(name, CASES / f"two_disks/{case}.yaml", scene, few, mu)
 
 
+def two_disks_condensed():
+    yield Formulation("two_disks_condensed", CASES / "two_disks/case.yaml", [],
+                      ["-train", "grid:21"], ["0.83", "1", "1.17"],
+                      ["-multiplier_reduction", "condensed"])
+
+
 def rigid_disks():
     case, mu, few = CASES / "rigid_disk/case.yaml", ["0.83", "1", "1.17"], ["-train", "grid:9"]
     for law in ("none", "tresca", "coulomb"):
@@ -57,6 +63,13 @@ def rigid_disks():
                       training=["-train", "grid:5,5,5"])
 
 
+def rollers():
+    case, mu, few = CASES / "roller/case.yaml", ["0.04,0", "0.025,-0.15", "0.045,0.1"], ["-train", "grid:5,5"]
+    yield Formulation("roller", case, [], few, mu)
+    yield Formulation("roller_cone", case, ["-friction", "none"], few, mu,
+                      ["-multiplier_reduction", "cone"])
+
+
 def patches():
     case, mu, few = CASES / "patch/case.yaml", ["0.02", "0.05"], []
     yield Formulation("patch_two", case, [], few, mu)
@@ -67,4 +80,4 @@ def patches():
 
 
 def every_scene():
-    return [*membranes(), *two_disks(), *rigid_disks(), *patches()]
+    return [*membranes(), *two_disks(), *two_disks_condensed(), *rigid_disks(), *rollers(), *patches()]

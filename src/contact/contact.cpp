@@ -49,6 +49,12 @@ std::vector<Member> each(const std::vector<ContactOperators> &all,
   return result;
 }
 
+bool by_multipliers(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
+    return contact.formulation == Formulation::mixed;
+  });
+}
+
 } // namespace
 
 Index Contact::nodes() const {
@@ -62,6 +68,9 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
   if (meshes.empty() || meshes.size() != scene.contacts.size())
     throw bad_input("scene " + scene.name + " has " + std::to_string(scene.contacts.size()) +
                     " contact interfaces, on " + std::to_string(meshes.size()) + " meshes");
+  if (meshes.size() > 1 && !by_multipliers(scene))
+    throw bad_input("scene " + scene.name + " has " + std::to_string(meshes.size()) +
+                    " contact interfaces: Nitsche's method is for a single one");
   Contact contact;
   std::vector<SparseMatrix> grams;
   contact.first_row.push_back(0);

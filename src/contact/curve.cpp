@@ -3,8 +3,9 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
 
 namespace rbvi {
 
@@ -12,21 +13,32 @@ Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string
   if (mesh.dim != 2)
     throw bad_input("the " + name + " is a curve in two dimensions: the mesh has " +
                     std::to_string(mesh.dim));
-  const auto begin = std::accumulate(mesh.parts.begin(),
-                                     mesh.parts.begin() + static_cast<Index>(part), std::size_t{0});
-  const int nodes = mesh.parts.at(part);
+  const int nodes = part < mesh.parts.size() ? mesh.parts[part] : 0;
   if (nodes < 1 + mesh.degree || (nodes - 1) % mesh.degree != 0)
     throw bad_input("the " + name + " needs at least one edge, but has " + std::to_string(nodes) +
                     (nodes == 1 ? " node" : " nodes") + " of degree " +
                     std::to_string(mesh.degree));
-  const Index vertices = (nodes - 1) / mesh.degree + 1;
-  for (Index i = 1; i < vertices; ++i) {
-    const Point &before = mesh.points[begin + static_cast<std::size_t>(i) - 1],
-                &here = mesh.points[begin + static_cast<std::size_t>(i)];
+  int first = 0, first_edge = 0; // of this part
+  for (std::size_t before = 0; before < part; ++before) {
+    first += mesh.parts[before];
+    first_edge += (mesh.parts[before] - 1) / mesh.degree;
+  }
+  const int vertices = (nodes - 1) / mesh.degree + 1;
+  for (int i = 1; i < vertices; ++i) {
+    const Point &before = mesh.points[static_cast<std::size_t>(first + i - 1)],
+                &here = mesh.points[static_cast<std::size_t>(first + i)];
     if (!(before[0] < here[0]))
       throw bad_input("x must increase along the " + name + ", but vertex " + std::to_string(i) +
                       " at x = " + short_number(here[0]) +
                       " follows x = " + short_number(before[0]));
+  }
+  for (int e = 0; e + 1 < vertices; ++e) {
+    const std::array<int, 3> expected{first + e, first + e + 1, first + vertices + e};
+    if (mesh.per_entity != mesh.degree + 1 || first_edge + e >= mesh.count() ||
+        !std::equal(expected.begin(), expected.begin() + mesh.per_entity,
+                    mesh.nodes_of(first_edge + e)))
+      throw bad_input("edge " + std::to_string(e) + " of the " + name +
+                      " does not go from vertex to vertex");
   }
   return vertices;
 }

@@ -176,6 +176,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
   std::vector<PetscInt> &natural_dofs = places.natural_dofs;
   for (const ContactRecipe &contact : scene.contacts) {
     Found found = find_interface(mesh, dofs, scene, contact.entities);
+    const std::size_t of_others = natural_dofs.size();
     for (std::size_t i = 0; i < found.free.size(); ++i) {
       const auto components = static_cast<std::size_t>(dofs.components);
       const PetscInt natural =
@@ -185,6 +186,9 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
         continue;
       }
       const auto [at, is_new] = column.emplace(natural, static_cast<int>(natural_dofs.size()));
+      if (!is_new && static_cast<std::size_t>(at->second) < of_others)
+        throw bad_input("two contact interfaces constrain the same displacement, on '" +
+                        contact.entities.parts.front() + "'");
       if (is_new) natural_dofs.push_back(natural);
       found.mesh.dofs.push_back(at->second);
     }

@@ -40,7 +40,9 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
       qp_(solved_size(model), model.free_modes) {
   check_terms_of(model.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.f, scene_.f, scene_.parameters, "f");
-  if (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche)
+  if (contact_.dual_size() != model.dual_basis.rows() ||
+      by_nitsche(scene_) != model.nitsche.has_value() ||
+      (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche))
     throw bad_input("the contact of the model does not fit its scene in this build");
   if (model.nitsche) {
     nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());
@@ -248,10 +250,6 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   if (expected.count > 0 && in_box(scene_.parameters, mu)) {
     result.expected_error_u = expected.u_max;
     result.expected_error_lambda = std::max(expected.lambda_max, expected.tangential_max);
-  }
-  if (nitsche_) {
-    nitsche_->outputs(solution.mu, solution.u, result);
-    return result;
   }
   if (nitsche_) {
     nitsche_->outputs(solution.mu, solution.u, result);

@@ -1,8 +1,32 @@
 #include "local_frames.hpp"
 
+#include "rbvi/element/lagrange.hpp"
+
 #include <array>
+#include <map>
 
 namespace rbvi {
+
+std::vector<NodalBound> bounds_along(const ContactInterface &interface, const FullMu &mu) {
+  const InterfaceMesh &mesh = interface.mesh();
+  std::map<int, NodalBound> bounds;
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const int edge = mesh.edges[static_cast<std::size_t>(e)];
+    const auto [a, b] = simplex_edges[static_cast<std::size_t>(edge)];
+    std::vector<int> on_curve{a, b};
+    if (mesh.degree == 2) on_curve.push_back(3 + edge);
+    for (const int local : on_curve) {
+      const int node = mesh.nodes_of(e)[local];
+      const PointConstraint at =
+          interface.constraint_at(mu, mesh.points[static_cast<std::size_t>(node)]);
+      bounds[node] = {mesh.dofs[static_cast<std::size_t>(2 * node)], at.direction, at.gap};
+    }
+  }
+  std::vector<NodalBound> result;
+  for (const auto &[node, bound] : bounds)
+    result.push_back(bound);
+  return result;
+}
 
 LocalFrames::LocalFrames(const Problem &problem)
     : problem_(problem), row_of_(static_cast<std::size_t>(problem.trace().size), -1) {

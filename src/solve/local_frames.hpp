@@ -15,6 +15,9 @@ struct NodalBound {
   double gap;
 };
 
+/// At all nodes, middles too, of the boundary of an interface of cells beside it.
+std::vector<NodalBound> bounds_along(const ContactInterface &interface, const FullMu &mu);
+
 class LocalFrames {
 public:
   /// Collective. `problem` must outlive it.

@@ -1,7 +1,6 @@
 #include "nitsche_system.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/lagrange.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/whole.hpp"
 #include "vectors.hpp"
@@ -9,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
 
 namespace rbvi {
 
@@ -74,28 +72,6 @@ void check_inertia(KSP ksp) {
   if (counts != 1) return; // a type of SNES has made the solver anew
   RBVI_CALL(MatGetInertia(factor, &negative, nullptr, nullptr));
   if (negative > 0) throw failure(not_definite);
-}
-
-/// The gaps at all nodes of the contact curve, middles too.
-std::vector<NodalBound> bounds_along(const ContactInterface &interface, const FullMu &mu) {
-  const InterfaceMesh &mesh = interface.mesh();
-  std::map<int, NodalBound> bounds;
-  for (Index e = 0; e < mesh.count(); ++e) {
-    const int edge = mesh.edges[static_cast<std::size_t>(e)];
-    const auto [a, b] = simplex_edges[static_cast<std::size_t>(edge)];
-    std::vector<int> on_curve{a, b};
-    if (mesh.degree == 2) on_curve.push_back(3 + edge);
-    for (const int local : on_curve) {
-      const int node = mesh.nodes_of(e)[local];
-      const PointConstraint at =
-          interface.constraint_at(mu, mesh.points[static_cast<std::size_t>(node)]);
-      bounds[node] = {mesh.dofs[static_cast<std::size_t>(2 * node)], at.direction, at.gap};
-    }
-  }
-  std::vector<NodalBound> result;
-  for (const auto &[node, bound] : bounds)
-    result.push_back(bound);
-  return result;
 }
 
 NitscheSystem &system_of(void *context) {

@@ -1,7 +1,7 @@
 // The high-fidelity solution against a closed form: a membrane on a disc over a paraboloid.
 #include "rbvi/check/radial_obstacle.hpp"
+#include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>
@@ -87,10 +87,10 @@ Scene radial_scene(bool lumped) {
   Scene scene = make_scene("membrane_obstacle", {{"lumped", lumped ? "yes" : "no"}});
   scene.mesh.facts.clear(); // a disc in place of the square
   scene.map = [](const FullMu &, const Point &x) { return x; };
-  scene.obstacle = [](const FullMu &, const Point &x) {
+  const auto height = [](const FullMu &, const Point &x) {
     return -curvature * (x[0] * x[0] + x[1] * x[1]);
   };
-  scene.g = function_load("obstacle", -1, scene.obstacle, scene.lumped);
+  scene.contacts = {obstacle({"obstacle", height, lumped})};
   return scene;
 }
 
@@ -99,14 +99,15 @@ struct Pressure {
   double l2 = 0, l1 = 0; ///< squared, and as it is; integrals over the region
 };
 
-Pressure pressure_errors(const ContactRegion &contact, const Vector &lambda,
+Pressure pressure_errors(const InterfaceMesh &disc, const Vector &lambda,
                          const RadialObstacle &exact) {
   constexpr int parts = 10; // of each edge of a cell
   Pressure errors;
-  for (const auto &cell : contact.cells) {
+  for (Index e = 0; e < disc.count(); ++e) {
+    const int *cell = disc.nodes_of(e);
     std::array<Point, 3> x;
     for (std::size_t i = 0; i < 3; ++i)
-      x[i] = contact.points[static_cast<std::size_t>(cell[i])];
+      x[i] = disc.points[static_cast<std::size_t>(cell[i])];
     const double area = std::abs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) -
                                  (x[2][0] - x[0][0]) * (x[1][1] - x[0][1])) /
                         (2 * parts * parts);
@@ -145,8 +146,8 @@ DiscSolution solve_on_disc(int rings, bool lumped) {
   Problem problem(PETSC_COMM_WORLD, radial_scene(lumped), {file.string(), 0});
   if (rank == 0) std::filesystem::remove(file);
   HfSolution solution = HighFidelity(problem, {}).solve({0.2, 0, 0});
-  const Pressure errors =
-      pressure_errors(problem.contact(), solution.lambda, radial_obstacle(rim, load, curvature));
+  const Pressure errors = pressure_errors(problem.places().meshes.front(), solution.lambda,
+                                          radial_obstacle(rim, load, curvature));
   return {std::move(solution), errors};
 }
 

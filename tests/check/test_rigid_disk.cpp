@@ -8,6 +8,7 @@
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
@@ -210,7 +211,8 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   for (std::size_t p = 0; p < set.size(); ++p) {
     r.problem.assemble_contact(set[p], op);
     const FullMu all = expand(r.problem.scene().parameters, set[p]);
-    const Vector theta = support_coefficients(r.model.b, true, r.problem.scene(), all);
+    const Vector theta =
+        contact_coefficients(r.model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
     const Matrix b =
         coefficients.transpose() *
         (r.model.b.reduced * theta).reshaped(r.model.generators, r.model.primal_size());

@@ -43,7 +43,9 @@ TEST_F(NineDisks, ABasisOfAllSnapshotsReturnsThem) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
     r->reduce(with(type));
     EXPECT_EQ(r->model.modes, 9);
-    EXPECT_EQ(r->model.slave_nodes, 281) << "of degree 2 on 140 edges";
+    ASSERT_EQ(r->model.interfaces.size(), 1U);
+    EXPECT_EQ(r->model.interfaces.front().mesh.parts, std::vector<int>(2, 281))
+        << "of degree 2 on 140 edges";
     EXPECT_EQ(r->model.a.size(), 1);
     EXPECT_EQ(r->model.b.size() + r->model.g.size() + r->model.f.size(), 0);
     EXPECT_NO_THROW(check_model(r->model));

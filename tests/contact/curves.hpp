@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../law/random_matrix.hpp"
-#include "rbvi/core/scene.hpp"
+#include "rbvi/contact/interface.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,23 @@ using Curve = std::vector<Point>;
 
 inline Index size(const Curve &curve) {
   return static_cast<Index>(curve.size());
+}
+
+/// The nodes and edges of a polygon, with the middles of its edges (degree 2); no dofs yet.
+inline InterfaceMesh curve_mesh(const Curve &vertices, int degree) {
+  InterfaceMesh mesh;
+  mesh.degree = degree;
+  mesh.per_entity = degree + 1;
+  mesh.points = vertices;
+  for (int e = 0; e + 1 < static_cast<int>(vertices.size()); ++e) {
+    const Point &a = vertices[static_cast<std::size_t>(e)],
+                &b = vertices[static_cast<std::size_t>(e) + 1];
+    mesh.entities.insert(mesh.entities.end(), {e, e + 1});
+    if (degree == 1) continue;
+    mesh.entities.push_back(static_cast<int>(vertices.size()) + e);
+    mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0});
+  }
+  return mesh;
 }
 
 /// Height of a polygon at x, by a search of all its edges.

@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(NitschePoints, PerDegree, ::testing::Values(1, 2));
 /// u = m x: its strain is constant.
 TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
   Random random(3);
-  const Scene scene = crooked(GetParam());
+  const SupportScene scene = crooked(GetParam());
   const Lame material = lame(15, 0.3);
   const FullMu mu{0.4};
   int cells = 0;
@@ -79,20 +79,20 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
     const auto a = static_cast<std::size_t>(ends[0]), b = static_cast<std::size_t>(ends[1]);
     double length = 0;
     for (std::size_t q = 0; q < 4; ++q) {
-      const NitschePoint point =
-          nitsche_points(scene, mu, cell, edge, {material.lambda, material.shear})[q];
+      const NitschePoint point = nitsche_points(scene, scene.support, mu, cell, edge,
+                                                {material.lambda, material.shear})[q];
       constexpr double at[] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                0.93056815579702629};
       const Point x = between(cell.reference[a], cell.reference[b], at[q]);
       const Point mapped = between(cell.mapped[a], cell.mapped[b], at[q]);
-      const Point normal = scene.support->normal(mu, x), motion = scene.motion(mu, x);
+      const Point normal = scene.support.normal(mu, x), motion = scene.motion(mu, x);
       const Eigen::Vector2d n(normal[0], normal[1]), tau(-n[1], n[0]);
       const Eigen::Vector2d value = m * Eigen::Vector2d(mapped[0], mapped[1]);
       EXPECT_NEAR(point.sigma_n.dot(u), n.dot(stress * n), 1e-12 * stress.norm());
       EXPECT_NEAR(point.sigma_tau.dot(u), tau.dot(stress * n), 1e-12 * stress.norm());
       EXPECT_NEAR(point.n.dot(u), n.dot(value), 1e-13);
       EXPECT_NEAR(point.tau.dot(u), tau.dot(value), 1e-13);
-      EXPECT_NEAR(point.gap, scene.support->gap(mu, x) - dot(motion, normal), 1e-14);
+      EXPECT_NEAR(point.gap, scene.support.gap(mu, x) - dot(motion, normal), 1e-14);
       EXPECT_NEAR(point.slip, dot(motion, turned(normal)), 1e-14);
       length += point.weight;
     }
@@ -105,9 +105,10 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
 }
 
 TEST(NitschePoints, AnInvertedCellIsAFailure) {
-  const Scene scene = hertz(2);
+  const SupportScene scene = hertz(2);
   const Vertices inverted{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {}}};
-  EXPECT_THROW(nitsche_points(scene, {1.0}, {2, inverted, inverted}, 0, {1, 1}), Error);
+  EXPECT_THROW(nitsche_points(scene, scene.support, {1.0}, {2, inverted, inverted}, 0, {1, 1}),
+               Error);
 }
 
 } // namespace

@@ -48,7 +48,7 @@ Strip strip(int degree, const Curve &curve, Side side = Side::above) {
 }
 
 /// Displacements of the nodes by a field of the mapped domain.
-Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const Field &field) {
+Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const PointField &field) {
   Vector u(2 * static_cast<Index>(s.nodes.size()));
   for (std::size_t i = 0; i < s.nodes.size(); ++i) {
     const Point value = field(scene.map(mu, s.nodes[i]));
@@ -58,21 +58,25 @@ Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const Field &
 }
 
 /// A half disk, stiffer on the right, that is pushed down.
-Scene half_disk(int degree) {
-  Scene scene = hertz(degree);
+SupportScene half_disk(int degree) {
+  SupportScene scene = hertz(degree);
   scene.motion = [](const FullMu &, const Point &) { return Point{0.02, -0.1, 0}; };
-  scene.nitsche = NitscheRecipe{0.3};
   scene.material = [](const FullMu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; };
   return scene;
 }
 
+/// gamma0 = 0.3.
+NitscheCurve curve_of(const SupportScene &scene, const Strip &s) {
+  return {scene, scene.support, 0.3, s.cells};
+}
+
 struct Example {
-  Scene scene;
   std::vector<NitscheFace> faces;
   Index dofs = 0;
-  explicit Example(int degree) : scene(half_disk(degree)) {
+  explicit Example(int degree) {
+    const SupportScene scene = half_disk(degree);
     const Strip s = strip(degree, arc(6, 0.5));
-    faces = nitsche_faces(scene, {1.1}, s.cells);
+    faces = nitsche_faces(curve_of(scene, s), {1.1}, s.cells);
     dofs = 2 * static_cast<Index>(s.nodes.size());
   }
   /// Some points are then in contact and others are not, some stick and others slip.
@@ -107,7 +111,8 @@ INSTANTIATE_TEST_SUITE_P(Degree, NitscheStrip, ::testing::Values(1, 2));
 
 TEST_P(NitscheStrip, GammaIsThatOfTheMaterialAndTheReferenceEdge) {
   const Strip s = strip(GetParam(), arc(6, 0.5));
-  const auto faces = nitsche_faces(half_disk(GetParam()), {1.1}, s.cells);
+  const SupportScene scene = half_disk(GetParam());
+  const auto faces = nitsche_faces(curve_of(scene, s), {1.1}, s.cells);
   ASSERT_EQ(faces.size(), 6u);
   const double edge = 2 * std::sin(0.5 / 6);
   for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -269,16 +274,20 @@ TEST(NitscheLaws, BoundsAreThoseOfTheLaw) {
 
 TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
   const auto value = [](const FullMu &mu) { return mu[0]; };
-  const NitscheLaw none = nitsche_law({FrictionLaw::none, value}, {-1});
+  const Scene scene;
+  const auto law_of = [&](const Friction &friction, const FullMu &mu) {
+    return nitsche_law({scene, {"support", {}, {}, friction}, 1, {}}, mu);
+  };
+  const NitscheLaw none = law_of({FrictionLaw::none, value}, {-1});
   EXPECT_EQ(none.law, FrictionLaw::none);
   EXPECT_FALSE(none.moves());
-  const NitscheLaw coulomb = nitsche_law({FrictionLaw::coulomb, value}, {0.3});
+  const NitscheLaw coulomb = law_of({FrictionLaw::coulomb, value}, {0.3});
   EXPECT_EQ(coulomb.value, 0.3);
   EXPECT_TRUE(coulomb.moves());
-  EXPECT_FALSE(nitsche_law({FrictionLaw::tresca, value}, {0.3}).moves());
-  EXPECT_TRUE(nitsche_law({FrictionLaw::tresca, value, true}, {0.3}).moves());
-  EXPECT_THROW(nitsche_law({FrictionLaw::coulomb, value}, {-0.1}), Error);
-  EXPECT_THROW(nitsche_law({FrictionLaw::tresca, value}, {std::nan("")}), Error);
+  EXPECT_FALSE(law_of({FrictionLaw::tresca, value}, {0.3}).moves());
+  EXPECT_TRUE(law_of({FrictionLaw::tresca, value, true}, {0.3}).moves());
+  EXPECT_THROW(law_of({FrictionLaw::coulomb, value}, {-0.1}), Error);
+  EXPECT_THROW(law_of({FrictionLaw::tresca, value}, {std::nan("")}), Error);
 }
 
 class NitscheFieldsOf : public ::testing::TestWithParam<std::tuple<int, Side>> {};
@@ -291,7 +300,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   const auto [degree, side] = GetParam();
   const FullMu mu{1.1};
   const Lame material{9, 4};
-  Scene scene = half_disk(degree);
+  SupportScene scene = half_disk(degree);
   scene.material = [=](const FullMu &, const Point &) { return material; };
   const Curve curve = arc(7, 0.5);
   const Strip s = strip(degree, curve, side);
@@ -300,18 +309,18 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   const Eigen::Matrix2d strain = (m + m.transpose()) / 2;
   const Eigen::Matrix2d stress =
       material.lambda * strain.trace() * Eigen::Matrix2d::Identity() + 2 * material.shear * strain;
-  const Field linear = [&](const Point &x) {
+  const PointField linear = [&](const Point &x) {
     const Eigen::Vector2d value = m * Eigen::Vector2d(x[0], x[1]);
     return Point{value[0], value[1], 0};
   };
-  const CurveFields fields = nitsche_fields(scene, mu, s.cells, nodal(scene, mu, s, linear));
+  const CurveFields fields = nitsche_fields(curve_of(scene, s), mu, nodal(scene, mu, s, linear));
   ASSERT_EQ(fields.sigma_n.size(), 8);
   const double gamma = 0.3 * (9 + 2 * 4) / length(curve, 0);
   for (Index i = 0; i < 8; ++i) {
     const Point &x = curve[static_cast<std::size_t>(i)], normal = radial(mu, x);
     const Point u = linear(scene.map(mu, x)), motion = scene.motion(mu, x);
     const Eigen::Vector2d n(normal[0], normal[1]), tau(-n[1], n[0]);
-    const double excess = dot(u, normal) + dot(motion, normal) - scene.support->gap(mu, x);
+    const double excess = dot(u, normal) + dot(motion, normal) - scene.support.gap(mu, x);
     const double slip = dot(u, turned(normal)) + dot(motion, turned(normal));
     EXPECT_NEAR(fields.sigma_n[i], n.dot(stress * n), 1e-12);
     EXPECT_NEAR(fields.sigma_tau[i], tau.dot(stress * n), 1e-12);
@@ -325,15 +334,15 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
 
 /// Where the material jumps.
 TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
-  Scene scene = half_disk(2);
+  SupportScene scene = half_disk(2);
   scene.material = [](const FullMu &, const Point &x) {
     return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
   };
   const Strip s = strip(2, line(2, -0.5, 0.5, -1));
-  scene.support->normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
+  scene.support.normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
   const FullMu mu{1};
   const Vector u = nodal(scene, mu, s, [](const Point &x) { return Point{0, 0.1 * x[1], 0}; });
-  const CurveFields fields = nitsche_fields(scene, mu, s.cells, u);
+  const CurveFields fields = nitsche_fields(curve_of(scene, s), mu, u);
   EXPECT_NEAR(fields.sigma_n[0], 1.7, 1e-13);
   EXPECT_NEAR(fields.sigma_n[1], (1.7 + 3.4) / 2, 1e-13);
   EXPECT_NEAR(fields.sigma_n[2], 3.4, 1e-13);

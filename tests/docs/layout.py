@@ -14,6 +14,7 @@ import h5py
 from small_runs import RUNS
 
 PLACEHOLDERS = {
+    "I": ("0",),
     "T": ("consistency", "contact_matrix", "contact_vector", "friction_matrix", "friction_vector"),
     "OPERATOR": ("a", "b", "f", "g", "b_normal", "b_tangential"),
     "TERM": ("contact_matrix", "contact_vector", "friction_matrix", "friction_vector"),
@@ -74,7 +75,7 @@ def known_sizes(file):
     return {"n": modes + supremizers, "R": generators,
             "P": len(file["parameters/names"]), "p": len(file["parameters/free"]),
             "d": file["fields/points"].shape[1], "V": file["fields/points"].shape[0],
-            "k": len(file["contact/nodes"]), "c": file["contact/dual_basis"].shape[0]}
+            "k": len(file["contact/trace"]), "c": file["contact/dual_basis"].shape[0]}
 
 
 def check_shapes(file, table, where):

@@ -1,13 +1,10 @@
-// Dof numbering, COO assembly and the contact region: against closed forms, at any number of ranks.
+// Dof numbering and COO assembly: against closed forms, at any number of ranks.
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/assembly.hpp"
-#include "rbvi/fem/contact_region.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
-#include <set>
 
 namespace rbvi {
 namespace {
@@ -112,33 +109,6 @@ TEST(Assembly, AnInvertedCellOnOneRankFailsOnAll) {
   };
   MappedCells cells = reference_cells(m.mesh);
   EXPECT_THROW(map_cells(m.scene, {0.2, 0, 0}, m.mesh, cells), Error);
-}
-
-TEST(ContactRegion, IsTheWholeDiscOnEveryRank) {
-  const Membrane m;
-  const ContactRegion region = make_contact_region(m.mesh, m.dofs, "obstacle");
-  EXPECT_EQ(region.dual_size(), 631);
-  EXPECT_EQ(region.trace.size, 631);
-  for (const Point &x : region.points)
-    EXPECT_LE(std::hypot(x[0], x[1]), 0.2 + 1e-12);
-  const FullMu mu{0.16, 0.05, 0};
-  const auto cells = mapped_contact_cells(region, m.scene, mu);
-  ContactMatrix b(region, ContactMatrix::Columns::contact_dofs);
-  const double area = std::numbers::pi * mu[0] * mu[0];
-  EXPECT_NEAR(b.assemble(m.scene.b, mu, cells).sum(), -area, 2e-3 * area);
-  int owned = static_cast<int>(region.trace.index.size());
-  MPI_Allreduce(MPI_IN_PLACE, &owned, 1, MPI_INT, MPI_SUM, m.mesh.comm);
-  EXPECT_EQ(owned, 631);
-}
-
-TEST(ContactRegion, TraceFollowsTheNodes) {
-  const Membrane m;
-  const ContactRegion region = make_contact_region(m.mesh, m.dofs, "obstacle");
-  const Vector natural = Vector::LinSpaced(m.dofs.total, 1, 2);
-  const Vector trace = restrict_to(region.trace, from_natural(m.dofs, natural).get());
-  for (Index r = 0; r < region.dual_size(); ++r)
-    EXPECT_EQ(trace[region.contact_dof[static_cast<std::size_t>(r)]],
-              natural[region.natural_node[static_cast<std::size_t>(r)]]);
 }
 
 } // namespace

@@ -1,8 +1,9 @@
-// The layer of cells beside the curve of a rigid support: against the geometry of the half disk, at
-// any number of ranks.
+// The cells beside the curve of a rigid support, and what Nitsche's method takes of them: against
+// the geometry of the half disk, at any number of ranks.
+#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
-#include "rbvi/fem/contact_layer.hpp"
+#include "rbvi/fem/interface_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +16,25 @@ namespace {
 
 constexpr int edges = 8;
 
+struct ContactLayer {
+  std::vector<CurveCell> cells;
+  std::vector<PetscInt> natural; ///< natural number of each dof of the layer
+  Trace trace;
+};
+
 struct Disk {
+  Scene scene;
   Mesh mesh;
   Dofs dofs;
   explicit Disk(MPI_Comm comm = PETSC_COMM_WORLD,
-                const Scene &scene = make_scene("rigid_disk", {{"arc_edges", std::to_string(edges)},
-                                                               {"formulation", "nitsche"}}))
-      : mesh(make_mesh(comm, scene, {})), dofs(number_dofs(mesh, 2, scene.fixed)) {}
-  ContactLayer layer() const { return make_contact_layer(mesh, dofs, "contact"); }
+                const Scene &of = make_scene("rigid_disk", {{"arc_edges", std::to_string(edges)},
+                                                            {"formulation", "nitsche"}}))
+      : scene(of), mesh(make_mesh(comm, scene, {})), dofs(number_dofs(mesh, 2, scene.fixed)) {}
+  ContactLayer layer() const {
+    const InterfacePlaces places = place_interfaces(mesh, dofs, scene);
+    const auto interface = scene.contacts.front().make(scene, places.meshes.front());
+    return {interface->nitsche()->cells, places.natural_dofs, places.trace};
+  }
 };
 
 /// Local nodes of the edge on the curve, the one with the smaller x first.

@@ -66,8 +66,8 @@ Vector interpolate(const Body &body, const Function &u) {
 }
 
 Handle<Mat> matrix_of(const Body &body, const Form &form, const Dofs &dofs) {
-  Handle<Mat> matrix = make_matrix(body.mesh, dofs, "");
-  assemble_matrix(form, {}, body.mesh, dofs, body.cells, matrix.get());
+  Handle<Mat> matrix = make_matrix(body.mesh, dofs);
+  assemble({{&form}}, {}, body.mesh, dofs, body.cells, matrix.get());
   return matrix;
 }
 
@@ -85,7 +85,7 @@ Vector solve(const Body &body, const Form &a, const Form &f, const Function &hel
   Vector residual = -times(body, a, u);
   if (f) {
     const Handle<Vec> load = make_vector(body.all);
-    assemble_vector(f, {}, body.mesh, body.all, body.cells, load.get());
+    assemble({{&f}}, {}, body.mesh, body.all, body.cells, load.get());
     residual += to_natural(body.all, load.get());
   }
   const Handle<Mat> matrix = matrix_of(body, a, body.free);

@@ -2,7 +2,7 @@
 // for quadratic fields; and the contact curve of a support.
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/assembly.hpp"
-#include "rbvi/fem/contact_support.hpp"
+#include "rbvi/fem/interface_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -95,31 +95,35 @@ TEST(DegreeTwo, QuadraticFieldsAreIntegratedExactly) {
   EXPECT_NEAR(square, exact, 1e-13);
 }
 
-TEST(ContactSupport, ListsVerticesThenMiddlesAlongTheCurve) {
+TEST(InterfaceCurve, ListsVerticesThenMiddlesAlongTheCurve) {
   const Body disk("rigid_disk", {{"arc_edges", "20"}});
-  const ContactSupport contact = make_contact_support(disk.mesh, disk.dofs, *disk.scene.support);
-  const auto &points = contact.curve.points;
-  ASSERT_EQ(contact.curve.vertices, 21);
+  const InterfacePlaces places = place_interfaces(disk.mesh, disk.dofs, disk.scene);
+  const InterfaceMesh &curve = places.meshes.front();
+  const auto &points = curve.points;
+  ASSERT_EQ(curve.count(), 20);
   ASSERT_EQ(points.size(), 41u);
-  EXPECT_EQ(contact.trace.size, 82);
+  EXPECT_EQ(curve.columns, 82);
+  EXPECT_EQ(places.trace.size, 82);
   for (std::size_t e = 0; e < 20; ++e) {
+    const int *nodes = curve.nodes_of(static_cast<Index>(e)), edge = static_cast<int>(e);
+    EXPECT_EQ(std::vector<int>(nodes, nodes + 3), (std::vector{edge, edge + 1, 21 + edge}));
     EXPECT_LT(points[e][0], points[e + 1][0]);
     EXPECT_NEAR(points[21 + e][0], (points[e][0] + points[e + 1][0]) / 2, 1e-15);
     EXPECT_NEAR(points[21 + e][1], (points[e][1] + points[e + 1][1]) / 2, 1e-15);
   }
 }
 
-TEST(ContactSupport, RefusesACurveThatIsHeld) {
+TEST(InterfaceCurve, RefusesACurveThatIsHeld) {
   const Body disk("rigid_disk", {{"arc_edges", "20"}});
   const Dofs held = number_dofs(disk.mesh, 2, {{"contact", {0}}});
-  EXPECT_THROW(make_contact_support(disk.mesh, held, *disk.scene.support), Error);
+  EXPECT_THROW(place_interfaces(disk.mesh, held, disk.scene), Error);
 }
 
-TEST(ContactSupport, IsForTwoDimensions) {
+TEST(InterfaceCurve, IsForTwoDimensions) {
   Body disk("rigid_disk", {{"arc_edges", "20"}});
   disk.mesh.dim = 3;
   try {
-    (void)make_contact_support(disk.mesh, disk.dofs, *disk.scene.support);
+    (void)place_interfaces(disk.mesh, disk.dofs, disk.scene);
     ADD_FAILURE() << "accepted";
   } catch (const Error &error) {
     EXPECT_EQ(error.status(), Status::bad_input);

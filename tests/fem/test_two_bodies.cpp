@@ -1,7 +1,8 @@
 // Dirichlet conditions by component and the two contact curves: against the geometry of the quarter
 // discs, at any number of ranks.
+#include "rbvi/contact/pair/pair.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/fem/contact_curves.hpp"
+#include "rbvi/fem/interface_mesh.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <gtest/gtest.h>
@@ -26,6 +27,25 @@ struct Discs {
       : scene(make_scene("two_disks", {{"degree", degree}})),
         mesh(make_mesh(comm, scene, {"", refine})), dofs(number_dofs(mesh, 2, scene.fixed)) {}
 };
+
+/// The curves of the pair of a scene.
+struct ContactCurves {
+  Index slave_nodes;
+  std::vector<PetscInt> natural_node;
+  std::vector<Point> points;
+  Trace trace;
+};
+
+ContactCurves curves_of(const Mesh &mesh, const Dofs &dofs, const Scene &scene) {
+  const InterfacePlaces places = place_interfaces(mesh, dofs, scene);
+  const InterfaceMesh &curves = places.meshes.front();
+  EXPECT_EQ(curves.parts.size(), 2U);
+  for (std::size_t i = 0; i < curves.points.size(); ++i) {
+    EXPECT_EQ(curves.dofs[2 * i], -1) << "the pair sees vertical displacements alone";
+    EXPECT_EQ(curves.dofs[2 * i + 1], static_cast<int>(i));
+  }
+  return {curves.parts[0], places.natural_nodes.front(), curves.points, places.trace};
+}
 
 bool on_axis(const Point &x) {
   return x[0] == 0;
@@ -124,7 +144,7 @@ TEST(FixedComponents, OthersThanTheDisplacementHasAreRefused) {
 TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
   for (const int refine : {0, 1}) {
     const Discs d(PETSC_COMM_WORLD, refine);
-    const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, d.scene);
+    const ContactCurves curves = curves_of(d.mesh, d.dofs, d.scene);
     const Index nodes = (560 << refine) + 1;
     ASSERT_EQ(curves.slave_nodes, nodes);
     ASSERT_EQ(curves.points.size(), at(2 * nodes));
@@ -147,7 +167,7 @@ TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
 TEST(ContactCurves, OfDegreeTwoHaveMiddlesOnTheCircle) {
   for (const int refine : {0, 1}) {
     const Discs d(PETSC_COMM_WORLD, refine, "2");
-    const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, d.scene);
+    const ContactCurves curves = curves_of(d.mesh, d.dofs, d.scene);
     const Index edges = 140 << refine, nodes = 2 * edges + 1;
     ASSERT_EQ(curves.slave_nodes, nodes);
     ASSERT_EQ(curves.points.size(), at(2 * nodes));
@@ -168,7 +188,7 @@ TEST(ContactCurves, OfDegreeTwoHaveMiddlesOnTheCircle) {
 /// The field with the value k at natural dof k shows which dofs the trace takes.
 TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
   const Discs d;
-  const ContactCurves curves = make_contact_curves(d.mesh, d.dofs, d.scene);
+  const ContactCurves curves = curves_of(d.mesh, d.dofs, d.scene);
   const Vector numbers = Vector::LinSpaced(d.dofs.total, 0, static_cast<double>(d.dofs.total - 1));
   const Vector trace = restrict_to(curves.trace, from_natural(d.dofs, numbers).get());
   ASSERT_EQ(trace.size(), 2 * 561);
@@ -178,8 +198,8 @@ TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
 
 TEST(ContactCurves, AreTheSameOnAnyNumberOfRanks) {
   const Discs world, alone(PETSC_COMM_SELF);
-  const ContactCurves many = make_contact_curves(world.mesh, world.dofs, world.scene);
-  const ContactCurves one = make_contact_curves(alone.mesh, alone.dofs, alone.scene);
+  const ContactCurves many = curves_of(world.mesh, world.dofs, world.scene);
+  const ContactCurves one = curves_of(alone.mesh, alone.dofs, alone.scene);
   EXPECT_EQ(many.slave_nodes, one.slave_nodes);
   EXPECT_EQ(many.natural_node, one.natural_node);
   EXPECT_EQ(many.points, one.points);
@@ -197,7 +217,7 @@ TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
     const auto curves_where = [&](int fixed) {
       std::vector<FixedBoundary> conditions = d.scene.fixed;
       conditions.push_back({name, {fixed}});
-      return make_contact_curves(d.mesh, number_dofs(d.mesh, 2, conditions), d.scene);
+      return curves_of(d.mesh, number_dofs(d.mesh, 2, conditions), d.scene);
     };
     EXPECT_EQ(curves_where(0).points.size(), 2U * 561U);
     const std::string message = refusal([&] { (void)curves_where(1); });
@@ -209,16 +229,16 @@ TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
 TEST(ContactCurves, NeedAnEdge) {
   Discs d;
   d.mesh.boundary.at("master").assign(d.mesh.points.size(), false);
-  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, d.scene); }),
+  EXPECT_CONTAINS(refusal([&] { (void)curves_of(d.mesh, d.dofs, d.scene); }),
                   "'master' has no edge");
 }
 
 TEST(ContactCurves, NeedToBeGraphsOverX) {
   Scene scene = make_scene("patch");
-  scene.pair->master = "sides";
+  scene.contacts = {two_bodies({"slave", "sides", {}})};
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
   const std::string message =
-      refusal([&] { (void)make_contact_curves(mesh, number_dofs(mesh, 2, {}), scene); });
+      refusal([&] { (void)curves_of(mesh, number_dofs(mesh, 2, {}), scene); });
   EXPECT_CONTAINS(message, "'sides'");
   EXPECT_CONTAINS(message, "same x");
 }
@@ -226,8 +246,7 @@ TEST(ContactCurves, NeedToBeGraphsOverX) {
 TEST(ContactCurves, AreForTwoDimensions) {
   Discs d;
   d.mesh.dim = 3;
-  EXPECT_CONTAINS(refusal([&] { (void)make_contact_curves(d.mesh, d.dofs, d.scene); }),
-                  "two dimensions");
+  EXPECT_CONTAINS(refusal([&] { (void)curves_of(d.mesh, d.dofs, d.scene); }), "two dimensions");
 }
 
 } // namespace

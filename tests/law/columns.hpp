@@ -1,7 +1,7 @@
 // Columns of a dense matrix, as the solvers ask for them.
 #pragma once
 
-#include "rbvi/law/lcp.hpp"
+#include "rbvi/law/friction/friction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,6 +20,13 @@ inline ColumnSource once(const Matrix &h, std::set<Index> &given) {
       EXPECT_TRUE(given.insert(i).second) << "column " << i << " asked for twice";
     return Matrix(h(Eigen::all, which));
   };
+}
+
+/// Nodes of one law, all x_n and then all x_tau.
+inline FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, int dim,
+                                     const FrictionBound &bound, const Vector &start = {},
+                                     const FrictionOptions &options = {}) {
+  return solve_friction(columns, q, uniform_laws(q.size() / dim, dim, bound), start, options);
 }
 
 } // namespace rbvi

@@ -1,6 +1,7 @@
 // What a scene asks of its mesh: the built-in ones have it, meshes of another size, place or shape
 // are refused by the name of the part that is wrong.
 #include "gmsh_writer.hpp"
+#include "rbvi/contact/pair/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "temporary_file.hpp"
 #include "triangles.hpp"
@@ -327,7 +328,7 @@ TEST(MeshFacts, TwoBodiesMayTouchAlongTheirContactCurves) {
   overlay(mesh, lower);
   ASSERT_NO_THROW(check_mesh(mesh, "my mesh"));
   expect_refused([&] { check_facts(mesh, scene, "my mesh"); }, {"8 facets lie on top of others"});
-  scene.pair = PairRecipe{"slave", "master", {}};
+  scene.contacts = {two_bodies({"slave", "master", {}})};
   EXPECT_NO_THROW(check_facts(mesh, scene, "my mesh"));
 }
 

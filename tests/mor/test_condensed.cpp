@@ -54,13 +54,22 @@ Vector theta_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
   return least_squares(terms * b.combination, wanted);
 }
 
+CondensedOperator condensed_operator(Problem &problem, const AffineOperators &affine,
+                                     const std::vector<Mu> &training, const Matrix &basis,
+                                     const CondensedOptions &options) {
+  const CondensedLoads loads = condensed_loads(problem, affine, training, {}, basis);
+  return condense(problem, loads, basis.cols(),
+                  expand(problem.scene().parameters, training.front()), options)
+      .condensed;
+}
+
 void expect_agreement(const Scene &scene, const std::vector<Mu> &training,
                       const std::vector<Mu> &others, const CondensedOptions &options,
                       double tolerance) {
   Problem problem(PETSC_COMM_WORLD, scene, {});
   const AffineOperators affine = separate(problem, training, {1e-12, 0});
-  const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
-  const CondensedOperator condensed = condense(problem, affine, training, basis, options).condensed;
+  const Matrix basis = nodal_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
+  const CondensedOperator condensed = condensed_operator(problem, affine, training, basis, options);
   for (const Mu &mu : others) {
     const Matrix expected = truth(problem, basis, mu);
     const Vector theta = theta_of(problem, affine.b, training, mu);
@@ -94,9 +103,9 @@ TEST(Condensed, SeveralTermsOfBMakeAllTheirProducts) {
 TEST(Condensed, TooFewPointsAreAnErrorThatSaysSo) {
   Problem problem(PETSC_COMM_WORLD, disk("core_stiffness"), {});
   const AffineOperators affine = separate(problem, {{1.0}}, {});
-  const Matrix basis = support_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
+  const Matrix basis = nodal_dual_basis(problem, Matrix::Zero(problem.dual_size(), 1));
   try {
-    (void)condense(problem, affine, {{1.0}}, basis, {1e-9, 5});
+    (void)condensed_operator(problem, affine, {{1.0}}, basis, {1e-9, 5});
     FAIL() << "5 points do not reach 1e-9";
   } catch (const Error &error) {
     EXPECT_NE(std::string(error.what()).find("-condensed_tolerance"), std::string::npos);
@@ -105,14 +114,14 @@ TEST(Condensed, TooFewPointsAreAnErrorThatSaysSo) {
 
 TEST(SupportDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
   Problem problem(PETSC_COMM_WORLD, disk("radius"), {});
-  const Index vertices = problem.support().curve.vertices, half = (vertices + 1) / 2;
+  const Index vertices = problem.contact().nodes(), half = (vertices + 1) / 2;
   Matrix lambda = Matrix::Zero(2 * vertices, 1);
   for (Index i = 0; i < vertices; ++i) {
     const double s = static_cast<double>(i) - static_cast<double>(vertices - 1) / 2;
     lambda(i, 0) = 30 - s * s / 4;
     lambda(vertices + i, 0) = s;
   }
-  const Matrix folded = support_dual_basis(problem, lambda);
+  const Matrix folded = nodal_dual_basis(problem, lambda);
   ASSERT_EQ(folded.cols(), 2 * half);
   const Vector coefficients = least_squares(folded, lambda.col(0));
   EXPECT_LE((folded * coefficients - lambda).norm(), 1e-13 * lambda.norm());
@@ -120,7 +129,7 @@ TEST(SupportDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
     EXPECT_NEAR(coefficients[i], lambda(i, 0), 1e-12) << "a coefficient is the value at its node";
 
   lambda(3, 0) += 1;
-  EXPECT_EQ(support_dual_basis(problem, lambda).cols(), 2 * vertices);
+  EXPECT_EQ(nodal_dual_basis(problem, lambda).cols(), 2 * vertices);
 }
 
 } // namespace

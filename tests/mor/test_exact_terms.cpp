@@ -90,7 +90,8 @@ TEST(ExactTerms, NeverMeetInterpolation) {
   Problem problem(PETSC_COMM_WORLD, scene, {});
   const AffineOperators affine = separate(problem, training(), {1e-12, 0});
   EXPECT_EQ(affine.a.size() + affine.f.size(), 0);
-  EXPECT_TRUE(affine.sample_a.contributions.empty());
+  for (const SampleMesh &sample : affine.sample_a)
+    EXPECT_TRUE(sample.contributions.empty());
   EXPECT_EQ(problem.a_terms().exact.size(), 4U);
 }
 

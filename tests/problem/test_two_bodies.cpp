@@ -155,7 +155,7 @@ TEST(TwoBodyProblem, WithoutMotionTheGapIsThatOfTwoCircles) {
   for (const double radius : {0.7, 1.0, 1.3}) {
     const Operators op = contact_at(problem, radius);
     for (Index i = 0; i < op.nodal_gap.size(); ++i) {
-      const double x = problem.curves().points[static_cast<std::size_t>(i)][0];
+      const double x = problem.places().meshes.front().points[static_cast<std::size_t>(i)][0];
       const double circles =
           initial_gap + 1 - std::sqrt(1 - x * x) + radius - std::sqrt(radius * radius - x * x);
       EXPECT_NEAR(op.nodal_gap[i], circles, 1e-6);
@@ -216,7 +216,7 @@ TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
 /// polygon below it, motion included; abscissae stay as they are.
 TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
   Problem problem(PETSC_COMM_WORLD, discs(), {});
-  const ContactCurves &curves = problem.curves();
+  const InterfaceMesh &curves = problem.places().meshes.front();
   for (const double radius : {0.7, 1.3}) {
     const Operators op = contact_at(problem, radius);
     Vector w(op.nodal_b.cols());
@@ -227,7 +227,7 @@ TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
       deformed.push_back(problem.scene().map({radius}, x));
       deformed.back()[1] += problem.scene().motion({radius}, x)[1] + w[i];
     }
-    const std::vector<Point> master(deformed.begin() + curves.slave_nodes, deformed.end());
+    const std::vector<Point> master(deformed.begin() + curves.parts[0], deformed.end());
     const Vector gap = op.nodal_gap - op.nodal_b * w;
     ASSERT_GT(gap.size(), 300);
     for (Index i = 0; i < gap.size(); ++i) {

@@ -2,12 +2,15 @@
 // given numbers, for tests that compute the answer another way.
 #pragma once
 
+#include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/online.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <tuple>
 
 namespace rbvi::synthetic {
 
@@ -44,7 +47,7 @@ inline AffineTerms random_terms(std::mt19937 &random, Index rows, int size, int 
   AffineTerms terms;
   terms.reduced = random_matrix(random, rows, size);
   terms.interpolation = Matrix::Identity(size, size);
-  terms.sample = random_sample(random, size, per_entry);
+  terms.samples = {random_sample(random, size, per_entry)};
   return terms;
 }
 
@@ -54,37 +57,52 @@ inline void add_fields(std::mt19937 &random, ReducedModel &model) {
   model.mesh_points.resize(5, 2);
   model.mesh_points << -0.1, -0.1, 0.1, -0.1, 0.1, 0.1, -0.1, 0.1, 0, 0;
   model.mesh_cells = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
-  model.contact_nodes = {0, 1, 4};
-  model.contact_cells = {0, 1, 2};
   model.primal_basis = random_matrix(random, 5, n);
   model.dual_basis = random_matrix(random, 3, r).cwiseAbs();
-  model.contact_trace.resize(3, n);
-  model.contact_points.resize(3, 2);
-  for (Index i = 0; i < 3; ++i) {
-    model.contact_trace.row(i) = model.primal_basis.row(model.contact_nodes[std::size_t(i)]);
-    model.contact_points.row(i) = model.mesh_points.row(model.contact_nodes[std::size_t(i)]);
-  }
-  model.lumped_weights = random_matrix(random, 3, model.b.size()).cwiseAbs();
+  InterfaceModel contact;
+  contact.nodes = {0, 1, 4};
+  InterfaceMesh &triangle = contact.mesh;
+  for (const int node : contact.nodes)
+    triangle.points.push_back(point_of(model.mesh_points, node));
+  triangle.entities = triangle.dofs = {0, 1, 2};
+  triangle.per_entity = 3;
+  triangle.parts = {3};
+  triangle.columns = 3;
+  model.contact_trace = model.primal_basis(contact.nodes, Eigen::all);
+  model.interfaces = {contact};
+}
+
+inline bool same(const std::vector<InterfaceModel> &a, const std::vector<InterfaceModel> &b) {
+  const auto members = [](const InterfaceModel &of) {
+    const InterfaceMesh &mesh = of.mesh;
+    return std::tie(mesh.dim, mesh.degree, mesh.components, mesh.points, mesh.entities,
+                    mesh.per_entity, mesh.edges, mesh.parts, mesh.dofs, mesh.columns, of.nodes);
+  };
+  return std::ranges::equal(a, b, {}, members, members);
 }
 
 /// Lets entry q of every term set be local value q of one cell: theta_q = value(form, q, mu).
 inline void sample_one_cell(AffineTerms &terms) {
-  terms.sample.vertices.resize(3, 2);
-  terms.sample.vertices << 0, 0, 1, 0, 0, 1;
-  terms.sample.contributions.clear();
-  terms.sample.terms = {0};
+  SampleMesh &sample = terms.samples.front();
+  sample.vertices.resize(3, 2);
+  sample.vertices << 0, 0, 1, 0, 0, 1;
+  sample.contributions.clear();
+  sample.terms = {0};
   for (int q = 0; q < terms.size(); ++q)
-    terms.sample.contributions.push_back({q, 0, q});
+    sample.contributions.push_back({q, 0, q});
 }
 
-/// Divides each term by its theta in the middle of the box, so that all weigh alike there.
-template <class Forms> void scale_terms(AffineTerms &terms, const Forms &form, const Scene &scene) {
+inline FullMu middle_of_box(const Scene &scene) {
   FullMu middle;
   for (const Parameter &p : scene.parameters.all)
     middle.push_back(0.5 * (p.lower + p.upper));
-  const Vector theta = affine_coefficients(terms, form, scene, middle);
+  return middle;
+}
+
+/// Divides each term by its theta in the middle of the box, so that all weigh alike there.
+inline void scale_terms(AffineTerms &terms, const Vector &theta_in_the_middle) {
   for (int q = 0; q < terms.size(); ++q)
-    terms.reduced.col(q) /= theta[q];
+    terms.reduced.col(q) /= theta_in_the_middle[q];
 }
 
 /// Scene and sizes alone.
@@ -124,11 +142,13 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene 
   if (one_cell)
     for (AffineTerms *terms : {&model.a, &model.b, &model.f, &model.g})
       sample_one_cell(*terms);
-  scale_terms(model.a, scene.a, scene);
-  scale_terms(model.b, scene.b, scene);
-  scale_terms(model.f, scene.f, scene);
-  scale_terms(model.g, scene.g, scene);
   add_fields(random, model);
+  const FullMu mu = middle_of_box(scene);
+  const Contact contact = contact_of(model, scene);
+  scale_terms(model.a, affine_coefficients(model.a, scene.a, scene, mu));
+  scale_terms(model.b, contact_coefficients(model.b, Part::b, contact, scene, mu));
+  scale_terms(model.f, affine_coefficients(model.f, scene.f, scene, mu));
+  scale_terms(model.g, contact_coefficients(model.g, Part::g, contact, scene, mu));
   return model;
 }
 
@@ -136,9 +156,37 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed) {
   return random_model(sizes, seed, make_scene("membrane_obstacle"));
 }
 
-/// A scene on the identity map whose forms fill their values from mu alone: value i of form k is
-/// value(k, i, mu).
 using Value = double (*)(int form, int i, const FullMu &mu);
+
+/// Contact in a region whose b and g have the values 1 and 3 of a toy scene.
+template <Value value> class ToyContact : public EntitySum {
+public:
+  ToyContact(const Scene &scene, InterfaceMesh region) : EntitySum(scene, std::move(region), 2) {
+    SparseMatrix gram(mesh_.nodes(), mesh_.nodes());
+    gram.setIdentity();
+    set_dual(mesh_.nodes(), 1, gram);
+  }
+  void integrate(const FullMu &mu, const Cell &, EntityValues &values) const override {
+    for (int i = 0; i < 9; ++i)
+      values.b.data()[i] = value(1, i, mu);
+    for (int i = 0; i < 3; ++i)
+      values.g[i] = value(3, i, mu);
+  }
+  void weigh(const FullMu &, const Cell &, EntityValues &values) const override {
+    values.weights.setOnes();
+  }
+  PointConstraint constraint_at(const FullMu &, const Point &) const override {
+    return {{-1, 0, 0}, 0};
+  }
+  void outputs(const FullMu &, const ContactOperators &operators, const Vector &lambda,
+               double least, Outputs &outputs) const override {
+    pressure_outputs(1, operators.weights, lambda, least, outputs);
+  }
+  Grid fields(const FullMu &, const Vector &, const Vector &) override { return {}; }
+};
+
+/// A scene on the identity map whose forms fill their values from mu alone: value i of form k is
+/// value(k, i, mu), k = 0 to 3 for a, b, f, g.
 template <Value value> Scene toy_scene() {
   Scene scene = make_scene("membrane_obstacle");
   scene.map = [](const FullMu &, const Point &x) { return x; };
@@ -149,9 +197,10 @@ template <Value value> Scene toy_scene() {
     };
   };
   scene.a = {mapped_term({"", filled(0, 9)})};
-  scene.b.kernel = filled(1, 9);
   scene.f = {mapped_term({"", filled(2, 3)})};
-  scene.g.kernel = filled(3, 3);
+  scene.contacts.front().make = [](const Scene &of, InterfaceMesh region) {
+    return std::make_unique<ToyContact<value>>(of, std::move(region));
+  };
   return scene;
 }
 

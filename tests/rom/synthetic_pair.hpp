@@ -4,7 +4,7 @@
 
 #include "brute_force.hpp"
 
-#include "rbvi/contact/pair/contact_pair.hpp"
+#include "rbvi/contact/pair/pair.hpp"
 
 #include <algorithm>
 
@@ -34,14 +34,40 @@ inline std::vector<Point> arc_points(std::mt19937 &random, Index nodes, double s
 inline void add_fans(const PairSizes &sizes, ReducedModel &model) {
   const auto slave = static_cast<int>(sizes.slave), master = static_cast<int>(sizes.master);
   model.mesh_points.resize(sizes.slave + sizes.master + 2, 2);
-  model.mesh_points << 0, 1.5, 0, -1.5, model.contact_points;
+  model.mesh_points.topRows(2) << 0, 1.5, 0, -1.5;
+  InterfaceModel &contact = model.interfaces.front();
+  for (int i = 0; i < slave + master; ++i) {
+    contact.nodes.push_back(2 + i);
+    const Point &x = contact.mesh.points[static_cast<std::size_t>(i)];
+    model.mesh_points.row(2 + i) << x[0], x[1];
+  }
   model.mesh_cells.clear();
   for (int i = 0; i + 1 < slave; ++i)
     model.mesh_cells.insert(model.mesh_cells.end(), {0, 2 + i, 3 + i});
   for (int i = slave; i + 1 < slave + master; ++i)
     model.mesh_cells.insert(model.mesh_cells.end(), {1, 3 + i, 2 + i});
-  for (int i = 0; i < slave + master; ++i)
-    model.contact_nodes.push_back(2 + i);
+}
+
+/// Two curves of degree 1; the pair sees the vertical displacement of node i as column i.
+inline InterfaceMesh pair_mesh(const std::vector<Point> &slave, const std::vector<Point> &master) {
+  InterfaceMesh mesh;
+  mesh.components = 2;
+  for (const std::vector<Point> *curve : {&slave, &master}) {
+    const auto first = static_cast<int>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), curve->begin(), curve->end());
+    mesh.parts.push_back(static_cast<int>(curve->size()));
+    for (int i = first; i + 1 < first + mesh.parts.back(); ++i)
+      mesh.entities.insert(mesh.entities.end(), {i, i + 1});
+  }
+  mesh.columns = mesh.nodes();
+  for (int i = 0; i < mesh.columns; ++i)
+    mesh.dofs.insert(mesh.dofs.end(), {-1, i});
+  return mesh;
+}
+
+/// Of the options of a scene of two bodies.
+inline PairDiscretisation discretisation_of(const Scene &scene) {
+  return pair_discretisation(scene.options);
 }
 
 /// On the forms of two_disks; A has one term. The trace is that of the basis.
@@ -52,22 +78,27 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
   model.a.reduced = pack(random_spd(random, n));
   model.a.exact = 1;
 
-  model.slave_nodes = static_cast<int>(sizes.slave);
-  std::vector<Point> points = arc_points(random, sizes.slave, 1);
-  std::ranges::copy(arc_points(random, sizes.master, -1), std::back_inserter(points));
-  model.contact_points.resize(sizes.slave + sizes.master, 2);
-  for (Index i = 0; i < model.contact_points.rows(); ++i)
-    model.contact_points.row(i) << points[static_cast<std::size_t>(i)][0],
-        points[static_cast<std::size_t>(i)][1];
+  const std::vector<Point> slave = arc_points(random, sizes.slave, 1),
+                           master = arc_points(random, sizes.master, -1);
+  model.interfaces = {{pair_mesh(slave, master), {}}};
   add_fans(sizes, model);
   model.primal_basis = random_matrix(random, 2 * model.mesh_points.rows(), n);
-  model.contact_trace.resize(model.contact_points.rows(), n);
+  model.contact_trace.resize(sizes.slave + sizes.master, n);
   for (Index i = 0; i < model.contact_trace.rows(); ++i)
     model.contact_trace.row(i) = model.primal_basis.row(2 * (2 + i) + 1);
-  const Index dual = multiplier_count(sizes.slave, scene.pair->discretisation.multiplier);
+  const Index dual = multiplier_count(sizes.slave, discretisation_of(scene).multiplier);
   model.dual_basis = random_matrix(random, dual, sizes.generators).cwiseAbs();
-  model.lumped_weights.resize(dual, 0);
   return model;
+}
+
+/// The operators of the curves mapped here, without the motion.
+inline PairOperators mapped_pair(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
+  const InterfaceMesh &curves = model.interfaces.front().mesh;
+  std::vector<Point> slave, master;
+  for (std::size_t i = 0; i < curves.points.size(); ++i)
+    (static_cast<int>(i) < curves.parts[0] ? slave : master)
+        .push_back(scene.map(mu, curves.points[i]));
+  return couple(slave, master, discretisation_of(scene));
 }
 
 /// The reduced operators computed another way: the curves mapped here, coupled, the motion taken
@@ -75,14 +106,11 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
 inline brute::Operators pair_operators(const ReducedModel &model, const Scene &scene,
                                        const Mu &free) {
   const FullMu mu = expand(scene.parameters, free);
-  std::vector<Point> slave, master;
-  Vector motion(model.contact_points.rows());
-  for (Index i = 0; i < motion.size(); ++i) {
-    const Point x = point_of(model.contact_points, i);
-    (i < model.slave_nodes ? slave : master).push_back(scene.map(mu, x));
-    motion[i] = scene.motion ? scene.motion(mu, x)[1] : 0;
-  }
-  const PairOperators pair = couple(slave, master, scene.pair->discretisation);
+  const InterfaceMesh &curves = model.interfaces.front().mesh;
+  Vector motion(curves.nodes());
+  for (Index i = 0; i < motion.size(); ++i)
+    motion[i] = scene.motion ? scene.motion(mu, curves.points[static_cast<std::size_t>(i)])[1] : 0;
+  const PairOperators pair = mapped_pair(model, scene, mu);
   const Matrix b = pair.b;
   const Index n = model.primal_size();
   const Vector packed = model.a.reduced.col(0);

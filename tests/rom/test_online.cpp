@@ -126,7 +126,7 @@ TEST(AffineCoefficients, ReassembleTheSampledEntries) {
     for (int cell = 3 * entry; cell < 3 * entry + 3; ++cell) {
       Point x[3];
       for (int i = 0; i < 3; ++i)
-        x[i] = scene.map(mu, point_of(terms.sample.vertices, 3 * cell + i));
+        x[i] = scene.map(mu, point_of(terms.samples.front().vertices, 3 * cell + i));
       const double edge[2] = {x[2][0] - x[1][0], x[2][1] - x[1][1]};
       const double area = 0.5 * std::abs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) -
                                          (x[2][0] - x[0][0]) * (x[1][1] - x[0][1]));
@@ -146,15 +146,17 @@ TEST(Outputs, AreIntegralsOverTheContactRegion) {
   solution.x << 1, 0, 2, 0;
   const Outputs outputs = solver.outputs(mu, solution);
   const Vector lambda = model.dual_basis.col(0) + 2 * model.dual_basis.col(2);
-  const Vector weights = solution.theta_b[0] * model.lumped_weights.col(0);
+  // A triangle of area 0.01, scaled from radius 0.2 to 0.19.
+  const Vector weights = Vector::Constant(3, 0.01 / 3 * std::pow(0.19 / 0.2, 2));
   EXPECT_NEAR(*outputs.normal_force, lambda.dot(weights), 1e-13 * std::abs(lambda.dot(weights)));
   EXPECT_NEAR(*outputs.peak_pressure, lambda.maxCoeff(), 1e-13 * lambda.maxCoeff());
-  const double area = contact_area(weights, lambda, model.contact_cells, 3);
+  const InterfaceModel &contact = model.interfaces.front();
+  const double area = contact_area(weights, lambda, contact.mesh.entities, 3);
   EXPECT_LT(std::abs(area), std::abs(weights.sum()));
   EXPECT_NEAR(*outputs.contact_measure, area, 1e-13 * std::abs(area));
   const Vector field = solver.field(solution);
   double deepest = 0;
-  for (int node : model.contact_nodes) {
+  for (const int node : contact.nodes) {
     // psi = -1.25 |x - c|^2 / r^2 on the mapped disc is -1.25 |xhat|^2 / 0.2^2 on the reference
     // one.
     const double psi = -1.25 * model.mesh_points.row(node).squaredNorm() / 0.04;
@@ -179,7 +181,7 @@ TEST(Outputs, OfAConsistentMassCountWholeWeights) {
   const Mu mu{0.19, 0.01, 0.02};
   ReducedSolution solution = solver.solve(mu);
   solution.x << 1, 0, 2, 0;
-  const double whole = (solution.theta_b[0] * model.lumped_weights.col(0)).sum();
+  const double whole = 0.01 * std::pow(0.19 / 0.2, 2); // of the triangle
   EXPECT_NEAR(*solver.outputs(mu, solution).contact_measure, whole, 1e-13 * std::abs(whole));
 }
 

@@ -1,5 +1,6 @@
 // Reduced models of two bodies: contact operators assembled online, outputs, files and VTU.
 #include "../contact/curves.hpp"
+#include "../core/refuses.hpp"
 #include "synthetic_pair.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -119,18 +120,20 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
   OnlineSolver solver(model, p0);
   for (const Mu &mu : radii) {
     const ReducedSolution solution = solver.solve(mu);
-    const Vector w = solver.field(solution), gap = solver.contact_gap(mu, solution);
+    const Vector w = solver.field(solution), gap = solver.contact_gap(solution);
     const FullMu all = expand(p0.parameters, mu);
     std::vector<Point> slave, master;
-    for (Index i = 0; i < model.contact_points.rows(); ++i) {
-      const Point x = point_of(model.contact_points, i);
+    const auto &[curves, nodes] = model.interfaces.front();
+    for (std::size_t i = 0; i < curves.points.size(); ++i) {
+      const Point &x = curves.points[i];
       Point moved = p0.map(all, x);
-      moved[1] += p0.motion(all, x)[1] + w[2 * model.contact_nodes[std::size_t(i)] + 1];
-      (i < model.slave_nodes ? slave : master).push_back(moved);
+      moved[1] += p0.motion(all, x)[1] + w[2 * nodes[i] + 1];
+      (static_cast<int>(i) < curves.parts[0] ? slave : master).push_back(moved);
     }
-    ASSERT_EQ(gap.size(), static_cast<Index>(solution.pair.paired.size()));
+    const std::vector<Index> paired = synthetic::mapped_pair(model, p0, all).paired;
+    ASSERT_EQ(gap.size(), static_cast<Index>(paired.size()));
     for (Index k = 0; k < gap.size(); ++k) {
-      const Point &x = slave[static_cast<std::size_t>(solution.pair.paired[std::size_t(k)])];
+      const Point &x = slave[static_cast<std::size_t>(paired[std::size_t(k)])];
       EXPECT_NEAR(gap[k], x[1] - height_at(master, x[0]), 1e-12);
     }
     const Outputs outputs = solver.outputs(mu, solution);
@@ -155,9 +158,10 @@ TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
   EXPECT_EQ(*whole.peak_pressure, *part.peak_pressure);
   const Vector lambda = model.dual_basis * solution.x;
   EXPECT_EQ(*part.energy, solution.energy);
-  EXPECT_NEAR(*part.normal_force, lambda.dot(solution.pair.weights), 1e-14 * *part.normal_force);
+  EXPECT_NEAR(*part.normal_force, lambda.dot(solution.contact.weights), 1e-14 * *part.normal_force);
   EXPECT_EQ(*part.peak_pressure, lambda.maxCoeff());
-  EXPECT_NEAR(*part.contact_measure, solution.pair.weights.sum(), 1e-14) << "lambda > 0 everywhere";
+  EXPECT_NEAR(*part.contact_measure, solution.contact.weights.sum(), 1e-14)
+      << "lambda > 0 everywhere";
   EXPECT_FALSE(whole.min_u);
 }
 
@@ -165,19 +169,23 @@ TEST(OnlinePair, ACurveThatDoesNotFitTheMultipliersIsRefused) {
   ReducedModel model = synthetic::random_pair_model({}, 7, p0);
   EXPECT_THROW(OnlineSolver(model, p1), Error);
   EXPECT_THROW(OnlineSolver(model, make_scene("membrane_obstacle")), Error);
-  const ReducedModel one_body = synthetic::random_model({}, 7);
+  ReducedModel one_body = synthetic::random_model({}, 7);
   EXPECT_THROW(OnlineSolver(one_body, p0), Error);
+  EXPECT_NO_THROW((OnlineSolver(one_body)));
+  one_body.b = one_body.g = {};
+  EXPECT_THROW((OnlineSolver(one_body)), Error) << "its b separates";
   EXPECT_NO_THROW(OnlineSolver(model, p0));
+  model.b = model.a;
+  EXPECT_NO_THROW(check_model(model)) << "of a scene whose b separates it might be";
+  EXPECT_TRUE(refuses("does not fit its scene", [&] { OnlineSolver(model, p0); }));
 }
 
 TEST(PrintPairModel, SaysThatTheContactOperatorsAreAssembledOnline) {
   const ReducedModel model = synthetic::random_pair_model({}, 7, p0);
   std::ostringstream out;
   print_model(out, model);
-  const std::string nodes = std::to_string(model.slave_nodes) + " + " +
-                            std::to_string(model.contact_points.rows() - model.slave_nodes) +
-                            " contact nodes";
-  EXPECT_NE(out.str().find("assembled for each mu on " + nodes), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("assembled for each mu on 12 + 9 contact nodes"), std::string::npos)
+      << out.str();
   EXPECT_EQ(out.str().find("terms of b"), std::string::npos) << out.str();
 }
 
@@ -198,17 +206,68 @@ TEST(CheckPairModel, NamesWhatDoesNotFit) {
   };
   using M = ReducedModel;
   EXPECT_EQ(complaint([](M &) {}), "");
-  expect_complaint("slave_nodes", [](M &m) { m.slave_nodes = -1; });
-  expect_complaint("slave_nodes", [](M &m) { m.slave_nodes = 22; });
-  expect_complaint("b has no terms", [](M &m) { m.slave_nodes = 0; });
-  expect_complaint("two bodies have some", [](M &m) { m.b = m.a; });
-  expect_complaint("two bodies have some", [](M &m) { m.g = m.a; });
-  expect_complaint("contact/trace", [](M &m) { m.contact_trace.conservativeResize(12, 7); });
-  expect_complaint("contact/nodes", [](M &m) { m.contact_nodes.pop_back(); });
+  expect_complaint("g has terms and b has not", [](M &m) { m.g = m.a; });
+  expect_complaint("contact/trace", [](M &m) { m.contact_trace.conservativeResize(21, 6); });
   expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis.conservativeResize(5, 3); });
   expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis(0, 0) = std::nan(""); });
-  expect_complaint("contact/lumped_weights", [](M &m) { m.lumped_weights.resize(5, 1); });
   expect_complaint("fields/primal_basis", [](M &m) { m.primal_basis.conservativeResize(46, 6); });
+}
+
+TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
+  const auto complaint = [](auto change) -> std::string {
+    ReducedModel model = synthetic::random_pair_model({}, 8, p0);
+    change(model.interfaces.front());
+    try {
+      check_model(model);
+    } catch (const Error &error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto expect_complaint = [&](const std::string &member, auto change) {
+    const std::string message = complaint(change);
+    EXPECT_NE(message.find("interfaces/" + member), std::string::npos) << member << ": " << message;
+  };
+  using I = InterfaceModel;
+  EXPECT_EQ(complaint([](I &) {}), "");
+  EXPECT_NE(complaint([](I &i) { i.mesh.dim = 4; }), "");
+  expect_complaint("sizes", [](I &i) { i.mesh.degree = 3; });
+  expect_complaint("sizes", [](I &i) { i.mesh.components = 0; });
+  expect_complaint("sizes", [](I &i) { i.mesh.per_entity = 1; });
+  expect_complaint("sizes", [](I &i) { i.mesh.columns = 20; });
+  expect_complaint("points", [](I &i) { i.mesh.points[3][1] = std::nan(""); });
+  expect_complaint("entities", [](I &i) { i.mesh.entities.clear(); });
+  expect_complaint("entities", [](I &i) { i.mesh.entities.pop_back(); });
+  expect_complaint("entities", [](I &i) { i.mesh.entities[5] = 21; });
+  expect_complaint("entities", [](I &i) { i.mesh.entities[5] = -1; });
+  expect_complaint("edges", [](I &i) { i.mesh.edges.assign(18, 0); });
+  expect_complaint("edges", [](I &i) { i.mesh.edges.assign(19, 3); });
+  expect_complaint("parts", [](I &i) { i.mesh.parts = {12, 8}; });
+  expect_complaint("parts", [](I &i) { i.mesh.parts = {22, -1}; });
+  expect_complaint("dofs", [](I &i) { i.mesh.dofs.pop_back(); });
+  expect_complaint("dofs", [](I &i) { i.mesh.dofs[1] = 21; });
+  expect_complaint("dofs", [](I &i) { i.mesh.dofs[1] = -2; });
+  expect_complaint("nodes", [](I &i) { i.nodes.pop_back(); });
+  expect_complaint("nodes", [](I &i) { i.nodes[0] = 23; });
+  expect_complaint("nodes", [](I &i) { i.nodes[0] = -1; });
+}
+
+/// What is consistent and yet no pair of curves is bad input of the kind of contact.
+TEST(OnlinePair, AnInterfaceThatIsNoPairIsRefused) {
+  const auto expect_refusal = [](const std::string &part, auto change) {
+    ReducedModel model = synthetic::random_pair_model({}, 8, p0);
+    change(model.interfaces.front().mesh);
+    EXPECT_NO_THROW(check_model(model));
+    EXPECT_TRUE(refuses(part, [&] { OnlineSolver(model, p0); }));
+  };
+  using M = InterfaceMesh;
+  expect_refusal("edge 0 of the slave curve",
+                 [](M &m) { std::swap(m.entities[0], m.entities[1]); });
+  expect_refusal("x must increase along the master", [](M &m) { m.parts = {11, 10}; });
+  expect_refusal("x must increase along the slave", [](M &m) { m.parts = {21}; });
+  expect_refusal("x must increase along the slave",
+                 [](M &m) { std::swap(m.points[4], m.points[5]); });
+  expect_refusal("move vertically", [](M &m) { m.dofs[5] = -1; });
 }
 
 /// The leading pair has the leading columns of the trace and of the dual basis; there is nothing of
@@ -218,7 +277,7 @@ TEST(LeadingPair, AnswersLikeItsOwnDenseOperators) {
   for (const auto &[n, r] : {std::pair{7, 4}, std::pair{6, 3}, std::pair{4, 2}}) {
     const ReducedModel part = leading(model, n, r);
     check_model(part);
-    EXPECT_EQ(part.slave_nodes, model.slave_nodes);
+    EXPECT_EQ(part.interfaces.front().mesh.parts, model.interfaces.front().mesh.parts);
     EXPECT_EQ(part.modes, 4);
     EXPECT_EQ(part.supremizers, n - 4);
     EXPECT_EQ(part.contact_trace, model.contact_trace.leftCols(n));
@@ -240,22 +299,19 @@ TEST_F(PairFile, ReturnsTheModel) {
     write_model(model, directory / "model.h5");
     const ReducedModel copy = read_model(directory / "model.h5"),
                        bare = read_model(directory / "model.h5", false);
-    EXPECT_EQ(copy.slave_nodes, 12);
-    EXPECT_TRUE(copy.two_bodies());
+    EXPECT_TRUE(copy.evaluates_contact());
+    EXPECT_TRUE(synthetic::same(copy.interfaces, model.interfaces));
+    EXPECT_TRUE(synthetic::same(bare.interfaces, model.interfaces));
     EXPECT_EQ(copy.scene_options, scene.options);
     EXPECT_EQ(copy.dual_basis, model.dual_basis);
     EXPECT_EQ(copy.contact_trace, model.contact_trace);
-    EXPECT_EQ(copy.contact_points, model.contact_points);
-    EXPECT_EQ(copy.contact_nodes, model.contact_nodes);
     EXPECT_EQ(copy.b.size(), 0);
     EXPECT_EQ(copy.g.size(), 0);
-    EXPECT_EQ(copy.lumped_weights.rows(), model.lumped_weights.rows());
     OnlineSolver from_file(copy), without_fields(bare), original(model);
     const ReducedSolution solution = from_file.solve({0.77});
     EXPECT_EQ(solution.u, original.solve({0.77}).u);
     EXPECT_EQ(solution.u, without_fields.solve({0.77}).u);
-    EXPECT_EQ(from_file.contact_gap({0.77}, solution),
-              without_fields.contact_gap({0.77}, solution));
+    EXPECT_EQ(from_file.contact_gap(solution), without_fields.contact_gap(solution));
     EXPECT_THROW(without_fields.field(solution), Error);
   }
 }
@@ -292,8 +348,8 @@ struct PairVtu : PairFile {
                    "",
                    solver.field(solution),
                    solver.multiplier(solution),
-                   solver.contact_gap(mu, solution),
-                   solution.pair.paired};
+                   solver.contact_gap(solution),
+                   synthetic::mapped_pair(model, scene, solution.mu).paired};
     write_vtu(directory / "u.vtu", scene, solution.mu, model, result.w, result.lambda);
     result.bodies = slurp(directory / "u.vtu");
     result.contact = slurp(directory / "u_contact.vtu");
@@ -334,12 +390,13 @@ void expect_curve(const Written &file, const ReducedModel &model, const Scene &s
   ASSERT_EQ(u.size(), 3 * count);
   EXPECT_EQ(data_array(file.contact, "connectivity").size(), 2 * (count - 1));
   EXPECT_EQ(data_array(file.contact, "types"), std::vector<double>(count - 1, 3));
+  const auto &[curves, nodes] = model.interfaces.front();
   for (std::size_t k = 0; k < count; ++k) {
-    const Index node = file.paired[k];
-    const Point image = scene.map({0.8}, point_of(model.contact_points, node));
+    const auto node = static_cast<std::size_t>(file.paired[k]);
+    const Point image = scene.map({0.8}, curves.points[node]);
     EXPECT_EQ(points[3 * k], image[0]);
     EXPECT_EQ(points[3 * k + 1], image[1]);
-    const Index dof = 2 * model.contact_nodes[static_cast<std::size_t>(node)];
+    const Index dof = 2 * nodes[node];
     EXPECT_EQ(u[3 * k], file.w[dof]);
     EXPECT_EQ(u[3 * k + 1], -0.09 + file.w[dof + 1]);
     EXPECT_NEAR(gap[k], file.gap[static_cast<Index>(k)], 1e-14);

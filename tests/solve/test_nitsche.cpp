@@ -144,7 +144,8 @@ TEST(NitscheDisk, TheErrorOfTheContactLawIsOfFirstOrderInTheEdges) {
 double functional(Problem &problem, NitscheSolver &solver, const Mu &mu) {
   const Operators &op = problem.assemble(mu);
   const NitscheSolution s = solver.solve(op);
-  const auto faces = nitsche_faces(problem.scene(), op.mu, solver.layer().cells);
+  const NitscheCurve &curve = *problem.nitsche();
+  const auto faces = nitsche_faces(curve, op.mu, curve.cells);
   const auto blocks = nitsche_consistency(faces, false);
   double consistency = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
@@ -261,7 +262,7 @@ TEST(NitscheDisk, EveryStepIsWatched) {
   int seen = 0;
   solver.watch = [&](const Vector &layer, const Vector &bounds) {
     ++seen;
-    EXPECT_EQ(layer.size(), solver.layer().trace.size);
+    EXPECT_EQ(layer.size(), problem.trace().size);
     EXPECT_EQ(bounds.size(), 4 * 40);
   };
   EXPECT_EQ(solver.solve(problem.assemble(with_radius(1))).iterations, seen);

@@ -16,7 +16,7 @@ void expect_exact(const Scene &scene, const Mu &mu, bool frictionless = false) {
   Problem problem(PETSC_COMM_WORLD, scene, {});
   const HfSolution s = HighFidelity(problem, {}).solve(mu);
   const Exact exact(mu, frictionless);
-  const Index count = problem.support().curve.vertices;
+  const Index count = problem.contact().nodes();
   EXPECT_LE((s.lambda.head(count).array() - exact.pressure).abs().maxCoeff(),
             1e-12 * exact.pressure);
   if (!frictionless) {
@@ -62,7 +62,7 @@ TEST(PatchFriction, UzawaFindsTheSame) {
     options.uzawa_tolerance = 1e-11;
     const HfSolution s = HighFidelity(problem, options).solve(mu);
     const Exact exact(mu, false);
-    const Index count = problem.support().curve.vertices;
+    const Index count = problem.contact().nodes();
     EXPECT_LE((s.lambda.head(count).array() - exact.pressure).abs().maxCoeff(),
               1e-6 * exact.pressure);
     EXPECT_LE((s.lambda.tail(count).array() - exact.stress).abs().maxCoeff(),

@@ -151,8 +151,9 @@ TEST(RigidDisk, NoFrictionIsWhatAllLawsEndIn) {
 TEST(RigidDisk, HighFrictionAndThresholdSticksEverywhere) {
   Scene coulomb = disk(small);
   Scene tresca = disk(small_with("friction", "tresca"));
-  Scene contact = disk(small_with("friction", "tresca"));
-  contact.support->friction.only_in_contact = true;
+  SceneOptions in_contact = small_with("friction", "tresca");
+  in_contact["friction_bound"] = "contact";
+  Scene contact = disk(in_contact);
   const HfSolution c = solve(coulomb, with_radius(1, 100)), t = solve(contact, with_radius(1, 1e3));
   EXPECT_LE((c.lambda - t.lambda).norm(), 1e-10 * c.lambda.norm())
       << "both stick wherever there is contact";

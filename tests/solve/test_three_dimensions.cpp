@@ -1,6 +1,7 @@
 // The same code in three dimensions: a block of tetrahedra over an obstacle in its middle.
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
+#include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
@@ -13,17 +14,13 @@ Scene cube_scene() {
   Scene scene = make_scene("membrane_obstacle");
   scene.dim = 3;
   scene.mesh = {"", {"core"}, {"boundary"}};
-  scene.contact_region = "core";
   scene.map = [](const FullMu &mu, const Point &x) {
     return Point{x[0], x[1], mu[0] / 0.2 * x[2]};
   };
   scene.snap = {};
-  scene.obstacle = [](const FullMu &, const Point &) { return -0.5; };
+  scene.contacts = {obstacle({"core", [](const FullMu &, const Point &) { return -0.5; }})};
   scene.a = {mapped_term(laplace(""))};
   scene.f = {mapped_term(constant_load("", -25))};
-  scene.b = hat_coupling("core", -1, 1, false);
-  scene.g = function_load("core", -1, scene.obstacle);
-  scene.w_product = l2_product("core");
   return scene;
 }
 

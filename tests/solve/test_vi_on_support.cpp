@@ -125,7 +125,7 @@ TEST(LumpedSupport, PassesThePatchTest) {
       HfOptions hf;
       hf.method = method;
       const HfSolution s = HighFidelity(problem, hf).solve(mu);
-      const Index count = problem.support().curve.vertices;
+      const Index count = problem.contact().nodes();
       EXPECT_LE((s.lambda.head(count).array() - exact.pressure).abs().maxCoeff(),
                 1e-12 * exact.pressure);
       EXPECT_LE(block_on_support::displacement_error(problem, mu, exact, s), 1e-13);

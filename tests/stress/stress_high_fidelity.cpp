@@ -58,7 +58,7 @@ TEST_P(HighFidelityStress, EveryRandomStartEndsAtAnExactAnswer) {
   int iterations = 0, backup = 0;
   for (int k = 0; k < queries_per_case; ++k) {
     const Mu mu = random.mu(space);
-    const std::vector<Index> start = random.start(problem.contact().dual_size());
+    const std::vector<Index> start = random.start(problem.dual_size());
     SCOPED_TRACE(describe(space, mu) + ", " + std::to_string(start.size()) + " nodes at the start");
     const Operators &op = problem.assemble(mu);
     RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));

@@ -15,6 +15,9 @@ std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
   if (mesh.dim != 2 || mesh.components != 2)
     throw bad_input("Nitsche's method is for two dimensions: the mesh has " +
                     std::to_string(mesh.dim));
+  if (mesh.per_entity != nodes_per_cell(2, mesh.degree) ||
+      static_cast<Index>(mesh.edges.size()) != mesh.count())
+    throw bad_input("Nitsche's method needs triangles with an edge on the boundary");
   std::vector<CurveCell> cells;
   for (Index e = 0; e < mesh.count(); ++e) {
     const int *nodes = mesh.nodes_of(e);

@@ -15,7 +15,7 @@ public:
       : EntitySum(scene, std::move(interface_mesh), scene.dim), obstacle_(std::move(obstacle)),
         b_(hat_coupling("", -1, mesh_.degree, obstacle_.lumped)),
         g_(function_load("", -1, obstacle_.height, obstacle_.lumped)) {
-    if (mesh_.components != 1 || mesh_.degree != 1)
+    if (mesh_.components != 1 || mesh_.degree != 1 || mesh_.per_entity != mesh_.dim + 1)
       throw bad_input("scene " + scene.name +
                       ": an obstacle is for scalar displacements of degree 1");
     set_dual(mesh_.nodes(), 1, gram());

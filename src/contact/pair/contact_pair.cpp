@@ -235,6 +235,15 @@ Values displacements(const Curve &curve, double s) {
   return values;
 }
 
+/// The integral of a multiplier's function over all of its slave edges.
+double whole_weight(std::size_t multiplier, const Curve &slave, MultiplierSpace space) {
+  const EdgeRange edges = support(multiplier, slave, space);
+  double length = 0;
+  for (std::size_t edge = edges.first; edge < edges.last; ++edge)
+    length += slave.length(edge);
+  return space == MultiplierSpace::nodes ? length / 2 : length;
+}
+
 void integrate(const Curve &slave, const Curve &master, const PairDiscretisation &discretisation,
                PairOperators &result) {
   const std::vector<FacingPoint> points = discretisation.quadrature == PairQuadrature::intersection
@@ -262,6 +271,8 @@ void integrate(const Curve &slave, const Curve &master, const PairDiscretisation
     }
     result.g[static_cast<Index>(i)] = gap;
     result.weights[static_cast<Index>(i)] = length;
+    if (!(length > (1 - 1e-9) * whole_weight(i, slave, discretisation.multiplier)))
+      result.uncovered.push_back(static_cast<Index>(i));
   }
 }
 
@@ -337,12 +348,10 @@ SparseMatrix multiplier_product(const std::vector<Point> &slave_nodes, Multiplie
   product.reserve(Eigen::VectorXi::Constant(count, 3));
   for (Index i = 0; i < count; ++i) {
     const EdgeRange edges = support(static_cast<std::size_t>(i), slave, space);
-    double length = 0;
-    for (std::size_t edge = edges.first; edge < edges.last; ++edge)
-      length += slave.length(edge);
+    const double weight = whole_weight(static_cast<std::size_t>(i), slave, space);
     const bool linear = space == MultiplierSpace::nodes;
     if (i > 0) product.insert(i, i - 1) = linear ? slave.length(edges.first) / 6 : 0;
-    product.insert(i, i) = linear ? length / 3 : length;
+    product.insert(i, i) = linear ? weight * 2 / 3 : weight;
     if (i + 1 < count) product.insert(i, i + 1) = linear ? slave.length(edges.last - 1) / 6 : 0;
   }
   product.makeCompressed();

@@ -29,9 +29,7 @@ public:
     operators.weights = std::move(coupled.weights);
     operators.nodal_b = at_contact_dofs(std::move(coupled.nodal_b));
     operators.nodal_gap = std::move(coupled.nodal_gap);
-    operators.uncovered.clear();
-    for (Index i = 0; i < whole_.size(); ++i)
-      if (!(operators.weights[i] > (1 - 1e-9) * whole_[i])) operators.uncovered.push_back(i);
+    operators.uncovered = std::move(coupled.uncovered);
     (void)state; // deformations are small
   }
   void outputs(const FullMu &, const ContactOperators &operators, const Vector &lambda,
@@ -47,7 +45,6 @@ private:
   Pair pair_;
   bool alone_;               ///< node i is contact dof i of the problem
   std::vector<Point> slave_; ///< reference nodes of the slave curve
-  Vector whole_;             ///< weights of multipliers that face a partner everywhere
 };
 
 PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, Pair pair)
@@ -64,7 +61,6 @@ PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, P
   const MultiplierSpace space = pair_.discretisation.multiplier;
   dual_.points = multiplier_points(slave_, space, mesh_.degree);
   dual_.gram = multiplier_product(slave_, space, mesh_.degree);
-  whole_ = dual_.gram * Vector::Ones(dual_.size());
 }
 
 /// From columns by nodes to those of the problem.

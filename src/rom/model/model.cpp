@@ -5,6 +5,7 @@
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace rbvi {
@@ -58,7 +59,8 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samp
   require(size == 0 || terms.samples.size() == samples, name + " has sampled entries elsewhere");
   for (const SampleMesh &sample : terms.samples) {
     const Matrix &vertices = sample.vertices;
-    require(sample.corners > 1 && vertices.rows() % sample.corners == 0,
+    require(sample.corners > 1 && sample.corners <= dim + 1 &&
+                vertices.rows() % sample.corners == 0,
             name + "/vertices is not a list of cells");
     require_shape(vertices, vertices.rows(), vertices.rows() == 0 ? vertices.cols() : dim,
                   name + "/vertices");
@@ -80,13 +82,17 @@ void check_interface(const InterfaceModel &interface, int dim, Index columns) {
   require(mesh.dim == dim && (mesh.degree == 1 || mesh.degree == 2) && mesh.components > 0 &&
               mesh.components <= 3 && mesh.per_entity > 1 && mesh.columns == columns,
           "interfaces/sizes do not fit");
+  require(std::ranges::all_of(mesh.points,
+                              [](const Point &x) { return std::isfinite(x[0] + x[1] + x[2]); }),
+          "interfaces/points has an entry that is not finite");
   require(mesh.count() > 0 && static_cast<Index>(mesh.entities.size()) % mesh.per_entity == 0,
           "interfaces/entities is not a list of them");
   require_indices(mesh.entities, nodes, "interfaces/entities");
   require(mesh.edges.empty() || static_cast<Index>(mesh.edges.size()) == mesh.count(),
           "interfaces/edges does not fit");
   require_indices(mesh.edges, 3, "interfaces/edges");
-  require(std::accumulate(mesh.parts.begin(), mesh.parts.end(), Index{0}) == nodes,
+  require(std::accumulate(mesh.parts.begin(), mesh.parts.end(), Index{0}) == nodes &&
+              std::ranges::all_of(mesh.parts, [](int part) { return part > 0; }),
           "interfaces/parts does not fit");
   require(static_cast<Index>(mesh.dofs.size()) == nodes * mesh.components &&
               std::ranges::all_of(mesh.dofs, [&](int d) { return d >= -1 && d < columns; }),
@@ -214,9 +220,8 @@ void check_model(const ReducedModel &model) {
   require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || model.nitsche),
           "it has no modes or no generators");
   require(model.a.size() > 0, "a has no terms");
-  require(model.evaluates_contact() || model.nitsche ? model.b.size() + model.g.size() == 0
-                                                     : model.b.size() > 0 && model.g.size() > 0,
-          "b has terms and g has not, or the other way round");
+  require(model.b.size() > 0 ? !model.nitsche : model.g.size() == 0,
+          "g has terms and b has not, or Nitsche's method has some");
   const std::size_t interfaces = model.interfaces.size();
   for (const InterfaceModel &interface : model.interfaces)
     check_interface(interface, dim, contact);
@@ -297,11 +302,7 @@ Contact contact_of(const ReducedModel &model, const Scene &scene) {
   std::vector<InterfaceMesh> meshes;
   for (const InterfaceModel &interface : model.interfaces)
     meshes.push_back(interface.mesh);
-  Contact contact = make_contact(scene, std::move(meshes));
-  if (contact.dual_size() != model.dual_basis.rows() ||
-      by_nitsche(scene) != model.nitsche.has_value())
-    throw bad_input("the contact of the model does not fit its scene in this build");
-  return contact;
+  return make_contact(scene, std::move(meshes));
 }
 
 Scene scene_of(const ReducedModel &model) {

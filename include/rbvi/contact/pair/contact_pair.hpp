@@ -45,12 +45,13 @@ PairDiscretisation pair_discretisation(const SceneOptions &options);
 /// multipliers. A slave point beyond the ends of the master curve has no partner and contributes
 /// nothing.
 struct PairOperators {
-  SparseMatrix b;            ///< multipliers x nodes: int (v_master o phi - v_slave) eta ds (2.51)
-  Vector g;                  ///< multipliers: int gap eta ds (2.52)
-  Vector weights;            ///< multipliers: int eta ds over the slave points that have a partner
-  std::vector<Index> paired; ///< slave vertices that have a partner, increasing
-  SparseMatrix nodal_b;      ///< paired x nodes: the constraint at these vertices
-  Vector nodal_gap;          ///< paired
+  SparseMatrix b; ///< multipliers x nodes: int (v_master o phi - v_slave) eta ds (2.51)
+  Vector g;       ///< multipliers: int gap eta ds (2.52)
+  Vector weights; ///< multipliers: int eta ds over the slave points that have a partner
+  std::vector<Index> uncovered; ///< multipliers with a slave point that has none
+  std::vector<Index> paired;    ///< slave vertices that have a partner, increasing
+  SparseMatrix nodal_b;         ///< paired x nodes: the constraint at these vertices
+  Vector nodal_gap;             ///< paired
 };
 
 /// Vertices of a curve by its number of nodes.

@@ -1,0 +1,235 @@
+// Interfaces that are sums over their entities: against dense sums, with dofs that are not seen,
+// and an obstacle against closed forms.
+#include "../core/refuses.hpp"
+#include "rbvi/contact/obstacle/obstacle.hpp"
+#include "support_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+/// A scalar membrane over psi = height(mu, x), stretched by mu[0] along x.
+Scene membrane(Obstacle over) {
+  Scene scene;
+  scene.name = "toy";
+  scene.parameters.all = {{"stretch", "", 0, 2, 1}};
+  scene.map = [](const FullMu &mu, const Point &x) { return Point{mu[0] * x[0], x[1], 0}; };
+  scene.contacts = {obstacle(std::move(over))};
+  return scene;
+}
+
+/// The unit square in n x n squares of two triangles; every node has the column of its number.
+InterfaceMesh square(int n) {
+  InterfaceMesh mesh;
+  mesh.per_entity = 3;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      mesh.points.push_back({static_cast<double>(i) / n, static_cast<double>(j) / n, 0});
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i) {
+      const int k = j * (n + 1) + i;
+      mesh.entities.insert(mesh.entities.end(), {k, k + 1, k + n + 2, k, k + n + 2, k + n + 1});
+    }
+  mesh.parts = {static_cast<int>(mesh.nodes())};
+  mesh.columns = mesh.nodes();
+  for (int i = 0; i < mesh.columns; ++i)
+    mesh.dofs.push_back(i);
+  return mesh;
+}
+
+/// Every third dof is not seen, the others are numbered backwards among more columns.
+InterfaceMesh partly_seen(InterfaceMesh mesh) {
+  mesh.columns += 5;
+  for (int i = 0; i < static_cast<int>(mesh.dofs.size()); ++i)
+    mesh.dofs[static_cast<std::size_t>(i)] =
+        i % 3 == 1 ? -1 : static_cast<int>(mesh.columns) - 1 - i;
+  return mesh;
+}
+
+double quadratic(const FullMu &mu, const Point &x) {
+  return 0.3 - mu[0] * x[0] * x[0] + 2 * x[0] * x[1];
+}
+
+/// What the entities add, one after the other.
+struct Sum {
+  Matrix b;
+  Vector g, weights;
+  Sum(const Scene &scene, const EntitySum &interface, const FullMu &mu)
+      : b(Matrix::Zero(interface.dual().size(), interface.mesh().columns)),
+        g(Vector::Zero(b.rows())), weights(Vector::Zero(interface.dual().nodes())) {
+    for (Index e = 0; e < interface.mesh().count(); ++e) {
+      Cell entity = interface.reference_entity(e);
+      for (std::size_t i = 0; i <= static_cast<std::size_t>(interface.entity_dim()); ++i)
+        entity.mapped[i] = scene.map(mu, entity.reference[i]);
+      EntityValues values = interface.shape();
+      interface.integrate(mu, entity, values);
+      interface.weigh(mu, entity, values);
+      const std::vector<Index> rows = interface.rows_of(e), columns = interface.columns_of(e);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto row = static_cast<Index>(i);
+        g[rows[i]] += values.g[row];
+        for (std::size_t j = 0; j < columns.size(); ++j)
+          if (columns[j] >= 0) b(rows[i], columns[j]) += values.b(row, static_cast<Index>(j));
+      }
+      for (Index i = 0; i < values.weights.size(); ++i)
+        weights[rows[static_cast<std::size_t>(i)]] += values.weights[i];
+    }
+  }
+};
+
+/// Assembled twice into the same operators, at one mu and then at another.
+void expect_sum(const Scene &scene, const InterfaceMesh &mesh) {
+  const auto interface = scene.contacts.front().make(scene, mesh);
+  ASSERT_NE(interface->entity_sum(), nullptr);
+  ContactOperators operators, nodal;
+  for (const FullMu &mu : {FullMu{0.8}, FullMu{1.3}}) {
+    interface->assemble(mu, {}, operators);
+    const Sum sum(scene, *interface->entity_sum(), mu);
+    EXPECT_LE((Matrix(operators.b) - sum.b).norm(), 1e-15 * sum.b.norm());
+    EXPECT_LE((operators.g - sum.g).norm(), 1e-15 * sum.g.norm());
+    EXPECT_LE((operators.weights - sum.weights).norm(), 1e-15 * sum.weights.norm());
+    EXPECT_TRUE(operators.uncovered.empty());
+    expect_sorted(operators.b);
+    interface->assemble_nodal(mu, {}, nodal);
+    EXPECT_EQ(nodal.weights, operators.weights);
+    EXPECT_EQ(Matrix(nodal.nodal_b), Matrix(operators.nodal_b));
+    EXPECT_EQ(nodal.nodal_gap, operators.nodal_gap);
+  }
+}
+
+TEST(EntitySum, IsTheSumOverTheCellsOfARegion) {
+  for (const bool lumped : {false, true}) {
+    const Scene scene = membrane({"region", quadratic, lumped});
+    expect_sum(scene, square(3));
+    expect_sum(scene, partly_seen(square(3)));
+  }
+}
+
+TEST(EntitySum, IsTheSumOverTheEdgesOfACurve) {
+  Random random(1);
+  const Curve vertices = random_curve(random, 7, -0.5, 0.8, -0.3);
+  for (const int degree : {1, 2})
+    for (const bool friction : {true, false}) {
+      SupportScene scene = crooked(degree);
+      if (!friction) scene.support.friction = {};
+      scene.contacts = {rigid_support(scene.support)};
+      expect_sum(scene, support_curve(vertices, degree));
+      expect_sum(scene, partly_seen(support_curve(vertices, degree)));
+    }
+}
+
+/// Rows and columns of what is seen are those of the whole.
+TEST(EntitySum, DofsThatAreNotSeenHaveNoColumn) {
+  const Scene scene = membrane({"region", quadratic});
+  const InterfaceMesh all = square(3), part = partly_seen(all);
+  ContactOperators whole, seen;
+  scene.contacts.front().make(scene, all)->assemble({0.8}, {}, whole);
+  scene.contacts.front().make(scene, part)->assemble({0.8}, {}, seen);
+  EXPECT_EQ(seen.b.cols(), 21);
+  EXPECT_EQ(seen.g, whole.g);
+  Index columns = 0;
+  for (Index i = 0; i < all.nodes(); ++i)
+    if (const int dof = part.dofs[static_cast<std::size_t>(i)]; dof >= 0) {
+      EXPECT_EQ(Vector(seen.b.col(dof)), Vector(whole.b.col(i)));
+      EXPECT_EQ(Vector(seen.nodal_b.col(dof)), Vector(whole.nodal_b.col(i)));
+      ++columns;
+    }
+  EXPECT_EQ(columns, 11);
+  EXPECT_NEAR(
+      seen.b.squaredNorm(),
+      [&] {
+        double sum = 0;
+        for (Index i = 0; i < all.nodes(); ++i)
+          if (part.dofs[static_cast<std::size_t>(i)] >= 0) sum += whole.b.col(i).squaredNorm();
+        return sum;
+      }(),
+      1e-15);
+}
+
+/// -B 1 = the weights, whose sum is the mapped area; -g over all rows is the integral of psi.
+TEST(ObstacleInterface, IntegratesOverTheMappedRegion) {
+  for (const bool lumped : {false, true}) {
+    const Scene scene = membrane({"region", quadratic, lumped});
+    const auto interface = scene.contacts.front().make(scene, square(4));
+    const double stretch = 1.4;
+    ContactOperators op;
+    interface->assemble({stretch}, {}, op);
+    EXPECT_NEAR(op.weights.sum(), stretch, 1e-14);
+    EXPECT_LE((op.b * Vector::Ones(25) + op.weights).norm(), 1e-14);
+    EXPECT_EQ(op.b.isApprox(SparseMatrix(op.b.transpose())), true);
+    // Over (0, s) x (0, 1): 0.3 s - s^4 / 3 + s^2 / 2.
+    const double s = stretch, exact = 0.3 * s - std::pow(s, 4) / 3 + s * s / 2;
+    EXPECT_NEAR(-op.g.sum(), exact, lumped ? 0.1 : 1e-14);
+    if (!lumped) continue;
+    EXPECT_LE((Matrix(op.b) + Matrix(op.weights.asDiagonal())).norm(), 1e-15);
+    EXPECT_LE((op.g - op.weights.cwiseProduct(op.nodal_gap)).norm(), 1e-15);
+  }
+}
+
+TEST(ObstacleInterface, BoundsTheVerticesFromBelow) {
+  const Scene scene = membrane({"region", quadratic});
+  const InterfaceMesh mesh = square(2);
+  const auto interface = scene.contacts.front().make(scene, mesh);
+  const FullMu mu{0.7};
+  ContactOperators op;
+  interface->assemble_nodal(mu, {}, op);
+  EXPECT_EQ(Matrix(op.nodal_b), Matrix(-Matrix::Identity(9, 9)));
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    EXPECT_EQ(op.nodal_gap[static_cast<Index>(i)], -quadratic(mu, scene.map(mu, mesh.points[i])));
+  const PointConstraint at = interface->constraint_at(mu, {0.3, 0.6, 0});
+  EXPECT_EQ(at.direction, (Point{-1, 0, 0}));
+  EXPECT_EQ(at.gap, -quadratic(mu, {0.7 * 0.3, 0.6, 0}));
+  EXPECT_EQ(interface->bound(mu).coefficient + interface->bound(mu).threshold, 0);
+}
+
+TEST(ObstacleInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
+  Scene scene = membrane({"region", quadratic});
+  scene.mirror_images = 2;
+  const auto interface = scene.contacts.front().make(scene, square(2));
+  ContactOperators op;
+  interface->assemble_nodal({1}, {}, op);
+  Vector lambda = Vector::Zero(9);
+  lambda[4] = 3;
+  lambda[0] = 1e-3;
+  Outputs out;
+  interface->outputs({1}, op, lambda, 1e-2, out);
+  EXPECT_DOUBLE_EQ(*out.normal_force, 2 * op.weights.dot(lambda));
+  EXPECT_DOUBLE_EQ(*out.contact_measure, 2 * op.weights[4]);
+  EXPECT_EQ(*out.contact_nodes, 2);
+  EXPECT_EQ(*out.peak_pressure, 3);
+}
+
+TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {
+  const Scene scene = membrane({"region", quadratic});
+  const InterfaceMesh mesh = square(2);
+  const Vector u = Vector::LinSpaced(9, 0, 1), lambda = Vector::LinSpaced(9, 2, 3);
+  const FullMu mu{0.7};
+  const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda);
+  EXPECT_EQ(grid.cells, mesh.entities);
+  ASSERT_EQ(grid.of_nodes.size(), 2U);
+  EXPECT_EQ(grid.of_nodes[0].values, lambda);
+  for (Index i = 0; i < 9; ++i) {
+    const Point x = scene.map(mu, mesh.points[static_cast<std::size_t>(i)]);
+    EXPECT_EQ(grid.points(i, 0), x[0]);
+    EXPECT_NEAR(grid.of_nodes[1].values[i], u[i] - quadratic(mu, x), 1e-15);
+  }
+}
+
+TEST(ObstacleInterface, IsForScalarsOfDegreeOneOnWholeCells) {
+  const Scene scene = membrane({"region", quadratic});
+  const auto made_with = [&](auto change) {
+    return [&scene, change] {
+      InterfaceMesh mesh = square(2);
+      change(mesh);
+      (void)scene.contacts.front().make(scene, mesh);
+    };
+  };
+  const std::string says = "scalar displacements of degree 1";
+  EXPECT_TRUE(refuses(says, made_with([](InterfaceMesh &mesh) { mesh.components = 2; })));
+  EXPECT_TRUE(refuses(says, made_with([](InterfaceMesh &mesh) { mesh.degree = 2; })));
+  EXPECT_TRUE(refuses(says, made_with([](InterfaceMesh &mesh) { mesh.per_entity = 2; })));
+}
+
+} // namespace
+} // namespace rbvi
