@@ -24,7 +24,7 @@ inline std::vector<Point> arc_points(std::mt19937 &random, Index nodes, double s
     angles.push_back(angles.back() + share(random));
   std::vector<Point> points;
   for (const double angle : angles) {
-    const double t = std::numbers::pi / 4 * angle / angles.back();
+    const double t = std::numbers::pi / 4 * (angle / angles.back()); // the ends exactly
     points.push_back({std::sin(t), sign * (1.5 - std::cos(t)), 0});
   }
   return points;
@@ -75,8 +75,11 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
   std::mt19937 random(seed);
   ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size();
-  model.a.reduced = pack(random_spd(random, n));
+  model.a = random_terms(random, n * (n + 1) / 2, 1, 1);
+  model.a.interpolation.resize(0, 0); // one exact term
+  model.a.samples.clear();
   model.a.exact = 1;
+  model.a.reduced = pack(random_spd(random, n));
 
   const std::vector<Point> slave = arc_points(random, sizes.slave, 1),
                            master = arc_points(random, sizes.master, -1);
