@@ -56,9 +56,11 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
-    Condensation made = condense(problem, affine, training, nodal, options.condensed, modes);
+    Condensation made = condense(problem, affine, training, nodal, options.condensed, modes,
+                                 nodal_coefficients(nodal, multipliers));
     bases.condensed = std::move(made.condensed);
     bases.responses = made.responses;
+    bases.factorisations = made.factorisations;
   }
   if (!will_run(stages, stage::multipliers)) return bases;
   {

@@ -49,8 +49,8 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
   std::mt19937 random(seed);
   ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size();
-  model.a.reduced = pack(random_spd(random, n));
-  model.a.exact = 1;
+  model.a = random_terms(random, n * (n + 1) / 2, 1, 1);
+  model.a = {pack(random_spd(random, n)), {}, {}, 0, 1};
 
   model.slave_nodes = static_cast<int>(sizes.slave);
   std::vector<Point> points = arc_points(random, sizes.slave, 1);

@@ -61,6 +61,7 @@ struct ReducedBases {
   int modes = 0;       ///< N
   int supremizers = 0; ///< S
   int responses = 0;   ///< contact with a rigid support: S functions of `condense` in their place
+  int factorisations = 0; ///< of A, for the condensed operator
   bool online_enriched = false;
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };

@@ -28,7 +28,8 @@ Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
 
 struct Condensation {
   CondensedOperator condensed;
-  int responses = 0; ///< functions appended to the modes
+  int responses = 0;      ///< functions appended to the modes
+  int factorisations = 0; ///< of A
 };
 
 /// `affine`: the separation of b over the samples at `training`. One factorisation and
@@ -39,9 +40,13 @@ struct Condensation {
 /// the ends and in the middle of each free parameter of A. The displacement is then as exact as the
 /// multipliers, which no set of snapshots makes it where active sets are new. Of the first A all
 /// are taken (down to a remainder of 1e-8 of their norm), of the others what is left above
-/// options.responses.
+/// options.responses. Where A is a sum of more than two exact terms, there are fewer
+/// factorisations: the responses are appended until they are there to 1e-6 for all multipliers like
+/// `multipliers` (coefficients in `basis` x samples), and Galerkin's method in modes and responses
+/// gives the values of H.
 Condensation condense(Problem &problem, const AffineOperators &affine,
                       const std::vector<Mu> &training, const Matrix &basis,
-                      const CondensedOptions &options, LinearBasis *modes = nullptr);
+                      const CondensedOptions &options, LinearBasis *modes = nullptr,
+                      const Matrix &multipliers = {});
 
 } // namespace rbvi
