@@ -20,12 +20,12 @@ from solution_figures import label_plane, solution
 
 
 def kind_of(run):
-    """What the model reduces: a "pair" of bases, contact with a rigid "support" by multipliers, or
-    by "nitsche"."""
+    """What the model reduces: a "pair" of bases, the law at nodes ("support"), or the curve of
+    "nitsche"."""
     with h5py.File(model_of(run), "r") as model:
-        if model["nitsche/edges"].size > 0:
+        if int(np.ravel(model["nitsche/rule"][()])[0]) >= 0:
             return "nitsche"
-        return "support" if int(np.ravel(model["support/vertices"][()])[0]) > 0 else "pair"
+        return "support" if int(np.ravel(model["support/normal"][()])[0]) > 0 else "pair"
 
 
 def nitsche_panels(run):
@@ -104,9 +104,11 @@ def draw_contact_field(figure, axis, points, cells, values, colours, limits, tit
 
 
 def contact_cells(run):
-    """Triangles of the contact region; nothing for two bodies."""
+    """Triangles of the contact region; nothing for contact along curves."""
     with h5py.File(run / "model.h5", "r") as model:
-        return model["fields/contact_cells"][()].reshape(-1, 3)
+        region = model["interfaces/0/sizes"][3] == 3 and model["interfaces/0/edges"].size == 0
+        cells = model["interfaces/0/entities"][()] if region else np.zeros(0, int)
+        return cells.reshape(-1, 3)
 
 
 def worst_parameters(run, data):

@@ -43,6 +43,12 @@ void check_together(const Scene &scene, const FullMu &all) {
     check_coefficients(*sum, scene.parameters, all);
 }
 
+void check_set(const Scene &scene, const std::vector<Mu> &set) {
+  for (const Mu &mu : set)
+    for (const Sum *sum : {&scene.a, &scene.f})
+      check_coefficients(*sum, scene.parameters, expand(scene.parameters, mu));
+}
+
 void check_query(const Scene &scene, const Mu &mu, bool allow_outside) {
   check_mu(scene.parameters, mu, allow_outside);
   if (allow_outside) check_together(scene, expand(scene.parameters, mu));

@@ -21,8 +21,7 @@ Index component_count(int dim) {
 
 Cell cell_of(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
              const int *nodes) {
-  Cell cell;
-  cell.dim = scene.dim;
+  Cell cell{scene.dim, {}, {}};
   for (std::size_t i = 0; i <= static_cast<std::size_t>(scene.dim); ++i)
     for (Index k = 0; k < points.cols(); ++k)
       cell.reference[i][static_cast<std::size_t>(k)] = points(nodes[i], k);

@@ -1,10 +1,10 @@
 #include "rbvi/mor/reduce.hpp"
 
-#include "dense_rows.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
+#include "separation/dense_rows.hpp"
 
 #include <algorithm>
 #include <utility>

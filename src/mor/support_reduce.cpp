@@ -77,9 +77,11 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
     const CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
     Condensation made =
         condense(problem, loads, separable_contact(scene) ? nodal.cols() : loads.columns.cols(),
-                 expand(scene.parameters, training.front()), options.condensed, modes);
+                 expand(scene.parameters, training.front()), options.condensed, modes,
+                 nodal_coefficients(nodal, multipliers));
     bases.condensed = std::move(made.condensed);
     bases.responses = made.responses;
+    bases.factorisations = made.factorisations;
   }
   if (!will_run(stages, stage::multipliers)) return bases;
   {

@@ -2,6 +2,7 @@
 #include "rbvi/check/bench.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
@@ -137,6 +138,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   const std::vector<Sample> snapshots =
       samples_at(problem, options, from_columns(model.trained_mu), "training").samples;
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
+  check_set(options.scene, validation);
   const Sweep sweep = samples_at(problem, options, validation, "validation");
   const std::vector<Sample> &truths = sweep.samples;
 

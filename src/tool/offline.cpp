@@ -1,5 +1,6 @@
 // rbvi offline: from a case file to a model file.
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
@@ -33,6 +34,7 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
 void command_offline(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   const std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
+  check_set(options.scene, training);
   check_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
   const Groups groups(world, options.ranks_per_solve);

@@ -4,6 +4,7 @@
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/parameter_sets.hpp"
@@ -329,6 +330,7 @@ void command_verify(const ToolOptions &given) {
   const ToolOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::constants);
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
+  check_set(options.scene, validation);
   const std::vector<Mu> training = from_columns(model.trained_mu);
   const Groups groups(world, options.ranks_per_solve);
   Workspace work(world, groups, options);

@@ -135,7 +135,7 @@ TEST_P(BadInput, OptionsOfEigenvalues) {
           {offline + "-pga_eps_type nothing", "the options -pga_* do not work"},
           {offline + "-infsup_svd_view", "inf-sup constants are computed by verify"},
           {offline + "-pga_enrichment decorrelated -pga_eps_view", "makes no supremizers"},
-          {disk + "-pga_eps_view", "collocated alone makes supremizers"},
+          {disk + "-pga_eps_view", "cone and collocated alone make supremizers"},
           {disk + "-formulation nitsche -pga_eps_view", "Nitsche's method has no multipliers"},
           {"solve -case case.yaml -mu 0.2,0,0 -csv x.csv -pga_eps_view", "made by offline"}});
 }

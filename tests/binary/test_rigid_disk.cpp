@@ -91,7 +91,7 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused(
       {{offline + "-friction slippery", "use one of none, tresca, coulomb"},
-       {offline + "-eim_normal_tolerance 1e-3", "for contact with a rigid support and"},
+       {offline + "-eim_normal_tolerance 1e-3", "are for -multiplier_reduction collocated"},
        {offline + "-multiplier_reduction collocated -friction none -eim_tangential_tolerance 1e-3",
         "contact with friction, which this scene has not"},
        {offline + "-arc_edges 7", "must be even and at least 8"},
@@ -102,8 +102,8 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
        {offline + "-multiplier_reduction cones -cone_type hybrid",
         "-cone_type hybrid has functions of either sign"},
        {offline + "-pga_tolerance inf-sup", "a number or infsup"},
-       {offline + "-hf_method vi", "set -friction none and -lumped yes"},
-       {offline + "-hf_method vi -lumped yes", "set -friction none and -lumped yes"},
+       {offline + "-hf_method vi", "set -lumped yes and -friction none"},
+       {offline + "-hf_method vi -lumped yes", "set -lumped yes and -friction none"},
        {offline + "-formulation nitsche -lumped yes", "leave out -formulation nitsche"},
        {"solve -case disk.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
        {"solve -case disk.yaml -parameters radius,viscosity -mu 1,1", "viscosity"}});

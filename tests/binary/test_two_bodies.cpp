@@ -94,7 +94,7 @@ TEST_F(TwoBodies, BadInputIsRefused) {
        {disks + "-indentation deep", "'deep': not a number"},
        {disks + "-load -25", "unknown option -load"},
        {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
-       {disks + "-hf_method vi", "bounds integrals over several: use active_set or uzawa"},
+       {disks + "-hf_method vi", "needs a bound at each node"},
        {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}});
 }
 

@@ -186,5 +186,15 @@ TEST_F(Overwriting, AnInputIsFoundHoweverItIsSpelt) {
   EXPECT_NO_THROW(check_overwriting({"--out", "grid:5"}, {{"the file of queries", ""}}));
 }
 
+TEST(Validity, ASetWithACoefficientThatIsNotFiniteIsRefused) {
+  Scene scene = make_scene("rigid_disk");
+  scene.a.push_back(exact_term(
+      {}, {{"pole", [](const FullMu &mu) { return 1 / (mu[0] - 1); }, std::vector<int>{0}}}));
+  EXPECT_NO_THROW(check_set(scene, {{0.9}, {1.1}}));
+  EXPECT_TRUE(refuses("pole is not finite at radius=1 ", [&] {
+    check_set(scene, {{0.9}, {1}, {1.1}});
+  }));
+}
+
 } // namespace
 } // namespace rbvi

@@ -15,6 +15,9 @@ void check_range(const Range &range, double value, const std::string &what);
 /// coefficient of a or f is not finite. `all`: the values of all parameters.
 void check_together(const Scene &scene, const FullMu &all);
 
+/// Throws bad_input where a coefficient of a or f is not finite at one of these, free parameters.
+void check_set(const Scene &scene, const std::vector<Mu> &set);
+
 /// Throws bad_input unless mu (the free parameters) is in the box, or with `allow_outside` in the
 /// range of validity.
 void check_query(const Scene &scene, const Mu &mu, bool allow_outside);

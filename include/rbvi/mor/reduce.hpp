@@ -58,9 +58,10 @@ struct ReducedBases {
   MultiplierReduction reduction = MultiplierReduction::condensed;
   bool mended = true; ///< SupportModel::mended
   MultiplierBases multipliers;
-  int modes = 0;       ///< N
-  int supremizers = 0; ///< S
-  int responses = 0;   ///< the law at nodes: S functions of `condense` in their place
+  int modes = 0;          ///< N
+  int supremizers = 0;    ///< S
+  int responses = 0;      ///< the law at nodes: S functions of `condense` in their place
+  int factorisations = 0; ///< of A, for the condensed operator
   bool online_enriched = false;
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
 };

@@ -2,9 +2,13 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/mor/separation/response_space.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_svd.hpp"
+#include "rbvi/par/turns.hpp"
 #include "rbvi/solve/replicated.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -15,6 +19,10 @@
 namespace rbvi {
 
 namespace {
+
+/// Sums of more than two exact terms: what the responses of the body may leave, relative.
+constexpr double response_tolerance = 1e-6;
+constexpr int most_responses = 200; ///< factorisations
 
 /// Whether node i is the mirror image of node count - 1 - i.
 bool mirrored(const std::vector<Point> &points) {
@@ -185,51 +193,129 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
   return loads;
 }
 
-Condensation condense(Problem &problem, const CondensedLoads &of, Index size,
-                      const FullMu &all_parameters, const CondensedOptions &options,
-                      LinearBasis *modes) {
-  const Scene &scene = problem.scene();
-  const Matrix &loads = of.columns;
-  const bool appends = modes != nullptr && (of.join || !of.dofs.empty()) && options.responses > 0;
-  const std::vector<Mu> ends = free_grid(scene, axes_of(scene, 3), all_parameters);
-  Condensation result;
-  CondensedOperator &condensed = result.condensed;
+namespace {
 
-  const auto append = [&](Mat fields) {
-    const double least = result.responses == 0 ? 1e-8 : options.responses;
-    result.responses += static_cast<int>(append_orthonormalised(*modes, fields, least).size());
-  };
-  /// H of one A, factorised once.
-  const auto blocks_at = [&](const Mu &mu) {
-    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
-    if (!appends || std::find(ends.begin(), ends.end(), mu) == ends.end())
-      return blocks_of(loads.transpose() * solver.responses(loads), size);
-    if (!of.join) {
+/// Combinations of the multipliers, as large as those of `multipliers` (m x P) make them, and at
+/// every node as large as new active sets can change them.
+Matrix weights_of(const Matrix &multipliers) {
+  constexpr double new_at_a_node = 0.1; ///< of the largest multiplier
+  const Index m = multipliers.rows();
+  const double node = new_at_a_node * multipliers.cwiseAbs().maxCoeff();
+  const Matrix covariance =
+      multipliers * multipliers.transpose() / static_cast<double>(multipliers.cols()) +
+      node * node * Matrix::Identity(m, m);
+  return Eigen::LLT<Matrix>(covariance).matrixL();
+}
+
+/// H at single mu, each A factorised; what `condense` appends to the modes on the way.
+class FactorisedResponses {
+public:
+  /// `size`: columns of a block of H.
+  FactorisedResponses(Problem &problem, const CondensedLoads &loads, Index size, double responses,
+                      LinearBasis *modes, std::vector<Mu> ends)
+      : problem_(problem), of_(loads), size_(size), responses_(responses), modes_(modes),
+        ends_(std::move(ends)) {}
+
+  /// Collective.
+  Vector blocks_at(const Mu &mu) {
+    ++factorisations;
+    ReplicatedSolver solver(problem_.assemble(mu).a, problem_.trace(), "hf_");
+    const Matrix &loads = of_.columns;
+    const bool appends =
+        modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end();
+    if (!appends || !of_.join) {
       const Matrix units = Matrix::Identity(loads.rows(), loads.rows());
-      append(solver.fields(units(Eigen::all, of.dofs)).get());
-      return blocks_of(loads.transpose() * solver.responses(loads), size);
+      if (appends) append(solver.fields(units(Eigen::all, of_.dofs)).get());
+      return blocks_of(loads.transpose() * solver.responses(loads), size_);
     }
     const Handle<Mat> fields = solver.fields(loads);
     append(fields.get());
-    return blocks_of(loads.transpose() * restrict_to(problem.trace(), fields.get()), size);
-  };
+    return blocks_of(loads.transpose() * restrict_to(problem_.trace(), fields.get()), size_);
+  }
+
+  int factorisations = 0, appended = 0;
+
+private:
+  void append(Mat fields) {
+    const double least = appended == 0 ? 1e-8 : responses_;
+    appended += static_cast<int>(append_orthonormalised(*modes_, fields, least).size());
+  }
+
+  Problem &problem_;
+  const CondensedLoads &of_;
+  Index size_;
+  double responses_;
+  LinearBasis *modes_;
+  std::vector<Mu> ends_;
+};
+
+/// Values at a grid that is made finer until the interpolant is right to the tolerance.
+/// `blocks_at`: at many mu. Collective.
+template <class BlocksAt>
+Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOptions &options,
+                      CondensedOperator &condensed, BlocksAt &&blocks_at) {
   std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
-  Matrix values;
   for (int points = 5;; points = 2 * points - 1) {
     condensed.axes = axes_of(scene, points);
-    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all_parameters);
-    for (const Mu &mu : grid)
-      if (!known.contains(mu)) known.emplace(mu, blocks_at(mu));
-    values.resize(known.begin()->second.size(), static_cast<Index>(grid.size()));
+    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
+    std::vector<Mu> added;
+    std::copy_if(grid.begin(), grid.end(), std::back_inserter(added),
+                 [&](const Mu &mu) { return !known.contains(mu); });
+    const std::vector<Vector> blocks = blocks_at(added);
+    for (std::size_t k = 0; k < added.size(); ++k)
+      known.emplace(added[k], blocks[k]);
+    Matrix values(known.begin()->second.size(), static_cast<Index>(grid.size()));
     for (std::size_t k = 0; k < grid.size(); ++k)
       values.col(static_cast<Index>(k)) = known.at(grid[k]);
     condensed.error = chebyshev_tail(condensed.axes, values);
-    if (condensed.error <= options.tolerance) break;
+    if (condensed.error <= options.tolerance) return values;
     if (2 * points - 1 > options.max_points)
       throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
                     " only by " + std::to_string(points) +
                     " points along each parameter of the stiffness: narrow their bounds, or raise "
                     "-condensed_tolerance");
+  }
+}
+
+} // namespace
+
+Condensation condense(Problem &problem, const CondensedLoads &loads, Index size, const FullMu &all,
+                      const CondensedOptions &options, LinearBasis *modes,
+                      const Matrix &multipliers) {
+  const Scene &scene = problem.scene();
+  const bool appends =
+      modes != nullptr && (loads.join || !loads.dofs.empty()) && options.responses > 0;
+  const SplitSum &split = problem.a_terms().split;
+  Condensation result;
+  CondensedOperator &condensed = result.condensed;
+  Matrix values;
+  if (appends && loads.join && split.mapped.empty() && split.exact.size() > 2) {
+    const ResponseSpace space =
+        append_responses(problem, loads.columns, weights_of(multipliers), axes_of(scene, 1), all,
+                         response_tolerance, most_responses, *modes);
+    const ReducedResponses reduced(problem, loads.columns, *modes);
+    values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
+      std::vector<Vector> blocks(set.size(), Vector::Zero(size * size));
+      take_turns(problem.comm(), set.size(), [&](std::size_t k) {
+        blocks[k] = blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
+      });
+      for (Vector &block : blocks)
+        over_ranks(problem.comm(), MPI_SUM, block);
+      return blocks;
+    });
+    result.responses = space.functions;
+    result.factorisations = space.points;
+  } else {
+    FactorisedResponses exact(problem, loads, size, options.responses, appends ? modes : nullptr,
+                              free_grid(scene, axes_of(scene, 3), all));
+    values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
+      std::vector<Vector> blocks;
+      for (const Mu &mu : set)
+        blocks.push_back(exact.blocks_at(mu));
+      return blocks;
+    });
+    result.responses = exact.appended;
+    result.factorisations = exact.factorisations;
   }
   compress(values, size * size, options.tolerance, condensed);
   return result;

@@ -80,7 +80,8 @@ void ReducedStiffness::set(const FullMu &all_parameters) {
     diagonal_ = eigenvalues_ * theta;
     if (!(diagonal_.minCoeff() > 0)) not_definite();
   } else {
-    a_ = unpacked(model_.a.reduced * theta, model_.primal_size());
+    a_.resize(model_.primal_size(), model_.primal_size());
+    unpack(model_.a.reduced * theta, a_);
     if (!model_.online_enriched) factorise(a_);
   }
   at_ = std::move(values);

@@ -27,7 +27,8 @@ Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
 
 struct Condensation {
   CondensedOperator condensed;
-  int responses = 0; ///< functions appended to the modes
+  int responses = 0;      ///< functions appended to the modes
+  int factorisations = 0; ///< of A
 };
 
 /// What A^-1 is asked for on the contact dofs.
@@ -51,12 +52,15 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
 /// at each Chebyshev point, shared among the ranks. Collective. Throws failure where the tolerance
 /// needs more points.
 ///
-/// `modes`, where given: these responses are appended to them, at the ends and
-/// in the middle of each free parameter of A. The displacement is then as exact as the multipliers,
-/// which no set of snapshots makes it where active sets are new. Of the first A all are taken (down
-/// to a remainder of 1e-8 of their norm), of the others what is left above options.responses.
+/// `modes`, where given: these responses are appended to them, at the ends and in the middle of
+/// each free parameter of A. The displacement is then as exact as the multipliers, which no set of
+/// snapshots makes it where active sets are new. Of the first A all are taken (down to a remainder
+/// of 1e-8 of their norm), of the others what is left above options.responses. Where all loads join
+/// and A is a sum of more than two exact terms, there are fewer factorisations: the responses are
+/// appended until they are there to 1e-6 for all multipliers like `multipliers` (coefficients of
+/// the loads x samples), and Galerkin's method in modes and responses gives the values of H.
 Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
                       const FullMu &all_parameters, const CondensedOptions &options,
-                      LinearBasis *modes = nullptr);
+                      LinearBasis *modes = nullptr, const Matrix &multipliers = {});
 
 } // namespace rbvi

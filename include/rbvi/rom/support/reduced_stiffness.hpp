@@ -44,7 +44,8 @@ private:
   Matrix eigenvalues_;  ///< n x J: the diagonal of each term
   Matrix b_;            ///< generators x n, term by term side by side: B_N on the eigenvectors
   Vector diagonal_;     ///< of A_N at mu
-  Matrix a_, subspace_; ///< enriched online: A_N, and the columns it is restricted to
+  Matrix a_;            ///< A_N, its lower triangle
+  Matrix subspace_;     ///< enriched online: the columns it is restricted to
   Eigen::LLT<Matrix> factor_;
 };
 

@@ -1,0 +1,192 @@
+#include "rbvi/mor/separation/response_space.hpp"
+
+#include "dense_rows.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/solve/replicated.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace rbvi {
+
+namespace {
+
+/// Leja points on [-1, 1] from the middle on: each the farthest from those before, by the product
+/// of the distances. The first n are good points of interpolation for every n.
+std::vector<double> leja_points(int count) {
+  constexpr int candidates = 512;
+  std::vector<double> points{0};
+  while (std::ssize(points) < count) {
+    double best = 0, farthest = -1;
+    for (int k = 0; k <= candidates; ++k) {
+      const double x = std::cos(std::numbers::pi * k / candidates);
+      double product = 1;
+      for (const double point : points)
+        product *= std::abs(x - point);
+      if (product > farthest * (1 + 1e-12)) {
+        best = x;
+        farthest = product;
+      }
+    }
+    points.push_back(best);
+  }
+  return points;
+}
+
+using MultiIndex = std::vector<int>; ///< number of the Leja point along each axis
+
+Mu point_at(const Scene &scene, const std::vector<ChebyshevAxis> &axes, const MultiIndex &index,
+            const std::vector<double> &leja, FullMu all) {
+  for (std::size_t d = 0; d < axes.size(); ++d) {
+    const ChebyshevAxis &axis = axes[d];
+    const double x = (axis.lower + axis.upper) / 2 +
+                     (axis.upper - axis.lower) / 2 * leja[static_cast<std::size_t>(index[d])];
+    const Coordinate *own = coordinate_of(scene.a, axis.parameter);
+    all[static_cast<std::size_t>(axis.parameter)] = own == nullptr ? x : own->back(x);
+  }
+  Mu mu;
+  for (const int i : scene.parameters.free)
+    mu.push_back(all[static_cast<std::size_t>(i)]);
+  return mu;
+}
+
+/// The points taken, by their remainders, and what may follow them.
+struct SparseGrid {
+  std::map<MultiIndex, double> taken;
+
+  /// The largest remainder among the points before it along each axis; nothing where one of them
+  /// has not been taken.
+  std::optional<double> expected(const MultiIndex &index) const {
+    double largest = 0;
+    for (std::size_t d = 0; d < index.size(); ++d) {
+      if (index[d] == 0) continue;
+      MultiIndex before = index;
+      --before[d];
+      const auto found = taken.find(before);
+      if (found == taken.end()) return std::nullopt;
+      largest = std::max(largest, found->second);
+    }
+    return largest;
+  }
+  /// The point to take next, and what is expected of it.
+  std::pair<MultiIndex, double> next() const {
+    std::pair<MultiIndex, double> best{{}, 0};
+    for (const auto &[index, remainder] : taken)
+      for (std::size_t d = 0; d < index.size(); ++d) {
+        MultiIndex after = index;
+        ++after[d];
+        if (taken.contains(after)) continue;
+        const std::optional<double> size = expected(after);
+        if (size && *size > best.second) best = {after, *size};
+      }
+    return best;
+  }
+};
+
+/// Columns as a dense distributed matrix with the rows of `like`. Collective.
+Handle<Mat> dense_like(Mat like, const Matrix &local) {
+  PetscInt rows = 0, all = 0;
+  RBVI_CALL(MatGetLocalSize(like, &rows, nullptr));
+  RBVI_CALL(MatGetSize(like, &all, nullptr));
+  Handle<Mat> dense;
+  RBVI_CALL(MatCreateDense(PetscObjectComm(reinterpret_cast<PetscObject>(like)), rows, PETSC_DECIDE,
+                           all, static_cast<PetscInt>(local.cols()), nullptr, dense.put()));
+  PetscScalar *values = nullptr;
+  PetscInt stride = 0;
+  RBVI_CALL(MatDenseGetLDA(dense.get(), &stride));
+  RBVI_CALL(MatDenseGetArrayWrite(dense.get(), &values));
+  Eigen::Map<Matrix, 0, Eigen::OuterStride<>>(values, rows, local.cols(),
+                                              Eigen::OuterStride<>(stride)) = local;
+  RBVI_CALL(MatDenseRestoreArrayWrite(dense.get(), &values));
+  RBVI_CALL(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));
+  return dense;
+}
+
+/// Appends the directions of `fields` outside the basis that are longer than `least`; returns the
+/// longest. Collective.
+double append_remainder(Mat fields, Mat product, double least, LinearBasis &basis) {
+  Matrix rest = BorrowedRows(fields).rows();
+  if (basis.size() > 0) {
+    Mat columns = nullptr;
+    RBVI_CALL(BVGetMat(basis.columns.get(), &columns));
+    const Matrix inside = projected(columns, product, fields);
+    rest.noalias() -= BorrowedRows(columns).rows() * inside;
+    RBVI_CALL(BVRestoreMat(basis.columns.get(), &columns));
+  }
+  const Handle<Mat> outside = dense_like(fields, rest);
+  const Eigen::SelfAdjointEigenSolver<Matrix> gram(
+      projected(outside.get(), product, outside.get()));
+  const Vector lengths = gram.eigenvalues().cwiseMax(0).cwiseSqrt();
+  const Index count = (lengths.array() > least).count();
+  const Matrix directions = rest * gram.eigenvectors().rightCols(count).rowwise().reverse();
+  if (count > 0) append_orthonormalised(basis, dense_like(fields, directions).get(), 1e-10);
+  return lengths.tail(1)[0];
+}
+
+} // namespace
+
+ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matrix &weights,
+                               const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
+                               double tolerance, int most, LinearBasis &basis) {
+  const std::vector<double> leja = leja_points(most);
+  const Matrix weighted = loads * weights;
+  const PetscInt before = basis.size();
+  ResponseSpace result;
+  SparseGrid grid;
+  double scale = 0;
+  for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
+       next = grid.next()) {
+    if (result.points == most)
+      throw failure("the responses of the body are known to " + short_number(next.second) +
+                    " only after " + counted(most, "factorisation") +
+                    ": narrow the bounds of the parameters of the stiffness");
+    const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);
+    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
+    const Handle<Mat> fields = solver.fields(weighted);
+    if (scale == 0)
+      scale = std::sqrt(projected(fields.get(), problem.v_product(), fields.get()).trace());
+    grid.taken[next.first] =
+        append_remainder(fields.get(), problem.v_product(), tolerance * scale, basis) / scale;
+    ++result.points;
+    result.left = next.second;
+  }
+  result.functions = static_cast<int>(basis.size() - before);
+  return result;
+}
+
+ReducedResponses::ReducedResponses(const Problem &problem, const Matrix &loads,
+                                   const LinearBasis &basis)
+    : problem_(problem) {
+  Mat columns = nullptr;
+  RBVI_CALL(BVGetMat(basis.columns.get(), &columns));
+  for (const Handle<Mat> &term : problem.a_terms().exact) {
+    const Matrix full = projected(columns, term.get(), columns);
+    terms_.push_back((full + full.transpose()) / 2);
+  }
+  loads_ = restrict_to(problem.trace(), columns).transpose() * loads;
+  RBVI_CALL(BVRestoreMat(basis.columns.get(), &columns));
+}
+
+Matrix ReducedResponses::compliance(const FullMu &all_parameters) const {
+  const Scene &scene = problem_.scene();
+  const std::vector<double> theta =
+      exact_coefficients(scene.a, problem_.a_terms().split, scene.parameters, all_parameters);
+  Matrix sum = theta[0] * terms_[0];
+  for (std::size_t q = 1; q < theta.size(); ++q)
+    sum += theta[q] * terms_[q];
+  const Eigen::LLT<Eigen::Ref<Matrix>> factor(sum);
+  if (factor.info() != Eigen::Success)
+    throw failure("the stiffness is not positive definite at " +
+                  describe(scene.parameters, all_parameters));
+  const Matrix half = factor.matrixL().solve(loads_);
+  return half.transpose() * half;
+}
+
+} // namespace rbvi
