@@ -47,7 +47,7 @@ TEST_F(Nitsche, IsReducedVerifiedAndAsked) {
 TEST_F(Nitsche, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused({{offline + "-hf_method uzawa", "mixed formulation"},
-                      {offline + "-multiplier_reduction joint", "by multipliers"},
+                      {offline + "-multiplier_reduction joint", "for the mixed formulation"},
                       {offline + "-nitsche_gamma0 -1", "nitsche_gamma0"},
                       {offline + "-nitsche_gamma 5", "-nitsche_gamma0"},
                       {offline + "-formulation mixed -nitsche_quadrature full", "-formulation"},
