@@ -29,10 +29,10 @@ def membranes():
 
 def two_disks():
     mu, few = ["0.83", "1", "1.17"], ["-train", "grid:41"]
-    for name, case, scene in (("two_disks", "case", []), ("two_disks_p1", "case", ["-multiplier", "p1"]),
-                              ("two_disks_degree_1", "case", ["-degree", "1"]),
+    for name, case, scene in (("two_disks", "cone", []), ("two_disks_p1", "cone", ["-multiplier", "p1"]),
+                              ("two_disks_degree_1", "cone", ["-degree", "1"]),
                               ("two_disks_published", "published", []),
-                              ("two_disks_p1_direct", "case",
+                              ("two_disks_p1_direct", "cone",
                                ["-degree", "1", "-multiplier", "p1", "-integration", "direct"])):
         yield Formulation(name, CASES / f"two_disks/{case}.yaml", scene, few, mu)
 
@@ -71,12 +71,13 @@ def rollers():
 
 
 def patches():
-    case, mu, few = CASES / "patch/case.yaml", ["0.02", "0.05"], []
+    case, mu = CASES / "patch/case.yaml", ["0.02", "0.05"]
+    few = ["-multiplier_reduction", "cone"]
     yield Formulation("patch_two", case, [], few, mu)
     yield Formulation("patch_two_degree_2", case, ["-degree", "2"], few, mu)
     yield Formulation("patch_one", case, ["-bodies", "one"], None, mu)
     yield Formulation("patch_nitsche", case,
-                      ["-formulation", "nitsche", "-bodies", "one", "-degree", "2"], few, mu)
+                      ["-formulation", "nitsche", "-bodies", "one", "-degree", "2"], [], mu)
 
 
 def every_scene():

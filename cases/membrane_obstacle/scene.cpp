@@ -95,6 +95,11 @@ void check_disc_in_square(const FullMu &all) {
                     "smaller");
 }
 
+const auto similarity_map = plain<PointMap>("membrane_obstacle/similarity", 1, similarity);
+const auto graded_map = plain<PointMap>("membrane_obstacle/graded", 1, graded);
+const auto obstacle_height = plain<PointValue>("membrane_obstacle/height", 1, height);
+const auto disc_check = plain<Check>("membrane_obstacle/disc_in_square", 1, check_disc_in_square);
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   scene.dim = 2;
@@ -102,18 +107,18 @@ Scene make(const SceneOptions &options) {
   scene.parameters = all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
                                {"center_x", "m", -0.05, 0.05, 0, centres},
                                {"center_y", "m", -0.05, 0.05, 0, centres}});
-  scene.check_parameters = check_disc_in_square;
+  scene.check_parameters = disc_check();
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
   const bool lumped = options.at("lumped") == "yes";
   scene.mesh = mesh(circle_edges(options, lumped));
-  scene.map = options.at("disc_map") == "graded" ? graded : similarity;
+  scene.map = options.at("disc_map") == "graded" ? graded_map() : similarity_map();
   scene.snap = [](const Point &x) -> Point {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
     return {scale * x[0], scale * x[1], 0};
   };
   scene.fixed = {{"boundary", {}}};
-  scene.contacts = {obstacle({"obstacle", height, lumped})};
+  scene.contacts = {obstacle({"obstacle", obstacle_height(), lumped})};
   const double load = number_in(options, "load");
   scene.a = {mapped_term(laplace(""))};
   if (load != 0) scene.f = {mapped_term(constant_load("", load))};
@@ -140,7 +145,8 @@ SceneEntry membrane_obstacle() {
         {},
         {0, 240},
         true}},
-      make};
+      make,
+      {similarity_map, graded_map, obstacle_height, disc_check}};
 }
 
 } // namespace rbvi

@@ -70,30 +70,52 @@ MeshRecipe mesh_of_one() {
   return recipe;
 }
 
+const auto joined_map = plain<PointMap>("patch/joined", 1, [](const FullMu &, const Point &x) {
+  return Point{x[0], x[1] - (x[1] > 0 ? apart : -apart), 0};
+});
+
+const auto upper_down =
+    plain<PointMap>("patch/upper_down", 1, [](const FullMu &mu, const Point &x) {
+      return Point{0, x[1] > 0 ? -mu[indentation] : 0, 0};
+    });
+
+const auto top_moved = plain<PointMap>("patch/top_moved", 1, [](const FullMu &mu, const Point &) {
+  return Point{mu[shear], -mu[indentation], 0};
+});
+
+const auto strain = plain<Coefficient>("patch/strain", 1,
+                                       [](const FullMu &mu) { return mu[indentation] / height; });
+
+/// What friction at the foot allows; without friction `frictionless` is 1.
+const Maker<Coefficient> shear_stress_at{
+    "patch/shear_stress", 1, [](const Record &of) -> std::function<Coefficient> {
+      const Lame material{number(of, "lambda"), number(of, "shear")};
+      const bool frictionless = number(of, "frictionless") != 0;
+      return [=](const FullMu &mu) {
+        const double pressure = (material.lambda + 2 * material.shear) * (mu[indentation] / height);
+        const double most = frictionless ? 0 : mu[friction] * pressure;
+        return std::clamp(material.shear * mu[shear] / height, -most, most);
+      };
+    }};
+
 Scene make_two(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain}}});
   scene.mesh = mesh_of_two();
-  scene.map = [](const FullMu &, const Point &x) -> Point {
-    return {x[0], x[1] - (x[1] > 0 ? apart : -apart), 0};
-  };
+  scene.map = joined_map();
   scene.fixed = {{"sides", {0}}, {"top", {}}, {"bottom", {}}};
-  scene.motion = [](const FullMu &mu, const Point &x) -> Point {
-    return {0, x[1] > 0 ? -mu[indentation] : 0, 0};
-  };
+  scene.motion = upper_down();
   return scene;
 }
 
 /// int sigma n . v over the sides, sigma the exact stress: sigma_xx = - lambda strain, sigma_xy the
 /// shear stress that friction at the foot allows.
 Sum side_load(const Lame &material, bool frictionless, int degree) {
-  const auto strain = [](const FullMu &mu) { return mu[indentation] / height; };
-  const auto shear_stress = [=](const FullMu &mu) {
-    const double pressure = (material.lambda + 2 * material.shear) * strain(mu);
-    const double most = frictionless ? 0 : mu[friction] * pressure;
-    return std::clamp(material.shear * mu[shear] / height, -most, most);
-  };
+  const Named<Coefficient> shear_stress =
+      shear_stress_at({{"lambda", {material.lambda}},
+                       {"shear", {material.shear}},
+                       {"frictionless", {double(frictionless)}}});
   const auto across = [](const FullMu &, const Point &, const Point &n) -> Point {
     return {n[0], 0, 0};
   };
@@ -101,8 +123,8 @@ Sum side_load(const Lame &material, bool frictionless, int degree) {
     return {0, n[0], 0};
   };
   return {exact_term(traction_load("sides", across, 2, degree),
-                     {{"minus lambda", [=](const FullMu &) { return -material.lambda; }, {}},
-                      {"strain", strain, {indentation}}}),
+                     {{"minus lambda", constant(-material.lambda), {}},
+                      {"strain", strain(), {indentation}}}),
           exact_term(traction_load("sides", along, 2, degree),
                      {{"shear stress", shear_stress, {indentation, shear, friction}}})};
 }
@@ -113,26 +135,20 @@ Scene make_one(const SceneOptions &options) {
   const bool frictionless = options.at("friction") == "none";
   scene.components = 2;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
-  Support support{"contact",
-                  [](const FullMu &, const Point &) -> Point {
-                    return {0, -1, 0};
-                  },
-                  [](const FullMu &, const Point &) { return 0.0; }};
+  Support support{"contact", everywhere({0, -1, 0}), everywhere(0.0)};
   support.friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
-  support.friction.value = [](const FullMu &mu) { return mu[friction]; };
+  support.friction.value = parameter(friction);
   support.lumped = options.at("lumped") == "yes";
   scene.contacts = {support_contact(support, options)};
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain * height}},
                                {"shear", "m", 0, 0.2, 0.02, {-height / 2, height / 2}},
                                {"friction_coefficient", "", 0, 1, 0.3, friction_range}});
   scene.parameters.free = {indentation};
-  scene.material = [material](const FullMu &, const Point &) { return material; };
+  scene.material = everywhere(material);
   scene.mesh = mesh_of_one();
-  scene.map = [](const FullMu &, const Point &x) { return x; };
+  scene.map = identity();
   scene.fixed = {{"top", {}}};
-  scene.motion = [](const FullMu &mu, const Point &) -> Point {
-    return {mu[shear], -mu[indentation], 0};
-  };
+  scene.motion = top_moved();
   scene.a = {exact_term(elasticity("", material, scene.degree))};
   scene.f = side_load(material, frictionless, scene.degree);
   scene.v_product = {exact_term(h1_product(1, 2, scene.degree))};
@@ -163,7 +179,9 @@ SceneEntry patch() {
     options.push_back(std::move(option));
   return {"patch",
           "patch test: blocks on top of each other, or one on a rigid support with friction",
-          elastic_pair_options(1, options), make};
+          elastic_pair_options(1, options),
+          make,
+          {joined_map, upper_down, top_moved, strain, shear_stress_at}};
 }
 
 } // namespace rbvi

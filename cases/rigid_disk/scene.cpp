@@ -66,12 +66,13 @@ double gap_along(const Point &p, const Point &n) {
   return -half - std::sqrt(root);
 }
 
-using Normal = Point (*)(const FullMu &, const Point &);
+const auto radial_normals = plain<PointMap>("rigid_disk/radial_normal", 1, radial_normal);
+const auto rigid_normals = plain<PointMap>("rigid_disk/rigid_normal", 1, rigid_normal);
 
 /// (phi(x) - x) . n, phi(x) the partner of x on the rigid disk (3.4).
 /// `from_arc`: of the point of the exact arc beside x.
-std::function<double(const FullMu &, const Point &)> gap_function(const std::string &kind,
-                                                                  bool from_arc, Normal normal) {
+std::function<PointValue> gap_function(const std::string &kind, bool from_arc,
+                                       const std::function<PointMap> &normal) {
   return [=](const FullMu &mu, const Point &x) {
     const Point at = from_arc ? on_arc(mu, x) : Point{mu[radius] * x[0], mu[radius] * x[1], 0};
     const Point p = from_support(mu, at), n = normal(mu, x);
@@ -84,10 +85,25 @@ std::function<double(const FullMu &, const Point &)> gap_function(const std::str
   };
 }
 
+/// "closest", "ray", "vertical".
+Maker<PointValue> gaps(const std::string &kind) {
+  return {"rigid_disk/gap_" + kind, 1, [kind](const Record &of) {
+            return gap_function(kind, number(of, "from_arc") != 0,
+                                made<PointMap>(part(of, "normal")));
+          }};
+}
+
+Named<PointValue> gap_of(const SceneOptions &options, const Named<PointMap> &normal) {
+  const std::string &kind = options.at("gap");
+  const bool from_arc = options.at("gap_from") == "arc";
+  return gaps(kind).named(gap_function(kind, from_arc, normal),
+                          {{"from_arc", {from_arc ? 1.0 : 0.0}}}, {{"normal", normal.record}});
+}
+
 Friction friction_of(const SceneOptions &options) {
   const std::string &law = options.at("friction");
   Friction result;
-  result.value = [](const FullMu &mu) { return mu[friction]; };
+  result.value = parameter(friction);
   result.only_in_contact = options.at("friction_bound") == "contact";
   result.law = law == "coulomb"  ? FrictionLaw::coulomb
                : law == "tresca" ? FrictionLaw::tresca
@@ -149,34 +165,45 @@ bool in_core(const Point &centre) {
 /// A = lambda A_lambda + shear A_shear on the ring and, times the core's stiffness, on the core; a
 /// similarity leaves a plane stiffness as it is.
 Sum stiffness(double young) {
-  const Coordinate near_half{[](double x) { return std::log(1 - 2 * x); },
-                             [](double y) { return (1 - std::exp(y)) / 2; }};
-  const Coordinate logarithm{[](double x) { return std::log(x); },
-                             [](double y) { return std::exp(y); }};
-  const Factor lambda{"lambda",
-                      [=](const FullMu &mu) { return lame(young, mu[poisson_ratio]).lambda; },
-                      {poisson_ratio},
-                      {{poisson_ratio, near_half}}};
-  const Factor shear{"shear",
-                     [=](const FullMu &mu) { return lame(young, mu[poisson_ratio]).shear; },
-                     {poisson_ratio}};
+  const Coordinate near_half{logarithm_to_half(), exponential_to_half()};
+  const Factor lambda{
+      "lambda", lame_lambda(young, poisson_ratio), {poisson_ratio}, {{poisson_ratio, near_half}}};
+  const Factor shear{"shear", lame_shear(young, poisson_ratio), {poisson_ratio}};
   const Factor core{"core_stiffness",
-                    [](const FullMu &mu) { return mu[core_stiffness]; },
+                    parameter(core_stiffness),
                     {core_stiffness},
-                    {{core_stiffness, logarithm}}};
-  const auto part = [](bool inside, const Lame &material) {
-    return elasticity(
-        "",
-        [=](const FullMu &, const Point &centre) {
-          return in_core(centre) == inside ? material : Lame{0, 0};
-        },
-        2);
+                    {{core_stiffness, {logarithm(), exponential()}}}};
+  const auto part_of_body = [](bool inside, const Lame &material) {
+    const auto inside_or_out = [=](const FullMu &, const Point &centre) {
+      return in_core(centre) == inside ? material : Lame{0, 0};
+    };
+    return elasticity("", Named<Material>(inside_or_out), 2);
   };
   const Lame of_lambda{1, 0}, of_shear{0, 1};
-  return {exact_term(part(false, of_lambda), {lambda}), exact_term(part(false, of_shear), {shear}),
-          exact_term(part(true, of_lambda), {core, lambda}),
-          exact_term(part(true, of_shear), {core, shear})};
+  return {exact_term(part_of_body(false, of_lambda), {lambda}),
+          exact_term(part_of_body(false, of_shear), {shear}),
+          exact_term(part_of_body(true, of_lambda), {core, lambda}),
+          exact_term(part_of_body(true, of_shear), {core, shear})};
 }
+
+const Maker<Material> ring_and_core{
+    "rigid_disk/ring_and_core", 1, [](const Record &of) -> std::function<Material> {
+      return [young = number(of, "young")](const FullMu &mu, const Point &centre) {
+        const double stiffness = in_core(centre) ? mu[core_stiffness] : 1;
+        return lame(stiffness * young, mu[poisson_ratio]);
+      };
+    }};
+
+const auto scaled = plain<PointMap>("rigid_disk/scaled", 1, [](const FullMu &mu, const Point &x) {
+  return Point{mu[radius] * x[0], mu[radius] * x[1], 0};
+});
+
+const auto pushed_down =
+    plain<PointMap>("rigid_disk/pushed_down", 1, [](const FullMu &mu, const Point &) {
+      return Point{0, -mu[indentation], 0};
+    });
+
+const auto indentation_check = plain<Check>("rigid_disk/indentation", 1, check_indentation);
 
 Scene make(const SceneOptions &options) {
   Scene scene;
@@ -184,29 +211,24 @@ Scene make(const SceneOptions &options) {
   const double young = number_in(options, "young");
   scene.components = 2;
   scene.degree = 2;
-  const Normal normal = options.at("normal") == "rigid" ? rigid_normal : radial_normal;
-  const Support support{"contact", normal,
-                        gap_function(options.at("gap"), options.at("gap_from") == "arc", normal),
-                        friction_of(options), options.at("lumped") == "yes"};
+  const Named<PointMap> normal =
+      options.at("normal") == "rigid" ? rigid_normals() : radial_normals();
+  const Support support{"contact", normal, gap_of(options, normal), friction_of(options),
+                        options.at("lumped") == "yes"};
   const bool nitsche = asks_for_nitsche(options);
   if (support.lumped && nitsche)
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   scene.contacts = {support_contact(support, options)};
-  scene.material = [young](const FullMu &mu, const Point &centre) {
-    const double stiffness = in_core(centre) ? mu[core_stiffness] : 1;
-    return lame(stiffness * young, mu[poisson_ratio]);
-  };
+  scene.material = ring_and_core({{"young", {young}}});
   scene.parameters = parameters(support.friction.law, nitsche, young);
-  scene.check_parameters = check_indentation;
+  scene.check_parameters = indentation_check();
   scene.training = "grid:61";
   scene.validation = "random:30:1";
   scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges);
-  scene.map = [](const FullMu &mu, const Point &x) -> Point {
-    return {mu[radius] * x[0], mu[radius] * x[1], 0};
-  };
+  scene.map = scaled();
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
-  scene.motion = [](const FullMu &mu, const Point &) -> Point { return {0, -mu[indentation], 0}; };
+  scene.motion = pushed_down();
   scene.a = stiffness(young);
   scene.symmetric = true;
   scene.v_product = {exact_term(h1_product(1, 2, 2))};
@@ -244,8 +266,12 @@ SceneEntry rigid_disk() {
       {"young", "15", "Young's modulus in Pa", {}, young_range}};
   for (SceneOption &option : nitsche_options())
     options.push_back(std::move(option));
-  return {"rigid_disk", "Hertz contact of an elastic half-disk with a rigid disk, with friction",
-          options, make};
+  return {"rigid_disk",
+          "Hertz contact of an elastic half-disk with a rigid disk, with friction",
+          options,
+          make,
+          {radial_normals, rigid_normals, gaps("closest"), gaps("ray"), gaps("vertical"),
+           ring_and_core, scaled, pushed_down, indentation_check}};
 }
 
 } // namespace rbvi

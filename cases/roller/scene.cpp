@@ -49,12 +49,13 @@ MeshRecipe mesh(int edges) {
   return recipe;
 }
 
+const auto rim_points =
+    plain<PointMap>("roller/rim", 1, [](const FullMu &, const Point &x) { return on_circle(x); });
+
 /// A plate that touches the undeformed roller where nothing is pushed in.
 HalfPlane plate(const std::string &boundary, const Point &normal, int push) {
-  HalfPlane plane{boundary, normal, {0, 0, 0}, [push](const FullMu &mu) {
-                    return 1 - mu[static_cast<std::size_t>(push)];
-                  }};
-  plane.surface = [](const FullMu &, const Point &x) { return on_circle(x); };
+  HalfPlane plane{boundary, normal, {0, 0, 0}, affine(1, -1, push)};
+  plane.surface = rim_points();
   return plane;
 }
 
@@ -65,11 +66,11 @@ Scene make(const SceneOptions &options) {
                     ": it must be a whole number of at least 8, or 0");
   const bool lumped = options.at("lumped") == "yes";
   HalfPlane upper = plate("top", {0, 1, 0}, top), lower = plate("bottom", {0, -1, 0}, bottom);
-  upper.tilt = [](const FullMu &mu) { return mu[tilt]; };
+  upper.tilt = parameter(tilt);
   upper.lumped = lower.lumped = lumped;
   if (options.at("friction") == "coulomb") {
     lower.friction.law = FrictionLaw::coulomb;
-    lower.friction.value = [](const FullMu &mu) { return mu[friction]; };
+    lower.friction.value = parameter(friction);
   }
   Scene scene;
   scene.components = 2;
@@ -82,12 +83,12 @@ Scene make(const SceneOptions &options) {
   scene.training = "grid:9,9";
   scene.validation = "random:30:1";
   scene.mesh = mesh(static_cast<int>(edges));
-  scene.map = [](const FullMu &, const Point &x) { return x; };
+  scene.map = identity();
   scene.snap = on_circle;
   scene.fixed = {{"hub", {}}};
   scene.contacts = {half_plane(upper), half_plane(lower)};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
-  scene.material = [material](const FullMu &, const Point &) { return material; };
+  scene.material = everywhere(material);
   scene.a = {exact_term(elasticity("", material, scene.degree))};
   scene.v_product = {exact_term(h1_product(1, 2, scene.degree))};
   return scene;
@@ -104,7 +105,8 @@ SceneEntry roller() {
            {"arc_edges", "0", "edges of each contact arc; 0: 48", {}, {0, 10000}, true},
            {"young", "15", "Young's modulus in Pa", {}, young_range},
            {"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range}},
-          make};
+          make,
+          {rim_points}};
 }
 
 } // namespace rbvi

@@ -90,22 +90,35 @@ int arc_edges(const SceneOptions &options, int degree) {
   return edges == 0 && degree == 2 ? quadratic_edges : static_cast<int>(edges);
 }
 
+const Maker<PointMap> placed_map{
+    "two_disks/placed", 1, [](const Record &of) -> std::function<PointMap> {
+      return [gap = number(of, "initial_gap")](const FullMu &mu, const Point &x) {
+        return placed(gap, mu[0], x);
+      };
+    }};
+
+/// Towards each other.
+const Maker<PointMap> pressed_motion{
+    "two_disks/pressed", 1, [](const Record &of) -> std::function<PointMap> {
+      return [indentation = number(of, "indentation")](const FullMu &, const Point &x) -> Point {
+        return {0, x[1] > 0 ? -indentation : indentation, 0};
+      };
+    }};
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   set_elastic_pair(options, scene);
-  scene.training = "grid:81";
+  scene.training = "grid:11";
   scene.validation = "random:30:1";
   scene.mesh = mesh(arc_edges(options, scene.degree));
   const double gap = number_in(options, "initial_gap");
   const double indentation = number_in(options, "indentation");
   const Range radii{std::max(0.1, indentation / deepest), 10};
   scene.parameters = all_free({{"radius", "m", 0.7, 1.3, 1, radii}});
-  scene.map = [gap](const FullMu &mu, const Point &x) { return placed(gap, mu[0], x); };
+  scene.map = placed_map({{"initial_gap", {gap}}});
   scene.snap = on_circle;
   scene.fixed = {{"axis", {0}}, {"top", {}}, {"bottom", {}}};
-  scene.motion = [indentation](const FullMu &, const Point &x) -> Point {
-    return {0, x[1] > 0 ? -indentation : indentation, 0};
-  };
+  scene.motion = pressed_motion({{"indentation", {indentation}}});
   scene.mirror_images = 2;
   return scene;
 }
@@ -113,7 +126,8 @@ Scene make(const SceneOptions &options) {
 } // namespace
 
 SceneEntry two_disks() {
-  return {"two_disks", "Hertz contact of two elastic half-disks, the lower one of free radius",
+  return {"two_disks",
+          "Hertz contact of two elastic half-disks, the lower one of free radius",
           elastic_pair_options(
               2, {{"indentation",
                    "0.09",
@@ -127,7 +141,8 @@ SceneEntry two_disks() {
                    {},
                    {0, 10000},
                    true}}),
-          make};
+          make,
+          {placed_map, pressed_motion}};
 }
 
 } // namespace rbvi

@@ -49,6 +49,13 @@ std::vector<Member> each(const std::vector<ContactOperators> &all,
   return result;
 }
 
+/// weights, nodal_b and nodal_gap.
+void stack_nodal(const std::vector<ContactOperators> &all, ContactOperators &operators) {
+  operators.weights = stacked(each(all, &ContactOperators::weights));
+  operators.nodal_b = stacked(each(all, &ContactOperators::nodal_b), false);
+  operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
+}
+
 bool by_multipliers(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
     return contact.formulation == Formulation::mixed;
@@ -93,9 +100,7 @@ void assemble(const Contact &contact, const FullMu &mu, const ContactState &stat
     contact.interfaces[i]->assemble(mu, state, all[i]);
   operators.b = stacked(each(all, &ContactOperators::b), false);
   operators.g = stacked(each(all, &ContactOperators::g));
-  operators.weights = stacked(each(all, &ContactOperators::weights));
-  operators.nodal_b = stacked(each(all, &ContactOperators::nodal_b), false);
-  operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
+  stack_nodal(all, operators);
   operators.uncovered.clear();
   for (std::size_t i = 0; i < all.size(); ++i)
     for (const Index row : all[i].uncovered)
@@ -109,9 +114,7 @@ void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState
   std::vector<ContactOperators> all(contact.interfaces.size());
   for (std::size_t i = 0; i < all.size(); ++i)
     contact.interfaces[i]->assemble_nodal(mu, state, all[i]);
-  operators.weights = stacked(each(all, &ContactOperators::weights));
-  operators.nodal_b = stacked(each(all, &ContactOperators::nodal_b), false);
-  operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
+  stack_nodal(all, operators);
 }
 
 NodeLaws laws_at(const Contact &contact, const FullMu &mu) {

@@ -17,4 +17,22 @@ FrictionBound friction_bound(const Friction &friction, const FullMu &all_paramet
   return bound;
 }
 
+void add_friction(const Friction &friction, Record &record) {
+  if (friction.law == FrictionLaw::none) return;
+  Record &part = record.parts["friction"];
+  part.name = friction.law == FrictionLaw::coulomb ? "coulomb" : "tresca";
+  part.numbers["only_in_contact"] = {friction.only_in_contact ? 1.0 : 0.0};
+  part.parts["value"] = friction.value.record;
+}
+
+Friction friction_in(const Record &record) {
+  const auto found = record.parts.find("friction");
+  if (found == record.parts.end()) return {};
+  const Record &of = found->second;
+  if (of.name != "coulomb" && of.name != "tresca")
+    throw bad_input("friction '" + of.name + "' is not in this build: make the model again");
+  return {of.name == "coulomb" ? FrictionLaw::coulomb : FrictionLaw::tresca,
+          made<Coefficient>(part(of, "value")), number(of, "only_in_contact") != 0};
+}
+
 } // namespace rbvi

@@ -54,22 +54,41 @@ void quadratic_stiffness(const Cell &cell, const Lame &material, const Rule &rul
     }
 }
 
-/// `material(mu, cell)`.
-template <class Material>
-Form elasticity_of(const std::string &region, const Material &material, int degree) {
+std::function<Kernel> elastic_kernel(const std::function<Material> &material, int degree) {
   check_degree(degree);
   if (degree == 1)
-    return {region, [material](const FullMu &mu, const Cell &cell, double *values) {
-              linear_stiffness(cell, material(mu, cell), values);
-            }};
-  return {region,
-          [material, triangle = positive_quadrature(2), tetrahedron = positive_quadrature(3)](
-              const FullMu &mu, const Cell &cell, double *values) {
-            if (cell.dim == 2)
-              quadratic_stiffness<2>(cell, material(mu, cell), triangle, values);
-            else
-              quadratic_stiffness<3>(cell, material(mu, cell), tetrahedron, values);
+    return [material](const FullMu &mu, const Cell &cell, double *values) {
+      linear_stiffness(cell, material(mu, reference_centre(cell)), values);
+    };
+  return [material, triangle = positive_quadrature(2), tetrahedron = positive_quadrature(3)](
+             const FullMu &mu, const Cell &cell, double *values) {
+    const Lame at_centre = material(mu, reference_centre(cell));
+    if (cell.dim == 2)
+      quadratic_stiffness<2>(cell, at_centre, triangle, values);
+    else
+      quadratic_stiffness<3>(cell, at_centre, tetrahedron, values);
+  };
+}
+
+const Maker<Kernel> elasticity_maker{
+    "elasticity", 1, [](const Record &record) {
+      return elastic_kernel(made<Material>(part(record, "material")), integer(record, "degree"));
+    }};
+
+/// One of Lame's constants.
+Maker<Coefficient> lame_maker(const std::string &name, double Lame::*constant) {
+  return {name, 1, [constant](const Record &record) -> std::function<Coefficient> {
+            const double young = number(record, "young");
+            const auto index = static_cast<std::size_t>(integer(record, "poisson_ratio"));
+            return [=](const FullMu &mu) { return lame(young, mu.at(index)).*constant; };
           }};
+}
+
+const Maker<Coefficient> lambda_maker = lame_maker("lame_lambda", &Lame::lambda),
+                         shear_maker = lame_maker("lame_shear", &Lame::shear);
+
+Named<Coefficient> lame_of(const Maker<Coefficient> &maker, double young, int poisson_ratio) {
+  return maker({{"young", {young}}, {"poisson_ratio", {double(poisson_ratio)}}});
 }
 
 } // namespace
@@ -82,18 +101,25 @@ Lame lame(double young, double poisson) {
 }
 
 Form elasticity(const std::string &region, const Lame &material, int degree) {
-  return elasticity_of(
-      region, [material](const FullMu &, const Cell &) { return material; }, degree);
+  return elasticity(region, everywhere(material), degree);
 }
 
-Form elasticity(const std::string &region,
-                const std::function<Lame(const FullMu &, const Point &)> &material, int degree) {
-  return elasticity_of(
-      region,
-      [material](const FullMu &mu, const Cell &cell) {
-        return material(mu, reference_centre(cell));
-      },
-      degree);
+Form elasticity(const std::string &region, const Named<Material> &material, int degree) {
+  return {region,
+          elasticity_maker.named(elastic_kernel(material, degree), {{"degree", {double(degree)}}},
+                                 {{"material", material.record}})};
+}
+
+Named<Coefficient> lame_lambda(double young, int poisson_ratio) {
+  return lame_of(lambda_maker, young, poisson_ratio);
+}
+
+Named<Coefficient> lame_shear(double young, int poisson_ratio) {
+  return lame_of(shear_maker, young, poisson_ratio);
+}
+
+FunctionLibrary elastic_functions() {
+  return {elasticity_maker, lambda_maker, shear_maker};
 }
 
 } // namespace rbvi

@@ -43,13 +43,10 @@ Point mapped_point(const Cell &cell, const FacetPoint &point) {
   return x;
 }
 
-} // namespace
-
-Form traction_load(const std::string &boundary, const Traction &traction, int components,
-                   int degree) {
-  const auto kernel = [traction, count = static_cast<std::size_t>(components),
-                       rules = facet_rules(degree)](const FullMu &mu, const Cell &cell,
-                                                    double *values) {
+std::function<Kernel> traction_kernel(const std::function<Traction> &traction, int components,
+                                      int degree) {
+  return [traction, count = static_cast<std::size_t>(components),
+          rules = facet_rules(degree)](const FullMu &mu, const Cell &cell, double *values) {
     const std::vector<FacetPoint> &rule = rules[static_cast<std::size_t>(cell.dim) - 2];
     const FacetMeasure facet = facet_measure(cell.dim, cell.mapped);
     const std::size_t nodes = rule.front().values.size();
@@ -61,22 +58,11 @@ Form traction_load(const std::string &boundary, const Traction &traction, int co
           values[i * count + c] += facet.size * point.weight * point.values[i] * t[c];
     }
   };
-  return {"", kernel, boundary};
 }
 
-Form pressure_load(const std::string &boundary, double value, int components, int degree) {
-  return traction_load(
-      boundary,
-      [value](const FullMu &, const Point &, const Point &n) -> Point {
-        return {-value * n[0], -value * n[1], -value * n[2]};
-      },
-      components, degree);
-}
-
-Form spring(const std::string &boundary, double stiffness, int components, int degree) {
-  const auto kernel = [stiffness, count = static_cast<std::size_t>(components),
-                       rules = facet_rules(degree)](const FullMu &, const Cell &cell,
-                                                    double *values) {
+std::function<Kernel> spring_kernel(double stiffness, int components, int degree) {
+  return [stiffness, count = static_cast<std::size_t>(components),
+          rules = facet_rules(degree)](const FullMu &, const Cell &cell, double *values) {
     const std::vector<FacetPoint> &rule = rules[static_cast<std::size_t>(cell.dim) - 2];
     const double size = facet_measure(cell.dim, cell.mapped).size;
     const std::size_t nodes = rule.front().values.size(), stride = nodes * count;
@@ -88,7 +74,53 @@ Form spring(const std::string &boundary, double stiffness, int components, int d
             values[(i * count + c) * stride + j * count + c] +=
                 stiffness * size * point.weight * point.values[i] * point.values[j];
   };
-  return {"", kernel, boundary};
+}
+
+const Maker<Traction> pressure_maker{
+    "pressure", 1, [](const Record &record) -> std::function<Traction> {
+      return [value = number(record, "value")](const FullMu &, const Point &,
+                                               const Point &n) -> Point {
+        return {-value * n[0], -value * n[1], -value * n[2]};
+      };
+    }};
+
+const Maker<Kernel> traction_maker{"traction_load", 1, [](const Record &record) {
+                                     return traction_kernel(
+                                         made<Traction>(part(record, "traction")),
+                                         integer(record, "components"), integer(record, "degree"));
+                                   }};
+
+const Maker<Kernel> spring_maker{"spring", 1, [](const Record &record) {
+                                   return spring_kernel(number(record, "stiffness"),
+                                                        integer(record, "components"),
+                                                        integer(record, "degree"));
+                                 }};
+
+} // namespace
+
+FunctionLibrary facet_functions() {
+  return {pressure_maker, traction_maker, spring_maker};
+}
+
+Form traction_load(const std::string &boundary, const Named<Traction> &traction, int components,
+                   int degree) {
+  return {"",
+          traction_maker.named(traction_kernel(traction, components, degree),
+                               {{"components", {double(components)}}, {"degree", {double(degree)}}},
+                               {{"traction", traction.record}}),
+          boundary};
+}
+
+Form pressure_load(const std::string &boundary, double value, int components, int degree) {
+  return traction_load(boundary, pressure_maker({{"value", {value}}}), components, degree);
+}
+
+Form spring(const std::string &boundary, double stiffness, int components, int degree) {
+  return {"",
+          spring_maker({{"stiffness", {stiffness}},
+                        {"components", {double(components)}},
+                        {"degree", {double(degree)}}}),
+          boundary};
 }
 
 } // namespace rbvi

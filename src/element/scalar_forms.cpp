@@ -59,15 +59,37 @@ void fill(double *values, double scale, const CellMatrix &matrix) {
     values[i] = scale * matrix.data()[i];
 }
 
+const Maker<Kernel> laplace_maker{
+    "laplace", 1, [](const Record &record) -> std::function<Kernel> {
+      const int degree = integer(record, "degree");
+      check_degree(degree);
+      return [degree, rules = of_both([&](int dim) { return gradient_rule(dim, degree); })](
+                 const FullMu &, const Cell &cell, double *values) {
+        const Simplex s = simplex(cell.dim, cell.mapped);
+        fill(values, s.volume, stiffness(cell.dim, degree, of(rules, cell), s));
+      };
+    }};
+
+const Maker<Kernel> constant_load_maker{
+    "constant_load", 1, [](const Record &record) -> std::function<Kernel> {
+      const int degree = integer(record, "degree");
+      check_degree(degree);
+      return [value = number(record, "value"),
+              shares = of_both([&](int dim) -> CellMatrix {
+                return products(dim, 1, degree).colwise().sum(); // the hats sum to 1
+              })](const FullMu &, const Cell &cell, double *values) {
+        fill(values, value * simplex(cell.dim, cell.mapped).volume, of(shares, cell));
+      };
+    }};
+
 } // namespace
 
+FunctionLibrary scalar_functions() {
+  return {laplace_maker, constant_load_maker};
+}
+
 Form laplace(const std::string &region, int degree) {
-  check_degree(degree);
-  return {region, [degree, rules = of_both([&](int dim) { return gradient_rule(dim, degree); })](
-                      const FullMu &, const Cell &cell, double *values) {
-            const Simplex s = simplex(cell.dim, cell.mapped);
-            fill(values, s.volume, stiffness(cell.dim, degree, of(rules, cell), s));
-          }};
+  return {region, laplace_maker({{"degree", {double(degree)}}})};
 }
 
 Form h1_product(double length, int components, int degree) {
@@ -89,12 +111,7 @@ Form h1_product(double length, int components, int degree) {
 }
 
 Form constant_load(const std::string &region, double value, int degree) {
-  check_degree(degree);
-  return {region, [value, shares = of_both([&](int dim) -> CellMatrix {
-                            return products(dim, 1, degree).colwise().sum(); // the hats sum to 1
-                          })](const FullMu &, const Cell &cell, double *values) {
-            fill(values, value * simplex(cell.dim, cell.mapped).volume, of(shares, cell));
-          }};
+  return {region, constant_load_maker({{"degree", {double(degree)}}, {"value", {value}}})};
 }
 
 Form l2_product(const std::string &region) {

@@ -13,6 +13,10 @@ void FrictionBound::check() const {
   if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
 }
 
+Vector values_of(const FrictionBound &bound, const Vector &normal) {
+  return normal.unaryExpr([&](double x_n) { return bound.value(x_n); });
+}
+
 bool NodeLaws::has_tangents() const {
   return std::ranges::any_of(tangent, [](Index row) { return row >= 0; });
 }

@@ -3,6 +3,7 @@
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/packed.hpp"
+#include "rbvi/rom/model/scene_record.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "separation/dense_rows.hpp"
 
@@ -144,6 +145,7 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   const Scene &scene = problem.scene();
   ReducedModel model;
   model.scene_name = scene.name;
+  model.scene_record = record_of(scene);
   model.scene_options = scene.options;
   model.parameters = scene.parameters;
   model.modes = bases.modes;

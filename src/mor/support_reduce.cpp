@@ -36,12 +36,6 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
     throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
                     "collocated, cones or joint");
   if (!keeps_law(reduction)) return;
-  const bool reduced_body =
-      reduction == MultiplierReduction::collocated && !options.multipliers.exact;
-  if (!scene.f.empty() && !reduced_body)
-    throw bad_input("scene " + scene.name +
-                    " has a load, which the condensed operator does not see: use "
-                    "-multiplier_reduction collocated -multiplier_exact no");
   if (reduction == MultiplierReduction::condensed) return;
   if (scene.contacts.size() > 1)
     throw bad_input("several contact interfaces have laws of their own: use -multiplier_reduction "
@@ -81,6 +75,8 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
                  nodal_coefficients(nodal, multipliers));
     bases.condensed = std::move(made.condensed);
     bases.responses = made.responses;
+    if (!scene.f.empty())
+      bases.responses += add_load_responses(problem, affine, training, bases.pod.basis);
     bases.factorisations = made.factorisations;
   }
   if (!will_run(stages, stage::multipliers)) return bases;

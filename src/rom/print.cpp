@@ -121,7 +121,9 @@ void print_expected_errors(std::ostream &out, const ReducedModel &model) {
 }
 
 void print_model(std::ostream &out, const ReducedModel &model) {
-  label(out, "scene") << model.scene_name << '\n';
+  const std::string unnamed = first_unnamed(model.scene_record);
+  label(out, "scene") << model.scene_name
+                      << (unnamed.empty() ? "" : ", whose code it needs: for " + unnamed) << '\n';
   label(out, "options") << joined(model.scene_options) << '\n';
   print_parameters(out, model.parameters);
   print_failed(out, model);

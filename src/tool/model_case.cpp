@@ -107,7 +107,7 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
     throw bad_input("the model in " + options.out.string() + " is one of scene " +
                     model.scene_name + ", the case names " + options.scene.name +
                     ": leave out -case, or use another -out");
-  options.scene = scene_of(model);
+  options.scene = whole_scene_of(model);
   options.mesh = mesh_of(model, options.mesh);
   std::string line;
   for (const std::string &difference : differences(given, options, model))

@@ -46,6 +46,7 @@ void command_offline(const ToolOptions &options) {
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   check_outputs(world, options,
                 {{"the reduced model", options.out / "model.h5"},
+                 {"its fields", fields_file(options.out / "model.h5")},
                  {"the table", options.out / "samples.csv"}});
 
   Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
@@ -80,7 +81,8 @@ void command_offline(const ToolOptions &options) {
     std::cout << "Self-check: ";
     print_self_check(std::cout, model.self_check, model.parameters);
     warn_of_resolution(sweep.samples, std::cout);
-    print_written(std::cout, {options.out / "model.h5", options.out / "samples.csv",
+    print_written(std::cout, {options.out / "model.h5", fields_file(options.out / "model.h5"),
+                              options.out / "samples.csv",
                               case_of_run(options.out), options.out / "samples"});
   }
   report_failures(options, sweep.report, training.size(), "training",

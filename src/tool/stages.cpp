@@ -58,7 +58,7 @@ StageTable preparation_stages(const ToolOptions &options, std::size_t training, 
 }
 
 StageTable closing_stages() {
-  return {{stage::writing, "model.h5, samples.csv"},
+  return {{stage::writing, "model.h5, model.fields.h5, samples.csv"},
           {StageName("reconstruction"), "online, only when asked", StageKind::skipped}};
 }
 

@@ -17,7 +17,7 @@ struct Pictures : InDirectory {
 
 TEST_F(Pictures, OfAMembraneWithItsBench) {
   const std::string offline = output_of(rbvi(2, "offline -case case.yaml -out run"));
-  EXPECT_TRUE(contains(offline, "\nwrote run/model.h5, run/samples.csv,")) << offline;
+  EXPECT_TRUE(contains(offline, "\nwrote run/model.h5, run/model.fields.h5, run/samples.csv,")) << offline;
   EXPECT_TRUE(contains(verified(), "\nwrote run/verify, run/model.h5\n"));
   const std::string bench = output_of(rbvi(1, "bench -out run"));
   EXPECT_TRUE(contains(bench, "\nwrote run/bench/table.md, run/bench/table.csv\n")) << bench;

@@ -32,6 +32,7 @@ struct NineDisks : testing::Test {
 
 ReduceOptions with(ConeType type, double pod = 1e-12, double cone = 0) {
   ReduceOptions options;
+  options.multipliers.reduction = MultiplierReduction::cone;
   options.pod.tolerance = pod;
   options.cone.type = type;
   options.cone.tolerance = cone;

@@ -20,6 +20,7 @@ RUNS = {
     "membrane_mcpg": ["-case", CASES / "membrane_obstacle/published.yaml", "-train", "grid:3,2,2",
                       "-cone_type", "mcpg", "-pga_tolerance", "infsup"],
     "two_disks": ["-case", CASES / "two_disks/case.yaml", "-train", "grid:9"],
+    "two_disks_cone": ["-case", CASES / "two_disks/cone.yaml", "-train", "grid:9"],
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
     "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness"],
     "disk_collocated": [*DISK, "-train", "grid:15", "-normal", "rigid", REDUCED, "collocated"],

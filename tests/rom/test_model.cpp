@@ -140,6 +140,43 @@ TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
   EXPECT_THROW(b.field(solution), Error);
 }
 
+TEST_F(ModelFile, FieldsHaveAFileOfTheirOwn) {
+  const Path fields = fields_file(path);
+  EXPECT_EQ(fields, directory / "model.fields.h5");
+  const ReducedModel model = full_model();
+  write_model(model, path);
+  const auto written = std::filesystem::last_write_time(fields);
+  ReducedModel again = read_model(path);
+  again.settings["verified"] = "yes";
+  write_model(again, path);
+  EXPECT_EQ(std::filesystem::last_write_time(fields), written) << "the same fields stay";
+  EXPECT_EQ(read_model(path).settings, again.settings);
+
+  const auto refusal = [&]() -> std::string {
+    EXPECT_NO_THROW(read_model(path, false));
+    try {
+      (void)read_model(path);
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), Status::bad_input);
+      return error.what();
+    }
+    return "";
+  };
+  std::filesystem::rename(fields, directory / "away");
+  EXPECT_NE(refusal().find("model.fields.h5 is missing"), std::string::npos);
+  ReducedModel other = model;
+  other.primal_basis(0, 0) += 1e-9;
+  write_model(other, directory / "other.h5");
+  std::filesystem::rename(fields_file(directory / "other.h5"), fields);
+  EXPECT_NE(refusal().find("has the fields of another model"), std::string::npos);
+  std::filesystem::rename(directory / "away", fields);
+  EXPECT_EQ(refusal(), "");
+  std::string bad = slurp(fields);
+  bad[bad.size() / 2] = static_cast<char>(bad[bad.size() / 2] ^ 1);
+  std::ofstream(fields, std::ios::binary) << bad;
+  EXPECT_NE(refusal().find("damaged"), std::string::npos);
+}
+
 TEST_F(ModelFile, NoLoadAndNoGapAreModels) {
   ReducedModel model = synthetic::random_model({3, 2, 4, 2, 1, 1, 1}, 12);
   model.f = model.g = {};

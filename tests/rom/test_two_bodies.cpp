@@ -23,7 +23,13 @@ Scene scene_with(const std::string &multiplier, const std::string &integration =
                     {{"degree", "1"}, {"multiplier", multiplier}, {"integration", integration}});
 }
 
-const Scene p0 = scene_with("p0"), p1 = scene_with("p1");
+Scene p0() {
+  return scene_with("p0");
+}
+
+Scene p1() {
+  return scene_with("p1");
+}
 
 const std::vector<Mu> radii{{0.7}, {0.83}, {1}, {1.3}};
 
@@ -63,21 +69,21 @@ TEST(OnlinePair, WorksWithoutAMotion) {
 
 /// Rows that no generator touches are left out of the online products: an answer does not change.
 TEST(OnlinePair, RowsThatNoGeneratorTouchesDoNotMatter) {
-  ReducedModel model = synthetic::random_pair_model({4, 3, 2}, 3, p1);
+  ReducedModel model = synthetic::random_pair_model({4, 3, 2}, 3, p1());
   model.dual_basis.topRows(2).setZero();
   model.dual_basis.bottomRows(4).setZero();
-  EXPECT_EQ(expect_agreement(model, p1), 4);
+  EXPECT_EQ(expect_agreement(model, p1()), 4);
 }
 
 /// Free modes close the gap whatever the sign; where they pull, the answer is refused.
 TEST(OnlinePair, FreeModesAreEquations) {
   int answered = 0, refused = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
-    ReducedModel model = synthetic::random_pair_model({5, 3, 4}, seed, p0);
+    ReducedModel model = synthetic::random_pair_model({5, 3, 4}, seed, p0());
     model.free_modes = 2;
-    OnlineSolver solver(model, p0);
+    OnlineSolver solver(model, p0());
     for (const Mu &mu : radii) {
-      const brute::Operators o = synthetic::pair_operators(model, p0, mu);
+      const brute::Operators o = synthetic::pair_operators(model, p0(), mu);
       const brute::Answer exact = brute::brute_force_pair(o, 2);
       const Vector pressure = model.dual_basis * exact.x;
       if (pressure.minCoeff() < -0.01 * pressure.maxCoeff()) {
@@ -98,11 +104,11 @@ TEST(OnlinePair, FreeModesAreEquations) {
 /// The space of a query is V_N + S_R(mu), S_R(mu) spanned by the rows of B(mu) among the
 /// supremizers.
 TEST(OnlinePair, OnlineEnrichmentFollowsTheOperatorOfTheQuery) {
-  ReducedModel model = synthetic::random_pair_model({3, 6, 3}, 4, p0);
+  ReducedModel model = synthetic::random_pair_model({3, 6, 3}, 4, p0());
   model.online_enriched = true;
-  OnlineSolver solver(model, p0);
+  OnlineSolver solver(model, p0());
   for (const Mu &mu : radii) {
-    brute::Operators o = synthetic::pair_operators(model, p0, mu);
+    brute::Operators o = synthetic::pair_operators(model, p0(), mu);
     Matrix space = Matrix::Zero(9, 6);
     space.topLeftCorner(3, 3).setIdentity();
     space.bottomRightCorner(6, 3) = o.b.rightCols(6).transpose();
@@ -116,21 +122,21 @@ TEST(OnlinePair, OnlineEnrichmentFollowsTheOperatorOfTheQuery) {
 }
 
 TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
-  const ReducedModel model = synthetic::random_pair_model({}, 5, p0);
-  OnlineSolver solver(model, p0);
+  const ReducedModel model = synthetic::random_pair_model({}, 5, p0());
+  OnlineSolver solver(model, p0());
   for (const Mu &mu : radii) {
     const ReducedSolution solution = solver.solve(mu);
     const Vector w = solver.field(solution), gap = solver.contact_gap(solution);
-    const FullMu all = expand(p0.parameters, mu);
+    const FullMu all = expand(p0().parameters, mu);
     std::vector<Point> slave, master;
     const auto &[curves, nodes] = model.interfaces.front();
     for (std::size_t i = 0; i < curves.points.size(); ++i) {
       const Point &x = curves.points[i];
-      Point moved = p0.map(all, x);
-      moved[1] += p0.motion(all, x)[1] + w[2 * nodes[i] + 1];
+      Point moved = p0().map(all, x);
+      moved[1] += p0().motion(all, x)[1] + w[2 * nodes[i] + 1];
       (static_cast<int>(i) < curves.parts[0] ? slave : master).push_back(moved);
     }
-    const std::vector<Index> paired = synthetic::mapped_pair(model, p0, all).paired;
+    const std::vector<Index> paired = synthetic::mapped_pair(model, p0(), all).paired;
     ASSERT_EQ(gap.size(), static_cast<Index>(paired.size()));
     for (Index k = 0; k < gap.size(); ++k) {
       const Point &x = slave[static_cast<std::size_t>(paired[std::size_t(k)])];
@@ -144,10 +150,10 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
 /// A quarter is computed: force, energy and contact length are those of both images, the pressure
 /// is not doubled.
 TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
-  const ReducedModel model = synthetic::random_pair_model({}, 6, p0);
-  Scene quarter = p0;
+  const ReducedModel model = synthetic::random_pair_model({}, 6, p0());
+  Scene quarter = p0();
   quarter.mirror_images = 1;
-  OnlineSolver whole_solver(model, p0), quarter_solver(model, quarter);
+  OnlineSolver whole_solver(model, p0()), quarter_solver(model, quarter);
   const Mu mu{0.9};
   const ReducedSolution solution = whole_solver.solve(mu);
   const Outputs whole = whole_solver.outputs(mu, solution),
@@ -166,22 +172,22 @@ TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
 }
 
 TEST(OnlinePair, ACurveThatDoesNotFitTheMultipliersIsRefused) {
-  ReducedModel model = synthetic::random_pair_model({}, 7, p0);
-  EXPECT_THROW(OnlineSolver(model, p1), Error);
+  ReducedModel model = synthetic::random_pair_model({}, 7, p0());
+  EXPECT_THROW(OnlineSolver(model, p1()), Error);
   EXPECT_THROW(OnlineSolver(model, make_scene("membrane_obstacle")), Error);
   ReducedModel one_body = synthetic::random_model({}, 7);
-  EXPECT_THROW(OnlineSolver(one_body, p0), Error);
+  EXPECT_THROW(OnlineSolver(one_body, p0()), Error);
   EXPECT_NO_THROW((OnlineSolver(one_body)));
   one_body.b = one_body.g = {};
   EXPECT_THROW((OnlineSolver(one_body)), Error) << "its b separates";
-  EXPECT_NO_THROW(OnlineSolver(model, p0));
+  EXPECT_NO_THROW(OnlineSolver(model, p0()));
   model.b = model.a;
   EXPECT_NO_THROW(check_model(model)) << "of a scene whose b separates it might be";
-  EXPECT_TRUE(refuses("does not fit its scene", [&] { OnlineSolver(model, p0); }));
+  EXPECT_TRUE(refuses("does not fit its scene", [&] { OnlineSolver(model, p0()); }));
 }
 
 TEST(PrintPairModel, SaysThatTheContactOperatorsAreAssembledOnline) {
-  const ReducedModel model = synthetic::random_pair_model({}, 7, p0);
+  const ReducedModel model = synthetic::random_pair_model({}, 7, p0());
   std::ostringstream out;
   print_model(out, model);
   EXPECT_NE(out.str().find("assembled for each mu on 12 + 9 contact nodes"), std::string::npos)
@@ -191,7 +197,7 @@ TEST(PrintPairModel, SaysThatTheContactOperatorsAreAssembledOnline) {
 
 TEST(CheckPairModel, NamesWhatDoesNotFit) {
   const auto complaint = [](auto change) -> std::string {
-    ReducedModel model = synthetic::random_pair_model({}, 8, p0);
+    ReducedModel model = synthetic::random_pair_model({}, 8, p0());
     change(model);
     try {
       check_model(model);
@@ -215,7 +221,7 @@ TEST(CheckPairModel, NamesWhatDoesNotFit) {
 
 TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
   const auto complaint = [](auto change) -> std::string {
-    ReducedModel model = synthetic::random_pair_model({}, 8, p0);
+    ReducedModel model = synthetic::random_pair_model({}, 8, p0());
     change(model.interfaces.front());
     try {
       check_model(model);
@@ -255,10 +261,10 @@ TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
 /// What is consistent and yet no pair of curves is bad input of the kind of contact.
 TEST(OnlinePair, AnInterfaceThatIsNoPairIsRefused) {
   const auto expect_refusal = [](const std::string &part, auto change) {
-    ReducedModel model = synthetic::random_pair_model({}, 8, p0);
+    ReducedModel model = synthetic::random_pair_model({}, 8, p0());
     change(model.interfaces.front().mesh);
     EXPECT_NO_THROW(check_model(model));
-    EXPECT_TRUE(refuses(part, [&] { OnlineSolver(model, p0); }));
+    EXPECT_TRUE(refuses(part, [&] { OnlineSolver(model, p0()); }));
   };
   using M = InterfaceMesh;
   expect_refusal("edge 0 of the slave curve",
@@ -273,7 +279,7 @@ TEST(OnlinePair, AnInterfaceThatIsNoPairIsRefused) {
 /// The leading pair has the leading columns of the trace and of the dual basis; there is nothing of
 /// b to cut.
 TEST(LeadingPair, AnswersLikeItsOwnDenseOperators) {
-  const ReducedModel model = synthetic::random_pair_model({4, 3, 4}, 9, p0);
+  const ReducedModel model = synthetic::random_pair_model({4, 3, 4}, 9, p0());
   for (const auto &[n, r] : {std::pair{7, 4}, std::pair{6, 3}, std::pair{4, 2}}) {
     const ReducedModel part = leading(model, n, r);
     check_model(part);
@@ -282,7 +288,7 @@ TEST(LeadingPair, AnswersLikeItsOwnDenseOperators) {
     EXPECT_EQ(part.supremizers, n - 4);
     EXPECT_EQ(part.contact_trace, model.contact_trace.leftCols(n));
     EXPECT_EQ(part.dual_basis, model.dual_basis.leftCols(r));
-    EXPECT_EQ(expect_agreement(part, p0), 4);
+    EXPECT_EQ(expect_agreement(part, p0()), 4);
   }
 }
 
@@ -294,7 +300,7 @@ struct PairFile : testing::Test {
 };
 
 TEST_F(PairFile, ReturnsTheModel) {
-  for (const Scene &scene : {p0, p1}) {
+  for (const Scene &scene : {p0(), p1()}) {
     const ReducedModel model = synthetic::random_pair_model({}, 10, scene);
     write_model(model, directory / "model.h5");
     const ReducedModel copy = read_model(directory / "model.h5"),
@@ -358,16 +364,17 @@ struct PairVtu : PairFile {
 };
 
 TEST_F(PairVtu, ShowsBothBodiesWithTheirMotion) {
-  const ReducedModel model = synthetic::random_pair_model({}, 11, p0);
+  const ReducedModel model = synthetic::random_pair_model({}, 11, p0());
   const Mu mu{0.8};
-  const Written file = write(model, p0, mu);
+  const Written file = write(model, p0(), mu);
   const Index nodes = model.mesh_points.rows();
   const std::vector<double> points = data_array(file.bodies, "points"),
                             u = data_array(file.bodies, "u");
   ASSERT_EQ(points.size(), static_cast<std::size_t>(3 * nodes));
   ASSERT_EQ(u.size(), points.size());
   for (Index i = 0; i < nodes; ++i) {
-    const Point x = point_of(model.mesh_points, i), image = p0.map(expand(p0.parameters, mu), x);
+    const Point x = point_of(model.mesh_points, i),
+                image = p0().map(expand(p0().parameters, mu), x);
     const auto k = static_cast<std::size_t>(3 * i);
     EXPECT_EQ(points[k], image[0]);
     EXPECT_EQ(points[k + 1], image[1]);
@@ -405,8 +412,8 @@ void expect_curve(const Written &file, const ReducedModel &model, const Scene &s
 
 /// In the file of the bodies: the upper one, whose curve is the slave, is the first.
 TEST_F(PairVtu, NumbersTheBodiesAndHasTheirStresses) {
-  const ReducedModel model = synthetic::random_pair_model({}, 11, p0);
-  const std::string cells = section(write(model, p0, {0.8}).bodies, "CellData");
+  const ReducedModel model = synthetic::random_pair_model({}, 11, p0());
+  const std::string cells = section(write(model, p0(), {0.8}).bodies, "CellData");
   const std::vector<double> body = data_array(cells, "body");
   ASSERT_EQ(3 * body.size(), model.mesh_cells.size());
   for (std::size_t k = 0; k < body.size(); ++k) {
@@ -418,9 +425,9 @@ TEST_F(PairVtu, NumbersTheBodiesAndHasTheirStresses) {
 }
 
 TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
-  const ReducedModel model = synthetic::random_pair_model({}, 12, p0);
-  const Written file = write(model, p0, {0.8});
-  expect_curve(file, model, p0);
+  const ReducedModel model = synthetic::random_pair_model({}, 12, p0());
+  const Written file = write(model, p0(), {0.8});
+  expect_curve(file, model, p0());
   const std::vector<double> pressure = data_array(section(file.contact, "CellData"), "pressure");
   ASSERT_EQ(pressure.size(), file.paired.size() - 1);
   for (std::size_t k = 0; k < pressure.size(); ++k)
@@ -442,9 +449,9 @@ TEST_F(PairVtu, ConstantPressureIsDrawnPerEdge) {
 }
 
 TEST_F(PairVtu, LinearPressureIsDrawnPerNode) {
-  const ReducedModel model = synthetic::random_pair_model({}, 12, p1);
-  const Written file = write(model, p1, {0.8});
-  expect_curve(file, model, p1);
+  const ReducedModel model = synthetic::random_pair_model({}, 12, p1());
+  const Written file = write(model, p1(), {0.8});
+  expect_curve(file, model, p1());
   const std::vector<double> pressure = data_array(section(file.contact, "PointData"), "pressure");
   ASSERT_EQ(pressure.size(), file.paired.size());
   for (std::size_t k = 0; k < pressure.size(); ++k)
@@ -454,8 +461,8 @@ TEST_F(PairVtu, LinearPressureIsDrawnPerNode) {
 
 /// Where the slave curve is covered to its end, the last macro-edge has three edges.
 TEST_F(PairVtu, TheLastMacroEdgeMayHaveThreeEdges) {
-  const ReducedModel model = synthetic::random_pair_model({}, 12, p0);
-  const Written file = write(model, p0, {1.3});
+  const ReducedModel model = synthetic::random_pair_model({}, 12, p0());
+  const Written file = write(model, p0(), {1.3});
   const std::vector<double> pressure = data_array(section(file.contact, "CellData"), "pressure");
   ASSERT_EQ(pressure.size(), 11U);
   for (std::size_t k = 8; k < 11; ++k)
@@ -464,13 +471,13 @@ TEST_F(PairVtu, TheLastMacroEdgeMayHaveThreeEdges) {
 }
 
 TEST_F(PairVtu, WithoutFieldsNothingIsWritten) {
-  ReducedModel model = synthetic::random_pair_model({}, 13, p0);
-  OnlineSolver solver(model, p0);
+  ReducedModel model = synthetic::random_pair_model({}, 13, p0());
+  OnlineSolver solver(model, p0());
   const ReducedSolution solution = solver.solve({1});
   const Vector w = solver.field(solution), lambda = solver.multiplier(solution);
   model.mesh_points.resize(0, 0);
   model.mesh_cells.clear();
-  EXPECT_THROW(write_vtu(directory / "u.vtu", p0, {1}, model, w, lambda), Error);
+  EXPECT_THROW(write_vtu(directory / "u.vtu", p0(), {1}, model, w, lambda), Error);
   EXPECT_FALSE(std::filesystem::exists(directory / "u.vtu"));
   EXPECT_FALSE(std::filesystem::exists(directory / "u_contact.vtu"));
 }

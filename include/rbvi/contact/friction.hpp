@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rbvi/core/contact_recipe.hpp"
-#include "rbvi/core/parameters.hpp"
+#include "rbvi/core/functions.hpp"
 #include "rbvi/law/node_laws.hpp"
 
 namespace rbvi {
@@ -11,11 +11,15 @@ namespace rbvi {
 /// pressure.
 struct Friction {
   FrictionLaw law = FrictionLaw::none;
-  std::function<double(const FullMu &)> value; ///< threshold or coefficient, >= 0
+  Named<Coefficient> value;     ///< threshold or coefficient, >= 0
   bool only_in_contact = false;                ///< Tresca: zero where a node carries no pressure
 };
 
 /// The bound at one mu. Throws failure, naming the value, for a negative one.
 FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters);
+
+/// What files store of it, as the part "friction" of a record; none without friction.
+void add_friction(const Friction &friction, Record &record);
+Friction friction_in(const Record &record);
 
 } // namespace rbvi

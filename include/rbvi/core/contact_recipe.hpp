@@ -2,6 +2,8 @@
 // of contact (contact/*/): obstacle(), two_bodies(), rigid_support(), nitsche_support(), ...
 #pragma once
 
+#include "rbvi/core/record.hpp"
+
 #include <functional>
 #include <memory>
 #include <string>
@@ -46,6 +48,15 @@ struct ContactRecipe {
   bool keeps_nodes = false;
   /// `scene` must outlive the interface. Throws bad_input where the mesh does not suit it.
   std::function<std::unique_ptr<ContactInterface>(const Scene &scene, InterfaceMesh mesh)> make;
+  /// What files store of it, without its entities: they have its mesh.
+  Record record{};
+};
+
+/// A kind of contact that files know by name.
+struct ContactKind {
+  std::string name;
+  int version;
+  std::function<ContactRecipe(const Record &)> make;
 };
 
 /// Whether some interface has friction; whether all are by Nitsche's method, separable, ...

@@ -61,12 +61,6 @@ struct FixedBoundary {
   std::vector<int> components; ///< empty: all
 };
 
-/// The two constants of an isotropic material, pressures:
-/// sigma = lambda tr(eps) I + 2 shear eps.
-struct Lame {
-  double lambda, shear;
-};
-
 struct Scene {
   std::string name;
   std::string summary; ///< one line
@@ -77,12 +71,12 @@ struct Scene {
   ParameterSpace parameters;
   /// Throws bad_input where values of all parameters that are valid one by one make no sense
   /// together; empty: they always do.
-  std::function<void(const FullMu &)> check_parameters;
+  Named<Check> check_parameters;
   std::string training = "", validation = ""; ///< default sets, as parse_set reads them
   MeshRecipe mesh;
 
   /// h(mu), from the reference to the mapped domain.
-  std::function<Point(const FullMu &, const Point &)> map;
+  Named<PointMap> map;
   /// Brings a refined vertex of the interface of the contact region, or of the curved boundary,
   /// back onto the exact curve.
   std::function<Point(const Point &)> snap;
@@ -91,7 +85,7 @@ struct Scene {
   /// Rigid motion of each body at a point of the reference domain, which the displacement is
   /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
   /// empty: zero.
-  std::function<Point(const FullMu &, const Point &)> motion;
+  Named<PointMap> motion;
   /// The data are symmetric about x = 0, and so are the solutions on a mesh that is.
   bool symmetric = false;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
@@ -102,7 +96,7 @@ struct Scene {
 
   /// The material of an elastic body at the centre of a reference cell, constant on the cell; in 2D
   /// plane strain. Empty: not elastic (a membrane), then there are no stresses.
-  std::function<Lame(const FullMu &, const Point &centre)> material;
+  Named<Material> material;
 
   Sum a;         ///< symmetric
   Sum f;         ///< empty: no load
@@ -113,6 +107,7 @@ struct SceneEntry {
   std::string name, summary;
   std::vector<SceneOption> options;
   Scene (*make)(const SceneOptions &);
+  FunctionLibrary functions{}; ///< those of its own that files know by name
 };
 
 /// Whether a is the same for all values of the free parameters.

@@ -5,26 +5,13 @@
 // on mu, on the mapped domain; empirical interpolation separates the sum of all of these.
 #pragma once
 
-#include "rbvi/core/parameters.hpp"
+#include "rbvi/core/functions.hpp"
 
-#include <array>
-#include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace rbvi {
-
-/// Coordinates; in 2D the third is zero.
-using Point = std::array<double, 3>;
-
-/// One simplex: dim + 1 vertices, in the reference and in the mapped domain.
-struct Cell {
-  int dim = 2;
-  std::array<Point, 4> reference; ///< vertices xhat
-  std::array<Point, 4> mapped;    ///< h(mu)(xhat)
-};
 
 /// An integral over the cells of a region or over the facets of a boundary, one by one.
 /// A bilinear form fills rows * columns values (row-major), a linear form rows values: rows for the
@@ -34,7 +21,7 @@ struct Cell {
 /// (2,3).
 struct Form {
   std::string region; ///< "" for the whole domain
-  std::function<void(const FullMu &mu, const Cell &cell, double *values)> kernel;
+  Named<Kernel> kernel;
   /// Not "": over the facets of this boundary. `cell` is then the one behind the facet, whose
   /// vertices come first and see it outwards (facet_measure); the nodes are the facet's alone.
   std::string boundary = "";
@@ -44,13 +31,13 @@ struct Form {
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
 /// decreasing, value = back(x).
 struct Coordinate {
-  std::function<double(double)> of, back;
+  Named<NumberMap> of, back;
 };
 
 /// A factor of a coefficient.
 struct Factor {
   std::string name; ///< two factors of one name are the same function
-  std::function<double(const FullMu &)> value;
+  Named<Coefficient> value;
   std::vector<int> parameters;                ///< indices into parameters.all that it depends on
   std::map<int, Coordinate> coordinates = {}; ///< of some of these; the others: themselves
 };

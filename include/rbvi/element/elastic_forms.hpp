@@ -22,8 +22,13 @@ Form elasticity(const std::string &region, const Lame &material, int degree = 1)
 
 /// Elasticity with a material that is constant on each cell: `material(mu, centre)`, the centre
 /// that of the reference cell.
-Form elasticity(const std::string &region,
-                const std::function<Lame(const FullMu &mu, const Point &centre)> &material,
-                int degree);
+Form elasticity(const std::string &region, const Named<Material> &material, int degree);
+
+/// Lame's constants for a Poisson's ratio that is a parameter, an index into parameters.all.
+Named<Coefficient> lame_lambda(double young, int poisson_ratio);
+Named<Coefficient> lame_shear(double young, int poisson_ratio);
+
+/// The makers of these functions.
+FunctionLibrary elastic_functions();
 
 } // namespace rbvi

@@ -6,11 +6,8 @@
 
 namespace rbvi {
 
-/// A force per length or area at a point x of the mapped boundary, n its unit normal outwards.
-using Traction = std::function<Point(const FullMu &mu, const Point &x, const Point &n)>;
-
 /// int t . v, exact where t is of degree 3. Throws bad_input for a degree other than 1 and 2.
-Form traction_load(const std::string &boundary, const Traction &traction, int components,
+Form traction_load(const std::string &boundary, const Named<Traction> &traction, int components,
                    int degree);
 
 /// - int value n . v: a pressure pushes. Throws likewise.
@@ -19,5 +16,8 @@ Form pressure_load(const std::string &boundary, double value, int components, in
 /// stiffness * int u . v: springs of so much per length or area, in every direction. Throws
 /// likewise.
 Form spring(const std::string &boundary, double stiffness, int components, int degree);
+
+/// The makers of these kernels.
+FunctionLibrary facet_functions();
 
 } // namespace rbvi

@@ -10,6 +10,9 @@
 
 namespace rbvi {
 
+/// The makers of laplace and constant_load.
+FunctionLibrary scalar_functions();
+
 /// int grad u . grad v over the mapped cells (2.37): nodes x nodes.
 Form laplace(const std::string &region, int degree = 1);
 

@@ -30,6 +30,9 @@ struct FrictionBound {
   void check() const;
 };
 
+/// s of each of these normal multipliers.
+Vector values_of(const FrictionBound &bound, const Vector &normal);
+
 struct NodeLaws {
   int tangents = 1;                 ///< entries of x_tau of a node with friction, d - 1
   Index rows = 0;                   ///< entries of x
@@ -59,7 +62,7 @@ Vector bounds_of(const NodeLaws &laws, const Vector &x);
 /// The projection onto x_n >= 0, then |x_tau| <= s(x_n), node by node (corrected (3.32)).
 Vector admissible(const NodeLaws &laws, Vector x);
 
-/// Values of the rows x_n, or of the rows x_tau, alone; zero in the others.
+/// Values of the rows x_n alone; zero in the others.
 Vector normal_part(const NodeLaws &laws, const Vector &x);
 
 } // namespace rbvi

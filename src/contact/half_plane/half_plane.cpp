@@ -1,5 +1,7 @@
 #include "rbvi/contact/half_plane/half_plane.hpp"
 
+#include "rbvi/core/error.hpp"
+
 #include <cmath>
 
 namespace rbvi {
@@ -10,6 +12,36 @@ Point normal_of(const HalfPlane &plane, const FullMu &mu) {
   const double angle = plane.tilt ? plane.tilt(mu) : 0;
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * plane.normal[0] - s * plane.normal[1], s * plane.normal[0] + c * plane.normal[1], 0};
+}
+
+Record record_of(const HalfPlane &plane) {
+  const auto coordinates = [](const Point &x) { return std::vector<double>(x.begin(), x.end()); };
+  Record record{"half_plane",
+                1,
+                {{"normal", coordinates(plane.normal)},
+                 {"pivot", coordinates(plane.pivot)},
+                 {"lumped", {plane.lumped ? 1.0 : 0.0}}},
+                {{"boundary", plane.boundary}},
+                {{"position", plane.position.record}}};
+  if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
+  if (plane.surface) record.parts["surface"] = plane.surface.record;
+  add_friction(plane.friction, record);
+  return record;
+}
+
+HalfPlane half_plane_in(const Record &record) {
+  const auto point = [&](const std::string &name) -> Point {
+    const std::vector<double> &x = numbers(record, name);
+    if (x.size() != 3) throw bad_input("'" + name + "' of a half-plane is not three numbers");
+    return {x[0], x[1], x[2]};
+  };
+  HalfPlane plane{text(record, "boundary"), point("normal"), point("pivot"),
+                  made<Coefficient>(part(record, "position"))};
+  if (record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(record, "tilt"));
+  if (record.parts.contains("surface")) plane.surface = made<PointMap>(part(record, "surface"));
+  plane.friction = friction_in(record);
+  plane.lumped = number(record, "lumped") != 0;
+  return plane;
 }
 
 } // namespace
@@ -27,7 +59,12 @@ ContactRecipe half_plane(HalfPlane plane) {
     };
     return rigid_support(placed).make(scene, std::move(mesh));
   };
+  recipe.record = record_of(plane);
   return recipe;
+}
+
+ContactKind half_plane_kind() {
+  return {"half_plane", 1, [](const Record &record) { return half_plane(half_plane_in(record)); }};
 }
 
 } // namespace rbvi

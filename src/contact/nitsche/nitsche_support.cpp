@@ -94,7 +94,16 @@ ContactRecipe nitsche_support(Support support, double gamma0) {
   recipe.make = [support, gamma0](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<NitscheInterface>(scene, std::move(mesh), support, gamma0);
   };
+  recipe.record = record_of(support);
+  recipe.record.name = "nitsche_support";
+  recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
+}
+
+ContactKind nitsche_support_kind() {
+  return {"nitsche_support", 1, [](const Record &record) {
+            return nitsche_support(support_in(record), number(record, "gamma0"));
+          }};
 }
 
 std::vector<SceneOption> nitsche_options() {

@@ -88,7 +88,19 @@ ContactRecipe obstacle(Obstacle obstacle) {
   recipe.make = [obstacle](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<ObstacleInterface>(scene, std::move(mesh), obstacle);
   };
+  recipe.record = {"obstacle",
+                   1,
+                   {{"lumped", {obstacle.lumped ? 1.0 : 0.0}}},
+                   {{"region", obstacle.region}},
+                   {{"height", obstacle.height.record}}};
   return recipe;
+}
+
+ContactKind obstacle_kind() {
+  return {"obstacle", 1, [](const Record &record) {
+            return obstacle({text(record, "region"), made<PointValue>(part(record, "height")),
+                             number(record, "lumped") != 0});
+          }};
 }
 
 } // namespace rbvi

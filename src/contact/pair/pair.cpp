@@ -124,10 +124,28 @@ ContactRecipe two_bodies(Pair pair) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {1}, true};
   recipe.separable = false;
+  recipe.keeps_nodes = true;
   recipe.make = [pair](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<PairInterface>(scene, std::move(mesh), pair);
   };
+  const auto &[multiplier, quadrature] = pair.discretisation;
+  recipe.record = {"two_bodies",
+                   1,
+                   {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
+                    {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}}},
+                   {{"slave", pair.slave}, {"master", pair.master}}};
   return recipe;
+}
+
+ContactKind two_bodies_kind() {
+  return {"two_bodies", 1, [](const Record &record) {
+            const bool linear = number(record, "linear_pressure") != 0,
+                       direct = number(record, "direct") != 0;
+            return two_bodies({text(record, "slave"),
+                               text(record, "master"),
+                               {linear ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
+                                direct ? PairQuadrature::direct : PairQuadrature::intersection}});
+          }};
 }
 
 } // namespace rbvi

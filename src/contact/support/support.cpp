@@ -177,7 +177,29 @@ ContactRecipe rigid_support(Support support) {
   recipe.make = [support](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<SupportInterface>(scene, std::move(mesh), support);
   };
+  recipe.record = record_of(support);
   return recipe;
+}
+
+ContactKind rigid_support_kind() {
+  return {"rigid_support", 1,
+          [](const Record &record) { return rigid_support(support_in(record)); }};
+}
+
+Record record_of(const Support &support) {
+  Record record{"rigid_support",
+                1,
+                {{"lumped", {support.lumped ? 1.0 : 0.0}}},
+                {{"boundary", support.boundary}},
+                {{"normal", support.normal.record}, {"gap", support.gap.record}}};
+  add_friction(support.friction, record);
+  return record;
+}
+
+Support support_in(const Record &record) {
+  return {text(record, "boundary"), made<PointMap>(part(record, "normal")),
+          made<PointValue>(part(record, "gap")), friction_in(record),
+          number(record, "lumped") != 0};
 }
 
 } // namespace rbvi

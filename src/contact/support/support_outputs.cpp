@@ -22,13 +22,6 @@ bool sticks(double tangential, double bound, double violation) {
 
 } // namespace
 
-Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n) {
-  Vector result = bound.coefficient * lambda_n;
-  for (Index i = 0; i < result.size(); ++i)
-    if (!bound.only_in_contact || lambda_n[i] > 0) result[i] += bound.threshold;
-  return result;
-}
-
 double centre_pressure(const Vector &pressure, const Vector &s, double half_width) {
   Index next = 0;
   s.cwiseAbs().minCoeff(&next);
@@ -61,7 +54,7 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
   if (state.lambda.size() == count) return;
 
   const Vector shear = state.lambda.tail(count).cwiseAbs();
-  const Vector bounds = friction_bounds(state.bound, pressure);
+  const Vector bounds = values_of(state.bound, pressure);
   const double violation = std::max(0.0, (shear - bounds).maxCoeff());
   for (Index i = 0; i < count; ++i)
     if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) {

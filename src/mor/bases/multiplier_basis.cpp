@@ -1,6 +1,5 @@
 #include "rbvi/mor/bases/multiplier_basis.hpp"
 
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/least_squares_friction.hpp"
 #include "rbvi/par/small_svd.hpp"
@@ -22,7 +21,7 @@ Matrix left_to_bound(const Matrix &normal, const Matrix &tangential,
                      const std::vector<FrictionBound> &bounds) {
   Matrix left(normal.rows(), normal.cols());
   for (Index p = 0; p < left.cols(); ++p)
-    left.col(p) = (friction_bounds(bounds[static_cast<std::size_t>(p)], normal.col(p)) -
+    left.col(p) = (values_of(bounds[static_cast<std::size_t>(p)], normal.col(p)) -
                    tangential.col(p).cwiseAbs())
                       .cwiseMax(0);
   const double largest = left.maxCoeff();

@@ -23,6 +23,8 @@ namespace {
 /// Sums of more than two exact terms: what the responses of the body may leave, relative.
 constexpr double response_tolerance = 1e-6;
 constexpr int most_responses = 200; ///< factorisations
+/// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
+constexpr double load_tolerance = 1e-9;
 
 /// Whether node i is the mirror image of node count - 1 - i.
 bool mirrored(const std::vector<Point> &points) {
@@ -116,15 +118,15 @@ Vector blocks_of(const Matrix &h, Index m) {
 /// As few terms as hold the values at all grid points to the tolerance. `values`: (blocks *
 /// `square`) x grid points.
 void compress(const Matrix &values, Index square, double tolerance, CondensedOperator &condensed) {
-  const Index points = values.cols(), blocks = values.rows() / square;
+  const Index blocks = values.rows() / square, rank = std::min(values.rows(), values.cols());
   const Eigen::HouseholderQR<Matrix> qr(values);
-  const SmallSvd svd = small_svd(qr.matrixQR().topRows(points).triangularView<Eigen::Upper>());
+  const SmallSvd svd = small_svd(qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>());
   Index count = 1;
-  while (count < points && svd.values[count] > 0.1 * tolerance * svd.values[0])
+  while (count < rank && svd.values[count] > 0.1 * tolerance * svd.values[0])
     ++count;
   condensed.shape = svd.values.head(count).asDiagonal() * svd.right.leftCols(count).transpose();
   Matrix left = Matrix::Zero(values.rows(), count);
-  left.topRows(points) = svd.left.leftCols(count);
+  left.topRows(rank) = svd.left.leftCols(count);
   left.applyOnTheLeft(qr.householderQ());
   condensed.terms.resize(square, blocks * count);
   for (Index block = 0; block < blocks; ++block)
@@ -249,14 +251,14 @@ private:
   std::vector<Mu> ends_;
 };
 
-/// Values at a grid that is made finer until the interpolant is right to the tolerance.
-/// `blocks_at`: at many mu. Collective.
+/// Values at a grid that is made finer along the axes that need it until the interpolant is right
+/// to the tolerance. `blocks_at`: at many mu. Collective.
 template <class BlocksAt>
 Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOptions &options,
                       CondensedOperator &condensed, BlocksAt &&blocks_at) {
   std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
-  for (int points = 5;; points = 2 * points - 1) {
-    condensed.axes = axes_of(scene, points);
+  condensed.axes = axes_of(scene, 5);
+  while (true) {
     const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
     std::vector<Mu> added;
     std::copy_if(grid.begin(), grid.end(), std::back_inserter(added),
@@ -267,17 +269,45 @@ Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOpti
     Matrix values(known.begin()->second.size(), static_cast<Index>(grid.size()));
     for (std::size_t k = 0; k < grid.size(); ++k)
       values.col(static_cast<Index>(k)) = known.at(grid[k]);
-    condensed.error = chebyshev_tail(condensed.axes, values);
+    const Vector tails = chebyshev_tails(condensed.axes, values);
+    condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
     if (condensed.error <= options.tolerance) return values;
-    if (2 * points - 1 > options.max_points)
-      throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
-                    " only by " + std::to_string(points) +
-                    " points along each parameter of the stiffness: narrow their bounds, or raise "
-                    "-condensed_tolerance");
+    for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
+      if (tails[static_cast<Index>(d)] <= options.tolerance) continue;
+      ChebyshevAxis &axis = condensed.axes[d];
+      if (2 * axis.points - 1 > options.max_points)
+        throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
+                      " only by " + std::to_string(axis.points) + " points along " +
+                      scene.parameters.all[static_cast<std::size_t>(axis.parameter)].name +
+                      ": narrow its bounds, or raise -condensed_tolerance");
+      axis.points = 2 * axis.points - 1;
+    }
   }
 }
 
 } // namespace
+
+int add_load_responses(Problem &problem, const AffineOperators &affine,
+                       const std::vector<Mu> &training, LinearBasis &modes) {
+  std::vector<Handle<Vec>> mapped;
+  std::vector<Vec> loads;
+  for (const int snapshot : affine.f.snapshots) {
+    problem.assemble(training[static_cast<std::size_t>(snapshot)]);
+    const Vec at_snapshot = problem.f_terms().mapped.get();
+    Handle<Vec> copy;
+    RBVI_CALL(VecDuplicate(at_snapshot, copy.put()));
+    RBVI_CALL(VecCopy(at_snapshot, copy.get()));
+    loads.push_back(copy.get());
+    mapped.push_back(std::move(copy));
+  }
+  for (const Handle<Vec> &exact : problem.f_terms().exact)
+    loads.push_back(exact.get());
+  const Scene &scene = problem.scene();
+  return append_load_responses(problem, loads, axes_of(scene, 1),
+                               expand(scene.parameters, training.front()), load_tolerance,
+                               most_responses, modes)
+      .functions;
+}
 
 Condensation condense(Problem &problem, const CondensedLoads &loads, Index size, const FullMu &all,
                       const CondensedOptions &options, LinearBasis *modes,

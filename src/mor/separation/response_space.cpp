@@ -3,6 +3,7 @@
 #include "dense_rows.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/replicated.hpp"
 
 #include <Eigen/Cholesky>
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 
@@ -109,35 +111,64 @@ Handle<Mat> dense_like(Mat like, const Matrix &local) {
   return dense;
 }
 
-/// Appends the directions of `fields` outside the basis that are longer than `least`; returns the
-/// longest. Collective.
-double append_remainder(Mat fields, Mat product, double least, LinearBasis &basis) {
-  Matrix rest = BorrowedRows(fields).rows();
-  if (basis.size() > 0) {
-    Mat columns = nullptr;
-    RBVI_CALL(BVGetMat(basis.columns.get(), &columns));
-    const Matrix inside = projected(columns, product, fields);
-    rest.noalias() -= BorrowedRows(columns).rows() * inside;
-    RBVI_CALL(BVRestoreMat(basis.columns.get(), &columns));
+/// A basis that grows, with its product P V, so that what is inside costs no product.
+class GrowingBasis {
+public:
+  /// `product`, P: the basis is orthonormal in it. Collective.
+  GrowingBasis(LinearBasis &basis, Mat product) : basis_(basis), product_(product) { keep_up(); }
+
+  /// Appends the directions of `fields` outside the basis that are longer than `least`; returns the
+  /// longest. Collective.
+  double append_remainder(Mat fields, double least) {
+    Matrix rest = BorrowedRows(fields).rows();
+    Matrix inside = of_product_.transpose() * rest;
+    over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(fields)), MPI_SUM, inside);
+    rest.noalias() -= columns_ * inside;
+    const Handle<Mat> outside = dense_like(fields, rest);
+    const Eigen::SelfAdjointEigenSolver<Matrix> gram(
+        projected(outside.get(), product_, outside.get()));
+    const Vector lengths = gram.eigenvalues().cwiseMax(0).cwiseSqrt();
+    const Index count = (lengths.array() > least).count();
+    const Matrix directions = rest * gram.eigenvectors().rightCols(count).rowwise().reverse();
+    if (count > 0) append_orthonormalised(basis_, dense_like(fields, directions).get(), 1e-10);
+    keep_up();
+    return lengths.tail(1)[0];
   }
-  const Handle<Mat> outside = dense_like(fields, rest);
-  const Eigen::SelfAdjointEigenSolver<Matrix> gram(
-      projected(outside.get(), product, outside.get()));
-  const Vector lengths = gram.eigenvalues().cwiseMax(0).cwiseSqrt();
-  const Index count = (lengths.array() > least).count();
-  const Matrix directions = rest * gram.eigenvectors().rightCols(count).rowwise().reverse();
-  if (count > 0) append_orthonormalised(basis, dense_like(fields, directions).get(), 1e-10);
-  return lengths.tail(1)[0];
-}
 
-} // namespace
+private:
+  /// Takes the columns that are new. Collective.
+  void keep_up() {
+    const PetscInt kept = static_cast<PetscInt>(columns_.cols()), all = basis_.size();
+    if (kept == all) return;
+    Mat fresh = nullptr;
+    Handle<Mat> product;
+    RBVI_CALL(BVSetActiveColumns(basis_.columns.get(), kept, all));
+    RBVI_CALL(BVGetMat(basis_.columns.get(), &fresh));
+    RBVI_CALL(MatMatMult(product_, fresh, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
+    append(BorrowedRows(fresh).rows(), columns_);
+    append(BorrowedRows(product.get()).rows(), of_product_);
+    RBVI_CALL(BVRestoreMat(basis_.columns.get(), &fresh));
+    RBVI_CALL(BVSetActiveColumns(basis_.columns.get(), 0, all));
+  }
+  static void append(const BorrowedRows::LocalRows &more, Matrix &to) {
+    to.conservativeResize(more.rows(), to.cols() + more.cols());
+    to.rightCols(more.cols()) = more;
+  }
 
-ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matrix &weights,
-                               const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
-                               double tolerance, int most, LinearBasis &basis) {
+  LinearBasis &basis_;
+  Mat product_;
+  Matrix columns_, of_product_; ///< this rank's rows of V and of P V
+};
+
+/// Appends what the fields of each point of a sparse grid have outside the basis, point by point
+/// where most is expected. Collective.
+ResponseSpace append_fields(Problem &problem,
+                            const std::function<Handle<Mat>(const Operators &)> &fields_at,
+                            const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
+                            double tolerance, int most, LinearBasis &basis) {
   const std::vector<double> leja = leja_points(most);
-  const Matrix weighted = loads * weights;
   const PetscInt before = basis.size();
+  GrowingBasis growing(basis, problem.v_product());
   ResponseSpace result;
   SparseGrid grid;
   double scale = 0;
@@ -148,17 +179,56 @@ ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matr
                     " only after " + counted(most, "factorisation") +
                     ": narrow the bounds of the parameters of the stiffness");
     const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);
-    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
-    const Handle<Mat> fields = solver.fields(weighted);
+    const Handle<Mat> fields = fields_at(problem.assemble(mu));
     if (scale == 0)
       scale = std::sqrt(projected(fields.get(), problem.v_product(), fields.get()).trace());
-    grid.taken[next.first] =
-        append_remainder(fields.get(), problem.v_product(), tolerance * scale, basis) / scale;
+    if (scale == 0) return result;
+    grid.taken[next.first] = growing.append_remainder(fields.get(), tolerance * scale) / scale;
     ++result.points;
     result.left = next.second;
   }
   result.functions = static_cast<int>(basis.size() - before);
   return result;
+}
+
+} // namespace
+
+ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matrix &weights,
+                               const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
+                               double tolerance, int most, LinearBasis &basis) {
+  const Matrix weighted = loads * weights;
+  return append_fields(
+      problem,
+      [&](const Operators &op) {
+        return ReplicatedSolver(op.a, problem.trace(), "hf_").fields(weighted);
+      },
+      axes, all_parameters, tolerance, most, basis);
+}
+
+ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &loads,
+                                    const std::vector<ChebyshevAxis> &axes,
+                                    const FullMu &all_parameters, double tolerance, int most,
+                                    LinearBasis &basis) {
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  return append_fields(
+      problem,
+      [&](const Operators &op) {
+        RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+        Handle<Vec> u;
+        RBVI_CALL(VecDuplicate(op.f, u.put()));
+        PetscInt rows = 0;
+        RBVI_CALL(VecGetLocalSize(op.f, &rows));
+        Matrix fields(rows, std::ssize(loads));
+        for (Index k = 0; k < fields.cols(); ++k) {
+          solve_linear(ksp.get(), loads[static_cast<std::size_t>(k)], u.get());
+          const PetscScalar *values = nullptr;
+          RBVI_CALL(VecGetArrayRead(u.get(), &values));
+          fields.col(k) = Eigen::Map<const Vector>(values, rows);
+          RBVI_CALL(VecRestoreArrayRead(u.get(), &values));
+        }
+        return dense_like(op.a, fields);
+      },
+      axes, all_parameters, tolerance, most, basis);
 }
 
 ReducedResponses::ReducedResponses(const Problem &problem, const Matrix &loads,

@@ -86,10 +86,12 @@ Vector grid_weights(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
   return weights;
 }
 
-double chebyshev_tail(const std::vector<ChebyshevAxis> &axes, const Matrix &values) {
-  double largest = 0, tail = 0;
-  Index inner = values.cols();
+Vector chebyshev_tails(const std::vector<ChebyshevAxis> &axes, const Matrix &values) {
+  double largest = 0;
+  Vector tails = Vector::Zero(std::ssize(axes));
+  Index inner = values.cols(), at = 0;
   for (const ChebyshevAxis &axis : axes) { // lines of the grid along this axis
+    double &tail = tails[at++];
     inner /= axis.points;
     const Matrix transform = coefficients_of(axis.points).transpose();
     const Index outer = values.cols() / (inner * axis.points);
@@ -105,7 +107,7 @@ double chebyshev_tail(const std::vector<ChebyshevAxis> &axes, const Matrix &valu
           tail = largest;
       }
   }
-  return axes.empty() || largest == 0 ? 0 : tail / largest;
+  return largest == 0 ? tails : Vector(tails / largest);
 }
 
 } // namespace rbvi

@@ -3,6 +3,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/lagrange.hpp"
+#include "rbvi/rom/model/packed.hpp"
+#include "rbvi/rom/model/scene_record.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -306,10 +308,26 @@ Contact contact_of(const ReducedModel &model, const Scene &scene) {
 }
 
 Scene scene_of(const ReducedModel &model) {
+  const Record &record = model.scene_record;
+  if (is_complete(record)) {
+    Scene scene = scene_in(record);
+    scene.options = model.scene_options;
+    scene.parameters = model.parameters;
+    check_box(scene);
+    return scene;
+  }
+  try {
+    return whole_scene_of(model);
+  } catch (const Error &error) {
+    throw bad_input(std::string(error.what()) + "; the model needs the code of its scene: for '" +
+                    first_unnamed(record) + "', which has no name in files");
+  }
+}
+
+Scene whole_scene_of(const ReducedModel &model) {
   Scene scene = make_scene(model.scene_name, model.scene_options);
   const auto same = [](const Parameter &p, const Parameter &q) { return p.name == q.name; };
-  if (!std::equal(scene.parameters.all.begin(), scene.parameters.all.end(),
-                  model.parameters.all.begin(), model.parameters.all.end(), same))
+  if (!std::ranges::equal(scene.parameters.all, model.parameters.all, same))
     throw bad_input("the parameters of the model are not those of scene " + model.scene_name +
                     " in this build");
   const ParameterSpace of_scene = std::exchange(scene.parameters, model.parameters);

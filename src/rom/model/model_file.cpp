@@ -1,7 +1,10 @@
 // model.h5: its data sets are listed in LAYOUT.md beside this file.
+#include "model_fields.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/rom/model/scene_record.hpp"
 #include "stored_operators.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace rbvi {
@@ -41,19 +44,23 @@ std::map<std::string, std::string> read_texts(const H5Reader &file, const std::s
 
 void write_parameters(H5Writer &file, const ParameterSpace &space) {
   std::vector<std::string> names, units;
-  std::vector<double> lower, upper, value;
+  std::vector<double> lower, upper, value, valid_lower, valid_upper;
   for (const Parameter &p : space.all) {
     names.push_back(p.name);
     units.push_back(p.unit);
     lower.push_back(p.lower);
     upper.push_back(p.upper);
     value.push_back(p.value);
+    valid_lower.push_back(p.valid.lower);
+    valid_upper.push_back(p.valid.upper);
   }
   file.write("parameters/names", names);
   file.write("parameters/units", units);
   file.write("parameters/lower", lower);
   file.write("parameters/upper", upper);
   file.write("parameters/value", value);
+  file.write("parameters/valid_lower", valid_lower);
+  file.write("parameters/valid_upper", valid_upper);
   file.write("parameters/free", space.free);
 }
 
@@ -63,13 +70,17 @@ ParameterSpace read_parameters(const H5Reader &file) {
   const std::vector<double> lower = file.doubles("parameters/lower");
   const std::vector<double> upper = file.doubles("parameters/upper");
   const std::vector<double> value = file.doubles("parameters/value");
+  const std::vector<double> valid_lower = file.doubles("parameters/valid_lower");
+  const std::vector<double> valid_upper = file.doubles("parameters/valid_upper");
   const std::size_t count = names.size();
-  if (units.size() != count || lower.size() != count || upper.size() != count ||
-      value.size() != count)
+  if (units.size() != count ||
+      std::ranges::any_of(std::array{lower, upper, value, valid_lower, valid_upper},
+                          [&](const auto &column) { return column.size() != count; }))
     throw bad_input("the parameters are incomplete");
   ParameterSpace space;
   for (std::size_t i = 0; i < count; ++i)
-    space.all.push_back({names[i], units[i], lower[i], upper[i], value[i]});
+    space.all.push_back(
+        {names[i], units[i], lower[i], upper[i], value[i], {valid_lower[i], valid_upper[i]}});
   space.free = file.ints("parameters/free");
   for (const int i : space.free)
     if (i < 0 || static_cast<std::size_t>(i) >= count)
@@ -268,29 +279,23 @@ std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
   return nitsche;
 }
 
-void write_fields(H5Writer &file, const ReducedModel &model) {
+void write_contact(H5Writer &file, const ReducedModel &model) {
   write_interfaces(file, model.interfaces);
   file.write("contact/dual_basis", model.dual_basis);
   file.write("contact/trace", model.contact_trace);
-  file.write("fields/primal_basis", model.primal_basis);
-  file.write("fields/points", model.mesh_points);
-  file.write("fields/cells", model.mesh_cells);
 }
 
-void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
+void read_contact(const H5Reader &file, ReducedModel &model) {
   model.dual_basis = file.matrix("contact/dual_basis");
   model.contact_trace = file.matrix("contact/trace");
   model.interfaces = read_interfaces(file, model.contact_trace.rows());
-  if (!all) return;
-  model.primal_basis = file.matrix("fields/primal_basis");
-  model.mesh_points = file.matrix("fields/points");
-  model.mesh_cells = file.ints("fields/cells");
 }
 
-ReducedModel read_members(const H5Reader &file, bool with_fields) {
+ReducedModel read_members(const H5Reader &file) {
   ReducedModel model;
   model.scene_name = file.string("scene/name");
   model.scene_options = read_texts(file, "scene/options");
+  model.scene_record = record_in(read_texts(file, "scene/functions"));
   model.parameters = read_parameters(file);
   model.settings = read_texts(file, "settings");
   model.mesh_fingerprint = file.string("mesh/fingerprint");
@@ -305,7 +310,7 @@ ReducedModel read_members(const H5Reader &file, bool with_fields) {
   model.g = read_terms(file, "g");
   model.support = read_support(file);
   model.nitsche = read_nitsche(file);
-  read_fields(file, with_fields, model);
+  read_contact(file, model);
   read_history(file, model);
   return model;
 }
@@ -314,9 +319,11 @@ ReducedModel read_members(const H5Reader &file, bool with_fields) {
 
 void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   check_model(model);
+  write_fields(model, path);
   H5Writer file;
   file.write("scene/name", model.scene_name);
   write_texts(file, "scene/options", model.scene_options);
+  write_texts(file, "scene/functions", lines_of(model.scene_record));
   write_parameters(file, model.parameters);
   write_texts(file, "settings", model.settings);
   file.write("mesh/fingerprint", model.mesh_fingerprint);
@@ -331,7 +338,8 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "g", model.g);
   write_support(file, model.support);
   write_nitsche(file, model.nitsche);
-  write_fields(file, model);
+  write_contact(file, model);
+  file.write("fields/key", key_of_fields(model));
   write_history(file, model);
   file.commit(path, "model", model_schema);
 }
@@ -339,7 +347,8 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
 ReducedModel read_model(const std::filesystem::path &path, bool with_fields) {
   const H5Reader file(path, "model", model_schema);
   try {
-    ReducedModel model = read_members(file, with_fields);
+    ReducedModel model = read_members(file);
+    if (with_fields) read_fields(path, file.string("fields/key"), model);
     check_model(model);
     (void)scene_of(model);
     return model;

@@ -1,6 +1,5 @@
 #include "rbvi/rom/support/reduced_law.hpp"
 
-#include "rbvi/contact/support/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/law/general_lcp.hpp"
@@ -62,7 +61,7 @@ CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtM
 
 double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal, Index normal,
                         const FrictionBound &bound) {
-  const Vector bounds = friction_bounds(bound, x.head(normal));
+  const Vector bounds = values_of(bound, x.head(normal));
   const Vector y = x - w.cwiseQuotient(diagonal);
   double largest = 0;
   for (Index i = 0; i < x.size(); ++i) {

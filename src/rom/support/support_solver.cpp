@@ -95,7 +95,9 @@ BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, SupportAnswer &ans
   }
   const Vector &theta_b = answer.theta_b;
   if (support.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
-  if (support.reduction == MultiplierReduction::collocated)
+  if (model_.evaluates_contact() && model_.f.size() > 0)
+    body.b = body.b_contact * model_.contact_trace;
+  else if (support.reduction == MultiplierReduction::collocated || model_.f.size() > 0)
     body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
   stiffness_.set(all_parameters);
   if (model_.online_enriched)
@@ -163,7 +165,7 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
   }
   if (!checks) return true;
   AtAllNodes nodes = at_all_nodes(body, answer.x);
-  answer.energy = 0.5 * answer.x.dot(nodes.w - body.q);
+  answer.energy = 0.5 * (answer.x.dot(nodes.w - body.q) - body.load.squaredNorm());
   answer.residual =
       natural_residual(answer.x, nodes.w, nodes.diagonal, model_.support->normal, body.bound);
   answer.start = std::move(nodes.start);
@@ -185,7 +187,7 @@ void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters
   if (!found.converged || !(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
-  answer.energy = 0.5 * found.x.dot(found.w - body.q);
+  answer.energy = 0.5 * (found.x.dot(found.w - body.q) - body.load.squaredNorm());
   answer.residual = found.residual;
   answer.iterations += found.iterations;
   answer.x = std::move(found.x);

@@ -14,14 +14,17 @@ struct HalfPlane {
   std::string boundary;
   Point normal; ///< without tilt, out of the body, of length 1
   Point pivot;  ///< the plane turns about a point that lies `position` from here along the normal
-  std::function<double(const FullMu &)> position;
-  std::function<double(const FullMu &)> tilt{}; ///< radians, counterclockwise; empty: none
+  Named<Coefficient> position;
+  Named<Coefficient> tilt{}; ///< radians, counterclockwise; empty: none
   /// The true surface of the body at a point of the reference boundary, mapped; empty: the edges.
-  std::function<Point(const FullMu &, const Point &)> surface{};
+  Named<PointMap> surface{};
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
 };
 
 ContactRecipe half_plane(HalfPlane plane);
+
+/// "half_plane" in files.
+ContactKind half_plane_kind();
 
 } // namespace rbvi

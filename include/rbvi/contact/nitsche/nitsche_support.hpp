@@ -9,6 +9,9 @@ namespace rbvi {
 /// changes, and takes more steps. For scenes with a material.
 ContactRecipe nitsche_support(Support support, double gamma0);
 
+/// "nitsche_support" in files.
+ContactKind nitsche_support_kind();
+
 /// The options `formulation` and `nitsche_gamma0` of scenes with a support.
 std::vector<SceneOption> nitsche_options();
 bool asks_for_nitsche(const SceneOptions &options);

@@ -11,7 +11,7 @@ namespace rbvi {
 struct Obstacle {
   std::string region;
   /// psi(mu) at a point of the mapped domain.
-  std::function<double(const FullMu &, const Point &)> height;
+  Named<PointValue> height;
   /// b and g by vertex quadrature: the constraint is a bound at each node. Else exact, g by a rule
   /// of degree 5.
   bool lumped = false;
@@ -19,5 +19,8 @@ struct Obstacle {
 
 /// For scalar displacements of degree 1.
 ContactRecipe obstacle(Obstacle obstacle);
+
+/// "obstacle" in files.
+ContactKind obstacle_kind();
 
 } // namespace rbvi

@@ -17,4 +17,7 @@ struct Pair {
 
 ContactRecipe two_bodies(Pair pair);
 
+/// "two_bodies" in files.
+ContactKind two_bodies_kind();
+
 } // namespace rbvi

@@ -19,14 +19,21 @@ namespace rbvi {
 struct Support {
   std::string boundary;
   /// Unit normal at a point of the reference boundary, out of the mapped body.
-  std::function<Point(const FullMu &, const Point &)> normal;
+  Named<PointMap> normal;
   /// Gap along it: u . n <= gap.
-  std::function<double(const FullMu &, const Point &)> gap;
+  Named<PointValue> gap;
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
 };
 
 ContactRecipe rigid_support(Support support);
+
+/// "rigid_support" in files.
+ContactKind rigid_support_kind();
+
+/// What files store of a support, and the support of a record.
+Record record_of(const Support &support);
+Support support_in(const Record &record);
 
 /// direction . w <= gap at a point of the reference boundary, and the slip of the motion there.
 struct SupportPoint {

@@ -3,12 +3,9 @@
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/law/friction/friction.hpp"
+#include "rbvi/law/node_laws.hpp"
 
 namespace rbvi {
-
-/// Bound of the tangential multipliers at each node: c lambda_n + t.
-Vector friction_bounds(const FrictionBound &bound, const Vector &lambda_n);
 
 /// At the middle of a curve: by a fit of p against s^2 over arc lengths |s| < 0.12 half_width, or
 /// the next value where that holds fewer than three.

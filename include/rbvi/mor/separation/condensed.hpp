@@ -25,6 +25,12 @@ Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots);
 /// Coefficients of multipliers (dual dofs x P) in a basis of disjoint columns.
 Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
 
+/// Appends to the modes the responses of the body to the terms of F, which the condensed operator
+/// does not see: the gap without multipliers is that of Galerkin's method in the modes. `training`:
+/// what `affine` was made at. Returns how many. Collective.
+int add_load_responses(Problem &problem, const AffineOperators &affine,
+                       const std::vector<Mu> &training, LinearBasis &modes);
+
 struct Condensation {
   CondensedOperator condensed;
   int responses = 0;      ///< functions appended to the modes

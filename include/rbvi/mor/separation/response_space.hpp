@@ -29,6 +29,13 @@ ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matr
                                const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
                                double tolerance, int most, LinearBasis &basis);
 
+/// The same for the responses to `loads` on the whole body, until all of them are there to the
+/// tolerance.
+ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &loads,
+                                    const std::vector<ChebyshevAxis> &axes,
+                                    const FullMu &all_parameters, double tolerance, int most,
+                                    LinearBasis &basis);
+
 /// Galerkin's method in a basis, for a sum of exact terms.
 class ReducedResponses {
 public:

@@ -28,8 +28,8 @@ std::vector<FullMu> grid_points(const Scene &scene, const std::vector<ChebyshevA
 Vector grid_weights(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
                     const FullMu &all_parameters);
 
-/// Size of the last two Chebyshev coefficients along the axes relative to the largest: what the
-/// interpolant still misses. `values`: entries x grid points.
-double chebyshev_tail(const std::vector<ChebyshevAxis> &axes, const Matrix &values);
+/// For each axis the size of the last two Chebyshev coefficients along it, relative to the largest
+/// of all: what the interpolant still misses. `values`: entries x grid points.
+Vector chebyshev_tails(const std::vector<ChebyshevAxis> &axes, const Matrix &values);
 
 } // namespace rbvi

@@ -180,6 +180,9 @@ struct InterfaceModel {
 struct ReducedModel {
   std::string scene_name;
   SceneOptions scene_options;
+  /// What the model needs of its scene (scene_record.hpp). Where all its functions have names, the
+  /// model is answered without the scene's code.
+  Record scene_record;
   ParameterSpace parameters;
   std::map<std::string, std::string> settings; ///< tolerances and options that made it
   std::string mesh_fingerprint;
@@ -219,18 +222,23 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 8;
+inline constexpr int model_schema = 9;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).
 void check_model(const ReducedModel &model);
 
-/// Throws failure (check_model, H5Writer::commit).
+/// What reconstruction alone needs, primal_basis, mesh_points and mesh_cells, is in a file of its
+/// own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the model is not.
+std::filesystem::path fields_file(const std::filesystem::path &model);
+
+/// Writes both files; that of the fields first, and only where it holds others or is not there, and
+/// not for a model without fields. Throws failure (check_model, H5Writer::commit).
 void write_model(const ReducedModel &model, const std::filesystem::path &path);
 
-/// Throws bad_input (see H5Reader), also for a scene or an option that this build does not have, or
-/// parameters that are not those of the scene. `with_fields` false leaves out what reconstruction
-/// alone needs: primal_basis, mesh_points, mesh_cells.
+/// Throws bad_input (see H5Reader), also for functions or a scene that this build does not have, or
+/// parameters that are not those of the scene, and where the fields are asked for and are not there
+/// or another model's. `with_fields` false leaves them out.
 ReducedModel read_model(const std::filesystem::path &path, bool with_fields = true);
 
 /// The model with the first n primal columns alone (n = modes: the decorrelated basis) and
@@ -251,7 +259,12 @@ Point point_of(const Matrix &points, Index i);
 /// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.
 Contact contact_of(const ReducedModel &model, const Scene &scene);
 
-/// The scene of the model, with its options and the model's free and fixed parameters.
+/// What the online program needs of the scene of the model, with the model's free and fixed
+/// parameters: from its record, or by the code of the scene where a function has no name. Throws
+/// bad_input for what this build does not have.
 Scene scene_of(const ReducedModel &model);
+
+/// The whole scene, with its options, by its code.
+Scene whole_scene_of(const ReducedModel &model);
 
 } // namespace rbvi

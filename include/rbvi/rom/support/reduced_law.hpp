@@ -12,7 +12,7 @@ namespace rbvi {
 /// What the elastic body says at one mu.
 struct BodyAtMu {
   Vector terms;                      ///< coefficient of each term of the condensed operator
-  Matrix b;                          ///< m x n, reduced; collocated alone
+  Matrix b;                          ///< m x n, reduced; collocated, or with a load
   SparseMatrix b_contact;            ///< m x contact dofs, where b does not separate
   const ReducedStiffness *stiffness; ///< set to mu
   Vector q;                          ///< m: the gap, and the slip, of no multipliers

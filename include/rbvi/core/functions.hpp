@@ -1,0 +1,72 @@
+// The functions that scenes are made of, by what they take and return, and those that many scenes
+// share. Each has a maker under a name of its own; function_library() lists the makers of this
+// build, so that a model file names its functions and holds no code.
+#pragma once
+
+#include "rbvi/core/parameters.hpp"
+#include "rbvi/core/record.hpp"
+
+#include <array>
+#include <variant>
+
+namespace rbvi {
+
+/// Coordinates; in 2D the third is zero.
+using Point = std::array<double, 3>;
+
+/// One simplex: dim + 1 vertices, in the reference and in the mapped domain.
+struct Cell {
+  int dim = 2;
+  std::array<Point, 4> reference; ///< vertices xhat
+  std::array<Point, 4> mapped;    ///< h(mu)(xhat)
+};
+
+/// The two constants of an isotropic material, pressures:
+/// sigma = lambda tr(eps) I + 2 shear eps.
+struct Lame {
+  double lambda, shear;
+};
+
+using NumberMap = double(double x);
+using Coefficient = double(const FullMu &mu); ///< theta, a coefficient of friction, ...
+using Check = void(const FullMu &mu);         ///< throws bad_input
+using PointValue = double(const FullMu &mu, const Point &x);
+using PointMap = Point(const FullMu &mu, const Point &x);
+using Material = Lame(const FullMu &mu, const Point &x);
+using Kernel = void(const FullMu &mu, const Cell &cell, double *values); ///< see Form
+/// A force per length or area at a point x of the mapped boundary, n its unit normal outwards.
+using Traction = Point(const FullMu &mu, const Point &x, const Point &n);
+
+using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
+                              Maker<PointMap>, Maker<Material>, Maker<Kernel>, Maker<Traction>>;
+using FunctionLibrary = std::vector<AnyMaker>;
+
+/// The makers of this build: those of core and element, then each scene's; cases/catalogue.cpp.
+const FunctionLibrary &function_library();
+
+/// The makers of the functions below.
+FunctionLibrary common_functions();
+
+/// The function of a record. Throws bad_input for one that this build does not have, or has in
+/// another version.
+template <class Signature> Named<Signature> made(const Record &record);
+
+/// Coordinates of parameters: x -> log x and back, x -> log(1 - 2 x) and back.
+Named<NumberMap> logarithm();
+Named<NumberMap> exponential();
+Named<NumberMap> logarithm_to_half();
+Named<NumberMap> exponential_to_half();
+
+/// value + factor (the parameter of this index in parameters.all).
+Named<Coefficient> affine(double value, double factor, int index);
+/// The value of a parameter, and of none.
+Named<Coefficient> parameter(int index);
+Named<Coefficient> constant(double value);
+
+Named<PointMap> identity();
+/// The same at all points for all mu.
+Named<PointValue> everywhere(double value);
+Named<PointMap> everywhere(const Point &vector);
+Named<Material> everywhere(const Lame &material);
+
+} // namespace rbvi

@@ -1,0 +1,125 @@
+#include "rbvi/core/functions.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+const auto log_maker = plain<NumberMap>("log", 1, [](double x) { return std::log(x); });
+const auto exp_maker = plain<NumberMap>("exp", 1, [](double x) { return std::exp(x); });
+const auto log_to_half_maker =
+    plain<NumberMap>("log_to_half", 1, [](double x) { return std::log(1 - 2 * x); });
+const auto exp_to_half_maker =
+    plain<NumberMap>("exp_to_half", 1, [](double x) { return (1 - std::exp(x)) / 2; });
+
+const Maker<Coefficient> affine_maker{
+    "affine", 1, [](const Record &of) -> std::function<Coefficient> {
+      const double value = number(of, "value"), factor = number(of, "factor");
+      const auto index = static_cast<std::size_t>(integer(of, "parameter"));
+      return [=](const FullMu &mu) { return value + factor * mu.at(index); };
+    }};
+
+const Maker<PointMap> identity_maker =
+    plain<PointMap>("identity", 1, [](const FullMu &, const Point &x) { return x; });
+
+const Maker<Coefficient> constant_maker{
+    "constant", 1, [](const Record &of) -> std::function<Coefficient> {
+      return [value = number(of, "value")](const FullMu &) { return value; };
+    }};
+
+const Maker<PointValue> value_maker{
+    "everywhere", 1, [](const Record &of) -> std::function<PointValue> {
+      return [value = number(of, "value")](const FullMu &, const Point &) { return value; };
+    }};
+
+const Maker<PointMap> vector_maker{
+    "everywhere", 1, [](const Record &of) -> std::function<PointMap> {
+      const Point vector{number(of, "x"), number(of, "y"), number(of, "z")};
+      return [vector](const FullMu &, const Point &) { return vector; };
+    }};
+
+const Maker<Material> material_maker{
+    "everywhere", 1, [](const Record &of) -> std::function<Material> {
+      const Lame material{number(of, "lambda"), number(of, "shear")};
+      return [material](const FullMu &, const Point &) { return material; };
+    }};
+
+} // namespace
+
+FunctionLibrary common_functions() {
+  return {log_maker,      exp_maker,      log_to_half_maker, exp_to_half_maker, affine_maker,
+          constant_maker, identity_maker, value_maker,       vector_maker,      material_maker};
+}
+
+template <class Signature> Named<Signature> made(const Record &record) {
+  const Maker<Signature> *other = nullptr;
+  for (const AnyMaker &any : function_library())
+    if (const auto *maker = std::get_if<Maker<Signature>>(&any);
+        maker != nullptr && maker->name == record.name) {
+      if (maker->version == record.version) return {maker->make(record), record};
+      other = maker;
+    }
+  throw bad_input(
+      "function '" + record.name + "' version " + std::to_string(record.version) +
+      " is not in this build" +
+      (other == nullptr ? "" : ", which has version " + std::to_string(other->version)) +
+      ": make the model again, or use the build that made it");
+}
+
+template Named<NumberMap> made(const Record &);
+template Named<Coefficient> made(const Record &);
+template Named<Check> made(const Record &);
+template Named<PointValue> made(const Record &);
+template Named<PointMap> made(const Record &);
+template Named<Material> made(const Record &);
+template Named<Kernel> made(const Record &);
+template Named<Traction> made(const Record &);
+
+Named<NumberMap> logarithm() {
+  return log_maker();
+}
+
+Named<NumberMap> exponential() {
+  return exp_maker();
+}
+
+Named<NumberMap> logarithm_to_half() {
+  return log_to_half_maker();
+}
+
+Named<NumberMap> exponential_to_half() {
+  return exp_to_half_maker();
+}
+
+Named<Coefficient> affine(double value, double factor, int index) {
+  return affine_maker({{"value", {value}}, {"factor", {factor}}, {"parameter", {double(index)}}});
+}
+
+Named<Coefficient> parameter(int index) {
+  return affine(0, 1, index);
+}
+
+Named<Coefficient> constant(double value) {
+  return constant_maker({{"value", {value}}});
+}
+
+Named<PointMap> identity() {
+  return identity_maker();
+}
+
+Named<PointValue> everywhere(double value) {
+  return value_maker({{"value", {value}}});
+}
+
+Named<PointMap> everywhere(const Point &vector) {
+  return vector_maker({{"x", {vector[0]}}, {"y", {vector[1]}}, {"z", {vector[2]}}});
+}
+
+Named<Material> everywhere(const Lame &material) {
+  return material_maker({{"lambda", {material.lambda}}, {"shear", {material.shear}}});
+}
+
+} // namespace rbvi

@@ -1,0 +1,66 @@
+// model.fields.h5: its data sets are listed in LAYOUT.md beside this file.
+#include "model_fields.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/checksum.hpp"
+#include "rbvi/io/h5.hpp"
+
+namespace rbvi {
+
+namespace {
+
+/// Whether the file holds the fields of this key.
+bool holds_fields(const std::filesystem::path &path, const std::string &key) {
+  try {
+    return H5Reader(path, "fields", model_schema).string("key") == key;
+  } catch (const Error &) {
+    return false;
+  }
+}
+
+} // namespace
+
+std::string key_of_fields(const ReducedModel &model) {
+  if (model.primal_basis.size() == 0) return "";
+  const auto hash = [](const auto *data, auto size) {
+    return std::to_string(fnv1a(data, static_cast<std::size_t>(size) * sizeof(*data)));
+  };
+  return hash(model.primal_basis.data(), model.primal_basis.size()) + "-" +
+         hash(model.mesh_points.data(), model.mesh_points.size()) + "-" +
+         hash(model.mesh_cells.data(), std::ssize(model.mesh_cells));
+}
+
+void write_fields(const ReducedModel &model, const std::filesystem::path &model_path) {
+  const std::filesystem::path path = fields_file(model_path);
+  const std::string key = key_of_fields(model);
+  if (key.empty() || holds_fields(path, key)) return;
+  H5Writer file;
+  file.write("key", key);
+  file.write("primal_basis", model.primal_basis);
+  file.write("points", model.mesh_points);
+  file.write("cells", model.mesh_cells);
+  file.commit(path, "fields", model_schema);
+}
+
+void read_fields(const std::filesystem::path &model_path, const std::string &key,
+                 ReducedModel &model) {
+  if (key.empty()) return;
+  const std::filesystem::path path = fields_file(model_path);
+  if (std::error_code ignored; !std::filesystem::exists(path, ignored))
+    throw bad_input(path.string() + " is missing: it has the fields of the model and belongs "
+                                    "beside it; put it there, or make the model again");
+  const H5Reader file(path, "fields", model_schema);
+  if (file.string("key") != key)
+    throw bad_input(path.string() + " has the fields of another model: put its own beside it, or "
+                                    "make the model again");
+  model.primal_basis = file.matrix("primal_basis");
+  model.mesh_points = file.matrix("points");
+  model.mesh_cells = file.ints("cells");
+}
+
+std::filesystem::path fields_file(const std::filesystem::path &model) {
+  std::filesystem::path path = model;
+  return path.replace_extension(".fields" + model.extension().string());
+}
+
+} // namespace rbvi

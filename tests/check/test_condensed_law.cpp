@@ -1,0 +1,150 @@
+// The law of contact at every node, on the condensed operator, where the body carries loads and
+// where contact is that of an obstacle or of two bodies.
+#include "reduced.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/facet_forms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <unistd.h>
+
+namespace rbvi {
+namespace {
+
+using namespace testing_reduced;
+
+ReduceOptions condensed_law(double eim = 1e-4) {
+  ReduceOptions options;
+  options.multipliers.reduction = MultiplierReduction::condensed;
+  options.eim.tolerance = eim;
+  return options;
+}
+
+struct Largest {
+  double u, lambda, tangential, energy;
+};
+
+/// Over parameters that the model has not seen.
+Largest errors_of(Reduced &r, const std::string &set) {
+  const std::vector<Sample> unseen =
+      solve_all(r.problem, parse_set(r.problem.scene().parameters, set));
+  const ModelErrors errors = r.errors_at(unseen);
+  EXPECT_EQ(errors.failed, 0);
+  OnlineSolver online(r.model);
+  double energy = 0;
+  for (const Sample &sample : unseen) {
+    const Outputs outputs = online.outputs(sample.mu, online.solve(sample.mu));
+    energy = std::max(energy, std::abs(*outputs.energy - *sample.outputs.energy) /
+                                  std::abs(*sample.outputs.energy));
+  }
+  return {errors.u.maxCoeff(), errors.lambda.maxCoeff(),
+          errors.tangential.size() > 0 ? errors.tangential.maxCoeff() : 0, energy};
+}
+
+TEST(CondensedLaw, TractionsOnTheSidesOfABlockThatSticksOrSlips) {
+  Scene scene = make_scene("patch", {{"bodies", "one"}});
+  scene.parameters = free_only(scene.parameters, "indentation,shear,friction_coefficient");
+  Reduced r(scene, "grid:2,2,2");
+  r.reduce(condensed_law());
+  EXPECT_EQ(r.model.f.exact, 2);
+  const Largest errors = errors_of(r, "random:10:3");
+  EXPECT_LE(errors.u, 1e-12);
+  EXPECT_LE(errors.lambda, 1e-12);
+  EXPECT_LE(errors.tangential, 1e-12);
+  EXPECT_LE(errors.energy, 1e-12);
+}
+
+TEST(CondensedLaw, AMembraneUnderALoadOnAnObstacle) {
+  for (const char *lumped : {"yes", "no"}) {
+    SCOPED_TRACE(lumped);
+    Scene scene = make_scene("membrane_obstacle", {{"lumped", lumped}, {"circle_edges", "12"}});
+    scene.parameters = free_only(scene.parameters, "radius");
+    Reduced r(scene, "grid:9");
+    r.reduce(condensed_law(1e-11));
+    EXPECT_GT(r.model.f.interpolation.rows(), 0) << "the load is interpolated";
+    const Largest errors = errors_of(r, "random:6:3");
+    EXPECT_LE(errors.u, 1e-8);
+    EXPECT_LE(errors.lambda, 1e-8);
+    EXPECT_LE(errors.energy, 1e-9);
+  }
+}
+
+/// A pressure on the upper plate's side of a block of its own, whose stiffness depends on mu: the
+/// response to the load, too.
+TEST(CondensedLaw, LoadsOnABodyWhoseStiffnessIsFree) {
+  Scene scene = make_scene("rigid_disk", {{"arc_edges", "16"}, {"friction", "none"}});
+  scene.parameters = free_only(scene.parameters, "core_stiffness,poisson_ratio");
+  scene.f = {exact_term(pressure_load("contact", -0.05, 2, 2))}; // drawn towards the support
+  Reduced r(scene, "grid:3,3");
+  r.reduce(condensed_law());
+  const Largest errors = errors_of(r, "random:8:3");
+  EXPECT_LE(errors.u, 1e-6);
+  EXPECT_LE(errors.lambda, 1e-7);
+  EXPECT_LE(errors.energy, 1e-8);
+}
+
+TEST(CondensedLaw, TwoBodiesKeepTheirNodesUnlessAskedOtherwise) {
+  Reduced r(make_scene("two_disks", {{"arc_edges", "24"}}), "grid:9");
+  r.reduce({});
+  EXPECT_TRUE(r.model.support.has_value());
+  const Largest errors = errors_of(r, "random:6:3");
+  EXPECT_LE(errors.u, 1e-6);
+  EXPECT_LE(errors.lambda, 1e-9);
+  ReduceOptions cone;
+  cone.multipliers.reduction = MultiplierReduction::cone;
+  r.reduce(cone);
+  EXPECT_FALSE(r.model.support.has_value());
+}
+
+/// What makes a model answer without the code of its scene.
+struct ModelOfAnotherScene : testing::Test {
+  std::filesystem::path directory = std::filesystem::path(testing::TempDir()) /
+                                    ("rbvi_another_scene_" + std::to_string(::getpid()));
+  std::filesystem::path path = directory / "model.h5";
+  void SetUp() override { std::filesystem::create_directories(directory); }
+  void TearDown() override { std::filesystem::remove_all(directory); }
+
+  /// No catalogue has it.
+  static Scene block() {
+    Scene scene = make_scene("patch", {{"bodies", "one"}});
+    scene.name = "my_block";
+    return scene;
+  }
+};
+
+TEST_F(ModelOfAnotherScene, IsAnsweredWhereItsFunctionsHaveNames) {
+  Reduced r(block(), "grid:3", PETSC_COMM_SELF);
+  r.reduce({});
+  write_model(r.model, path);
+  const ReducedModel read = read_model(path, false);
+  OnlineSolver with_code(r.model, r.problem.scene()), without(read);
+  const Mu mu{0.0321};
+  const ReducedSolution one = with_code.solve(mu), two = without.solve(mu);
+  EXPECT_EQ(one.u, two.u);
+  EXPECT_EQ(with_code.multiplier(one), without.multiplier(two));
+  EXPECT_THROW((void)whole_scene_of(read), Error);
+}
+
+TEST_F(ModelOfAnotherScene, SaysWhoseCodeItNeedsWhereOneHasNone) {
+  Scene scene = block();
+  scene.motion = [](const FullMu &mu, const Point &) -> Point { return {mu[1], -mu[0], 0}; };
+  Reduced r(scene, "grid:3", PETSC_COMM_SELF);
+  r.model = {};
+  Reduction made = reduce(r.problem, r.samples, {});
+  write_model(made.model, path);
+  try {
+    (void)read_model(path);
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_NE(message.find("unknown scene 'my_block'"), std::string::npos) << message;
+    EXPECT_NE(message.find("for 'motion'"), std::string::npos) << message;
+  }
+}
+
+} // namespace
+} // namespace rbvi
