@@ -22,7 +22,8 @@ namespace rbvi {
 namespace {
 
 constexpr double reference_radius = 0.2;
-constexpr int lumped_edges = 60;   ///< of the circle, with vertex quadrature
+constexpr int lumped_edges = 60;    ///< of the circle, with vertex quadrature
+constexpr int quadratic_edges = 36; ///< of the circle, of degree 2
 constexpr double transition = 0.3; ///< width of the ring over which the map turns into the identity
 
 // Along its radii the ring is stretched by 1 + phi' (r - 0.2 + c . e) > 0, with |phi'| <= 1.5 /
@@ -76,12 +77,13 @@ MeshRecipe mesh(int circle_edges) {
 }
 
 /// Edges of the circle in the graded mesh; 0 is the mesh of the published answers.
-int circle_edges(const SceneOptions &options, bool lumped) {
+int circle_edges(const SceneOptions &options, bool lumped, int degree) {
   const double edges = number_in(options, "circle_edges");
   if (std::fmod(edges, 12) != 0)
     throw bad_input("option circle_edges is " + options.at("circle_edges") +
                     ": it must be a multiple of 12, or 0");
-  return edges == 0 && lumped ? lumped_edges : static_cast<int>(edges);
+  if (edges != 0) return static_cast<int>(edges);
+  return degree == 2 ? quadratic_edges : lumped ? lumped_edges : 0;
 }
 
 /// Throws bad_input unless the disc of radius all[0] about (all[1], all[2]) is far enough from the
@@ -104,6 +106,7 @@ Scene make(const SceneOptions &options) {
   Scene scene;
   scene.dim = 2;
   scene.components = 1;
+  scene.degree = options.at("degree") == "2" ? 2 : 1;
   scene.parameters = all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
                                {"center_x", "m", -0.05, 0.05, 0, centres},
                                {"center_y", "m", -0.05, 0.05, 0, centres}});
@@ -111,7 +114,7 @@ Scene make(const SceneOptions &options) {
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
   const bool lumped = options.at("lumped") == "yes";
-  scene.mesh = mesh(circle_edges(options, lumped));
+  scene.mesh = mesh(circle_edges(options, lumped, scene.degree));
   scene.map = options.at("disc_map") == "graded" ? graded_map() : similarity_map();
   scene.snap = [](const Point &x) -> Point {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
@@ -120,9 +123,9 @@ Scene make(const SceneOptions &options) {
   scene.fixed = {{"boundary", {}}};
   scene.contacts = {obstacle({"obstacle", obstacle_height(), lumped})};
   const double load = number_in(options, "load");
-  scene.a = {mapped_term(laplace(""))};
-  if (load != 0) scene.f = {mapped_term(constant_load("", load))};
-  scene.v_product = {exact_term(h1_product(1))};
+  scene.a = {mapped_term(laplace("", scene.degree))};
+  if (load != 0) scene.f = {mapped_term(constant_load("", load, scene.degree))};
+  scene.v_product = {exact_term(h1_product(1, 1, scene.degree))};
   return scene;
 }
 
@@ -138,10 +141,14 @@ SceneEntry membrane_obstacle() {
         "yes",
         "vertex quadrature in b and g; no: exact quadrature, the published method",
         {"no", "yes"}},
+       {"degree",
+        "1",
+        "of the displacement; 2 is for -lumped no, as vertex quadrature leaves it at order 1",
+        {"1", "2"}},
        {"circle_edges",
         "0",
         "edges of the disc's circle in the graded mesh, a multiple of 12; 0: 60, with -lumped no "
-        "the published mesh",
+        "the published mesh, of degree 2 36",
         {},
         {0, 240},
         true}},

@@ -102,4 +102,16 @@ Vector body_numbers(const std::vector<int> &cells, int per_cell, Index nodes, in
   return result;
 }
 
+void straighten_edges(const std::vector<int> &cells, int dim, int degree, Matrix &rows) {
+  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(dim, degree));
+  const auto vertices = static_cast<std::size_t>(dim) + 1;
+  for (std::size_t k = 0; k < cells.size(); k += per_cell)
+    for (std::size_t e = 0; vertices + e < per_cell; ++e) {
+      const auto [i, j] = simplex_edges[e];
+      rows.row(cells[k + vertices + e]) = (rows.row(cells[k + static_cast<std::size_t>(i)]) +
+                                           rows.row(cells[k + static_cast<std::size_t>(j)])) /
+                                          2;
+    }
+}
+
 } // namespace rbvi

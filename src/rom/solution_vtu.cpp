@@ -25,6 +25,7 @@ Matrix mapped(const State &state, const Matrix &points) {
     for (Index k = 0; k < points.cols(); ++k)
       result(i, k) = image[static_cast<std::size_t>(k)];
   }
+  straighten_edges(state.model.mesh_cells, state.scene.dim, state.scene.degree, result);
   return result;
 }
 

@@ -41,6 +41,23 @@ TEST_P(BothMaps, OutputsOfTheReducedModelAreThoseOfItsSnapshots) {
   }
 }
 
+/// Displacements of degree 2, by both quadratures.
+TEST(QuadraticModel, ReturnsItsSnapshotsAndAnswersBetweenThem) {
+  for (const char *lumped : {"no", "yes"}) {
+    SCOPED_TRACE(lumped);
+    const SceneOptions scene{{"degree", "2"}, {"lumped", lumped}, {"circle_edges", "24"}};
+    Reduced all(scene, "grid:2,2,2", everything());
+    const ModelErrors own = all.errors_at(all.samples);
+    EXPECT_LE(own.u.maxCoeff(), 1e-9);
+    EXPECT_LE(own.lambda.maxCoeff(), 1e-7);
+    Reduced model(scene, "grid:5,5,5", {});
+    const auto unseen = parse_set(model.problem.scene().parameters, "random:8:7");
+    const ModelErrors between = model.errors_at(solve_all(model.problem, unseen));
+    EXPECT_LE(between.u.maxCoeff(), 1e-4);
+    EXPECT_LE(between.lambda.maxCoeff(), 1e-4);
+  }
+}
+
 TEST_P(BothMaps, TheSharpBoundHoldsAtEveryTrainingParameter) {
   ReduceOptions options;
   options.pod.tolerance = 1e-4;

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <numeric>
+
 namespace rbvi {
 namespace {
 
@@ -35,6 +38,33 @@ InterfaceMesh square(int n) {
   mesh.columns = mesh.nodes();
   for (int i = 0; i < mesh.columns; ++i)
     mesh.dofs.push_back(i);
+  return mesh;
+}
+
+/// The same with the middles of all edges behind the vertices.
+InterfaceMesh quadratic_square(int n) {
+  InterfaceMesh linear = square(n), mesh = linear;
+  mesh.degree = 2;
+  mesh.per_entity = 6;
+  mesh.entities.clear();
+  std::map<std::pair<int, int>, int> middles;
+  for (Index e = 0; e < linear.count(); ++e) {
+    const int *v = linear.nodes_of(e);
+    mesh.entities.insert(mesh.entities.end(), v, v + 3);
+    for (int k = 0; k < 3; ++k) {
+      const auto [at, is_new] =
+          middles.emplace(std::minmax(v[k], v[(k + 1) % 3]), static_cast<int>(mesh.nodes()));
+      mesh.entities.push_back(at->second);
+      if (!is_new) continue;
+      const Point &a = linear.points[static_cast<std::size_t>(v[k])],
+                  &b = linear.points[static_cast<std::size_t>(v[(k + 1) % 3])];
+      mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0});
+    }
+  }
+  mesh.parts = {static_cast<int>(mesh.nodes())};
+  mesh.columns = mesh.nodes();
+  mesh.dofs.resize(mesh.points.size());
+  std::iota(mesh.dofs.begin(), mesh.dofs.end(), 0);
   return mesh;
 }
 
@@ -103,6 +133,8 @@ TEST(EntitySum, IsTheSumOverTheCellsOfARegion) {
     const Scene scene = membrane({"region", quadratic, lumped});
     expect_sum(scene, square(3));
     expect_sum(scene, partly_seen(square(3)));
+    expect_sum(scene, quadratic_square(3));
+    expect_sum(scene, partly_seen(quadratic_square(3)));
   }
 }
 
@@ -216,7 +248,54 @@ TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {
   }
 }
 
-TEST(ObstacleInterface, IsForScalarsOfDegreeOneOnWholeCells) {
+/// Of degree 2 the pressure keeps the hats of the vertices. -B u = int u eta for a quadratic u: it
+/// is -g of psi = u, and with the sum of all rows its integral. Lumped: values at the vertices.
+TEST(ObstacleInterface, OfDegreeTwoHatsSeeTheQuadraticDisplacement) {
+  const InterfaceMesh mesh = quadratic_square(3);
+  const FullMu mu{1.4};
+  for (const bool lumped : {false, true}) {
+    const Scene scene = membrane({"region", quadratic, lumped});
+    const auto interface = scene.contacts.front().make(scene, mesh);
+    ContactOperators op;
+    interface->assemble(mu, {}, op);
+    ASSERT_EQ(interface->dual().nodes(), 16);
+    EXPECT_EQ(interface->dual().gram.rows(), 16);
+    EXPECT_NEAR(interface->dual().gram.sum(), 1, 1e-14) << "the area of the reference square";
+    EXPECT_NEAR(op.weights.sum(), mu[0], 1e-14);
+    const Matrix points = mapped_points(scene, mu, mesh.points);
+    Vector u(mesh.nodes());
+    for (Index i = 0; i < u.size(); ++i)
+      u[i] = quadratic(mu, {points(i, 0), points(i, 1), 0});
+    EXPECT_LE((op.b * u - op.g).norm(), 1e-14 * op.g.norm());
+    EXPECT_LE((op.nodal_b * u - op.nodal_gap).norm(), 1e-15);
+    for (Index row = 0; row < 16 && lumped; ++row) {
+      EXPECT_DOUBLE_EQ(op.b.coeff(row, row), -op.weights[row]);
+      EXPECT_DOUBLE_EQ(op.b.row(row).norm(), op.weights[row]) << "nothing but the vertex";
+    }
+  }
+}
+
+TEST(ObstacleInterface, FieldsOfDegreeTwoAreOnQuadraticCells) {
+  const Scene scene = membrane({"region", quadratic});
+  const InterfaceMesh mesh = quadratic_square(2);
+  const FullMu mu{0.7};
+  const Vector u = Vector::LinSpaced(mesh.nodes(), 0, 1), lambda = Vector::LinSpaced(9, 2, 3);
+  const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda);
+  EXPECT_EQ(grid.cells, mesh.entities);
+  EXPECT_EQ(grid.per_cell, 6);
+  const Vector &pressure = grid.of_nodes[0].values, &gap = grid.of_nodes[1].values;
+  EXPECT_EQ(pressure.head(9), lambda);
+  for (Index i = 0; i < mesh.nodes(); ++i)
+    EXPECT_NEAR(gap[i], u[i] - quadratic(mu, {grid.points(i, 0), grid.points(i, 1), 0}), 1e-15);
+  for (Index e = 0; e < mesh.count(); ++e)
+    for (int k = 0; k < 3; ++k) {
+      const int *nodes = mesh.nodes_of(e);
+      EXPECT_NEAR(pressure[nodes[3 + k]], (pressure[nodes[k]] + pressure[nodes[(k + 1) % 3]]) / 2,
+                  1e-15);
+    }
+}
+
+TEST(ObstacleInterface, IsForScalarsOnWholeCells) {
   const Scene scene = membrane({"region", quadratic});
   const auto made_with = [&](auto change) {
     return [&scene, change] {
@@ -225,7 +304,7 @@ TEST(ObstacleInterface, IsForScalarsOfDegreeOneOnWholeCells) {
       (void)scene.contacts.front().make(scene, mesh);
     };
   };
-  const std::string says = "scalar displacements of degree 1";
+  const std::string says = "scalar displacements";
   EXPECT_TRUE(refuses(says, made_with([](InterfaceMesh &mesh) { mesh.components = 2; })));
   EXPECT_TRUE(refuses(says, made_with([](InterfaceMesh &mesh) { mesh.degree = 2; })));
   EXPECT_TRUE(refuses(says, made_with([](InterfaceMesh &mesh) { mesh.per_entity = 2; })));

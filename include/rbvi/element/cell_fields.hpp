@@ -26,4 +26,8 @@ Vector von_mises(const Matrix &stresses);
 /// `first_node`, the others by their first cells.
 Vector body_numbers(const std::vector<int> &cells, int per_cell, Index nodes, int first_node);
 
+/// Rows of values at nodes (nodes x any number): those of the middles of edges become the means of
+/// the ends, as on straight edges. Of degree 1 there is none. `cells`: as in centre_stresses.
+void straighten_edges(const std::vector<int> &cells, int dim, int degree, Matrix &rows);
+
 } // namespace rbvi

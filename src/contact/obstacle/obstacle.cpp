@@ -2,8 +2,11 @@
 
 #include "rbvi/contact/obstacle/contact_area.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/geometry.hpp"
+#include "rbvi/element/cell_fields.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/scalar_forms.hpp"
+
+#include <algorithm>
 
 namespace rbvi {
 
@@ -15,10 +18,11 @@ public:
       : EntitySum(scene, std::move(interface_mesh), scene.dim), obstacle_(std::move(obstacle)),
         b_(hat_coupling("", -1, mesh_.degree, obstacle_.lumped)),
         g_(function_load("", -1, obstacle_.height, obstacle_.lumped)) {
-    if (mesh_.components != 1 || mesh_.degree != 1 || mesh_.per_entity != mesh_.dim + 1)
-      throw bad_input("scene " + scene.name +
-                      ": an obstacle is for scalar displacements of degree 1");
-    set_dual(mesh_.nodes(), 1, gram());
+    if (mesh_.components != 1 || mesh_.per_entity != nodes_per_cell(mesh_.dim, mesh_.degree))
+      throw bad_input("scene " + scene.name + ": an obstacle is for scalar displacements");
+    for (Index e = 0; e < mesh_.count(); ++e)
+      simplices_.insert(simplices_.end(), mesh_.nodes_of(e), mesh_.nodes_of(e) + mesh_.dim + 1);
+    set_dual(1 + *std::ranges::max_element(simplices_), 1, gram());
   }
 
   void integrate(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
@@ -42,6 +46,7 @@ private:
 
   Obstacle obstacle_;
   Form b_, g_;
+  std::vector<int> simplices_; ///< the vertices of each cell, which are the first nodes
 };
 
 SparseMatrix ObstacleInterface::gram() const {
@@ -55,7 +60,8 @@ SparseMatrix ObstacleInterface::gram() const {
       for (Index j = 0; j < corners; ++j)
         entries.emplace_back(mesh_.nodes_of(e)[i], mesh_.nodes_of(e)[j], values(i, j));
   }
-  SparseMatrix result(mesh_.nodes(), mesh_.nodes());
+  const Index vertices = 1 + *std::ranges::max_element(simplices_);
+  SparseMatrix result(vertices, vertices);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
@@ -66,17 +72,27 @@ void ObstacleInterface::outputs(const FullMu &, const ContactOperators &operator
   if (obstacle_.lumped)
     outputs.contact_measure =
         scene_.mirror_images * contact_area(operators.weights,
-                                            (lambda.array() > least).select(lambda, 0),
-                                            mesh_.entities, mesh_.per_entity);
+                                            (lambda.array() > least).select(lambda, 0), simplices_,
+                                            mesh_.dim + 1);
 }
 
 Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
-  Grid grid{mapped_points(scene_, mu, mesh_.points), mesh_.entities, mesh_.per_entity, {}, {}, {}};
-  ContactOperators operators;
-  set_constraints(mu, operators);
-  grid.of_nodes = {{"pressure", lambda, "Pa"},
-                   {"gap", operators.nodal_gap - operators.nodal_b * at_columns(mesh_, u), "m"}};
-  return grid;
+  Matrix points = mapped_points(scene_, mu, mesh_.points);
+  straighten_edges(mesh_.entities, mesh_.dim, mesh_.degree, points);
+  Matrix pressure = Matrix::Zero(mesh_.nodes(), 1);
+  pressure.topRows(lambda.size()) = lambda;
+  straighten_edges(mesh_.entities, mesh_.dim, mesh_.degree, pressure);
+  Vector gap(mesh_.nodes());
+  for (Index i = 0; i < gap.size(); ++i) {
+    const Point x{points(i, 0), points(i, 1), mesh_.dim == 3 ? points(i, 2) : 0};
+    gap[i] = u[i] - obstacle_.height(mu, x);
+  }
+  return {std::move(points),
+          mesh_.entities,
+          mesh_.per_entity,
+          {{"pressure", pressure.col(0), "Pa"}, {"gap", gap, "m"}},
+          {},
+          {}};
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // Contact with an obstacle in a region of the body (Niakh 2022, 2.4): u >= psi, held by a pressure
-// lambda >= 0 whose functions are the hats of the region's vertices,
+// lambda >= 0 whose functions are the hats of the region's vertices, whatever the degree of u,
 //
 //   b(mu; v, eta) = -int v eta,   g(mu; eta) = -int psi eta   over the mapped region (2.40).
 #pragma once
@@ -12,12 +12,13 @@ struct Obstacle {
   std::string region;
   /// psi(mu) at a point of the mapped domain.
   Named<PointValue> height;
-  /// b and g by vertex quadrature: the constraint is a bound at each node. Else exact, g by a rule
-  /// of degree 5.
+  /// b and g by vertex quadrature: the constraint is a bound at each vertex. Else exact, g by a
+  /// rule of degree 5. Of degree 2 the pressure of vertex quadrature pushes at the vertices alone:
+  /// what lies between them is in equilibrium with the load, and u is of order 1 as with degree 1.
   bool lumped = false;
 };
 
-/// For scalar displacements of degree 1.
+/// For scalar displacements of degree 1 and 2.
 ContactRecipe obstacle(Obstacle obstacle);
 
 /// "obstacle" in files.
