@@ -10,6 +10,7 @@ struct TwoBodies : InDirectory {
     spill("disks.yaml", "scene: two_disks\n"
                         "train: grid:7\n"
                         "valid: random:3:1\n"
+                        "multiplier_reduction: cone\n"
                         "pod_tolerance: 1e-4\n");
   }
 };
@@ -39,6 +40,28 @@ TEST_F(TwoBodies, AreReducedVerifiedAndAsked) {
   EXPECT_TRUE(contains(model.out, "radius")) << model.out;
   const Finished inspected = shell(rbvi(2, "inspect run/model.h5"));
   EXPECT_EQ(inspected.status, 0) << inspected.err;
+}
+
+/// By default the law of contact is kept at every node: exact from a few radii on.
+TEST_F(TwoBodies, KeepTheirNodesUnlessAskedOtherwise) {
+  const std::string offline = output_of(
+      rbvi(2, "offline -scene two_disks -arc_edges 40 -train grid:5 -valid random:3:1 -out run"));
+  EXPECT_TRUE(contains(offline, "\nwrote run/model.h5, run/model.fields.h5,")) << offline;
+  const std::string verify = verified();
+  EXPECT_TRUE(contains(verify, "Inf-sup constants: none, -multiplier_reduction condensed")) << verify;
+  const std::string bare = output_of(rbvi_online("run/model.h5 --mu 0.85"));
+  EXPECT_LE(value_of(bare, "expected_error_lambda"), 1e-9);
+  EXPECT_LE(value_of(bare, "expected_error_u"), 1e-6);
+
+  fs::rename("run/model.fields.h5", "away.h5");
+  EXPECT_EQ(value_of(output_of(rbvi_online("run/model.h5 --mu 0.85")), "peak_pressure"),
+            value_of(bare, "peak_pressure"));
+  const Finished picture = shell(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu"));
+  EXPECT_EQ(picture.status, 2);
+  EXPECT_TRUE(contains(picture.err, "run/model.fields.h5 is missing")) << picture.err;
+  EXPECT_EQ(shell(rbvi(1, "verify -out run")).status, 2);
+  fs::rename("away.h5", "run/model.fields.h5");
+  EXPECT_EQ(shell(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu")).status, 0);
 }
 
 TEST_F(TwoBodies, ThePlanSaysWhatIsSkipped) {
@@ -95,6 +118,8 @@ TEST_F(TwoBodies, BadInputIsRefused) {
        {disks + "-load -25", "unknown option -load"},
        {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
        {disks + "-hf_method vi", "needs a bound at each node"},
+       {"offline -scene two_disks -cone_type mcpg -out run",
+        "condensed, the default here, keeps every node: add -multiplier_reduction cone"},
        {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}});
 }
 

@@ -202,13 +202,14 @@ TEST(ContactRecipes, AreAskedTogether) {
   EXPECT_FALSE(has_friction(stack.scene));
   EXPECT_TRUE(has_friction(sticky.scene));
   EXPECT_FALSE(separable_contact(stack.scene)) << "a pair is not";
-  EXPECT_FALSE(keeps_nodes(stack.scene));
+  EXPECT_TRUE(keeps_nodes(stack.scene));
   EXPECT_FALSE(by_nitsche(stack.scene));
   EXPECT_FALSE(bounds_nodes(stack.scene));
   Scene one = stack.scene;
   one.contacts.pop_back();
   EXPECT_TRUE(separable_contact(one));
-  EXPECT_TRUE(keeps_nodes(one));
+  one.contacts.front().keeps_nodes = false;
+  EXPECT_FALSE(keeps_nodes(one));
   one.contacts.front().nodal = true;
   EXPECT_TRUE(bounds_nodes(one));
   one.contacts.front().friction = FrictionLaw::coulomb;

@@ -5,6 +5,9 @@ A layer is src/NAME with include/rbvi/NAME; a room is one folder of a layer with
 - A layer includes itself and layers above it in the table "Layers" alone; the scenes of cases
   include layers of the online program alone.
 - Rooms do not include each other in a circle.
+- No layer asks which kind of contact it has: outside of the layer contact and of the scenes, no file
+  includes a folder of it or casts to one of its classes. Nitsche's method has solvers of its own,
+  in files and rooms of that name.
 - A room of src has fewer than 2000 lines, a file of code at most 400, a function at most 60 unless
   it is a table of data. Functions are found by the indentation that clang-format gives them.
 """
@@ -72,6 +75,28 @@ def check_includes(root):
                 wrong.append(f"{path.relative_to(root)} includes {name}, which the online program "
                              "does not have")
     return wrong + circles(edges)
+
+
+def check_kinds(root):
+    """Branches on the kind of contact outside of its folder and the catalogue."""
+    kinds = sorted(path.name for path in (root / "src/contact").iterdir()
+                   if path.is_dir() and path.name != "catalogue")
+    if len(kinds) < 4:
+        return ["src/contact has no kinds"]
+    includes = re.compile(rf'#include "rbvi/contact/({"|".join(kinds)})/')
+    casts = re.compile(r"dynamic_(pointer_)?cast<[^>]*(Interface|EntitySum|NitscheCurve)")
+    wrong = []
+    for path in sources(root, ["src", "include/rbvi"]):
+        if room_of(path, root).split("/")[0] == "contact":
+            continue
+        text = path.read_text(encoding="utf-8")
+        own = "nitsche" in path.name or "nitsche" in room_of(path, root)
+        for found in includes.finditer(text):
+            if not (own and found.group(1) == "nitsche"):
+                wrong.append(f"{path.relative_to(root)} includes the kind {found.group(1)}")
+        wrong += [f"{path.relative_to(root)} casts to a kind: {found.group()}"
+                  for found in casts.finditer(text)]
+    return wrong
 
 
 def reachable(edges, start):
@@ -155,7 +180,7 @@ def check_sizes(root):
 
 
 def main(root):
-    wrong = check_includes(root) + check_sizes(root)
+    wrong = check_includes(root) + check_kinds(root) + check_sizes(root)
     print("\n".join(wrong) or "the layers, rooms and sizes are those of src/README.md")
     return 1 if wrong else 0
 

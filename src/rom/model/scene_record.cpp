@@ -1,6 +1,6 @@
 #include "rbvi/rom/model/scene_record.hpp"
 
-#include "rbvi/contact/kinds.hpp"
+#include "rbvi/contact/catalogue/kinds.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 

@@ -43,6 +43,22 @@ void check_formulation(const Scene &scene) {
     throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
 }
 
+/// Throws bad_input for options of a dual basis and of its supremizers where every node is kept.
+void check_dual_basis(const ToolOptions &options) {
+  if (by_nitsche(options.scene) ||
+      options.reduce.multipliers.reduction != MultiplierReduction::condensed)
+    return;
+  for (const Option &option : tool_options())
+    if ((option.name.starts_with("cone_") || option.name.starts_with("pga_")) &&
+        is_given(option.name))
+      throw bad_input("-" + option.name +
+                      " is for a reduced dual basis, and -multiplier_reduction "
+                      "condensed" +
+                      (is_given("multiplier_reduction") ? "" : ", the default here,") +
+                      " keeps every node: add -multiplier_reduction " +
+                      (has_friction(options.scene) ? "collocated" : "cone") + ", or leave it out");
+}
+
 } // namespace
 
 void check_rules(const ToolOptions &options) {
@@ -54,6 +70,7 @@ void check_rules(const ToolOptions &options) {
     throw bad_input("-pga_enrichment online takes supremizers in the V product: leave out "
                     "-pga_product energy");
   check_rows_apart(options.scene, reduce);
+  check_dual_basis(options);
 }
 
 } // namespace rbvi

@@ -1,5 +1,5 @@
-// The law of contact at every node, on the condensed operator, where the body carries loads and
-// where contact is that of an obstacle or of two bodies.
+// Each reduction of the multipliers where its mathematics allows: on obstacles, between two bodies, on
+// supports, with loads; and models of scenes that no catalogue has.
 #include "reduced.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -97,6 +97,35 @@ TEST(CondensedLaw, TwoBodiesKeepTheirNodesUnlessAskedOtherwise) {
   cone.multipliers.reduction = MultiplierReduction::cone;
   r.reduce(cone);
   EXPECT_FALSE(r.model.support.has_value());
+}
+
+TEST(Reductions, AConeWithSupremizersServesASupportWithoutFriction) {
+  Reduced r(make_scene("rigid_disk", {{"arc_edges", "40"}, {"friction", "none"}}), "grid:31");
+  ReduceOptions options;
+  options.multipliers.reduction = MultiplierReduction::cone;
+  options.pod.tolerance = 1e-8;
+  options.eim.tolerance = 1e-10;
+  r.reduce(options);
+  EXPECT_GT(r.model.supremizers, 0);
+  EXPECT_FALSE(r.model.support.has_value());
+  const Largest errors = errors_of(r, "random:8:3");
+  EXPECT_LE(errors.u, 1e-5);
+  EXPECT_LE(errors.lambda, 1e-4);
+  EXPECT_LE(errors.energy, 1e-6);
+}
+
+TEST(Reductions, CollocationServesAnObstacle) {
+  Scene scene = make_scene("membrane_obstacle", {{"circle_edges", "12"}});
+  scene.parameters = free_only(scene.parameters, "radius");
+  Reduced r(scene, "grid:21");
+  ReduceOptions options;
+  options.multipliers.reduction = MultiplierReduction::collocated;
+  options.cone.type = ConeType::mcpg;
+  options.eim.tolerance = 1e-8;
+  r.reduce(options);
+  const Largest errors = errors_of(r, "random:6:3");
+  EXPECT_LE(errors.u, 1e-4);
+  EXPECT_LE(errors.lambda, 1e-4);
 }
 
 /// What makes a model answer without the code of its scene.

@@ -1,4 +1,4 @@
-#include "rbvi/contact/kinds.hpp"
+#include "rbvi/contact/catalogue/kinds.hpp"
 
 #include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
