@@ -11,10 +11,6 @@ namespace rbvi {
 Vector affine_coefficients(const AffineTerms &terms, const Sum &sum, const Scene &scene,
                            const FullMu &all_parameters);
 
-/// Likewise of b or g, which are one form.
-Vector affine_coefficients(const AffineTerms &terms, const Form &form, const Scene &scene,
-                           const FullMu &all_parameters);
-
 /// The same of b or g: the entries are integrated again on their few entities of each interface.
 enum class Part { b, g };
 Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &contact,
