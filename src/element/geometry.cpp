@@ -12,21 +12,27 @@ Eigen::Vector3d difference(const Point &x, const Point &y) {
   return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
 }
 
+/// Columns: the edges from vertex 0; in 2D the third is e_z.
+Eigen::Matrix3d edges_of(int dim, const std::array<Point, 4> &vertices) {
+  Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
+  for (int j = 0; j < dim; ++j)
+    edges.col(j) = difference(vertices[static_cast<std::size_t>(j) + 1], vertices[0]);
+  return edges;
+}
+
 double longest_edge(int dim, const std::array<Point, 4> &vertices) {
   double longest = 0;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      longest = std::max(longest, difference(vertices[i], vertices[j]).norm());
-  return longest;
+      longest = std::max(longest, difference(vertices[i], vertices[j]).squaredNorm());
+  return std::sqrt(longest);
 }
 
 } // namespace
 
 Simplex simplex(int dim, const std::array<Point, 4> &vertices) {
   Simplex result;
-  Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
-  for (int j = 0; j < dim; ++j)
-    edges.col(j) = difference(vertices[static_cast<std::size_t>(j) + 1], vertices[0]);
+  const Eigen::Matrix3d edges = edges_of(dim, vertices);
   const double determinant = edges.determinant();
   result.volume = determinant / (dim == 2 ? 2 : 6);
   const Eigen::Matrix3d inverse = edges.inverse();
@@ -36,6 +42,10 @@ Simplex simplex(int dim, const std::array<Point, 4> &vertices) {
     result.gradients.row(0) -= inverse.row(j);
   }
   return result;
+}
+
+double volume_of(int dim, const std::array<Point, 4> &vertices) {
+  return edges_of(dim, vertices).determinant() / (dim == 2 ? 2 : 6);
 }
 
 Point reference_centre(const Cell &cell) {
@@ -49,8 +59,9 @@ Point reference_centre(const Cell &cell) {
 }
 
 void check_orientation(const Scene &scene, const FullMu &mu, const Cell &cell) {
-  const double volume = simplex(cell.dim, cell.mapped).volume;
-  if (!(volume > 1e-12 * std::pow(longest_edge(cell.dim, cell.mapped), cell.dim)))
+  const double longest = longest_edge(cell.dim, cell.mapped);
+  const double size = cell.dim == 2 ? longest * longest : longest * longest * longest;
+  if (!(volume_of(cell.dim, cell.mapped) > 1e-12 * size))
     throw failure("the geometric map of scene " + scene.name + " inverts a cell at mu = " +
                   describe(scene.parameters, mu) + ": use a smaller parameter box or a finer mesh");
 }

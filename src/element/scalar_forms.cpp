@@ -78,7 +78,7 @@ const Maker<Kernel> constant_load_maker{
               shares = of_both([&](int dim) -> CellMatrix {
                 return products(dim, 1, degree).colwise().sum(); // the hats sum to 1
               })](const FullMu &, const Cell &cell, double *values) {
-        fill(values, value * simplex(cell.dim, cell.mapped).volume, of(shares, cell));
+        fill(values, value * volume_of(cell.dim, cell.mapped), of(shares, cell));
       };
     }};
 
@@ -117,7 +117,7 @@ Form constant_load(const std::string &region, double value, int degree) {
 Form l2_product(const std::string &region) {
   return {region, [mass = of_both([](int dim) { return products(dim, 1, 1); })](
                       const FullMu &, const Cell &cell, double *values) {
-            fill(values, simplex(cell.dim, cell.reference).volume, of(mass, cell));
+            fill(values, volume_of(cell.dim, cell.reference), of(mass, cell));
           }};
 }
 
@@ -128,7 +128,7 @@ Form hat_coupling(const std::string &region, double factor, int degree, bool lum
     return CellMatrix::Identity(dim + 1, nodes_per_cell(dim, degree)) / (dim + 1);
   });
   return {region, [=](const FullMu &, const Cell &cell, double *values) {
-            fill(values, factor * simplex(cell.dim, cell.mapped).volume, of(entries, cell));
+            fill(values, factor * volume_of(cell.dim, cell.mapped), of(entries, cell));
           }};
 }
 
@@ -136,7 +136,7 @@ Form function_load(const std::string &region, double factor,
                    const std::function<double(const FullMu &, const Point &)> &psi, bool lumped) {
   if (lumped)
     return {region, [factor, psi](const FullMu &mu, const Cell &cell, double *values) {
-              const double share = factor * simplex(cell.dim, cell.mapped).volume / (cell.dim + 1);
+              const double share = factor * volume_of(cell.dim, cell.mapped) / (cell.dim + 1);
               for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
                 values[i] = share * psi(mu, cell.mapped[i]);
             }};
@@ -144,7 +144,7 @@ Form function_load(const std::string &region, double factor,
           [factor, psi, rule = std::array{simplex_quadrature(2, 5), simplex_quadrature(3, 5)}](
               const FullMu &mu, const Cell &cell, double *values) {
             const auto count = static_cast<std::size_t>(cell.dim) + 1;
-            const double scale = factor * simplex(cell.dim, cell.mapped).volume;
+            const double scale = factor * volume_of(cell.dim, cell.mapped);
             std::fill_n(values, count, 0.0);
             for (const QuadraturePoint &q : rule[count - 3]) {
               Point x{};

@@ -243,6 +243,7 @@ TEST(NitscheReduced, AFileGivesTheSameModelAndItsLeadingPart) {
       EXPECT_EQ(OnlineSolver(part).solve({0.87}).u.size(), 3);
     }
     std::filesystem::remove(file);
+    std::filesystem::remove(fields_file(file));
   }
 }
 

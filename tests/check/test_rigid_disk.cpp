@@ -132,6 +132,7 @@ TEST(CondensedModel, SurvivesItsFile) {
   write_model(r.model, path);
   const ReducedModel again = read_model(path);
   std::filesystem::remove(path);
+  std::filesystem::remove(fields_file(path));
   OnlineSolver a(r.model), b(again);
   for (const Mu &mu : {Mu{0.8, 0.7}, Mu{1.2, 3}}) {
     const ReducedSolution x = a.solve(mu), y = b.solve(mu);

@@ -160,6 +160,7 @@ TEST(RowsApart, SurviveTheirFile) {
   write_model(r.model, path);
   ReducedModel again = read_model(path);
   std::filesystem::remove(path);
+  std::filesystem::remove(fields_file(path));
   const TermsApart &was = r.model.support->apart, &is = again.support->apart;
   EXPECT_GT(was.normal, 0);
   EXPECT_EQ(is.normal, was.normal);

@@ -67,6 +67,7 @@ TEST(TrainingSamples, TheModelFileKeepsThem) {
   write_model(model, path);
   const ReducedModel back = read_model(path, false);
   std::filesystem::remove(path);
+  std::filesystem::remove(fields_file(path));
   EXPECT_EQ(back.trained_mu, model.trained_mu);
   EXPECT_EQ(back.failed_mu, model.failed_mu);
 }

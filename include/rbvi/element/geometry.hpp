@@ -15,6 +15,9 @@ struct Simplex {
 /// From dim + 1 vertices, dim = 2 or 3.
 Simplex simplex(int dim, const std::array<Point, 4> &vertices);
 
+/// The volume alone.
+double volume_of(int dim, const std::array<Point, 4> &vertices);
+
 /// Mean of the reference vertices.
 Point reference_centre(const Cell &cell);
 
