@@ -1,6 +1,6 @@
 // Membrane over an obstacle. On the square (-1/2, 1/2)^2, mu = (radius r, centre c):
 //
-//   -Laplace u = load,   u = 0 on the boundary,
+//   -Laplace u = load,   u = frame_height + frame_tilt x on the boundary (by default 0),
 //   u >= psi(mu) = -1.25 |x - c|^2 / r^2   on the disc of centre c and radius r,
 //
 // held by a pressure lambda >= 0 that lives on the disc (2.36). The load -25 on the unit square
@@ -59,6 +59,23 @@ Point graded(const FullMu &mu, const Point &x) {
   return {mu[1] + scale * x[0], mu[2] + scale * x[1], 0};
 }
 
+/// The frame that holds the membrane, lifted and tilted about the y axis.
+std::vector<ImposedTerm> frame() {
+  const auto parameter = [](const char *name, int number) {
+    return Factor{name,
+                  [number](const FullMu &mu) { return mu[static_cast<std::size_t>(number)]; },
+                  {number}};
+  };
+  return {{[](const FullMu &, const Point &) {
+             return Point{1, 0, 0};
+           },
+           std::vector{parameter("frame_height", 3)}},
+          {[](const FullMu &, const Point &x) {
+             return Point{x[0], 0, 0};
+           },
+           std::vector{parameter("frame_tilt", 4)}}};
+}
+
 /// psi(mu) of the obstacle.
 double height(const FullMu &mu, const Point &x) {
   const double dx = x[0] - mu[1], dy = x[1] - mu[2];
@@ -102,9 +119,12 @@ Scene make(const SceneOptions &options) {
   scene.dim = 2;
   scene.components = 1;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
-  scene.parameters = all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
-                               {"center_x", "m", -0.05, 0.05, 0, centres},
-                               {"center_y", "m", -0.05, 0.05, 0, centres}});
+  scene.parameters = free_only(all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
+                                         {"center_x", "m", -0.05, 0.05, 0, centres},
+                                         {"center_y", "m", -0.05, 0.05, 0, centres},
+                                         {"frame_height", "m", -0.1, 0.1, 0, {-1, 1}},
+                                         {"frame_tilt", "", -0.5, 0.5, 0, {-2, 2}}}),
+                               "radius,center_x,center_y");
   scene.check_parameters = check_disc_in_square;
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
@@ -115,7 +135,7 @@ Scene make(const SceneOptions &options) {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
     return {scale * x[0], scale * x[1], 0};
   };
-  scene.fixed = {{"boundary", {}}};
+  scene.fixed = {{"boundary", {}, frame()}};
   scene.contacts = {obstacle({"obstacle", height, lumped})};
   const double load = number_in(options, "load");
   scene.a = {mapped_term(laplace("", scene.degree))};

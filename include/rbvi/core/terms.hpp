@@ -24,6 +24,9 @@ struct Cell {
   int dim = 2;
   std::array<Point, 4> reference; ///< vertices xhat
   std::array<Point, 4> mapped;    ///< h(mu)(xhat)
+  /// Of each dof of a form's nodes, the fixed boundary that imposes a value on it (its number in
+  /// Scene::fixed), or -1; null: none does. For the forms of element/imposed.hpp.
+  const int *imposed_by = nullptr;
 };
 
 /// An integral over the cells of a region or over the facets of a boundary, one by one.
@@ -61,6 +64,7 @@ struct Term {
   std::optional<std::vector<Factor>> theta;
   /// Without theta: the parameters (as in Factor) that the kernel depends on; unset: all.
   std::optional<std::vector<int>> parameters = {};
+  bool of_imposed = false; ///< a load made by with_imposed_loads (element/imposed.hpp)
 };
 
 using Sum = std::vector<Term>;

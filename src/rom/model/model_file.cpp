@@ -275,6 +275,7 @@ void write_fields(H5Writer &file, const ReducedModel &model) {
   file.write("fields/primal_basis", model.primal_basis);
   file.write("fields/points", model.mesh_points);
   file.write("fields/cells", model.mesh_cells);
+  file.write("fields/imposed_by", model.imposed_by);
 }
 
 void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
@@ -285,6 +286,7 @@ void read_fields(const H5Reader &file, bool all, ReducedModel &model) {
   model.primal_basis = file.matrix("fields/primal_basis");
   model.mesh_points = file.matrix("fields/points");
   model.mesh_cells = file.ints("fields/cells");
+  model.imposed_by = file.ints("fields/imposed_by");
 }
 
 ReducedModel read_members(const H5Reader &file, bool with_fields) {
@@ -303,6 +305,7 @@ ReducedModel read_members(const H5Reader &file, bool with_fields) {
   model.b = read_terms(file, "b");
   model.f = read_terms(file, "f");
   model.g = read_terms(file, "g");
+  model.imposed_energy = read_terms(file, "imposed_energy");
   model.support = read_support(file);
   model.nitsche = read_nitsche(file);
   read_fields(file, with_fields, model);
@@ -329,6 +332,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "b", model.b);
   write_terms(file, "f", model.f);
   write_terms(file, "g", model.g);
+  write_terms(file, "imposed_energy", model.imposed_energy);
   write_support(file, model.support);
   write_nitsche(file, model.nitsche);
   write_fields(file, model);
