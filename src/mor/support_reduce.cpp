@@ -1,6 +1,7 @@
 #include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 
@@ -38,10 +39,11 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
   if (!keeps_law(reduction)) return;
   const bool reduced_body =
       reduction == MultiplierReduction::collocated && !options.multipliers.exact;
-  if (!scene.f.empty() && !reduced_body)
-    throw bad_input("scene " + scene.name +
-                    " has a load, which the condensed operator does not see: use "
-                    "-multiplier_reduction collocated -multiplier_exact no");
+  if (!with_imposed_loads(scene).f.empty() && !reduced_body)
+    throw bad_input(
+        "scene " + scene.name +
+        " has a load or imposed displacements, which the condensed operator does not see: use "
+        "-multiplier_reduction collocated -multiplier_exact no");
   if (reduction == MultiplierReduction::condensed) return;
   if (scene.contacts.size() > 1)
     throw bad_input("several contact interfaces have laws of their own: use -multiplier_reduction "

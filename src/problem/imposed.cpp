@@ -46,7 +46,8 @@ Error contradiction(const Scene &scene, const FullMu &mu, const Point &at, const
   };
   return bad_input(
       "the boundaries " + name(one) + " and " + name(other) + " impose different displacements, " +
-      short_number(one.value) + " and " + short_number(other.value) + ", at their common point (" +
+      short_number(one.value) + " and " + short_number(other.value) + " (" +
+      short_number(std::abs(one.value - other.value)) + " apart), at their common point (" +
       short_number(at[0]) + ", " + short_number(at[1]) + ", " + short_number(at[2]) + ") at " +
       describe(scene.parameters, mu) + ": make them agree, or fix fewer components there");
 }

@@ -26,6 +26,20 @@ double ratio(const Vector &theta, const Vector &reference) {
   return std::isfinite(quotient) && quotient > 0 ? quotient : 0;
 }
 
+/// Throws bad_input where displacements are imposed by boundaries that the scene does not have.
+void check_imposed_by(const ReducedModel &model, const Scene &scene) {
+  std::vector<const std::vector<int> *> lists{&model.imposed_by};
+  for (const InterfaceModel &interface : model.interfaces)
+    lists.push_back(&interface.mesh.imposed_by);
+  for (const AffineTerms *terms : {&model.f, &model.g, &model.imposed_energy})
+    for (const SampleMesh &sample : terms->samples)
+      lists.push_back(&sample.imposed_by);
+  for (const std::vector<int> *list : lists)
+    if (std::ranges::any_of(*list, [&](int b) { return b < -1 || b >= std::ssize(scene.fixed); }))
+      throw bad_input("the imposed displacements of the model are not those of its scene in this "
+                      "build");
+}
+
 /// Number of primal functions of one query.
 Index solved_size(const ReducedModel &model) {
   if (!model.online_enriched) return model.primal_size();
@@ -42,6 +56,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
       qp_(solved_size(model), model.free_modes) {
   check_terms_of(model.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.f, scene_.f, scene_.parameters, "f");
+  check_imposed_by(model, scene_);
   check_terms_of(model.imposed_energy, imposed_energy_, scene_.parameters, "the imposed energy");
   if (contact_.dual_size() != model.dual_basis.rows() ||
       by_nitsche(scene_) != model.nitsche.has_value() ||
