@@ -22,9 +22,13 @@ def membranes():
     for name, case, scene in (("membrane", "case", []),
                               ("membrane_graded", "case", ["-disc_map", "graded"]),
                               ("membrane_consistent", "case", ["-lumped", "no"]),
-                              ("membrane_published", "published", [])):
+                              ("membrane_published", "published", []),
+                              ("membrane_degree_2", "case", ["-degree", "2", "-lumped", "no"])):
         yield Formulation(name, CASES / f"membrane_obstacle/{case}.yaml", scene,
                           ["-train", "grid:3,3,3"], mu)
+    yield Formulation("membrane_frame", CASES / "membrane_obstacle/case.yaml",
+                      ["-parameters", "radius,frame_height,frame_tilt"], ["-train", "grid:3,3,3"],
+                      ["0.2,0,0", "0.17,0.03,-0.2", "0.23,-0.04,0.3"])
 
 
 def two_disks():

@@ -1,6 +1,6 @@
 // Membrane over an obstacle. On the square (-1/2, 1/2)^2, mu = (radius r, centre c):
 //
-//   -Laplace u = load,   u = 0 on the boundary,
+//   -Laplace u = load,   u = frame_height + frame_tilt x on the boundary (by default 0),
 //   u >= psi(mu) = -1.25 |x - c|^2 / r^2   on the disc of centre c and radius r,
 //
 // held by a pressure lambda >= 0 that lives on the disc (2.36). The load -25 on the unit square
@@ -59,6 +59,19 @@ Point graded(const FullMu &mu, const Point &x) {
   return {mu[1] + scale * x[0], mu[2] + scale * x[1], 0};
 }
 
+const auto slope =
+    plain<PointMap>("membrane_obstacle/slope", 1, [](const FullMu &, const Point &x) {
+      return Point{x[0], 0, 0};
+    });
+
+/// The frame that holds the membrane, lifted and tilted about the y axis.
+std::vector<ImposedTerm> frame() {
+  constexpr int lift = 3, tilt = 4; // positions of the parameters
+  return {
+      {everywhere(Point{1, 0, 0}), std::vector{Factor{"frame_height", parameter(lift), {lift}}}},
+      {slope(), std::vector{Factor{"frame_tilt", parameter(tilt), {tilt}}}}};
+}
+
 /// psi(mu) of the obstacle.
 double height(const FullMu &mu, const Point &x) {
   const double dx = x[0] - mu[1], dy = x[1] - mu[2];
@@ -107,9 +120,12 @@ Scene make(const SceneOptions &options) {
   scene.dim = 2;
   scene.components = 1;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
-  scene.parameters = all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
-                               {"center_x", "m", -0.05, 0.05, 0, centres},
-                               {"center_y", "m", -0.05, 0.05, 0, centres}});
+  scene.parameters = free_only(all_free({{"radius", "m", 0.16, 0.24, 0.2, radii},
+                                         {"center_x", "m", -0.05, 0.05, 0, centres},
+                                         {"center_y", "m", -0.05, 0.05, 0, centres},
+                                         {"frame_height", "m", -0.1, 0.1, 0, {-1, 1}},
+                                         {"frame_tilt", "", -0.5, 0.5, 0, {-2, 2}}}),
+                               "radius,center_x,center_y");
   scene.check_parameters = disc_check();
   scene.training = "grid:5,5,5";
   scene.validation = "random:64:1";
@@ -120,7 +136,7 @@ Scene make(const SceneOptions &options) {
     const double scale = reference_radius / std::hypot(x[0], x[1]);
     return {scale * x[0], scale * x[1], 0};
   };
-  scene.fixed = {{"boundary", {}}};
+  scene.fixed = {{"boundary", {}, frame()}};
   scene.contacts = {obstacle({"obstacle", obstacle_height(), lumped})};
   const double load = number_in(options, "load");
   scene.a = {mapped_term(laplace("", scene.degree))};
@@ -153,7 +169,7 @@ SceneEntry membrane_obstacle() {
         {0, 240},
         true}},
       make,
-      {similarity_map, graded_map, obstacle_height, disc_check}};
+      {similarity_map, graded_map, slope, obstacle_height, disc_check}};
 }
 
 } // namespace rbvi

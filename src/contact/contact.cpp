@@ -62,6 +62,16 @@ bool by_multipliers(const Scene &scene) {
   });
 }
 
+/// Throws bad_input where Nitsche's method would need the stress of imposed values.
+void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
+  if (recipe.formulation == Formulation::nitsche &&
+      std::ranges::any_of(mesh.imposed_by, [](int boundary) { return boundary >= 0; }))
+    throw bad_input(
+        "displacements are imposed on a cell beside the contact curve '" +
+        recipe.entities.parts.front() +
+        "', which Nitsche's method does not take: use multipliers (-formulation mixed)");
+}
+
 } // namespace
 
 Index Contact::nodes() const {
@@ -82,6 +92,7 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
   std::vector<SparseMatrix> grams;
   contact.first_row.push_back(0);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
+    check_imposed(scene.contacts[i], meshes[i]);
     contact.interfaces.push_back(scene.contacts[i].make(scene, std::move(meshes[i])));
     const DualSpace &dual = contact.interfaces.back()->dual();
     contact.first_row.push_back(contact.first_row.back() + dual.size());

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/geometry.hpp"
+#include "rbvi/element/imposed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +46,21 @@ EntityValues EntitySum::shape() const {
 }
 
 EntitySum::EntitySum(const Scene &scene, InterfaceMesh interface_mesh, int entity_dim)
-    : ContactInterface(scene, std::move(interface_mesh)), entity_dim_(entity_dim) {}
+    : ContactInterface(scene, std::move(interface_mesh)), entity_dim_(entity_dim) {
+  for (std::size_t i = 0; i < mesh_.entities.size() && !mesh_.imposed_by.empty(); ++i)
+    for (int c = 0; c < mesh_.components; ++c)
+      imposed_by_.push_back(
+          mesh_.imposed_by[static_cast<std::size_t>(mesh_.entities[i] * mesh_.components + c)]);
+}
+
+void EntitySum::integrate_beside_imposed(const FullMu &mu, const Cell &entity,
+                                         EntityValues &values) const {
+  integrate(mu, entity, values);
+  if (entity.imposed_by == nullptr) return;
+  const std::vector<int> imposed_by(entity.imposed_by, entity.imposed_by + values.b.cols());
+  const std::vector<Point> nodes = node_points(entity_dim_, mesh_.degree, entity);
+  values.g -= values.b * imposed_values(scene_, mu, nodes, imposed_by);
+}
 
 std::vector<Index> EntitySum::rows_of(Index entity) const {
   const int *nodes = mesh_.nodes_of(entity);
@@ -71,6 +86,8 @@ Cell EntitySum::reference_entity(Index entity) const {
   const int *nodes = mesh_.nodes_of(entity);
   for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
     cell.reference[i] = mesh_.points[static_cast<std::size_t>(nodes[i])];
+  if (!imposed_by_.empty())
+    cell.imposed_by = imposed_by_.data() + entity * mesh_.per_entity * mesh_.components;
   return cell;
 }
 
@@ -122,7 +139,7 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperator
   EntityValues values = shape();
   const Index *position = position_.data();
   for (Index e = 0; e < mesh_.count(); ++e) {
-    integrate(mu, cells[static_cast<std::size_t>(e)], values);
+    integrate_beside_imposed(mu, cells[static_cast<std::size_t>(e)], values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
     const std::vector<Index> dual = rows_of(e);

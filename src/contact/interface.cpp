@@ -1,6 +1,7 @@
 #include "rbvi/contact/interface.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/imposed.hpp"
 
 #include <algorithm>
 
@@ -43,14 +44,18 @@ void ContactInterface::set_constraints(const FullMu &mu, ContactOperators &opera
   SparseMatrix b(rows, mesh_.columns);
   b.reserve(Eigen::VectorXi::Constant(rows, mesh_.components));
   operators.nodal_gap.resize(rows);
+  const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
   for (Index i = 0; i < rows; ++i) {
     const Index node = dual_.vertices[static_cast<std::size_t>(i)];
     const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)]);
     operators.nodal_gap[i] = at.gap;
-    for (int c = 0; c < mesh_.components; ++c)
-      if (const int dof = mesh_.dofs[static_cast<std::size_t>(node * mesh_.components + c)];
-          dof >= 0)
-        b.insert(i, dof) = at.direction[static_cast<std::size_t>(c)];
+    for (int c = 0; c < mesh_.components; ++c) {
+      const Index at_node = node * mesh_.components + c;
+      const double direction = at.direction[static_cast<std::size_t>(c)];
+      if (const int dof = mesh_.dofs[static_cast<std::size_t>(at_node)]; dof >= 0)
+        b.insert(i, dof) = direction;
+      if (imposed.size() > 0) operators.nodal_gap[i] -= direction * imposed[at_node];
+    }
   }
   b.makeCompressed();
   operators.nodal_b = std::move(b);

@@ -20,6 +20,15 @@ std::string bound(double value) {
   return shortest_number(std::strtod(formatted("%.12g", value).c_str(), nullptr));
 }
 
+/// Throws bad_input where a coefficient of a, f or of an imposed displacement is not finite.
+void check_all_coefficients(const Scene &scene, const FullMu &all) {
+  for (const Sum *sum : {&scene.a, &scene.f})
+    check_coefficients(*sum, scene.parameters, all);
+  for (const FixedBoundary &boundary : scene.fixed)
+    for (const ImposedTerm &value : boundary.values)
+      if (value.theta) check_coefficients({exact_term({}, *value.theta)}, scene.parameters, all);
+}
+
 } // namespace
 
 std::string describe(const Range &range) {
@@ -39,14 +48,12 @@ void check_range(const Range &range, double value, const std::string &what) {
 
 void check_together(const Scene &scene, const FullMu &all) {
   if (scene.check_parameters) scene.check_parameters(all);
-  for (const Sum *sum : {&scene.a, &scene.f})
-    check_coefficients(*sum, scene.parameters, all);
+  check_all_coefficients(scene, all);
 }
 
 void check_set(const Scene &scene, const std::vector<Mu> &set) {
   for (const Mu &mu : set)
-    for (const Sum *sum : {&scene.a, &scene.f})
-      check_coefficients(*sum, scene.parameters, expand(scene.parameters, mu));
+    check_all_coefficients(scene, expand(scene.parameters, mu));
 }
 
 void check_query(const Scene &scene, const Mu &mu, bool allow_outside) {

@@ -4,6 +4,7 @@
 #include "rbvi/element/facets.hpp"
 #include "rbvi/par/collective.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace rbvi {
@@ -28,6 +29,21 @@ std::size_t cell_rows(const Mesh &mesh, const Dofs &dofs, std::size_t cell, Cell
 }
 
 } // namespace
+
+std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell,
+                            const std::vector<int> &local) {
+  if (dofs.imposed_by.empty()) return {};
+  const auto nodes = nodes_of(mesh, cell);
+  std::vector<int> result;
+  for (const int i : local) {
+    const auto node =
+        static_cast<std::size_t>(nodes[static_cast<std::size_t>(i / dofs.components)]);
+    result.push_back(dofs.imposed_by[node * static_cast<std::size_t>(dofs.components) +
+                                     static_cast<std::size_t>(i % dofs.components)]);
+  }
+  if (std::ranges::all_of(result, [](int boundary) { return boundary < 0; })) result.clear();
+  return result;
+}
 
 MappedCells reference_cells(const Mesh &mesh) {
   MappedCells result;
@@ -97,11 +113,18 @@ void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Do
                   const MappedCells &cells, Visitor &&visitor) {
   std::array<double, CellRows{}.size() * CellRows{}.size()> values;
   const auto visit = [&](const Cell &cell, std::size_t number, const std::vector<int> &nodes) {
-    form.kernel(mu, cell, values.data());
     std::vector<int> local;
     for (const int node : nodes)
       for (int c = 0; c < dofs.components; ++c)
         local.push_back(node * dofs.components + c);
+    const std::vector<int> imposed_by = imposed_on(mesh, dofs, number, local);
+    if (imposed_by.empty()) {
+      form.kernel(mu, cell, values.data());
+    } else {
+      Cell with_values = cell;
+      with_values.imposed_by = imposed_by.data();
+      form.kernel(mu, with_values, values.data());
+    }
     visitor(number, local, values.data());
   };
   if (!form.boundary.empty()) {
@@ -149,6 +172,18 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
                  });
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));
+}
+
+double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+                const Dofs &dofs, const MappedCells &cells) {
+  double sum = 0;
+  for (const WeightedForm &weighted : forms)
+    visit_values(*weighted.form, mu, mesh, dofs, cells,
+                 [&](std::size_t, const std::vector<int> &, const double *values) {
+                   sum += weighted.weight * *values;
+                 });
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  return sum;
 }
 
 Vector product_with(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,

@@ -48,6 +48,22 @@ std::vector<bool> fixed_components(const Mesh &mesh, int components,
   return result;
 }
 
+/// Dofs::imposed_by: where boundaries meet the first one that imposes values.
+std::vector<int> imposing_boundaries(const Mesh &mesh, int components,
+                                     const std::vector<FixedBoundary> &fixed) {
+  if (std::ranges::all_of(fixed, [](const FixedBoundary &part) { return part.values.empty(); }))
+    return {};
+  const auto count = static_cast<std::size_t>(components);
+  std::vector<int> result(mesh.points.size() * count, -1);
+  for (std::size_t b = 0; b < fixed.size(); ++b) {
+    if (fixed[b].values.empty()) continue;
+    const std::vector<bool> own = fixed_components(mesh, components, {fixed[b]});
+    for (std::size_t i = 0; i < own.size(); ++i)
+      if (own[i] && result[i] < 0) result[i] = static_cast<int>(b);
+  }
+  return result;
+}
+
 } // namespace
 
 Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBoundary> &fixed) {
@@ -56,6 +72,7 @@ Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBounda
   dofs.components = components;
   dofs.total = mesh.total_nodes * components;
   const std::vector<bool> is_fixed = fixed_components(mesh, components, fixed);
+  dofs.imposed_by = imposing_boundaries(mesh, components, fixed);
   const std::size_t nodes = mesh.points.size(), count = static_cast<std::size_t>(components);
 
   PetscInt owned = 0;

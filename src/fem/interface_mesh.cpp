@@ -2,6 +2,7 @@
 
 #include "curve_nodes.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
@@ -168,6 +169,23 @@ Found find_interface(const Mesh &mesh, const Dofs &dofs, const Scene &scene,
   return found;
 }
 
+/// InterfaceMesh::imposed_by of nodes with these natural numbers. Collective.
+std::vector<int> imposed_at(const Mesh &mesh, const Dofs &dofs,
+                            const std::vector<PetscInt> &natural) {
+  if (dofs.imposed_by.empty()) return {};
+  const auto components = static_cast<std::size_t>(dofs.components);
+  std::map<PetscInt, std::size_t> position;
+  for (std::size_t k = 0; k < natural.size(); ++k)
+    position[natural[k]] = k;
+  std::vector<PetscInt> found(natural.size() * components, -1);
+  for (std::size_t node = 0; node < mesh.points.size(); ++node)
+    if (const auto at = position.find(mesh.natural_node[node]); at != position.end())
+      for (std::size_t c = 0; c < components; ++c)
+        found[at->second * components + c] = dofs.imposed_by[node * components + c];
+  over_ranks(mesh.comm, MPI_MAX, found);
+  return {found.begin(), found.end()};
+}
+
 } // namespace
 
 InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene &scene) {
@@ -192,6 +210,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       if (is_new) natural_dofs.push_back(natural);
       found.mesh.dofs.push_back(at->second);
     }
+    found.mesh.imposed_by = imposed_at(mesh, dofs, found.natural);
     places.meshes.push_back(std::move(found.mesh));
     places.natural_nodes.push_back(std::move(found.natural));
   }

@@ -73,6 +73,21 @@ bool uses(const Eim &eim, int snapshot) {
   return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
 }
 
+/// ReducedModel::imposed_by. Collective.
+void describe_imposed(const Problem &problem, ReducedModel &model) {
+  const Dofs &dofs = problem.dofs();
+  const Mesh &mesh = problem.mesh();
+  if (dofs.imposed_by.empty()) return;
+  model.imposed_by.assign(static_cast<std::size_t>(dofs.total), -1);
+  for (std::size_t i = 0; i < dofs.imposed_by.size(); ++i) {
+    const auto components = static_cast<std::size_t>(dofs.components);
+    const auto node = static_cast<std::size_t>(mesh.natural_node[i / components]);
+    model.imposed_by[node * components + i % components] = dofs.imposed_by[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, model.imposed_by.data(), static_cast<int>(dofs.total), MPI_INT,
+                MPI_MAX, problem.comm());
+}
+
 } // namespace
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
@@ -92,6 +107,7 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
       mine.push_back(static_cast<int>(mesh.natural_node[static_cast<std::size_t>(nodes[i])]));
   }
+  describe_imposed(problem, model);
   const std::vector<int> all = gather_all(problem.comm(), mine, MPI_INT);
   model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * per_cell));
   for (auto record = all.begin(); record != all.end(); record += per_cell + 1)
@@ -256,6 +272,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   ReducedModel model = start_model(problem, bases);
   describe_mesh(problem, model);
   start_operators(problem, samples, affine, bases, model);
+  model.imposed_energy = separate_imposed_energy(problem);
   Mat basis = nullptr;
   RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
   project_exact(problem, basis, model);

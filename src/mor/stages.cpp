@@ -1,6 +1,7 @@
 #include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/print.hpp"
 
 #include <algorithm>
@@ -223,8 +224,8 @@ std::string self_check_text(const Reduction *made) {
 
 } // namespace
 
-StageTable reduction_stages(const Scene &scene, const ReduceOptions &options,
-                            const Reduction *made) {
+StageTable reduction_stages(const Scene &of, const ReduceOptions &options, const Reduction *made) {
+  const Scene scene = with_imposed_loads(of);
   StageTable rows{interpolation_row(scene, options, made)};
   if (scene.f.empty()) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
   rows.push_back(pod_row(options, made));

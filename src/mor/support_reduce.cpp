@@ -1,6 +1,7 @@
 #include "rbvi/mor/stages.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/support/support_solver.hpp"
 

@@ -1,17 +1,22 @@
 #include "rbvi/problem/problem.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/imposed.hpp"
 
 namespace rbvi {
 
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
-    : scene_(std::make_unique<const Scene>(std::move(scene))),
+    : scene_(std::make_unique<const Scene>(with_imposed_loads(std::move(scene)))),
       mesh_(make_mesh(comm, *scene_, options)),
       dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
       places_(place_interfaces(mesh_, dofs_, *scene_)),
       contact_(make_contact(*scene_, places_.meshes)), cells_(reference_cells(mesh_)),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
-      f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {}
+      f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
+  if (!imposes_values(*scene_)) return;
+  check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
+  imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
+}
 
 void Problem::assemble_contact(const Mu &mu, Operators &operators) {
   operators.mu = expand(scene_->parameters, mu);
@@ -21,6 +26,7 @@ void Problem::assemble_contact(const Mu &mu, Operators &operators) {
 
 const Operators &Problem::assemble(const Mu &mu) {
   const FullMu all = expand(scene_->parameters, mu);
+  if (imposes_values(*scene_)) check_imposed(*scene_, all, mesh_, dofs_);
   assemble_contact(mu, operators_);
   const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
   if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
@@ -29,7 +35,13 @@ const Operators &Problem::assemble(const Mu &mu) {
   if (new_f) sum_up(scene_->f, scene_->parameters, all, mesh_, dofs_, cells_, f_);
   operators_.a = a_.total.get();
   operators_.f = f_.total.get();
+  if (imposes_values(*scene_))
+    operators_.imposed_energy = energy_at(imposed_energy_, *scene_, all, mesh_, dofs_, cells_);
   return operators_;
+}
+
+Vector Problem::imposed_displacement(const Mu &mu) const {
+  return natural_imposed(*scene_, expand(scene_->parameters, mu), mesh_, dofs_);
 }
 
 Mat Problem::v_product() {

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/support/reduced_stiffness.hpp"
@@ -25,6 +26,20 @@ double ratio(const Vector &theta, const Vector &reference) {
   return std::isfinite(quotient) && quotient > 0 ? quotient : 0;
 }
 
+/// Throws bad_input where displacements are imposed by boundaries that the scene does not have.
+void check_imposed_by(const ReducedModel &model, const Scene &scene) {
+  std::vector<const std::vector<int> *> lists{&model.imposed_by};
+  for (const InterfaceModel &interface : model.interfaces)
+    lists.push_back(&interface.mesh.imposed_by);
+  for (const AffineTerms *terms : {&model.f, &model.g, &model.imposed_energy})
+    for (const SampleMesh &sample : terms->samples)
+      lists.push_back(&sample.imposed_by);
+  for (const std::vector<int> *list : lists)
+    if (std::ranges::any_of(*list, [&](int b) { return b < -1 || b >= std::ssize(scene.fixed); }))
+      throw bad_input("the imposed displacements of the model are not those of its scene in this "
+                      "build");
+}
+
 /// Number of primal functions of one query.
 Index solved_size(const ReducedModel &model) {
   if (!model.online_enriched) return model.primal_size();
@@ -36,10 +51,13 @@ Index solved_size(const ReducedModel &model) {
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
-    : model_(model), scene_(std::move(scene)), contact_(contact_of(model, scene_)),
+    : model_(model), scene_(with_imposed_loads(std::move(scene))),
+      imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
       qp_(solved_size(model), model.free_modes) {
   check_terms_of(model.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.f, scene_.f, scene_.parameters, "f");
+  check_imposed_by(model, scene_);
+  check_terms_of(model.imposed_energy, imposed_energy_, scene_.parameters, "the imposed energy");
   if (contact_.dual_size() != model.dual_basis.rows() ||
       by_nitsche(scene_) != model.nitsche.has_value() ||
       (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche))
@@ -212,8 +230,13 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
 
 ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
   check_query(scene_, mu, extrapolate);
-  return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu),
-                     [&] { return solve_at(expand(scene_.parameters, mu)); });
+  return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu), [&] {
+    ReducedSolution solution = solve_at(expand(scene_.parameters, mu));
+    if (const AffineTerms &imposed = model_.imposed_energy; imposed.size() > 0)
+      solution.energy += imposed.reduced.row(0).dot(
+          affine_coefficients(imposed, imposed_energy_, scene_, solution.mu));
+    return solution;
+  });
 }
 
 Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
@@ -237,7 +260,12 @@ Vector OnlineSolver::contact_gap(const ReducedSolution &solution) const {
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
   if (model_.primal_basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
-  return model_.primal_basis * solution.u;
+  Vector field = model_.primal_basis * solution.u;
+  if (model_.imposed_by.empty()) return field;
+  std::vector<Point> nodes;
+  for (Index i = 0; i < model_.mesh_points.rows(); ++i)
+    nodes.push_back(point_of(model_.mesh_points, i));
+  return field + imposed_values(scene_, solution.mu, nodes, model_.imposed_by);
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) const {

@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "vectors.hpp"
 
@@ -17,6 +18,13 @@ double ratio(double value, double scale) {
   return scale > 0 ? value / scale : value;
 }
 
+/// At all dofs in natural order, the imposed values among them. Collective.
+Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
+  Vector whole = to_natural(problem.dofs(), u);
+  if (imposes_values(problem.scene())) whole += problem.imposed_displacement(mu);
+  return whole;
+}
+
 Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
                 const HfSolution &solution) {
   Handle<Vec> au;
@@ -28,7 +36,7 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
 
   const double images = problem.scene().mirror_images;
   Outputs outputs;
-  outputs.energy = images * (quadratic / 2 - linear);
+  outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy);
   outputs.kkt_residual = solution.kkt.largest();
   const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
   outputs.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
@@ -165,12 +173,12 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   const NitscheCurve &curve = *problem_.nitsche();
   const CurveFields fields = nitsche_fields(curve, op.mu, found.layer);
   HfSolution solution;
-  solution.u = to_natural(problem_.dofs(), found.u.get());
+  solution.u = whole_displacement(problem_, mu, found.u.get());
   solution.lambda = nitsche_multiplier(fields, curve.friction());
   nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells), found.pressures, fields,
                   nitsche_law(curve, op.mu), solution.outputs);
   solution.kkt.stationarity = found.residual;
-  solution.outputs.energy = scene.mirror_images * found.energy;
+  solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
   solution.outputs.kkt_residual = found.residual;
   solution.outputs.iterations = solution.iterations = found.iterations;
   solution.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
@@ -208,7 +216,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
 
   HfSolution solution;
-  solution.u = to_natural(problem_.dofs(), result.u.get());
+  solution.u = whole_displacement(problem_, mu, result.u.get());
   solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
   solution.outputs = measure(problem_, op, result, solution);
   solution.lambda = result.lambda;

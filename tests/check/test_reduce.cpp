@@ -58,6 +58,90 @@ TEST(QuadraticModel, ReturnsItsSnapshotsAndAnswersBetweenThem) {
   }
 }
 
+/// The membrane with some parameters free, its frame lifted and tilted among them.
+Scene framed(const std::string &free, const SceneOptions &options) {
+  Scene scene = make_scene("membrane_obstacle", options);
+  scene.parameters = free_only(scene.parameters, free);
+  return scene;
+}
+
+void expect_same_outputs(const OnlineSolver &online, const ReducedSolution &answer,
+                         const Sample &sample, double tolerance) {
+  const Outputs outputs = online.outputs(sample.mu, answer);
+  EXPECT_NEAR(*outputs.energy, *sample.outputs.energy,
+              tolerance * std::abs(*sample.outputs.energy));
+  EXPECT_NEAR(*outputs.normal_force, *sample.outputs.normal_force,
+              tolerance * *sample.outputs.normal_force);
+  EXPECT_LE((online.field(answer) - sample.u).norm(), tolerance * sample.u.norm());
+}
+
+/// Imposed displacements: those of the frame are in the load, in the energy and in the field.
+TEST(ImposedModel, ReturnsItsSnapshotsWithTheirFrame) {
+  for (const char *degree : {"1", "2"}) {
+    const SceneOptions options{{"degree", degree}, {"circle_edges", "24"}};
+    Reduced r(framed("radius,frame_height,frame_tilt", options), "grid:2,2,3");
+    r.reduce(everything());
+    EXPECT_EQ(r.model.imposed_energy.size(), 1) << "all of it is integrated online";
+    EXPECT_FALSE(r.model.imposed_by.empty());
+    OnlineSolver online(r.model);
+    for (const Sample &sample : r.samples)
+      expect_same_outputs(online, online.solve(sample.mu), sample, 1e-9);
+  }
+}
+
+TEST(ImposedModel, AnswersBetweenItsSnapshots) {
+  Reduced r(framed("radius,frame_height", {{"circle_edges", "24"}}), "grid:7,7");
+  r.reduce({});
+  const auto unseen = parse_set(r.problem.scene().parameters, "random:8:7");
+  const std::vector<Sample> truth = solve_all(r.problem, unseen);
+  const ModelErrors errors = r.errors_at(truth);
+  EXPECT_LE(errors.u.maxCoeff(), 2e-4);
+  EXPECT_LE(errors.lambda.maxCoeff(), 2e-4);
+  OnlineSolver online(r.model);
+  for (const Sample &sample : truth)
+    expect_same_outputs(online, online.solve(sample.mu), sample, 2e-4);
+}
+
+/// Without an imposed value at any mu the model has nothing of it.
+TEST(ImposedModel, IsThatOfTheSceneWhereTheFrameIsFixedAtZero) {
+  Reduced r({{"circle_edges", "24"}}, "grid:2,2,2", everything());
+  EXPECT_EQ(r.model.imposed_energy.size(), 0);
+  EXPECT_TRUE(r.model.imposed_by.empty());
+  EXPECT_TRUE(r.model.interfaces.front().mesh.imposed_by.empty());
+  EXPECT_TRUE(r.model.f.samples.front().imposed_by.empty());
+}
+
+/// Two disks whose flat sides are moved by imposed values, which are a load, or by the motion of
+/// the scene, which is none.
+TEST(ImposedModel, OfARigidMotionIsThatOfTheMotion) {
+  std::vector<Outputs> outputs;
+  std::vector<Vector> pressures;
+  for (const bool imposed : {false, true}) {
+    Scene scene = make_scene("two_disks", {{"degree", "1"}, {"arc_edges", "40"}});
+    const auto motion = scene.motion;
+    if (imposed) {
+      scene.motion = nullptr;
+      const auto at = [motion](const FullMu &, const Point &x) { return motion({}, x); };
+      for (FixedBoundary &boundary : scene.fixed)
+        boundary.values = {{at, std::vector<Factor>{}}};
+    }
+    Reduced r(scene, "grid:9");
+    r.reduce(everything());
+    OnlineSolver online(r.model, r.problem.scene());
+    for (const Mu &mu : {Mu{0.775}, Mu{1.3}}) {
+      const ReducedSolution answer = online.solve(mu);
+      outputs.push_back(online.outputs(mu, answer));
+      pressures.push_back(online.multiplier(answer));
+    }
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(*outputs[i + 2].energy, *outputs[i].energy, 1e-8 * *outputs[i].energy);
+    EXPECT_NEAR(*outputs[i + 2].normal_force, *outputs[i].normal_force,
+                1e-8 * *outputs[i].normal_force);
+    EXPECT_LE((pressures[i + 2] - pressures[i]).norm(), 1e-7 * pressures[i].norm());
+  }
+}
+
 TEST_P(BothMaps, TheSharpBoundHoldsAtEveryTrainingParameter) {
   ReduceOptions options;
   options.pod.tolerance = 1e-4;

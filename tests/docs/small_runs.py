@@ -19,6 +19,8 @@ RUNS = {
     "membrane": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,2,2"],
     "membrane_mcpg": ["-case", CASES / "membrane_obstacle/published.yaml", "-train", "grid:3,2,2",
                       "-cone_type", "mcpg", "-pga_tolerance", "infsup"],
+    "membrane_frame": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,3",
+                       "-parameters", "radius,frame_height"],
     "two_disks": ["-case", CASES / "two_disks/case.yaml", "-train", "grid:9"],
     "two_disks_cone": ["-case", CASES / "two_disks/cone.yaml", "-train", "grid:9"],
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],

@@ -20,6 +20,8 @@ class EntitySum : public ContactInterface {
 public:
   /// Sets b and g of `values`, which has its shape. `entity`: its vertices, reference and mapped.
   virtual void integrate(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
+  /// The same, less b times the values imposed on the entity in g.
+  void integrate_beside_imposed(const FullMu &mu, const Cell &entity, EntityValues &values) const;
   /// Sets the weights.
   virtual void weigh(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
 
@@ -35,7 +37,7 @@ public:
   std::vector<Index> rows_of(Index entity) const;
   /// Its columns of B, -1 where there is none.
   std::vector<Index> columns_of(Index entity) const;
-  /// Its reference vertices.
+  /// Its reference vertices, and by what its dofs are imposed; valid as long as the interface.
   Cell reference_entity(Index entity) const;
 
 protected:
@@ -50,6 +52,7 @@ private:
                  ContactOperators &operators) const;
 
   int entity_dim_;
+  std::vector<int> imposed_by_; ///< of the dofs of each entity; empty: nothing is imposed
   SparseMatrix pattern_;        ///< of b, zero values
   std::vector<Index> position_; ///< per kernel value: where in b it is added, -1 nowhere
 };

@@ -34,6 +34,9 @@ struct InterfaceMesh {
   /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
   std::vector<int> dofs;
   Index columns = 0; ///< of the problem
+  /// Like `dofs`: the fixed boundary that imposes a value (Cell::imposed_by), -1 elsewhere; empty
+  /// where none does.
+  std::vector<int> imposed_by = {};
 
   Index nodes() const { return static_cast<Index>(points.size()); }
   Index count() const { return static_cast<Index>(entities.size()) / per_entity; }
@@ -66,7 +69,8 @@ struct ContactOperators {
   std::vector<Index> uncovered; ///< multipliers that do not face a partner everywhere
 };
 
-/// At one point: direction . u <= gap, u the displacement without the motion of the scene.
+/// At one point: direction . u <= gap, u the displacement without the motion of the scene, with the
+/// values that boundaries impose.
 struct PointConstraint {
   Point direction;
   double gap;
@@ -113,7 +117,8 @@ public:
   virtual const NitscheCurve *nitsche() const { return nullptr; }
 
 protected:
-  /// nodal_b and nodal_gap from constraint_at at the vertices of the dual space.
+  /// nodal_b and nodal_gap from constraint_at at the vertices of the dual space, the imposed values
+  /// taken into the gap.
   void set_constraints(const FullMu &mu, ContactOperators &operators) const;
 
   const Scene &scene_;

@@ -19,6 +19,9 @@ struct Cell {
   int dim = 2;
   std::array<Point, 4> reference; ///< vertices xhat
   std::array<Point, 4> mapped;    ///< h(mu)(xhat)
+  /// Of each dof of a form's nodes, the fixed boundary that imposes a value on it (its number in
+  /// Scene::fixed), or -1; null: none does. For the forms of element/imposed.hpp.
+  const int *imposed_by = nullptr;
 };
 
 /// The two constants of an isotropic material, pressures:

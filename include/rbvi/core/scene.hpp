@@ -55,10 +55,22 @@ struct MeshRecipe {
   Inclusion inclusion{};
 };
 
-/// A boundary on which some components of the displacement are imposed.
+/// A displacement imposed on a boundary, theta(mu) value(x) or value(mu, x), x in the reference
+/// domain; of the components that the boundary fixes. As with the terms of operators, theta makes
+/// it exact: value must not depend on mu, which is empty there.
+struct ImposedTerm {
+  Named<PointMap> value;
+  std::optional<std::vector<Factor>> theta = {}; ///< the product of these; unset: value has mu
+  /// Without theta: the parameters (as in Factor) that value depends on; unset: all.
+  std::optional<std::vector<int>> parameters = {};
+};
+
+/// A boundary on which some components of the displacement are imposed: the sum of `values`, zero
+/// without any, beside Scene::motion. Where two boundaries meet their values must agree.
 struct FixedBoundary {
   std::string name;
   std::vector<int> components; ///< empty: all
+  std::vector<ImposedTerm> values = {};
 };
 
 struct Scene {
@@ -83,8 +95,8 @@ struct Scene {
 
   std::vector<FixedBoundary> fixed;
   /// Rigid motion of each body at a point of the reference domain, which the displacement is
-  /// measured from: u = motion + w, w = 0 where it is fixed. Carries inhomogeneous Dirichlet data;
-  /// empty: zero.
+  /// measured from: u = motion + w, w = 0 (or FixedBoundary::values) where it is fixed. Costs
+  /// nothing, unlike other Dirichlet data; empty: zero.
   Named<PointMap> motion;
   /// The data are symmetric about x = 0, and so are the solutions on a mesh that is.
   bool symmetric = false;

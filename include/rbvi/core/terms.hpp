@@ -48,6 +48,7 @@ struct Term {
   std::optional<std::vector<Factor>> theta;
   /// Without theta: the parameters (as in Factor) that the kernel depends on; unset: all.
   std::optional<std::vector<int>> parameters = {};
+  bool of_imposed = false; ///< a load made by with_imposed_loads (element/imposed.hpp)
 };
 
 using Sum = std::vector<Term>;

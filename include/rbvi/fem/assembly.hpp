@@ -20,6 +20,11 @@ MappedCells reference_cells(const Mesh &mesh);
 /// rank if a cell of any rank is inverted.
 void map_cells(const Scene &scene, const FullMu &mu, const Mesh &mesh, MappedCells &cells);
 
+/// Cell::imposed_by of an owned cell, or of the nodes of one of its facets; `local`: which of the
+/// cell's dofs, node * components + component. Empty where no value is imposed on any of them.
+std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell,
+                            const std::vector<int> &local);
+
 /// A multiple of a form.
 struct WeightedForm {
   const Form *form;
@@ -39,6 +44,10 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
 /// Overwrites a vector by the sum of linear forms. Collective.
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
               const Dofs &dofs, const MappedCells &cells, Vec vector);
+
+/// The sum over all cells of forms that fill a single number each (imposed_energy). Collective.
+double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
+                const Dofs &dofs, const MappedCells &cells);
 
 /// The share of this rank's cells in the sum of bilinear forms times a field; both by local node *
 /// components, fixed dofs included. Not collective.

@@ -19,6 +19,9 @@ struct Dofs {
   PetscInt first_free = 0;             ///< first row owned by this rank
   std::vector<PetscInt> free;          ///< per local node * components + component: row or -1
   std::vector<PetscInt> natural_owned; ///< per owned row: its natural number
+  /// Like `free`: number of the fixed boundary that imposes values on it (Cell::imposed_by), -1
+  /// elsewhere; empty where no boundary does.
+  std::vector<int> imposed_by;
 };
 
 /// Collective. Throws bad_input for a component that the displacement does not have.

@@ -4,7 +4,8 @@
 //
 // A and F are distributed over the free dofs; B acts on the contact dofs alone (B u = B_c E^T u)
 // and is replicated, as are G and lambda. Where the scene has a motion, u is what is left beside it
-// (w of Scene::motion) and G takes the motion in: it is rigid, so that it does no work in A.
+// (w of Scene::motion) and G takes the motion in: it is rigid, so that it does no work in A. Where
+// boundaries impose values l(mu), u is zero there as well, F is f(v) - a(l, v) and G takes B l in.
 //
 // With friction lambda has a tangential part behind the normal one; there B u - G is the slip, and
 // |lambda_tau| <= bound, lambda_tau = bound slip / |slip| where it slips (corrected (3.32)).
@@ -12,6 +13,7 @@
 
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
+#include "rbvi/problem/imposed.hpp"
 #include "rbvi/problem/summed.hpp"
 
 #include <memory>
@@ -24,16 +26,19 @@ namespace rbvi {
 struct Operators : ContactOperators {
   FullMu mu;
   Mat a = nullptr;
-  Vec f = nullptr; ///< zero where the scene has no load
-  NodeLaws laws;   ///< of the multipliers
+  Vec f = nullptr;           ///< zero where the scene has no load
+  double imposed_energy = 0; ///< of the imposed values: that of u + l is this and that of u under F
+  NodeLaws laws;             ///< of the multipliers
 };
 
 class Problem {
 public:
-  /// Collective on `comm`. Throws bad_input for a mesh that does not fit the scene.
+  /// Collective on `comm`. Throws bad_input for a mesh that does not fit the scene, and for
+  /// boundaries that impose different displacements where they meet.
   Problem(MPI_Comm comm, Scene scene, const MeshOptions &options);
 
   MPI_Comm comm() const { return mesh_.comm; }
+  /// With the loads of the imposed values in f.
   const Scene &scene() const { return *scene_; }
   const Mesh &mesh() const { return mesh_; }
   const Dofs &dofs() const { return dofs_; }
@@ -51,6 +56,11 @@ public:
   /// Not collective: the contact operators alone, B, G, weights and the nodal constraint.
   void assemble_contact(const Mu &mu, Operators &operators);
 
+  /// The imposed displacement l(mu) at all dofs in natural order, on every rank; zero where the
+  /// scene imposes none. Collective.
+  Vector imposed_displacement(const Mu &mu) const;
+  const ImposedEnergy &imposed_energy() const { return imposed_energy_; }
+
   /// A and F of the last mu term by term.
   const Summed<Mat> &a_terms() const { return a_; }
   const Summed<Vec> &f_terms() const { return f_; }
@@ -67,6 +77,7 @@ private:
   MappedCells cells_;
   Summed<Mat> a_;
   Summed<Vec> f_;
+  ImposedEnergy imposed_energy_;
   Handle<Mat> v_product_;
   Operators operators_;
 };

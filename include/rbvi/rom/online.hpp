@@ -50,8 +50,8 @@ public:
   Vector multiplier(const ReducedSolution &solution) const;
   /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap).
   Vector contact_gap(const ReducedSolution &solution) const;
-  /// At all dofs, without the motion of the scene. Throws failure if the model was read without its
-  /// fields.
+  /// At all dofs, without the motion of the scene, with the values that boundaries impose. Throws
+  /// failure if the model was read without its fields.
   Vector field(const ReducedSolution &solution) const;
   const ReducedModel &model() const { return model_; }
   const Scene &scene() const { return scene_; }
@@ -68,7 +68,8 @@ private:
   ContactOperators nodal_operators(const ReducedSolution &solution) const;
 
   const ReducedModel &model_;
-  const Scene scene_;
+  const Scene scene_; ///< with_imposed_loads
+  const Sum imposed_energy_;
   Contact contact_;
   // Contact with a rigid support: the rest is not used.
   std::unique_ptr<SupportSolver> support_;

@@ -44,7 +44,8 @@ struct KktResidual {
 };
 
 struct HfSolution {
-  Vector u;                  ///< all dofs in natural order, on every rank; without the motion
+  Vector u;                  ///< all dofs in natural order, on every rank; without the motion,
+                             ///< with the values that boundaries impose
   Vector lambda;             ///< dual dofs
   std::vector<Index> active; ///< normal multipliers in contact
   KktResidual kkt;

@@ -20,7 +20,21 @@ struct TouchedCell {
   std::array<Point, 4> vertices;
   std::vector<std::pair<int, int>> entries;
   int term = -1;
+  std::vector<int> imposed_by = {}; ///< Cell::imposed_by; empty: nothing is imposed
 };
+
+/// SampleMesh::imposed_by.
+std::vector<int> imposed_by_of(const std::vector<TouchedCell> &cells) {
+  std::size_t most = 0;
+  for (const TouchedCell &cell : cells)
+    most = std::max(most, cell.imposed_by.size());
+  std::vector<int> result;
+  for (const TouchedCell &cell : cells) {
+    result.insert(result.end(), cell.imposed_by.begin(), cell.imposed_by.end());
+    result.insert(result.end(), most - cell.imposed_by.size(), -1);
+  }
+  return result;
+}
 
 /// `corners`: vertices of each cell.
 SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) {
@@ -39,6 +53,7 @@ SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) 
       sample.contributions.push_back({entry, static_cast<int>(k), local});
     if (cells[k].term >= 0) sample.terms.push_back(cells[k].term);
   }
+  sample.imposed_by = imposed_by_of(cells);
   std::stable_sort(sample.contributions.begin(), sample.contributions.end(),
                    [](const auto &x, const auto &y) { return x.entry < y.entry; });
   return sample;
@@ -70,8 +85,10 @@ SampleMesh sample_interface(const EntitySum &interface, Index first_row,
       for (const Index column : interface.columns_of(e))
         columns.push_back(static_cast<PetscInt>(column));
     }
-    TouchedCell entity{static_cast<PetscInt>(e), interface.reference_entity(e).reference,
-                       touched(entries, rows, columns)};
+    const Cell cell = interface.reference_entity(e);
+    TouchedCell entity{static_cast<PetscInt>(e), cell.reference, touched(entries, rows, columns)};
+    if (!matrix && cell.imposed_by != nullptr)
+      entity.imposed_by.assign(cell.imposed_by, cell.imposed_by + interface.columns_of(e).size());
     if (!entity.entries.empty()) touching.push_back(std::move(entity));
   }
   return to_sample_mesh(interface.mesh().dim, interface.entity_dim() + 1, std::move(touching));
@@ -88,7 +105,7 @@ std::vector<SampleMesh> sample_contact(const Contact &contact, const std::vector
 
 /// Flattens the cells of all ranks onto every rank.
 std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCell> &mine) {
-  std::vector<double> packed; // number, term, 12 coordinates, count, pairs
+  std::vector<double> packed; // number, term, 12 coordinates, count, pairs, count, imposed_by
   for (const TouchedCell &cell : mine) {
     packed.push_back(static_cast<double>(cell.number));
     packed.push_back(cell.term);
@@ -99,6 +116,8 @@ std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCe
       packed.push_back(entry);
       packed.push_back(local);
     }
+    packed.push_back(static_cast<double>(cell.imposed_by.size()));
+    packed.insert(packed.end(), cell.imposed_by.begin(), cell.imposed_by.end());
   }
   const std::vector<double> all = gather_all(comm, packed, MPI_DOUBLE);
   std::vector<TouchedCell> cells;
@@ -112,23 +131,50 @@ std::vector<TouchedCell> gather_cells(MPI_Comm comm, const std::vector<TouchedCe
       const int entry = static_cast<int>(*at++);
       cell.entries.emplace_back(entry, static_cast<int>(*at++));
     }
+    for (auto count = static_cast<int>(*at++); count > 0; --count)
+      cell.imposed_by.push_back(static_cast<int>(*at++));
     cells.push_back(std::move(cell));
   }
   return cells;
 }
 
-/// Adds a cell, or a facet of it, whose kernel has these nodes: its first vertices, then middles.
-void add_touched(const Problem &problem, const std::vector<EntryKey> &entries, bool matrix,
-                 const std::vector<int> &nodes, TouchedCell cell,
-                 std::vector<TouchedCell> &touched_cells) {
+/// Calls visitor(nodes of the kernel, the cell with its term) for the cells and facets of some
+/// terms of a sum on this rank.
+template <class Visitor>
+void visit_domain(const Problem &problem, const Sum &sum, const std::vector<int> &terms,
+                  Visitor &&visitor) {
   const Mesh &mesh = problem.mesh();
-  const int components = problem.dofs().components;
-  std::vector<PetscInt> rows;
-  for (const int node : nodes)
-    for (int c = 0; c < components; ++c)
-      rows.push_back(mesh.natural_node[static_cast<std::size_t>(node)] * components + c);
-  cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
-  if (!cell.entries.empty()) touched_cells.push_back(std::move(cell));
+  const MappedCells cells = reference_cells(mesh);
+  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
+  for (const int term : terms) {
+    const Form &form = sum[static_cast<std::size_t>(term)].form;
+    for (std::size_t k = 0; k < mesh.cells.size() && form.boundary.empty(); ++k) {
+      if (!form.region.empty() && !mesh.region.at(form.region)[k]) continue;
+      const auto nodes = nodes_of(mesh, k);
+      visitor(std::vector<int>{nodes.begin(), nodes.begin() + per_cell},
+              TouchedCell{mesh.natural_cell[k], cells.cells[k].reference, {}, term});
+    }
+    if (form.boundary.empty()) continue;
+    for (const auto &[k, facet] : mesh.facets.at(form.boundary)) {
+      std::vector<int> nodes = facet_nodes(mesh.dim, mesh.degree, facet);
+      for (int &node : nodes)
+        node = nodes_of(mesh, k)[static_cast<std::size_t>(node)];
+      visitor(
+          nodes,
+          TouchedCell{mesh.natural_cell[k], facet_cell(cells.cells[k], facet).reference, {}, term});
+    }
+  }
+}
+
+/// Cell::imposed_by of these nodes; empty where nothing is imposed on them.
+std::vector<int> imposed_by_at(const Dofs &dofs, const std::vector<int> &nodes) {
+  std::vector<int> result;
+  for (std::size_t i = 0; i < nodes.size() && !dofs.imposed_by.empty(); ++i) {
+    const auto first = dofs.imposed_by.begin() + std::ptrdiff_t{nodes[i]} * dofs.components;
+    result.insert(result.end(), first, first + dofs.components);
+  }
+  if (std::ranges::all_of(result, [](int boundary) { return boundary < 0; })) result.clear();
+  return result;
 }
 
 /// Cells and facets of the terms of a sum that depend on the map; matrix: rows and columns are
@@ -136,27 +182,18 @@ void add_touched(const Problem &problem, const std::vector<EntryKey> &entries, b
 SampleMesh sample_domain(const Problem &problem, const Sum &sum, const std::vector<int> &terms,
                          const std::vector<EntryKey> &entries, bool matrix) {
   const Mesh &mesh = problem.mesh();
-  const MappedCells cells = reference_cells(mesh);
-  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
+  const int components = problem.dofs().components;
   std::vector<TouchedCell> mine;
-  for (const int term : terms) {
-    const Form &form = sum[static_cast<std::size_t>(term)].form;
-    for (std::size_t k = 0; k < mesh.cells.size() && form.boundary.empty(); ++k) {
-      if (!form.region.empty() && !mesh.region.at(form.region)[k]) continue;
-      const auto nodes = nodes_of(mesh, k);
-      add_touched(problem, entries, matrix, {nodes.begin(), nodes.begin() + per_cell},
-                  {mesh.natural_cell[k], cells.cells[k].reference, {}, term}, mine);
-    }
-    if (form.boundary.empty()) continue;
-    for (const auto &[k, facet] : mesh.facets.at(form.boundary)) {
-      std::vector<int> nodes = facet_nodes(mesh.dim, mesh.degree, facet);
-      for (int &node : nodes)
-        node = nodes_of(mesh, k)[static_cast<std::size_t>(node)];
-      add_touched(problem, entries, matrix, nodes,
-                  {mesh.natural_cell[k], facet_cell(cells.cells[k], facet).reference, {}, term},
-                  mine);
-    }
-  }
+  visit_domain(problem, sum, terms, [&](const std::vector<int> &nodes, TouchedCell cell) {
+    if (!matrix) cell.imposed_by = imposed_by_at(problem.dofs(), nodes);
+    if (sum[static_cast<std::size_t>(cell.term)].of_imposed && cell.imposed_by.empty()) return;
+    std::vector<PetscInt> rows;
+    for (const int node : nodes)
+      for (int c = 0; c < components; ++c)
+        rows.push_back(mesh.natural_node[static_cast<std::size_t>(node)] * components + c);
+    cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
+    if (!cell.entries.empty()) mine.push_back(std::move(cell));
+  });
   return to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine));
 }
 
@@ -241,6 +278,27 @@ std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &pro
   if (affine.b_tangential.size() == 0) return {{affine.b, 0, dual}};
   const Index normal = problem.contact().nodes();
   return {{affine.b, 0, normal}, {affine.b_tangential, normal, dual - normal}};
+}
+
+AffineTerms separate_imposed_energy(const Problem &problem) {
+  const auto &[sum, split, exact] = problem.imposed_energy();
+  AffineTerms terms;
+  if (sum.empty()) return terms;
+  const Index sampled = split.mapped.empty() ? 0 : 1;
+  terms.exact = static_cast<int>(exact.size());
+  terms.reduced = Matrix::Ones(1, terms.exact + sampled);
+  for (std::size_t q = 0; q < exact.size(); ++q)
+    terms.reduced(0, static_cast<Index>(q)) = exact[q];
+  terms.interpolation = Matrix::Identity(sampled, sampled);
+  std::vector<TouchedCell> mine;
+  visit_domain(problem, sum, split.mapped, [&](const std::vector<int> &nodes, TouchedCell cell) {
+    cell.imposed_by = imposed_by_at(problem.dofs(), nodes);
+    cell.entries = {{0, 0}};
+    if (!cell.imposed_by.empty()) mine.push_back(std::move(cell));
+  });
+  const Mesh &mesh = problem.mesh();
+  terms.samples = {to_sample_mesh(mesh.dim, mesh.dim + 1, gather_cells(problem.comm(), mine))};
+  return terms;
 }
 
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,

@@ -19,6 +19,10 @@ Cell sample_cell(const SampleMesh &sample, const Scene &scene, const FullMu &mu,
     cell.mapped[at] = scene.map(mu, cell.reference[at]);
   }
   if (cell.dim == scene.dim) check_orientation(scene, mu, cell);
+  if (!sample.imposed_by.empty()) {
+    const Index cells = sample.vertices.rows() / sample.corners;
+    cell.imposed_by = sample.imposed_by.data() + number * (std::ssize(sample.imposed_by) / cells);
+  }
   return cell;
 }
 
@@ -58,9 +62,9 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
     const auto entities = static_cast<std::size_t>(sample.vertices.rows() / sample.corners);
     std::vector<EntityValues> values(entities, interface.shape());
     for (std::size_t e = 0; e < entities; ++e)
-      interface.integrate(all_parameters,
-                          sample_cell(sample, scene, all_parameters, static_cast<Index>(e)),
-                          values[e]);
+      interface.integrate_beside_imposed(
+          all_parameters, sample_cell(sample, scene, all_parameters, static_cast<Index>(e)),
+          values[e]);
     for (const SampleMesh::Contribution &c : sample.contributions) {
       const EntityValues &of = values[static_cast<std::size_t>(c.cell)];
       theta[c.entry] += part == Part::b ? of.b.data()[c.local] : of.g[c.local];

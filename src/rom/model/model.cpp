@@ -68,6 +68,9 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samp
                   name + "/vertices");
     require(sample.terms.empty() || std::ssize(sample.terms) * sample.corners == vertices.rows(),
             name + "/cell_terms does not fit");
+    const std::size_t cells = static_cast<std::size_t>(vertices.rows() / sample.corners);
+    require(cells == 0 ? sample.imposed_by.empty() : sample.imposed_by.size() % cells == 0,
+            name + "/cell_imposed_by does not fit");
     int previous = 0;
     for (const SampleMesh::Contribution &c : sample.contributions) {
       require(c.entry >= previous && c.entry < size && c.cell >= 0 && c.local >= 0 &&
@@ -100,6 +103,8 @@ void check_interface(const InterfaceModel &interface, int dim, Index columns) {
               std::ranges::all_of(mesh.dofs, [&](int d) { return d >= -1 && d < columns; }),
           "interfaces/dofs does not fit");
   require(static_cast<Index>(interface.nodes.size()) == nodes, "interfaces/nodes does not fit");
+  require(mesh.imposed_by.empty() || mesh.imposed_by.size() == mesh.dofs.size(),
+          "interfaces/imposed_by does not fit");
 }
 
 void check_fields(const ReducedModel &model, int dim) {
@@ -113,6 +118,9 @@ void check_fields(const ReducedModel &model, int dim) {
   for (const InterfaceModel &interface : model.interfaces)
     require_indices(interface.nodes, nodes, "interfaces/nodes");
   require_indices(model.mesh_cells, nodes, "fields/cells");
+  require(model.imposed_by.empty() ||
+              static_cast<Index>(model.imposed_by.size()) == model.primal_basis.rows(),
+          "fields/imposed_by does not fit");
   const int degree = model.interfaces.front().mesh.degree;
   require(model.mesh_cells.size() % static_cast<std::size_t>(nodes_per_cell(dim, degree)) == 0,
           "fields/cells is not a list of cells");
@@ -231,6 +239,7 @@ void check_model(const ReducedModel &model) {
   check_terms(model.b, r * n, dim, interfaces, "b");
   check_terms(model.f, n, dim, 1, "f");
   check_terms(model.g, r, dim, interfaces, "g");
+  check_terms(model.imposed_energy, 1, dim, 1, "imposed_energy");
   if (model.support) check_support(model, *model.support);
   if (model.nitsche) check_nitsche(model, *model.nitsche);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");

@@ -39,6 +39,7 @@ void write_fields(const ReducedModel &model, const std::filesystem::path &model_
   file.write("primal_basis", model.primal_basis);
   file.write("points", model.mesh_points);
   file.write("cells", model.mesh_cells);
+  file.write("imposed_by", model.imposed_by);
   file.commit(path, "fields", model_schema);
 }
 
@@ -56,6 +57,7 @@ void read_fields(const std::filesystem::path &model_path, const std::string &key
   model.primal_basis = file.matrix("primal_basis");
   model.mesh_points = file.matrix("points");
   model.mesh_cells = file.ints("cells");
+  model.imposed_by = file.ints("imposed_by");
 }
 
 std::filesystem::path fields_file(const std::filesystem::path &model) {

@@ -308,6 +308,7 @@ ReducedModel read_members(const H5Reader &file) {
   model.b = read_terms(file, "b");
   model.f = read_terms(file, "f");
   model.g = read_terms(file, "g");
+  model.imposed_energy = read_terms(file, "imposed_energy");
   model.support = read_support(file);
   model.nitsche = read_nitsche(file);
   read_contact(file, model);
@@ -336,6 +337,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "b", model.b);
   write_terms(file, "f", model.f);
   write_terms(file, "g", model.g);
+  write_terms(file, "imposed_energy", model.imposed_energy);
   write_support(file, model.support);
   write_nitsche(file, model.nitsche);
   write_contact(file, model);

@@ -3,6 +3,7 @@
 #include "rbvi/contact/catalogue/kinds.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/imposed.hpp"
 
 namespace rbvi {
 
@@ -22,6 +23,19 @@ std::vector<int> as_integers(const std::vector<double> &numbers) {
   for (const double value : numbers)
     integers.push_back(static_cast<int>(value));
   return integers;
+}
+
+/// The parts "name_0", "name_1", ... of a list.
+template <class List, class RecordOf>
+void add_list(const std::string &name, const List &list, Record &record, RecordOf &&record_of) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    record.parts[numbered(name, i)] = record_of(list[i]);
+}
+
+template <class List, class MadeOf>
+void read_list(const std::string &name, const Record &record, List &list, MadeOf &&made_of) {
+  for (std::size_t i = 0; record.parts.contains(numbered(name, i)); ++i)
+    list.push_back(made_of(part(record, numbered(name, i))));
 }
 
 Record record_of(const Factor &factor) {
@@ -47,13 +61,27 @@ Factor factor_in(const Record &record) {
   return factor;
 }
 
-Record record_of(const Term &term) {
+/// theta of a record, the product of its factors.
+void add_factors(const std::vector<Factor> &factors, Record &record) {
+  add_list("factor", factors, record, [](const Factor &f) { return record_of(f); });
+}
+
+std::vector<Factor> factors_in(const Record &record) {
+  std::vector<Factor> factors;
+  read_list("factor", record, factors, factor_in);
+  return factors;
+}
+
+std::optional<std::vector<int>> parameters_in(const Record &record) {
+  if (!record.numbers.contains("parameters")) return std::nullopt;
+  return as_integers(numbers(record, "parameters"));
+}
+
+/// `with_kernel`: of an exact term, too.
+Record record_of(const Term &term, bool with_kernel) {
   Record record{term.theta ? "exact" : "mapped"};
-  if (term.theta) {
-    for (std::size_t i = 0; i < term.theta->size(); ++i)
-      record.parts[numbered("factor", i)] = record_of((*term.theta)[i]);
-    return record;
-  }
+  if (term.theta) add_factors(*term.theta, record);
+  if (term.theta && !with_kernel) return record;
   record.texts = {{"region", term.form.region}, {"boundary", term.form.boundary}};
   if (term.parameters) record.numbers["parameters"] = as_numbers(*term.parameters);
   record.parts["kernel"] = term.form.kernel.record;
@@ -61,15 +89,41 @@ Record record_of(const Term &term) {
 }
 
 Term term_in(const Record &record) {
-  if (record.name == "exact") {
-    std::vector<Factor> factors;
-    for (std::size_t i = 0; record.parts.contains(numbered("factor", i)); ++i)
-      factors.push_back(factor_in(part(record, numbered("factor", i))));
-    return exact_term({}, std::move(factors));
-  }
-  Form form{text(record, "region"), made<Kernel>(part(record, "kernel")), text(record, "boundary")};
-  if (!record.numbers.contains("parameters")) return mapped_term(std::move(form));
-  return mapped_term(std::move(form), as_integers(numbers(record, "parameters")));
+  Form form;
+  if (record.parts.contains("kernel"))
+    form = {text(record, "region"), made<Kernel>(part(record, "kernel")), text(record, "boundary")};
+  if (record.name == "exact") return exact_term(std::move(form), factors_in(record));
+  return mapped_term(std::move(form), parameters_in(record));
+}
+
+Record record_of(const ImposedTerm &value) {
+  Record record{value.theta ? "exact" : "mapped"};
+  if (value.theta) add_factors(*value.theta, record);
+  if (value.parameters) record.numbers["parameters"] = as_numbers(*value.parameters);
+  record.parts["value"] = value.value.record;
+  return record;
+}
+
+ImposedTerm imposed_in(const Record &record) {
+  ImposedTerm value{made<PointMap>(part(record, "value"))};
+  if (record.name == "exact")
+    value.theta = factors_in(record);
+  else
+    value.parameters = parameters_in(record);
+  return value;
+}
+
+Record record_of(const FixedBoundary &boundary) {
+  Record record{
+      "fixed", 1, {{"components", as_numbers(boundary.components)}}, {{"name", boundary.name}}};
+  add_list("value", boundary.values, record, [](const ImposedTerm &v) { return record_of(v); });
+  return record;
+}
+
+FixedBoundary fixed_in(const Record &record) {
+  FixedBoundary boundary{text(record, "name"), as_integers(numbers(record, "components"))};
+  read_list("value", record, boundary.values, imposed_in);
+  return boundary;
 }
 
 /// Every function that is there as a part of its own.
@@ -109,12 +163,16 @@ Record record_of(const Scene &scene) {
                  {"symmetric", {double(scene.symmetric)}},
                  {"mirror_images", {scene.mirror_images}}}};
   add_functions(scene, record);
-  for (std::size_t i = 0; i < scene.contacts.size(); ++i)
-    record.parts[numbered("contact", i)] = scene.contacts[i].record;
-  for (std::size_t i = 0; i < scene.a.size(); ++i)
-    record.parts[numbered("a", i)] = record_of(scene.a[i]);
-  for (std::size_t i = 0; i < scene.f.size(); ++i)
-    record.parts[numbered("f", i)] = record_of(scene.f[i]);
+  add_list("contact", scene.contacts, record, [](const ContactRecipe &c) { return c.record; });
+  // Loads of imposed values are made again from these values and the kernels of a.
+  const bool imposes = imposes_values(scene);
+  const auto of_term = [&](const Term &term) { return record_of(term, imposes); };
+  add_list("a", scene.a, record, of_term);
+  Sum own = scene.f;
+  std::erase_if(own, [](const Term &term) { return term.of_imposed; });
+  add_list("f", own, record, of_term);
+  if (imposes)
+    add_list("fixed", scene.fixed, record, [](const FixedBoundary &b) { return record_of(b); });
   return record;
 }
 
@@ -130,12 +188,10 @@ Scene scene_in(const Record &record) {
   if (record.parts.contains("motion")) scene.motion = made<PointMap>(part(record, "motion"));
   if (record.parts.contains("material")) scene.material = made<Material>(part(record, "material"));
   if (record.parts.contains("check")) scene.check_parameters = made<Check>(part(record, "check"));
-  for (std::size_t i = 0; record.parts.contains(numbered("contact", i)); ++i)
-    scene.contacts.push_back(contact_in(part(record, numbered("contact", i))));
-  for (std::size_t i = 0; record.parts.contains(numbered("a", i)); ++i)
-    scene.a.push_back(term_in(part(record, numbered("a", i))));
-  for (std::size_t i = 0; record.parts.contains(numbered("f", i)); ++i)
-    scene.f.push_back(term_in(part(record, numbered("f", i))));
+  read_list("contact", record, scene.contacts, contact_in);
+  read_list("a", record, scene.a, term_in);
+  read_list("f", record, scene.f, term_in);
+  read_list("fixed", record, scene.fixed, fixed_in);
   return scene;
 }
 

@@ -17,6 +17,7 @@ void write_sample(H5Writer &file, const std::string &group, const SampleMesh &sa
   file.write(group + "/corners", sample.corners);
   file.write(group + "/contributions", triples);
   file.write(group + "/cell_terms", sample.terms);
+  file.write(group + "/cell_imposed_by", sample.imposed_by);
 }
 
 SampleMesh read_sample(const H5Reader &file, const std::string &group) {
@@ -25,6 +26,7 @@ SampleMesh read_sample(const H5Reader &file, const std::string &group) {
   sample.corners = file.integer(group + "/corners");
   const std::vector<int> triples = file.ints(group + "/contributions");
   sample.terms = file.ints(group + "/cell_terms");
+  sample.imposed_by = file.ints(group + "/cell_imposed_by");
   if (triples.size() % 3 != 0) throw bad_input(group + "/contributions are not triples");
   for (std::size_t i = 0; i < triples.size(); i += 3)
     sample.contributions.push_back({triples[i], triples[i + 1], triples[i + 2]});
@@ -74,6 +76,7 @@ void write_interfaces(H5Writer &file, const std::vector<InterfaceModel> &interfa
     file.write(group + "/edges", mesh.edges);
     file.write(group + "/parts", mesh.parts);
     file.write(group + "/dofs", mesh.dofs);
+    file.write(group + "/imposed_by", mesh.imposed_by);
     file.write(group + "/nodes", interfaces[i].nodes);
   }
 }
@@ -100,6 +103,7 @@ std::vector<InterfaceModel> read_interfaces(const H5Reader &file, Index columns)
     mesh.edges = file.ints(group + "/edges");
     mesh.parts = file.ints(group + "/parts");
     mesh.dofs = file.ints(group + "/dofs");
+    mesh.imposed_by = file.ints(group + "/imposed_by");
     interface.nodes = file.ints(group + "/nodes");
     interfaces.push_back(std::move(interface));
   }

@@ -42,4 +42,9 @@ std::vector<RowsOfB> rows_of_b(const AffineOperators &affine, const Problem &pro
 AffineOperators separate(Problem &problem, const std::vector<Mu> &training,
                          const EimOptions &options, const std::optional<RowOptions> &apart = {});
 
+/// The energy of the imposed displacements: its exact terms, and the others as one term, which is
+/// integrated online over the cells beside the boundaries. No term where nothing is imposed.
+/// Collective.
+AffineTerms separate_imposed_energy(const Problem &problem);
+
 } // namespace rbvi

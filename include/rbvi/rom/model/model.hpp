@@ -9,7 +9,8 @@
 // few cells. Where B and G do not separate, they are evaluated for each mu on the contact
 // interfaces alone, exactly, from the trace of the basis. Other full-order data are there for
 // outputs and for reconstruction alone. All fields are numbered by the undistributed mesh. Where
-// the scene has a motion, u is what is left beside it.
+// the scene has a motion, u is what is left beside it; where boundaries impose values l(mu), which
+// are in F and G, u is zero there, and reconstruction adds l.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
@@ -35,6 +36,9 @@ struct SampleMesh {
   std::vector<Contribution> contributions; ///< ordered by entry
   /// Of a and f: the term of the scene that each cell is a cell of, or (facet_cell) has a facet of.
   std::vector<int> terms{};
+  /// Of f, g and the imposed energy: Cell::imposed_by of each cell, as many numbers for each (-1
+  /// behind those of a facet); empty where nothing is imposed on any.
+  std::vector<int> imposed_by{};
 };
 
 /// One operator as sum_q theta_q(mu) (reduced term q): first the exact terms, whose theta are known
@@ -200,6 +204,7 @@ struct ReducedModel {
   AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
   AffineTerms f; ///< n x terms; none: no load
   AffineTerms g; ///< R x J
+  AffineTerms imposed_energy; ///< 1 x terms, of imposed displacements; none: there are none
 
   std::vector<InterfaceModel> interfaces;
   Matrix dual_basis;    ///< dual dofs x R; entries >= 0 but for hybrid cones
@@ -213,6 +218,7 @@ struct ReducedModel {
   Matrix primal_basis;         ///< dofs x n, fixed dofs included
   Matrix mesh_points;          ///< nodes x dim, reference coordinates
   std::vector<int> mesh_cells; ///< node numbers of each cell, nodes_per_cell of them
+  std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty where nothing is imposed
 
   ValidationErrors validation_enriched, validation_decorrelated;
   SelfCheck self_check;
@@ -228,8 +234,8 @@ inline constexpr int model_schema = 9;
 /// not finite (members that reconstruction alone needs may all be empty).
 void check_model(const ReducedModel &model);
 
-/// What reconstruction alone needs, primal_basis, mesh_points and mesh_cells, is in a file of its
-/// own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the model is not.
+/// What reconstruction alone needs, primal_basis, mesh_points, mesh_cells and imposed_by, is in a
+/// file of its own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the model is not.
 std::filesystem::path fields_file(const std::filesystem::path &model);
 
 /// Writes both files; that of the fields first, and only where it holds others or is not there, and

@@ -10,7 +10,7 @@ namespace rbvi {
 Record record_of(const Scene &scene);
 
 /// The scene of a record, without its parameters, and without what the online program does not
-/// need: mesh, boundary conditions, kernels of exact terms. Throws bad_input for a function or a
+/// need: mesh, boundaries without imposed values, and then kernels of exact terms. Throws bad_input for a function or a
 /// kind of contact that this build does not have.
 Scene scene_in(const Record &record);
 
