@@ -128,28 +128,6 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_TRUE(copy.self_check.friction.at.empty());
 }
 
-/// Where boundaries impose displacements: on sampled cells, interfaces and the whole mesh.
-TEST_F(ModelFile, ReturnsWhatIsImposed) {
-  ReducedModel model = full_model();
-  model.imposed_energy = {
-      Matrix::Constant(1, 1, 3), Matrix::Identity(1, 1), {model.f.samples.front()}};
-  model.imposed_energy.samples.front().contributions = {{0, 0, 0}};
-  const Index cells = model.f.samples.front().vertices.rows() / 3;
-  for (AffineTerms *terms : {&model.f, &model.imposed_energy})
-    terms->samples.front().imposed_by.assign(static_cast<std::size_t>(3 * cells), 2);
-  model.interfaces.front().mesh.imposed_by = {-1, 0, 1};
-  model.imposed_by.assign(static_cast<std::size_t>(model.primal_basis.rows()), -1);
-  write_model(model, path);
-  const ReducedModel copy = read_model(path);
-  expect_same(copy.imposed_energy, model.imposed_energy);
-  EXPECT_EQ(copy.f.samples.front().imposed_by, model.f.samples.front().imposed_by);
-  EXPECT_EQ(copy.interfaces.front().mesh.imposed_by, (std::vector{-1, 0, 1}));
-  EXPECT_EQ(copy.imposed_by, model.imposed_by);
-  EXPECT_TRUE(read_model(path, false).imposed_by.empty()) << "a field";
-  model.imposed_by.pop_back();
-  EXPECT_THROW(check_model(model), Error);
-}
-
 TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
   write_model(full_model(), path);
   const ReducedModel with = read_model(path), without = read_model(path, false);
