@@ -19,22 +19,6 @@ void clear(const SparseMatrix &pattern, SparseMatrix &target) {
     target = pattern;
 }
 
-double length_of(const Cell &edge) {
-  return std::hypot(edge.mapped[1][0] - edge.mapped[0][0], edge.mapped[1][1] - edge.mapped[0][1]);
-}
-
-/// Throws failure, naming mu, where the map leaves nothing of an edge.
-void check_lengths(const Scene &scene, const FullMu &mu, const std::vector<Cell> &edges) {
-  double longest = 0;
-  for (const Cell &edge : edges)
-    longest = std::max(longest, length_of(edge));
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    if (!(length_of(edges[e]) > 1e-12 * longest))
-      throw failure("edge " + std::to_string(e) +
-                    " of the contact boundary has no length, mapped at " +
-                    describe(scene.parameters, mu));
-}
-
 } // namespace
 
 EntityValues EntitySum::shape() const {
@@ -113,57 +97,80 @@ void EntitySum::set_dual(Index vertices, int components, SparseMatrix gram) {
                                        : &pattern_.coeffRef(row, column) - pattern_.valuePtr());
 }
 
-std::vector<Cell> EntitySum::mapped_entities(const FullMu &mu) const {
+std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu) const {
   std::vector<Point> mapped;
   mapped.reserve(static_cast<std::size_t>(dual_.nodes()));
   for (Index i = 0; i < dual_.nodes(); ++i)
     mapped.push_back(scene_.map(mu, mesh_.points[static_cast<std::size_t>(i)]));
-  std::vector<Cell> cells;
-  cells.reserve(static_cast<std::size_t>(mesh_.count()));
+  return mapped;
+}
+
+template <class Visit>
+void EntitySum::visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
+                               Visit &&visit) const {
+  if (entity_dim_ == 1) check_lengths(mu, mapped);
   for (Index e = 0; e < mesh_.count(); ++e) {
     Cell cell = reference_entity(e);
     const int *nodes = mesh_.nodes_of(e);
     for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
       cell.mapped[i] = mapped[static_cast<std::size_t>(nodes[i])];
     if (entity_dim_ > 1) check_orientation(scene_, mu, cell);
-    cells.push_back(cell);
+    visit(e, cell);
   }
-  if (entity_dim_ == 1) check_lengths(scene_, mu, cells);
-  return cells;
+}
+
+void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const {
+  const auto length = [&](Index e) {
+    const int *nodes = mesh_.nodes_of(e);
+    const Point &a = mapped[static_cast<std::size_t>(nodes[0])],
+                &b = mapped[static_cast<std::size_t>(nodes[1])];
+    return std::hypot(b[0] - a[0], b[1] - a[1]);
+  };
+  double longest = 0;
+  for (Index e = 0; e < mesh_.count(); ++e)
+    longest = std::max(longest, length(e));
+  for (Index e = 0; e < mesh_.count(); ++e)
+    if (!(length(e) > 1e-12 * longest))
+      throw failure("edge " + std::to_string(e) +
+                    " of the contact boundary has no length, mapped at " +
+                    describe(scene_.parameters, mu));
 }
 
 void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperators &operators) {
-  const std::vector<Cell> cells = mapped_entities(mu);
   clear(pattern_, operators.b);
   operators.g = Vector::Zero(dual_.size());
+  operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
   const Index *position = position_.data();
-  for (Index e = 0; e < mesh_.count(); ++e) {
-    integrate_beside_imposed(mu, cells[static_cast<std::size_t>(e)], values);
+  const std::vector<Point> mapped = mapped_vertices(mu);
+  visit_entities(mu, mapped, [&](Index e, const Cell &cell) {
+    integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
     const std::vector<Index> dual = rows_of(e);
     for (std::size_t i = 0; i < dual.size(); ++i)
       operators.g[dual[i]] += values.g[static_cast<Index>(i)];
-  }
-  set_nodal(mu, cells, operators);
+    add_weights(mu, e, cell, values, operators.weights);
+  });
+  set_constraints(mu, mapped, operators);
 }
 
 void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &,
                                ContactOperators &operators) {
-  set_nodal(mu, mapped_entities(mu), operators);
-}
-
-void EntitySum::set_nodal(const FullMu &mu, const std::vector<Cell> &cells,
-                          ContactOperators &operators) const {
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
-  for (Index e = 0; e < mesh_.count(); ++e) {
-    weigh(mu, cells[static_cast<std::size_t>(e)], values);
-    for (int a = 0; a <= entity_dim_; ++a)
-      operators.weights[mesh_.nodes_of(e)[a]] += values.weights[a];
-  }
-  set_constraints(mu, operators);
+  const std::vector<Point> mapped = mapped_vertices(mu);
+  visit_entities(mu, mapped, [&](Index e, const Cell &cell) {
+    add_weights(mu, e, cell, values, operators.weights);
+  });
+  set_constraints(mu, mapped, operators);
+}
+
+void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
+                            Vector &weights) const {
+  weigh(mu, cell, values);
+  for (int a = 0; a <= entity_dim_; ++a)
+    weights[mesh_.nodes_of(entity)[a]] += values.weights[a];
 }
 
 } // namespace rbvi

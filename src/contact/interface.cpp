@@ -35,11 +35,13 @@ FrictionBound ContactInterface::bound(const FullMu &) const {
   return {};
 }
 
-PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &) const {
+PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &,
+                                                const Point &) const {
   throw failure("this kind of contact has no constraint at single points");
 }
 
-void ContactInterface::set_constraints(const FullMu &mu, ContactOperators &operators) const {
+void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
+                                       ContactOperators &operators) const {
   const auto rows = static_cast<Index>(dual_.vertices.size());
   SparseMatrix b(rows, mesh_.columns);
   b.reserve(Eigen::VectorXi::Constant(rows, mesh_.components));
@@ -47,7 +49,8 @@ void ContactInterface::set_constraints(const FullMu &mu, ContactOperators &opera
   const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
   for (Index i = 0; i < rows; ++i) {
     const Index node = dual_.vertices[static_cast<std::size_t>(i)];
-    const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)]);
+    const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)],
+                                             mapped[static_cast<std::size_t>(i)]);
     operators.nodal_gap[i] = at.gap;
     for (int c = 0; c < mesh_.components; ++c) {
       const Index at_node = node * mesh_.components + c;

@@ -77,24 +77,6 @@ Handle<Vec> LocalFrames::turned_back(Vec v) const {
   return result;
 }
 
-void LocalFrames::turn(std::vector<NitscheFace> &faces) const {
-  std::vector<const Point *> normal_of(row_of_.size(), nullptr);
-  for (const NodalBound &bound : bounds_)
-    normal_of[static_cast<std::size_t>(bound.contact_dof)] = &bound.normal;
-  for (NitscheFace &face : faces)
-    for (std::size_t i = 0; i < 12; i += 2) {
-      if (face.dofs[i] < 0) continue;
-      const Point *const n = normal_of[static_cast<std::size_t>(face.dofs[i])];
-      if (n == nullptr) continue;
-      for (NitschePoint &point : face.points)
-        for (NitschePoint::Row *row : {&point.sigma_n, &point.sigma_tau, &point.n, &point.tau}) {
-          auto pair = row->segment<2>(static_cast<Index>(i));
-          pair = Eigen::Vector2d((*n)[0] * pair[0] + (*n)[1] * pair[1],
-                                 (*n)[0] * pair[1] - (*n)[1] * pair[0]);
-        }
-    }
-}
-
 Handle<Vec> LocalFrames::upper() const {
   Handle<Vec> result;
   RBVI_CALL(MatCreateVecs(q_.get(), result.put(), nullptr));

@@ -3,7 +3,6 @@
 // dimensions.
 #pragma once
 
-#include "rbvi/contact/nitsche/nitsche_curve.hpp"
 #include "rbvi/problem/problem.hpp"
 
 namespace rbvi {
@@ -27,8 +26,7 @@ public:
   Handle<Mat> turned(Mat a) const;      ///< Q^T A Q
   Handle<Vec> turned(Vec f) const;      ///< Q^T f
   Handle<Vec> turned_back(Vec v) const; ///< Q v
-  /// Functionals of u become those of v.
-  void turn(std::vector<NitscheFace> &faces) const;
+  const std::vector<NodalBound> &bounds() const { return bounds_; }
   /// v <= upper: the gap for normal components, else infinity.
   Handle<Vec> upper() const;
 

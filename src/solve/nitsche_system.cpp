@@ -1,5 +1,6 @@
 #include "nitsche_system.hpp"
 
+#include "nitsche_frames.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/whole.hpp"
@@ -93,7 +94,7 @@ void NitscheSystem::set(const Operators &op) {
   law = nitsche_law(curve, op.mu);
   if (frames) {
     frames->set(bounds_along(*problem.contact().interfaces.front(), op.mu));
-    frames->turn(faces);
+    turn(frames->bounds(), faces);
     f = frames->turned(op.f);
     upper = frames->upper();
     const Handle<Vec> lower = like(op.f);

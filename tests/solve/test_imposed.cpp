@@ -18,7 +18,7 @@
 namespace rbvi {
 namespace {
 
-using Field = std::function<Point(const FullMu &, const Point &)>;
+using Field = Named<PointMap>;
 
 struct Solved {
   Problem problem;

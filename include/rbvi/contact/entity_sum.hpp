@@ -47,9 +47,13 @@ protected:
 
 private:
   Index rows() const { return (entity_dim_ + 1) * dual_.components; }
-  std::vector<Cell> mapped_entities(const FullMu &mu) const;
-  void set_nodal(const FullMu &mu, const std::vector<Cell> &cells,
-                 ContactOperators &operators) const;
+  std::vector<Point> mapped_vertices(const FullMu &mu) const;
+  /// visit(entity, cell) for each, mapped. Throws failure for one that is inverted.
+  template <class Visit>
+  void visit_entities(const FullMu &mu, const std::vector<Point> &mapped, Visit &&visit) const;
+  void check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const;
+  void add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
+                   Vector &weights) const;
 
   int entity_dim_;
   std::vector<int> imposed_by_; ///< of the dofs of each entity; empty: nothing is imposed

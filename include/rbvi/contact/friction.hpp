@@ -12,7 +12,7 @@ namespace rbvi {
 struct Friction {
   FrictionLaw law = FrictionLaw::none;
   Named<Coefficient> value;     ///< threshold or coefficient, >= 0
-  bool only_in_contact = false;                ///< Tresca: zero where a node carries no pressure
+  bool only_in_contact = false; ///< Tresca: zero where a node carries no pressure
 };
 
 /// The bound at one mu. Throws failure, naming the value, for a negative one.

@@ -100,8 +100,12 @@ public:
   }
   /// Of |lambda_tau| at every node. Throws failure, naming the value, for a negative one.
   virtual FrictionBound bound(const FullMu &mu) const;
-  /// The constraint at a point of the reference boundary or region.
-  virtual PointConstraint constraint_at(const FullMu &mu, const Point &x) const;
+  /// The constraint at a point of the reference boundary or region; `mapped`: where h(mu) takes it.
+  virtual PointConstraint constraint_at(const FullMu &mu, const Point &x,
+                                        const Point &mapped) const;
+  PointConstraint constraint_at(const FullMu &mu, const Point &x) const {
+    return constraint_at(mu, x, scene_.map(mu, x));
+  }
 
   /// Fills the outputs of contact. `operators`: at least those of assemble_nodal; `lambda`: a node
   /// with at most `least` counts as free.
@@ -117,9 +121,10 @@ public:
   virtual const NitscheCurve *nitsche() const { return nullptr; }
 
 protected:
-  /// nodal_b and nodal_gap from constraint_at at the vertices of the dual space, the imposed values
-  /// taken into the gap.
-  void set_constraints(const FullMu &mu, ContactOperators &operators) const;
+  /// nodal_b and nodal_gap from constraint_at at the vertices of the dual space, which are `mapped`
+  /// there, the imposed values taken into the gap.
+  void set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
+                       ContactOperators &operators) const;
 
   const Scene &scene_;
   const InterfaceMesh mesh_;

@@ -63,12 +63,15 @@ public:
 
   const NitscheCurve *nitsche() const override { return &curve_; }
   void assemble(const FullMu &mu, const ContactState &, ContactOperators &operators) override {
-    set_constraints(mu, operators);
+    std::vector<Point> mapped;
+    for (const Point &x : dual_.points)
+      mapped.push_back(scene_.map(mu, x));
+    set_constraints(mu, mapped, operators);
   }
   FrictionBound bound(const FullMu &mu) const override {
     return friction_bound(curve_.support.friction, mu);
   }
-  PointConstraint constraint_at(const FullMu &mu, const Point &x) const override {
+  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &) const override {
     const SupportPoint at = support_point(scene_, curve_.support, mu, x);
     return {at.normal, at.gap};
   }

@@ -33,8 +33,9 @@ public:
     static const Form hat_integrals = constant_load("", 1);
     hat_integrals.kernel(mu, cell, values.weights.data());
   }
-  PointConstraint constraint_at(const FullMu &mu, const Point &x) const override {
-    return {{-1, 0, 0}, -obstacle_.height(mu, scene_.map(mu, x))};
+  PointConstraint constraint_at(const FullMu &mu, const Point &,
+                                const Point &mapped) const override {
+    return {{-1, 0, 0}, -obstacle_.height(mu, mapped)};
   }
 
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,

@@ -61,7 +61,7 @@ public:
   FrictionBound bound(const FullMu &mu) const override {
     return friction_bound(support_.friction, mu);
   }
-  PointConstraint constraint_at(const FullMu &mu, const Point &x) const override {
+  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &) const override {
     const SupportPoint at = support_point(scene_, support_, mu, x);
     return {at.normal, at.gap};
   }
