@@ -1,0 +1,61 @@
+// What a model file keeps of imposed displacements: on sampled cells, interfaces and the whole
+// mesh.
+#include "synthetic.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace rbvi {
+namespace {
+
+ReducedModel model_with_imposed() {
+  ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 2, 2}, 11);
+  model.imposed_energy = {
+      Matrix::Constant(1, 1, 3), Matrix::Identity(1, 1), {model.f.samples.front()}};
+  model.imposed_energy.samples.front().contributions = {{0, 0, 0}};
+  const Index cells = model.f.samples.front().vertices.rows() / 3;
+  for (AffineTerms *terms : {&model.f, &model.imposed_energy})
+    terms->samples.front().imposed_by.assign(static_cast<std::size_t>(3 * cells), 2);
+  model.interfaces.front().mesh.imposed_by = {-1, 0, 1};
+  model.imposed_by.assign(static_cast<std::size_t>(model.primal_basis.rows()), -1);
+  return model;
+}
+
+TEST(ImposedInModelFile, ComesBack) {
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    ("rbvi_imposed_" + std::to_string(::getpid()) + ".h5");
+  const ReducedModel model = model_with_imposed();
+  write_model(model, path);
+  const ReducedModel copy = read_model(path), answers = read_model(path, false);
+  std::filesystem::remove(path);
+  EXPECT_EQ(copy.imposed_energy.reduced, model.imposed_energy.reduced);
+  EXPECT_EQ(copy.imposed_energy.interpolation, model.imposed_energy.interpolation);
+  for (const auto member : {&ReducedModel::f, &ReducedModel::imposed_energy}) {
+    EXPECT_EQ((copy.*member).samples.front().imposed_by,
+              (model.*member).samples.front().imposed_by);
+    EXPECT_EQ((copy.*member).samples.front().vertices, (model.*member).samples.front().vertices);
+  }
+  EXPECT_EQ(copy.interfaces.front().mesh.imposed_by, (std::vector{-1, 0, 1}));
+  EXPECT_EQ(copy.imposed_by, model.imposed_by);
+  EXPECT_TRUE(answers.imposed_by.empty()) << "a field";
+}
+
+TEST(ImposedInModelFile, SizesThatDoNotFitAreRefused) {
+  ReducedModel model = model_with_imposed();
+  EXPECT_NO_THROW(check_model(model));
+  model.imposed_by.pop_back();
+  EXPECT_THROW(check_model(model), Error);
+  model = model_with_imposed();
+  model.interfaces.front().mesh.imposed_by.pop_back();
+  EXPECT_THROW(check_model(model), Error);
+  model = model_with_imposed();
+  model.f.samples.front().imposed_by.pop_back();
+  EXPECT_THROW(check_model(model), Error);
+}
+
+} // namespace
+} // namespace rbvi
