@@ -119,12 +119,17 @@ void assemble(const Contact &contact, const FullMu &mu, const ContactState &stat
 }
 
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
-                    ContactOperators &operators) {
+                    const Vector &lambda, ContactOperators &operators) {
   if (contact.interfaces.size() == 1)
-    return contact.interfaces.front()->assemble_nodal(mu, state, operators);
+    return contact.interfaces.front()->assemble_nodal(mu, state, lambda, operators);
   std::vector<ContactOperators> all(contact.interfaces.size());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    contact.interfaces[i]->assemble_nodal(mu, state, all[i]);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    ContactInterface &interface = *contact.interfaces[i];
+    const Vector own = lambda.size() == 0
+                           ? lambda
+                           : Vector(lambda.segment(contact.first_row[i], interface.dual().size()));
+    interface.assemble_nodal(mu, state, own, all[i]);
+  }
   stack_nodal(all, operators);
 }
 

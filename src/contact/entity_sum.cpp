@@ -105,11 +105,12 @@ std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu) const {
   return mapped;
 }
 
-template <class Visit>
+template <class IsWanted, class Visit>
 void EntitySum::visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
-                               Visit &&visit) const {
+                               IsWanted &&is_wanted, Visit &&visit) const {
   if (entity_dim_ == 1) check_lengths(mu, mapped);
   for (Index e = 0; e < mesh_.count(); ++e) {
+    if (!is_wanted(e)) continue;
     Cell cell = reference_entity(e);
     const int *nodes = mesh_.nodes_of(e);
     for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
@@ -143,7 +144,8 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperator
   EntityValues values = shape();
   const Index *position = position_.data();
   const std::vector<Point> mapped = mapped_vertices(mu);
-  visit_entities(mu, mapped, [&](Index e, const Cell &cell) {
+  const auto all = [](Index) { return true; };
+  visit_entities(mu, mapped, all, [&](Index e, const Cell &cell) {
     integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
@@ -155,12 +157,17 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperator
   set_constraints(mu, mapped, operators);
 }
 
-void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &,
+void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &, const Vector &lambda,
                                ContactOperators &operators) {
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
   const std::vector<Point> mapped = mapped_vertices(mu);
-  visit_entities(mu, mapped, [&](Index e, const Cell &cell) {
+  const auto is_wanted = [&](Index e) {
+    const int *nodes = mesh_.nodes_of(e);
+    return lambda.size() == 0 || dual_.components > 1 ||
+           std::any_of(nodes, nodes + entity_dim_ + 1, [&](int node) { return lambda[node] != 0; });
+  };
+  visit_entities(mu, mapped, is_wanted, [&](Index e, const Cell &cell) {
     add_weights(mu, e, cell, values, operators.weights);
   });
   set_constraints(mu, mapped, operators);

@@ -245,15 +245,16 @@ Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
   return model_.dual_basis * solution.x;
 }
 
-ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution) const {
+ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution,
+                                               const Vector &lambda) const {
   if (model_.evaluates_contact()) return solution.contact;
   ContactOperators operators;
-  assemble_nodal(contact_, solution.mu, {}, operators);
+  assemble_nodal(contact_, solution.mu, {}, lambda, operators);
   return operators;
 }
 
 Vector OnlineSolver::contact_gap(const ReducedSolution &solution) const {
-  const ContactOperators operators = nodal_operators(solution);
+  const ContactOperators operators = nodal_operators(solution, multiplier(solution));
   return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * solution.u);
 }
 
@@ -283,11 +284,11 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
     nitsche_->outputs(solution.mu, solution.u, result);
     return result;
   }
-  const ContactOperators operators = nodal_operators(solution);
+  const Vector lambda = multiplier(solution);
+  const ContactOperators operators = nodal_operators(solution, lambda);
   const Vector excess =
       operators.nodal_b * (model_.contact_trace * solution.u) - operators.nodal_gap;
   result.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
-  const Vector lambda = multiplier(solution);
   const double least = support_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   return result;

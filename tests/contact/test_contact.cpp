@@ -89,7 +89,7 @@ TEST(Contact, OperatorsAreStacked) {
     EXPECT_EQ(second.uncovered, std::vector<Index>{1}) << "the slave is longer";
     EXPECT_EQ(all.uncovered, std::vector<Index>{7});
     expect_sorted(all.b);
-    assemble_nodal(contact, mu, {}, nodal);
+    assemble_nodal(contact, mu, {}, {}, nodal);
     EXPECT_EQ(nodal.weights, all.weights);
     EXPECT_EQ(Matrix(nodal.nodal_b), Matrix(all.nodal_b));
     EXPECT_EQ(nodal.nodal_gap, all.nodal_gap);

@@ -121,9 +121,15 @@ void expect_sum(const Scene &scene, const InterfaceMesh &mesh) {
     EXPECT_LE((operators.weights - sum.weights).norm(), 1e-15 * sum.weights.norm());
     EXPECT_TRUE(operators.uncovered.empty());
     expect_sorted(operators.b);
-    interface->assemble_nodal(mu, {}, nodal);
+    interface->assemble_nodal(mu, {}, {}, nodal);
     EXPECT_EQ(nodal.weights, operators.weights);
     EXPECT_EQ(Matrix(nodal.nodal_b), Matrix(operators.nodal_b));
+    EXPECT_EQ(nodal.nodal_gap, operators.nodal_gap);
+    Vector lambda =
+        Vector::Zero(interface->dual().size()); // weights are wanted where it is not zero
+    lambda[1] = 3;
+    interface->assemble_nodal(mu, {}, lambda, nodal);
+    EXPECT_EQ(nodal.weights[1], operators.weights[1]);
     EXPECT_EQ(nodal.nodal_gap, operators.nodal_gap);
   }
 }
@@ -205,7 +211,7 @@ TEST(ObstacleInterface, BoundsTheVerticesFromBelow) {
   const auto interface = scene.contacts.front().make(scene, mesh);
   const FullMu mu{0.7};
   ContactOperators op;
-  interface->assemble_nodal(mu, {}, op);
+  interface->assemble_nodal(mu, {}, {}, op);
   EXPECT_EQ(Matrix(op.nodal_b), Matrix(-Matrix::Identity(9, 9)));
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
     EXPECT_EQ(op.nodal_gap[static_cast<Index>(i)], -quadratic(mu, scene.map(mu, mesh.points[i])));
@@ -220,7 +226,7 @@ TEST(ObstacleInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
   scene.mirror_images = 2;
   const auto interface = scene.contacts.front().make(scene, square(2));
   ContactOperators op;
-  interface->assemble_nodal({1}, {}, op);
+  interface->assemble_nodal({1}, {}, {}, op);
   Vector lambda = Vector::Zero(9);
   lambda[4] = 3;
   lambda[0] = 1e-3;

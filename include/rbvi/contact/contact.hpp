@@ -24,9 +24,9 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes);
 /// The operators of all interfaces together.
 void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
               ContactOperators &operators);
-/// weights, nodal_b and nodal_gap alone.
+/// weights, nodal_b and nodal_gap alone, the weights where `lambda` is not zero (empty: all).
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
-                    ContactOperators &operators);
+                    const Vector &lambda, ContactOperators &operators);
 
 /// The laws of all multipliers at mu. Throws failure for a bound that is negative.
 NodeLaws laws_at(const Contact &contact, const FullMu &mu);

@@ -26,7 +26,7 @@ public:
   virtual void weigh(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
 
   void assemble(const FullMu &mu, const ContactState &state, ContactOperators &operators) override;
-  void assemble_nodal(const FullMu &mu, const ContactState &state,
+  void assemble_nodal(const FullMu &mu, const ContactState &state, const Vector &lambda,
                       ContactOperators &operators) override;
   const EntitySum *entity_sum() const override { return this; }
 
@@ -48,9 +48,10 @@ protected:
 private:
   Index rows() const { return (entity_dim_ + 1) * dual_.components; }
   std::vector<Point> mapped_vertices(const FullMu &mu) const;
-  /// visit(entity, cell) for each, mapped. Throws failure for one that is inverted.
-  template <class Visit>
-  void visit_entities(const FullMu &mu, const std::vector<Point> &mapped, Visit &&visit) const;
+  /// visit(entity, cell), mapped, for each that is wanted. Throws failure for one that is inverted.
+  template <class IsWanted, class Visit>
+  void visit_entities(const FullMu &mu, const std::vector<Point> &mapped, IsWanted &&is_wanted,
+                      Visit &&visit) const;
   void check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const;
   void add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
                    Vector &weights) const;

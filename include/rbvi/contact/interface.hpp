@@ -93,8 +93,9 @@ public:
   /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone.
   virtual void assemble(const FullMu &mu, const ContactState &state,
                         ContactOperators &operators) = 0;
-  /// weights, nodal_b and nodal_gap alone, which `outputs` and gaps need.
-  virtual void assemble_nodal(const FullMu &mu, const ContactState &state,
+  /// weights, nodal_b and nodal_gap alone, which `outputs` and gaps need; weights that nothing is
+  /// multiplied with, where `lambda` is zero, may be left out (empty: all are wanted).
+  virtual void assemble_nodal(const FullMu &mu, const ContactState &state, const Vector & /*lambda*/,
                               ContactOperators &operators) {
     assemble(mu, state, operators);
   }

@@ -65,7 +65,7 @@ private:
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
   /// weights, nodal_b and nodal_gap.
-  ContactOperators nodal_operators(const ReducedSolution &solution) const;
+  ContactOperators nodal_operators(const ReducedSolution &solution, const Vector &lambda) const;
 
   const ReducedModel &model_;
   const Scene scene_; ///< with_imposed_loads
