@@ -231,7 +231,7 @@ std::vector<Option> of_separation() {
 
 std::vector<Option> of_multipliers() {
   const std::vector<std::string> reductions{
-      "condensed on rigid supports, else cone",
+      "condensed on rigid supports and between two bodies, else cone",
       "a cone (-cone_type), stable by supremizers; without friction",
       "not at all: the law of contact and friction is exact at every node (or pair of mirror "
       "images), and the elastic body between them is reduced to its condensed operator B A^-1 B^T, "
@@ -239,8 +239,7 @@ std::vector<Option> of_multipliers() {
       "rigid_disk/README.md",
       "a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, supremizers, the bound of "
       "friction at nodes chosen greedily (Algorithm 3), B^n and B^tau interpolated apart unless B "
-      "is a multiple of one form: the published method; without friction the cone and B^n alone. "
-      "With -multiplier_exact no loads are allowed, too",
+      "is a multiple of one form: the published method; without friction the cone and B^n alone",
       "cones for lambda_n and for what is left to the bound, so that Coulomb's bound holds at "
       "every node",
       "modes of both multipliers together, by least squares on the law at nodes chosen by pivoted "
