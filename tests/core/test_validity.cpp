@@ -91,10 +91,10 @@ TEST(Validity, TheRingAroundTheDiscFoldsJustBeyondTheRange) {
   };
   for (const double radius : {0.02, 0.1, 0.2, 0.3, 0.37}) {
     const double centre = 0.38 - radius;
-    EXPECT_NO_THROW(check_together(scene, {radius, -centre, 0}));
+    EXPECT_NO_THROW(check_together(scene, {radius, -centre, 0, 0, 0}));
     EXPECT_GT(smallest_stretch({radius, -centre, 0}), 0.05) << radius;
     EXPECT_TRUE(refuses("folds the mesh", [&] {
-      check_together(scene, {radius, -centre - 0.001, 0});
+      check_together(scene, {radius, -centre - 0.001, 0, 0, 0});
     }));
     EXPECT_LT(smallest_stretch({radius, -centre - 0.02, 0}), 1e-3) << radius;
   }
