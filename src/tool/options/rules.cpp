@@ -43,19 +43,18 @@ void check_formulation(const Scene &scene) {
     throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
 }
 
-/// Throws bad_input for options of a dual basis and of its supremizers where every node is kept.
+/// Throws bad_input for options of a dual basis and of its supremizers where the scene keeps every
+/// node by default. Who asks for that, maybe beside a case file with such options, means it.
 void check_dual_basis(const ToolOptions &options) {
-  if (by_nitsche(options.scene) ||
+  if (by_nitsche(options.scene) || is_given("multiplier_reduction") ||
       options.reduce.multipliers.reduction != MultiplierReduction::condensed)
     return;
   for (const Option &option : tool_options())
     if ((option.name.starts_with("cone_") || option.name.starts_with("pga_")) &&
         is_given(option.name))
       throw bad_input("-" + option.name +
-                      " is for a reduced dual basis, and -multiplier_reduction "
-                      "condensed" +
-                      (is_given("multiplier_reduction") ? "" : ", the default here,") +
-                      " keeps every node: add -multiplier_reduction " +
+                      " is for a reduced dual basis, and -multiplier_reduction condensed, the "
+                      "default here, keeps every node: add -multiplier_reduction " +
                       (has_friction(options.scene) ? "collocated" : "cone") + ", or leave it out");
 }
 
