@@ -105,10 +105,15 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
 void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
               ContactOperators &operators) {
   if (contact.interfaces.size() == 1)
-    return contact.interfaces.front()->assemble(mu, state, operators);
+    return contact.interfaces.front()->assemble_all(mu, state, operators);
   std::vector<ContactOperators> all(contact.interfaces.size());
   for (std::size_t i = 0; i < all.size(); ++i)
-    contact.interfaces[i]->assemble(mu, state, all[i]);
+    contact.interfaces[i]->assemble_all(mu, state, all[i]);
+  stack(contact, all, operators);
+}
+
+void stack(const Contact &contact, const std::vector<ContactOperators> &all,
+           ContactOperators &operators) {
   operators.b = stacked(each(all, &ContactOperators::b), false);
   operators.g = stacked(each(all, &ContactOperators::g));
   stack_nodal(all, operators);

@@ -82,35 +82,68 @@ void EntitySum::set_dual(Index vertices, int components, SparseMatrix gram) {
   }
   dual_.components = components;
   dual_.gram = std::move(gram);
+}
+
+std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
+  if (wanted.empty()) return {};
+  std::vector<bool> result;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const int *nodes = mesh_.nodes_of(e);
+    result.push_back(std::any_of(nodes, nodes + entity_dim_ + 1,
+                                 [&](int node) { return is_wanted(wanted, node); }));
+  }
+  return result;
+}
+
+void EntitySum::set_pattern(const WantedNodes &wanted) {
+  pattern_wanted_ = wanted;
+  entities_ = entities_at(wanted);
+  const Index tangents = dual_.components - 1;
+  const auto wanted_row = [&](Index row) {
+    return is_wanted(wanted, row < dual_.nodes() ? row : (row - dual_.nodes()) / tangents);
+  };
   std::vector<Eigen::Triplet<double>> entries;
-  for (Index e = 0; e < mesh_.count(); ++e)
-    for (const Index row : rows_of(e))
-      for (const Index column : columns_of(e))
-        if (column >= 0) entries.emplace_back(row, column, 0.0);
+  const auto visit = [&](auto &&add) {
+    for (Index e = 0; e < mesh_.count(); ++e) {
+      if (!entities_.empty() && !entities_[static_cast<std::size_t>(e)]) continue;
+      const std::vector<Index> columns = columns_of(e);
+      for (const Index row : rows_of(e))
+        for (const Index column : columns)
+          add(wanted_row(row) ? row : -1, column);
+    }
+  };
+  visit([&](Index row, Index column) {
+    if (row >= 0 && column >= 0) entries.emplace_back(row, column, 0.0);
+  });
   pattern_.resize(dual_.size(), mesh_.columns);
   pattern_.setFromTriplets(entries.begin(), entries.end());
   pattern_.makeCompressed();
-  for (Index e = 0; e < mesh_.count(); ++e)
-    for (const Index row : rows_of(e))
-      for (const Index column : columns_of(e))
-        position_.push_back(column < 0 ? -1
-                                       : &pattern_.coeffRef(row, column) - pattern_.valuePtr());
+  position_.clear();
+  visit([&](Index row, Index column) {
+    position_.push_back(
+        row < 0 || column < 0 ? -1 : &pattern_.coeffRef(row, column) - pattern_.valuePtr());
+  });
 }
 
-std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu) const {
-  std::vector<Point> mapped;
-  mapped.reserve(static_cast<std::size_t>(dual_.nodes()));
-  for (Index i = 0; i < dual_.nodes(); ++i)
-    mapped.push_back(scene_.map(mu, mesh_.points[static_cast<std::size_t>(i)]));
+std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu,
+                                              const std::vector<bool> &entities) const {
+  std::vector<bool> needed(static_cast<std::size_t>(dual_.nodes()),
+                           entities.empty() || entity_dim_ == 1);
+  for (std::size_t e = 0; e < entities.size(); ++e)
+    for (int a = 0; a <= entity_dim_ && entities[e]; ++a)
+      needed[static_cast<std::size_t>(mesh_.nodes_of(static_cast<Index>(e))[a])] = true;
+  std::vector<Point> mapped(mesh_.points.begin(), mesh_.points.begin() + dual_.nodes());
+  for (std::size_t i = 0; i < mapped.size(); ++i)
+    if (needed[i]) mapped[i] = scene_.map(mu, mapped[i]);
   return mapped;
 }
 
-template <class IsWanted, class Visit>
+template <class Visit>
 void EntitySum::visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
-                               IsWanted &&is_wanted, Visit &&visit) const {
+                               const std::vector<bool> &entities, Visit &&visit) const {
   if (entity_dim_ == 1) check_lengths(mu, mapped);
   for (Index e = 0; e < mesh_.count(); ++e) {
-    if (!is_wanted(e)) continue;
+    if (!entities.empty() && !entities[static_cast<std::size_t>(e)]) continue;
     Cell cell = reference_entity(e);
     const int *nodes = mesh_.nodes_of(e);
     for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
@@ -137,15 +170,16 @@ void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped
                     describe(scene_.parameters, mu));
 }
 
-void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperators &operators) {
+void EntitySum::assemble(const FullMu &mu, const ContactState &, const WantedNodes &wanted,
+                         ContactOperators &operators) {
+  if (pattern_.rows() == 0 || wanted != pattern_wanted_) set_pattern(wanted);
   clear(pattern_, operators.b);
   operators.g = Vector::Zero(dual_.size());
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
   const Index *position = position_.data();
-  const std::vector<Point> mapped = mapped_vertices(mu);
-  const auto all = [](Index) { return true; };
-  visit_entities(mu, mapped, all, [&](Index e, const Cell &cell) {
+  const std::vector<Point> mapped = mapped_vertices(mu, entities_);
+  visit_entities(mu, mapped, entities_, [&](Index e, const Cell &cell) {
     integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
@@ -154,23 +188,27 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, ContactOperator
       operators.g[dual[i]] += values.g[static_cast<Index>(i)];
     add_weights(mu, e, cell, values, operators.weights);
   });
-  set_constraints(mu, mapped, operators);
+  set_constraints(mu, mapped, wanted, operators);
+  for (Index i = 0; i < dual_.nodes() && !wanted.empty(); ++i) {
+    if (is_wanted(wanted, i)) continue; // else some of its entities were left out
+    const Index tangents = dual_.components - 1;
+    operators.g[i] = operators.weights[i] = 0;
+    operators.g.segment(dual_.nodes() + i * tangents, tangents).setZero();
+  }
 }
 
 void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &, const Vector &lambda,
                                ContactOperators &operators) {
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
-  const std::vector<Point> mapped = mapped_vertices(mu);
-  const auto is_wanted = [&](Index e) {
-    const int *nodes = mesh_.nodes_of(e);
-    return lambda.size() == 0 || dual_.components > 1 ||
-           std::any_of(nodes, nodes + entity_dim_ + 1, [&](int node) { return lambda[node] != 0; });
-  };
-  visit_entities(mu, mapped, is_wanted, [&](Index e, const Cell &cell) {
+  WantedNodes loaded;
+  for (Index i = 0; i < dual_.nodes() && lambda.size() > 0 && dual_.components == 1; ++i)
+    loaded.push_back(lambda[i] != 0);
+  const std::vector<Point> mapped = mapped_vertices(mu, {});
+  visit_entities(mu, mapped, entities_at(loaded), [&](Index e, const Cell &cell) {
     add_weights(mu, e, cell, values, operators.weights);
   });
-  set_constraints(mu, mapped, operators);
+  set_constraints(mu, mapped, {}, operators);
 }
 
 void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,

@@ -41,13 +41,15 @@ PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &,
 }
 
 void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
+                                       const WantedNodes &wanted,
                                        ContactOperators &operators) const {
   const auto rows = static_cast<Index>(dual_.vertices.size());
   SparseMatrix b(rows, mesh_.columns);
   b.reserve(Eigen::VectorXi::Constant(rows, mesh_.components));
-  operators.nodal_gap.resize(rows);
+  operators.nodal_gap = Vector::Zero(rows);
   const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
   for (Index i = 0; i < rows; ++i) {
+    if (!is_wanted(wanted, i)) continue;
     const Index node = dual_.vertices[static_cast<std::size_t>(i)];
     const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)],
                                              mapped[static_cast<std::size_t>(i)]);

@@ -33,6 +33,14 @@ Trace part_of(const Trace &trace, const std::vector<Index> &dofs) {
   return part;
 }
 
+std::vector<PetscInt> global_rows(const Trace &trace, PetscInt first) {
+  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
+  for (std::size_t k = 0; k < trace.index.size(); ++k)
+    rows[static_cast<std::size_t>(trace.index[k])] = first + trace.local_row[k];
+  over_ranks(trace.comm, MPI_SUM, rows);
+  return rows;
+}
+
 Vector restrict_to(const Trace &trace, Vec u) {
   Vector values = Vector::Zero(trace.size);
   const double *local = nullptr;

@@ -2,15 +2,17 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/par/collective.hpp"
 
 namespace rbvi {
 
-Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options)
+Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
     : scene_(std::make_unique<const Scene>(with_imposed_loads(std::move(scene)))),
       mesh_(make_mesh(comm, *scene_, options)),
       dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
       places_(place_interfaces(mesh_, dofs_, *scene_)),
-      contact_(make_contact(*scene_, places_.meshes)), cells_(reference_cells(mesh_)),
+      contact_(make_contact(*scene_, places_.meshes)), contact_gather_(contact_gather),
+      cells_(reference_cells(mesh_)),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
   if (!imposes_values(*scene_)) return;
@@ -24,10 +26,45 @@ void Problem::assemble_contact(const Mu &mu, Operators &operators) {
   operators.laws = laws_at(contact_, operators.mu);
 }
 
-const Operators &Problem::assemble(const Mu &mu) {
+const DualLayout &Problem::dual_layout() {
+  if (!dual_layout_) dual_layout_ = share_dual(contact_, places_, mesh_, dofs_);
+  return *dual_layout_;
+}
+
+bool Problem::is_split(std::size_t interface) const {
+  const ContactInterface &contact = *contact_.interfaces[interface];
+  return ranks_of(comm()) > 1 && contact.can_be_split() && contact.dual().size() > contact_gather_;
+}
+
+/// Each rank the rows that it owns, then, where all are wanted, those of the others.
+void Problem::assemble_split(ContactRows rows) {
+  const DualLayout &layout = dual_layout();
+  std::vector<ContactOperators> all(contact_.interfaces.size());
+  collectively(comm(), [&] {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      contact_.interfaces[i]->assemble(operators_.mu, {},
+                                       is_split(i) ? layout.own[i] : WantedNodes{}, all[i]);
+    operators_.laws = laws_at(contact_, operators_.mu);
+  });
+  for (std::size_t i = 0; i < all.size() && rows == ContactRows::all; ++i)
+    if (is_split(i)) gather_rows(layout, contact_, i, all[i]);
+  if (all.size() == 1)
+    static_cast<ContactOperators &>(operators_) = std::move(all.front());
+  else
+    stack(contact_, all, operators_);
+}
+
+const Operators &Problem::assemble(const Mu &mu, ContactRows rows) {
   const FullMu all = expand(scene_->parameters, mu);
   if (imposes_values(*scene_)) check_imposed(*scene_, all, mesh_, dofs_);
-  assemble_contact(mu, operators_);
+  operators_.mu = all;
+  bool any_split = false;
+  for (std::size_t i = 0; i < contact_.interfaces.size(); ++i)
+    any_split = any_split || is_split(i);
+  if (any_split)
+    assemble_split(rows);
+  else
+    assemble_contact(mu, operators_);
   const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
   if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
     map_cells(*scene_, all, mesh_, cells_);

@@ -4,19 +4,16 @@
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
-#include "vectors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace rbvi {
 
 namespace {
-
-double ratio(double value, double scale) {
-  return scale > 0 ? value / scale : value;
-}
 
 /// At all dofs in natural order, the imposed values among them. Collective.
 Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
@@ -25,8 +22,9 @@ Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
   return whole;
 }
 
-Outputs measure(const Problem &problem, const Operators &op, const MethodResult &result,
-                const HfSolution &solution) {
+/// `weights`: of all normal multipliers.
+Outputs measure(const Problem &problem, const Operators &op, const Vector &weights,
+                const MethodResult &result, const HfSolution &solution) {
   Handle<Vec> au;
   RBVI_CALL(VecDuplicate(op.f, au.put()));
   RBVI_CALL(MatMult(op.a, result.u.get(), au.get()));
@@ -39,80 +37,42 @@ Outputs measure(const Problem &problem, const Operators &op, const MethodResult 
   outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy);
   outputs.kkt_residual = solution.kkt.largest();
   const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
-  outputs.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
+  std::array<double, 1> penetration{excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0};
+  over_ranks(problem.comm(), MPI_MAX, penetration);
+  outputs.max_penetration = penetration.front();
   outputs.iterations = result.iterations;
-  contact_outputs(problem.contact(), op.mu, op, result.lambda, 0, outputs);
-  if (problem.scene().components == 1) outputs.min_u = solution.u.minCoeff();
+  ContactOperators of_outputs;
+  of_outputs.weights = weights;
+  contact_outputs(problem.contact(), op.mu, of_outputs, result.lambda, 0, outputs);
   return outputs;
 }
 
 /// Where a few dozen accelerated Uzawa steps see contact: far cheaper than the columns of all
 /// nodes.
-Start rough_start(KSP ksp, const Problem &problem, const Operators &op) {
+Start rough_start(KSP ksp, Problem &problem, const Operators &op) {
   HfOptions rough;
   rough.uzawa_accelerated = true;
   rough.uzawa_tolerance = 1e-3;
   rough.uzawa_max_iterations = 100;
-  MethodResult found = solve_uzawa(ksp, problem.trace(), op, problem.w_product(), rough);
-  return {std::move(found.active), std::move(found.lambda)};
-}
-
-/// KktResidual::friction. `excess`: B u - G, in its tangential rows the slip; `scale`: |l| |G|.
-double friction_residual(const Operators &op, const Vector &lambda, const Vector &excess,
-                         double scale) {
-  const NodeLaws &laws = op.laws;
-  const Vector bounds = bounds_of(laws, lambda);
-  double above = 0, idle = 0;
-  for (Index i = 0; i < laws.nodes(); ++i) {
-    if (!laws.has_tangent(i)) continue;
-    const Index row = laws.tangent[static_cast<std::size_t>(i)];
-    const auto stress = lambda.segment(row, laws.tangents);
-    const auto slip = excess.segment(row, laws.tangents);
-    above = std::max(above, stress.norm() - bounds[i]);
-    idle += std::abs(bounds[i] * slip.norm() - stress.dot(slip));
-  }
-  return std::max(ratio(above, lambda.cwiseAbs().maxCoeff()), ratio(idle, scale));
+  const DualLayout &layout = problem.dual_layout();
+  const DistributedContact contact = distribute(layout, op, op.laws);
+  const Handle<Mat> w = distribute(layout, problem.w_product());
+  MethodResult found = solve_uzawa(ksp, layout, contact, op.f, w.get(), rough);
+  return {in_contact(op.laws, found.lambda), std::move(found.lambda)};
 }
 
 } // namespace
 
+std::vector<Index> in_contact(const NodeLaws &laws, const Vector &lambda) {
+  std::vector<Index> nodes;
+  for (Index i = 0; i < laws.nodes(); ++i)
+    if (lambda[laws.normal[static_cast<std::size_t>(i)]] > 0) nodes.push_back(i);
+  return nodes;
+}
+
 const std::vector<std::string> &hf_method_names() {
   static const std::vector<std::string> names{"active_set", "uzawa", "vi"};
   return names;
-}
-
-double KktResidual::largest() const {
-  return std::max({stationarity, feasibility, complementarity, sign, friction});
-}
-
-KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {
-  Handle<Vec> r, reaction;
-  RBVI_CALL(VecDuplicate(op.f, r.put()));
-  RBVI_CALL(VecDuplicate(op.f, reaction.put()));
-  RBVI_CALL(VecZeroEntries(reaction.get()));
-  const Vector bt_lambda = op.b.transpose() * lambda;
-  add_extension(trace, bt_lambda, reaction.get());
-  RBVI_CALL(MatMult(op.a, u, r.get()));
-  RBVI_CALL(VecAXPY(r.get(), 1, reaction.get()));
-  RBVI_CALL(VecAXPY(r.get(), -1, op.f));
-
-  const Vector excess = op.b * restrict_to(trace, u) - op.g;
-  double penetration = 0, gap = 0; // a multiplier without weight has no constraint
-  for (Index i = 0; i < op.laws.nodes(); ++i) {
-    if (!(op.weights[i] > 0)) continue;
-    const Index row = op.laws.normal[static_cast<std::size_t>(i)];
-    penetration = std::max(penetration, excess[row] / op.weights[i]);
-    gap = std::max(gap, std::abs(op.g[row]) / op.weights[i]);
-  }
-  KktResidual kkt;
-  kkt.stationarity = ratio(norm(r.get()), norm(op.f) + norm(reaction.get()));
-  kkt.feasibility = ratio(penetration, gap);
-  const Vector normal = lambda(op.laws.normal), left = excess(op.laws.normal);
-  const double scale = lambda.norm() * op.g.norm();
-  kkt.complementarity = ratio(normal.cwiseProduct(left).cwiseAbs().sum(), scale);
-  kkt.sign = std::max(0.0, ratio(-normal.minCoeff(), normal.cwiseAbs().maxCoeff()));
-  if (op.laws.has_tangents()) kkt.friction = friction_residual(op, lambda, excess, scale);
-  return kkt;
 }
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
@@ -146,7 +106,7 @@ const HighFidelity::Solved *HighFidelity::nearest(const Mu &mu) const {
   return nearest;
 }
 
-Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) const {
+Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
   const bool columns_are_kept = part_ || (compliance_ && compliance_->count() > 0);
   if (solved_.empty()) return columns_are_kept ? Start{} : rough_start(ksp_.get(), problem_, op);
   return nearest(mu)->start;
@@ -188,44 +148,61 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   return solution;
 }
 
-MethodResult HighFidelity::run(const Mu &mu, const Operators &op) {
-  const Trace &trace = problem_.trace();
-  if (options_.method == HfMethod::uzawa)
-    return solve_uzawa(ksp_.get(), trace, op, problem_.w_product(), options_);
-  if (options_.method == HfMethod::vi) return solve_vi(problem_, op);
-  if (part_) {
-    part_->set(op);
-    return solve_active_set(*part_, op, nearest_start(mu, op));
-  }
-  return solve_active_set(ksp_.get(), trace, op, nearest_start(mu, op), compliance_.get());
+MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, HfSolution &solution) {
+  if (part_) part_->set(op);
+  MethodResult result = part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
+                              : solve_active_set(ksp_.get(), problem_.trace(), op,
+                                                 nearest_start(mu, op), compliance_.get());
+  if (!result.converged) return result;
+  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
+  solution.outputs = measure(problem_, op, op.weights, result, solution);
+  return result;
+}
+
+MethodResult HighFidelity::run_over_ranks(const Operators &op, HfSolution &solution) {
+  const DualLayout &layout = problem_.dual_layout();
+  const DistributedContact contact = distribute(layout, op, op.laws);
+  if (!w_product_) w_product_ = distribute(layout, problem_.w_product());
+  MethodResult result =
+      options_.method == HfMethod::vi
+          ? solve_vi(problem_, contact, op)
+          : solve_uzawa(ksp_.get(), layout, contact, op.f, w_product_.get(), options_);
+  if (!result.converged) return result;
+  result.active = in_contact(op.laws, result.lambda);
+  const Handle<Vec> lambda = distribute(layout, result.lambda);
+  solution.kkt = kkt_residual(contact, op, result.u.get(), lambda.get());
+  const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
+  solution.outputs = measure(problem_, op, weights, result, solution);
+  return result;
 }
 
 HfSolution HighFidelity::solve(const Mu &mu) {
   const double start = MPI_Wtime();
   if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
   ++solves_;
-  const Operators &op = problem_.assemble(mu);
+  const bool condensed = options_.method == HfMethod::active_set;
+  const Operators &op =
+      problem_.assemble(mu, condensed || nitsche_ ? ContactRows::all : ContactRows::own);
   if (nitsche_) {
     HfSolution solution = solve_nitsche(mu, op);
     solution.outputs.seconds = MPI_Wtime() - start;
     return solution;
   }
   RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
-  const MethodResult result = run(mu, op);
+  HfSolution solution;
+  const MethodResult result =
+      condensed ? run_condensed(mu, op, solution) : run_over_ranks(op, solution);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
-
-  HfSolution solution;
   solution.u = whole_displacement(problem_, mu, result.u.get());
-  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
-  solution.outputs = measure(problem_, op, result, solution);
+  if (problem_.scene().components == 1) solution.outputs.min_u = solution.u.minCoeff();
   solution.lambda = result.lambda;
   solution.active = result.active;
   solution.iterations = result.iterations;
   solution.columns = result.columns;
   solution.reason = result.reason;
   solution.outputs.seconds = MPI_Wtime() - start;
-  if (options_.method == HfMethod::active_set && solution.kkt.largest() > 1e-10)
+  if (condensed && solution.kkt.largest() > 1e-10)
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) +
                   ", above 1e-10: is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");

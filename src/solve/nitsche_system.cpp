@@ -84,7 +84,7 @@ NitscheSystem &system_of(void *context) {
 NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
                              const NitscheOptions &chosen)
     : solver(of), problem(whole), curve(*whole.nitsche()), options(chosen),
-      rows(whole_rows(whole.dofs().first_free, whole.trace())) {
+      rows(global_rows(whole.trace(), whole.dofs().first_free)) {
   if (options.nonpenetration) frames.emplace(whole);
 }
 

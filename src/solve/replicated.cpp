@@ -40,15 +40,7 @@ Handle<Mat> whole_matrix(Mat a, MPI_Comm comm) {
 std::vector<PetscInt> whole_rows(Mat a, const Trace &trace) {
   PetscInt first = 0;
   RBVI_CALL(MatGetOwnershipRange(a, &first, nullptr));
-  return whole_rows(first, trace);
-}
-
-std::vector<PetscInt> whole_rows(PetscInt first, const Trace &trace) {
-  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
-  for (std::size_t k = 0; k < trace.index.size(); ++k)
-    rows[static_cast<std::size_t>(trace.index[k])] = first + trace.local_row[k];
-  over_ranks(trace.comm, MPI_SUM, rows);
-  return rows;
+  return global_rows(trace, first);
 }
 
 ReplicatedSolver::ReplicatedSolver(Mat a, const Trace &trace, const char *prefix)

@@ -1,6 +1,7 @@
-// Small things that solvers ask of distributed vectors. Collective.
+// Small things that solvers ask of distributed vectors. Collective, but LocalValues.
 #pragma once
 
+#include "rbvi/core/dense.hpp"
 #include "rbvi/par/petsc.hpp"
 
 namespace rbvi {
@@ -23,5 +24,25 @@ inline Handle<Vec> like(Vec v) {
   RBVI_CALL(VecDuplicate(v, result.put()));
   return result;
 }
+
+/// This rank's entries, to read and to write while it lives.
+class LocalValues {
+public:
+  explicit LocalValues(Vec v) : v_(v) {
+    PetscInt size = 0;
+    RBVI_CALL(VecGetLocalSize(v, &size));
+    RBVI_CALL(VecGetArray(v, &raw_));
+    new (&values_) Eigen::Map<Vector>(raw_, size);
+  }
+  ~LocalValues() { (void)VecRestoreArray(v_, &raw_); }
+  LocalValues(const LocalValues &) = delete;
+  LocalValues &operator=(const LocalValues &) = delete;
+  Eigen::Map<Vector> &get() { return values_; }
+
+private:
+  Vec v_;
+  PetscScalar *raw_ = nullptr;
+  Eigen::Map<Vector> values_{nullptr, 0};
+};
 
 } // namespace rbvi

@@ -1,8 +1,10 @@
 #include "local_frames.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "vectors.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace rbvi {
@@ -46,55 +48,73 @@ PetscErrorCode energy(SNES, Vec u, PetscReal *value, void *context) {
   PetscFunctionReturn(0);
 }
 
-/// Row i of b bounds a node in two dimensions: b_i / |b_i| is a normal there.
-std::vector<NodalBound> nodal_bounds(const Contact &contact, const Operators &op) {
+/// Of this rank's nodes in two dimensions: row i of b bounds one, b_i / |b_i| is a normal there.
+std::vector<NodalBound> nodal_bounds(const Contact &contact, const DualLayout &layout,
+                                     const Operators &op) {
   std::vector<NodalBound> bounds;
   Index row = 0;
-  for (const auto &interface : contact.interfaces)
-    for (const Index node : interface->dual().vertices) {
-      const Index dof = interface->mesh().dofs[static_cast<std::size_t>(2 * node)];
+  for (std::size_t k = 0; k < contact.interfaces.size(); ++k) {
+    const ContactInterface &interface = *contact.interfaces[k];
+    for (std::size_t i = 0; i < interface.dual().vertices.size(); ++i, ++row) {
+      if (!layout.own[k][i]) continue;
+      const Index node = interface.dual().vertices[i];
+      const Index dof = interface.mesh().dofs[static_cast<std::size_t>(2 * node)];
       const Point direction{op.b.coeff(row, dof), op.b.coeff(row, dof + 1), 0};
       const double size = std::hypot(direction[0], direction[1]);
-      bounds.push_back({dof, {direction[0] / size, direction[1] / size, 0}, op.g[row++] / size});
+      bounds.push_back({dof, {direction[0] / size, direction[1] / size, 0}, op.g[row] / size});
     }
+  }
   return bounds;
 }
 
-/// Scalar displacements: row i of b reads b_i u_c <= g_i.
-void set_bounds(const Trace &trace, const Operators &op, PrimalProblem &primal) {
-  Vector low = Vector::Constant(trace.size, PETSC_NINFINITY);
-  Vector high = Vector::Constant(trace.size, PETSC_INFINITY);
-  for (Index i = 0; i < op.b.rows(); ++i)
-    for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry) {
-      if (entry.value() == 0) continue;
-      (entry.value() < 0 ? low : high)[entry.col()] = op.g[i] / entry.value();
-    }
-  PetscScalar *l = nullptr, *h = nullptr;
-  RBVI_CALL(VecGetArray(primal.lower.get(), &l));
-  RBVI_CALL(VecGetArray(primal.upper.get(), &h));
-  for (std::size_t k = 0; k < trace.index.size(); ++k) {
-    l[trace.local_row[k]] = low[trace.index[k]];
-    h[trace.local_row[k]] = high[trace.index[k]];
+/// visit(local row, column, value) of this rank's rows.
+template <class Visit> void visit_entries(Mat b, Visit &&visit) {
+  PetscInt first = 0, last = 0;
+  RBVI_CALL(MatGetOwnershipRange(b, &first, &last));
+  for (PetscInt row = first; row < last; ++row) {
+    PetscInt count = 0;
+    const PetscInt *columns = nullptr;
+    const PetscScalar *values = nullptr;
+    RBVI_CALL(MatGetRow(b, row, &count, &columns, &values));
+    for (PetscInt k = 0; k < count; ++k)
+      visit(row - first, columns[k], values[k]);
+    RBVI_CALL(MatRestoreRow(b, row, &count, &columns, &values));
   }
-  RBVI_CALL(VecRestoreArray(primal.lower.get(), &l));
-  RBVI_CALL(VecRestoreArray(primal.upper.get(), &h));
 }
 
-/// lambda_i = b_i (F - A u) / |b_i|^2, zero where the node is free.
-Vector recover_multiplier(const Trace &trace, const Operators &op, Vec u) {
-  Handle<Vec> r;
-  RBVI_CALL(VecDuplicate(u, r.put()));
+/// Scalar displacements: row i of b reads b_i u_c <= g_i.
+void set_bounds(const DistributedContact &contact, PrimalProblem &primal) {
+  LocalValues g(contact.g.get());
+  visit_entries(contact.b.get(), [&](PetscInt row, PetscInt column, double value) {
+    if (value == 0) return;
+    const Handle<Vec> &bound = value < 0 ? primal.lower : primal.upper;
+    RBVI_CALL(VecSetValue(bound.get(), column, g.get()[row] / value, INSERT_VALUES));
+  });
+  for (const Handle<Vec> *bound : {&primal.lower, &primal.upper}) {
+    RBVI_CALL(VecAssemblyBegin(bound->get()));
+    RBVI_CALL(VecAssemblyEnd(bound->get()));
+  }
+}
+
+/// lambda_i = b_i (F - A u) / |b_i|^2, zero where the node is free. `gap`: the largest in size.
+Handle<Vec> recover_multiplier(const DistributedContact &contact, const Operators &op, double gap,
+                               Vec u) {
+  const Handle<Vec> r = like(u), bu = like(contact.g.get());
+  Handle<Vec> lambda = like(contact.g.get());
   RBVI_CALL(MatMult(op.a, u, r.get()));
   RBVI_CALL(VecAYPX(r.get(), -1, op.f));
-  const Vector reaction = restrict_to(trace, r.get()), trace_u = restrict_to(trace, u);
-  Vector lambda = Vector::Zero(op.b.rows());
-  for (Index i = 0; i < lambda.size(); ++i) {
-    const auto row = op.b.row(i);
-    const double size = row.norm();
-    if (!(size > 0)) continue;
-    const double scale = std::max(std::abs(op.g[i]) / size, op.nodal_gap.cwiseAbs().maxCoeff());
-    if (std::abs(row.dot(trace_u) - op.g[i]) <= 1e-12 * scale * size)
-      lambda[i] = std::max(0.0, row.dot(reaction) / (size * size));
+  RBVI_CALL(MatMult(contact.b.get(), r.get(), lambda.get()));
+  RBVI_CALL(MatMult(contact.b.get(), u, bu.get()));
+  LocalValues value(lambda.get()), constraint(bu.get()), g(contact.g.get());
+  Vector squares = Vector::Zero(g.get().size());
+  visit_entries(contact.b.get(),
+                [&](PetscInt row, PetscInt, double entry) { squares[row] += entry * entry; });
+  for (Index i = 0; i < squares.size(); ++i) {
+    const double size = std::sqrt(squares[i]);
+    const double scale = size > 0 ? std::max(std::abs(g.get()[i]) / size, gap) : 0;
+    const bool touches =
+        size > 0 && std::abs(constraint.get()[i] - g.get()[i]) <= 1e-12 * scale * size;
+    value.get()[i] = touches ? std::max(0.0, value.get()[i] / squares[i]) : 0.0;
   }
   return lambda;
 }
@@ -109,11 +129,11 @@ PrimalProblem problem_in_frames(const Operators &op, const LocalFrames &frames) 
   return primal;
 }
 
-PrimalProblem scalar_problem(const Trace &trace, const Operators &op) {
+PrimalProblem scalar_problem(const DistributedContact &contact, const Operators &op) {
   PrimalProblem primal{op.a, op.f, like(op.f), like(op.f)};
   RBVI_CALL(VecSet(primal.lower.get(), PETSC_NINFINITY));
   RBVI_CALL(VecSet(primal.upper.get(), PETSC_INFINITY));
-  set_bounds(trace, op, primal);
+  set_bounds(contact, primal);
   return primal;
 }
 
@@ -184,20 +204,21 @@ void require_bounds_at_nodes(const Scene &scene) {
                     "none where the scene has these options, or use -hf_method active_set");
 }
 
-MethodResult solve_vi(const Problem &problem, const Operators &op) {
+MethodResult solve_vi(Problem &problem, const DistributedContact &contact, const Operators &op) {
   require_bounds_at_nodes(problem.scene());
+  const DualLayout &layout = problem.dual_layout();
   std::optional<LocalFrames> frames;
   if (problem.scene().components > 1) {
     frames.emplace(problem);
-    frames->set(nodal_bounds(problem.contact(), op));
+    frames->set(nodal_bounds(problem.contact(), layout, op));
   }
-  PrimalProblem primal =
-      frames ? problem_in_frames(op, *frames) : scalar_problem(problem.trace(), op);
+  PrimalProblem primal = frames ? problem_in_frames(op, *frames) : scalar_problem(contact, op);
   MethodResult result = minimise(problem.comm(), primal);
   if (frames) result.u = frames->turned_back(result.u.get());
-  result.lambda = recover_multiplier(problem.trace(), op, result.u.get());
-  for (Index i = 0; i < result.lambda.size(); ++i)
-    if (result.lambda[i] > 0) result.active.push_back(i);
+  std::array<double, 1> gap{op.nodal_gap.size() > 0 ? op.nodal_gap.cwiseAbs().maxCoeff() : 0};
+  over_ranks(problem.comm(), MPI_MAX, gap);
+  const Handle<Vec> lambda = recover_multiplier(contact, op, gap.front(), result.u.get());
+  result.lambda = on_every_rank(layout, lambda.get());
   return result;
 }
 

@@ -22,7 +22,7 @@ void command_solve(const ToolOptions &options) {
   for (std::size_t i = 0; i < options.scene.contacts.size() && !options.vtu.empty(); ++i)
     outputs.push_back({"-vtu", contact_file(options.vtu, i)});
   check_outputs(world, options, outputs);
-  Problem problem(world, options.scene, options.mesh);
+  Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_solver_options(problem, options.hf);
   HighFidelity solver(problem, options.hf);
   const HfSolution solution =

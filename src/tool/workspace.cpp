@@ -7,14 +7,17 @@ namespace rbvi {
 Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options)
     : world_(world), options_(options), shared_(groups.count() == 1) {
   collectively(world, [&] {
-    group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh);
+    group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh,
+                                       options.contact_gather);
     check_solver_options(*group_, options.hf);
   });
 }
 
 Problem &Workspace::world_problem() {
   if (shared_) return *group_;
-  if (!all_) all_ = std::make_unique<Problem>(world_, options_.scene, options_.mesh);
+  if (!all_)
+    all_ =
+        std::make_unique<Problem>(world_, options_.scene, options_.mesh, options_.contact_gather);
   return *all_;
 }
 

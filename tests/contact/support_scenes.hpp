@@ -56,7 +56,7 @@ struct SupportScene : Scene {
 inline ContactOperators couple_with_support(const SupportScene &scene, const FullMu &mu,
                                             const InterfaceMesh &curve) {
   ContactOperators operators;
-  rigid_support(scene.support).make(scene, curve)->assemble(mu, {}, operators);
+  rigid_support(scene.support).make(scene, curve)->assemble_all(mu, {}, operators);
   return operators;
 }
 

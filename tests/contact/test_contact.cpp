@@ -44,7 +44,7 @@ struct Stack {
   /// One interface by itself.
   ContactOperators alone(std::size_t i, const FullMu &mu) const {
     ContactOperators operators;
-    scene.contacts[i].make(scene, meshes[i])->assemble(mu, {}, operators);
+    scene.contacts[i].make(scene, meshes[i])->assemble_all(mu, {}, operators);
     return operators;
   }
 };

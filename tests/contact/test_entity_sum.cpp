@@ -114,7 +114,7 @@ void expect_sum(const Scene &scene, const InterfaceMesh &mesh) {
   ASSERT_NE(interface->entity_sum(), nullptr);
   ContactOperators operators, nodal;
   for (const FullMu &mu : {FullMu{0.8}, FullMu{1.3}}) {
-    interface->assemble(mu, {}, operators);
+    interface->assemble_all(mu, {}, operators);
     const Sum sum(scene, *interface->entity_sum(), mu);
     EXPECT_LE((Matrix(operators.b) - sum.b).norm(), 1e-15 * sum.b.norm());
     EXPECT_LE((operators.g - sum.g).norm(), 1e-15 * sum.g.norm());
@@ -157,13 +157,49 @@ TEST(EntitySum, IsTheSumOverTheEdgesOfACurve) {
     }
 }
 
+/// Of nodes that are wanted, from the entities that see them alone; zero elsewhere.
+TEST(EntitySum, RowsThatAreWantedAreThoseOfTheWhole) {
+  const auto expect_rows = [](const Scene &scene, const InterfaceMesh &mesh) {
+    const auto interface = scene.contacts.front().make(scene, mesh);
+    ASSERT_TRUE(interface->can_be_split());
+    const Index nodes = interface->dual().nodes(), tangents = interface->dual().components - 1;
+    ContactOperators whole, part;
+    interface->assemble_all({0.8}, {}, whole);
+    for (const Index step : {2, 3, 5}) { // other rows each time
+      WantedNodes wanted;
+      for (Index i = 0; i < nodes; ++i)
+        wanted.push_back(i % step == 1);
+      interface->assemble({0.8}, {}, wanted, part);
+      for (Index i = 0; i < nodes; ++i) {
+        const double seen = i % step == 1 ? 1 : 0;
+        const auto expect_row = [&](Index row) {
+          EXPECT_EQ(Matrix(part.b.row(row)), Matrix(seen * whole.b.row(row)));
+          EXPECT_EQ(part.g[row], seen * whole.g[row]);
+        };
+        expect_row(i);
+        for (Index k = 0; k < tangents; ++k)
+          expect_row(nodes + i * tangents + k);
+        EXPECT_EQ(part.weights[i], seen * whole.weights[i]);
+        EXPECT_EQ(Matrix(part.nodal_b.row(i)), Matrix(seen * whole.nodal_b.row(i)));
+        EXPECT_EQ(part.nodal_gap[i], seen * whole.nodal_gap[i]);
+      }
+    }
+  };
+  const Scene scene = membrane({"region", quadratic});
+  expect_rows(scene, quadratic_square(4));
+  Random random(1);
+  SupportScene curve = crooked(2);
+  curve.contacts = {rigid_support(curve.support)};
+  expect_rows(curve, support_curve(random_curve(random, 9, -0.5, 0.8, -0.3), 2));
+}
+
 /// Rows and columns of what is seen are those of the whole.
 TEST(EntitySum, DofsThatAreNotSeenHaveNoColumn) {
   const Scene scene = membrane({"region", quadratic});
   const InterfaceMesh all = square(3), part = partly_seen(all);
   ContactOperators whole, seen;
-  scene.contacts.front().make(scene, all)->assemble({0.8}, {}, whole);
-  scene.contacts.front().make(scene, part)->assemble({0.8}, {}, seen);
+  scene.contacts.front().make(scene, all)->assemble_all({0.8}, {}, whole);
+  scene.contacts.front().make(scene, part)->assemble_all({0.8}, {}, seen);
   EXPECT_EQ(seen.b.cols(), 21);
   EXPECT_EQ(seen.g, whole.g);
   Index columns = 0;
@@ -192,7 +228,7 @@ TEST(ObstacleInterface, IntegratesOverTheMappedRegion) {
     const auto interface = scene.contacts.front().make(scene, square(4));
     const double stretch = 1.4;
     ContactOperators op;
-    interface->assemble({stretch}, {}, op);
+    interface->assemble_all({stretch}, {}, op);
     EXPECT_NEAR(op.weights.sum(), stretch, 1e-14);
     EXPECT_LE((op.b * Vector::Ones(25) + op.weights).norm(), 1e-14);
     EXPECT_EQ(op.b.isApprox(SparseMatrix(op.b.transpose())), true);
@@ -263,7 +299,7 @@ TEST(ObstacleInterface, OfDegreeTwoHatsSeeTheQuadraticDisplacement) {
     const Scene scene = membrane({"region", quadratic, lumped});
     const auto interface = scene.contacts.front().make(scene, mesh);
     ContactOperators op;
-    interface->assemble(mu, {}, op);
+    interface->assemble_all(mu, {}, op);
     ASSERT_EQ(interface->dual().nodes(), 16);
     EXPECT_EQ(interface->dual().gram.rows(), 16);
     EXPECT_NEAR(interface->dual().gram.sum(), 1, 1e-14) << "the area of the reference square";

@@ -60,7 +60,7 @@ PairOperators coupled(const Scene &scene, const InterfaceMesh &mesh,
 
 ContactOperators at(const Scene &scene, const InterfaceMesh &mesh, const FullMu &mu) {
   ContactOperators operators;
-  scene.contacts.front().make(scene, mesh)->assemble(mu, {}, operators);
+  scene.contacts.front().make(scene, mesh)->assemble_all(mu, {}, operators);
   return operators;
 }
 

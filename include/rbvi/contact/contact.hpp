@@ -24,6 +24,9 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes);
 /// The operators of all interfaces together.
 void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
               ContactOperators &operators);
+/// The same from those of each interface.
+void stack(const Contact &contact, const std::vector<ContactOperators> &all,
+           ContactOperators &operators);
 /// weights, nodal_b and nodal_gap alone, the weights where `lambda` is not zero (empty: all).
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
                     const Vector &lambda, ContactOperators &operators);

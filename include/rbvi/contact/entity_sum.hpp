@@ -25,9 +25,11 @@ public:
   /// Sets the weights.
   virtual void weigh(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
 
-  void assemble(const FullMu &mu, const ContactState &state, ContactOperators &operators) override;
+  void assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
+                ContactOperators &operators) override;
   void assemble_nodal(const FullMu &mu, const ContactState &state, const Vector &lambda,
                       ContactOperators &operators) override;
+  bool can_be_split() const override { return true; }
   const EntitySum *entity_sum() const override { return this; }
 
   int entity_dim() const { return entity_dim_; }
@@ -47,19 +49,26 @@ protected:
 
 private:
   Index rows() const { return (entity_dim_ + 1) * dual_.components; }
-  std::vector<Point> mapped_vertices(const FullMu &mu) const;
-  /// visit(entity, cell), mapped, for each that is wanted. Throws failure for one that is inverted.
-  template <class IsWanted, class Visit>
-  void visit_entities(const FullMu &mu, const std::vector<Point> &mapped, IsWanted &&is_wanted,
-                      Visit &&visit) const;
+  /// The entities on which the function of a wanted node does not vanish; empty: all.
+  std::vector<bool> entities_at(const WantedNodes &wanted) const;
+  void set_pattern(const WantedNodes &wanted);
+  /// Of the vertices of these entities; on a curve of all, as the others stay where they are.
+  std::vector<Point> mapped_vertices(const FullMu &mu, const std::vector<bool> &entities) const;
+  /// visit(entity, cell), mapped, for each of these (empty: all). Throws failure for one that is
+  /// inverted.
+  template <class Visit>
+  void visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
+                      const std::vector<bool> &entities, Visit &&visit) const;
   void check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const;
   void add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
                    Vector &weights) const;
 
   int entity_dim_;
   std::vector<int> imposed_by_; ///< of the dofs of each entity; empty: nothing is imposed
-  SparseMatrix pattern_;        ///< of b, zero values
-  std::vector<Index> position_; ///< per kernel value: where in b it is added, -1 nowhere
+  SparseMatrix pattern_;        ///< of b, zero values; made by the first assemble
+  WantedNodes pattern_wanted_;  ///< the rows that it has
+  std::vector<bool> entities_;  ///< entities_at(pattern_wanted_)
+  std::vector<Index> position_; ///< per value of their kernels: where in b it is added, -1 nowhere
 };
 
 } // namespace rbvi

@@ -76,6 +76,13 @@ struct PointConstraint {
   double gap;
 };
 
+/// Per dual node; empty: all of them.
+using WantedNodes = std::vector<bool>;
+
+inline bool is_wanted(const WantedNodes &wanted, Index node) {
+  return wanted.empty() || wanted[static_cast<std::size_t>(node)];
+}
+
 class EntitySum;
 struct NitscheCurve;
 
@@ -90,14 +97,21 @@ public:
   const InterfaceMesh &mesh() const { return mesh_; }
   const DualSpace &dual() const { return dual_; }
 
-  /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone.
-  virtual void assemble(const FullMu &mu, const ContactState &state,
+  /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone. Rows of dual nodes
+  /// that are not wanted may be left zero.
+  virtual void assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
                         ContactOperators &operators) = 0;
+  void assemble_all(const FullMu &mu, const ContactState &state, ContactOperators &operators) {
+    assemble(mu, state, {}, operators);
+  }
+  /// Whether assemble() does leave them zero, for less work. The nodal constraint is then one of
+  /// the dual nodes.
+  virtual bool can_be_split() const { return false; }
   /// weights, nodal_b and nodal_gap alone, which `outputs` and gaps need; weights that nothing is
   /// multiplied with, where `lambda` is zero, may be left out (empty: all are wanted).
-  virtual void assemble_nodal(const FullMu &mu, const ContactState &state, const Vector & /*lambda*/,
-                              ContactOperators &operators) {
-    assemble(mu, state, operators);
+  virtual void assemble_nodal(const FullMu &mu, const ContactState &state,
+                              const Vector & /*lambda*/, ContactOperators &operators) {
+    assemble_all(mu, state, operators);
   }
   /// Of |lambda_tau| at every node. Throws failure, naming the value, for a negative one.
   virtual FrictionBound bound(const FullMu &mu) const;
@@ -122,10 +136,10 @@ public:
   virtual const NitscheCurve *nitsche() const { return nullptr; }
 
 protected:
-  /// nodal_b and nodal_gap from constraint_at at the vertices of the dual space, which are `mapped`
-  /// there, the imposed values taken into the gap.
+  /// nodal_b and nodal_gap from constraint_at at the wanted vertices of the dual space, which are
+  /// `mapped` there, the imposed values taken into the gap; zero at the others.
   void set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
-                       ContactOperators &operators) const;
+                       const WantedNodes &wanted, ContactOperators &operators) const;
 
   const Scene &scene_;
   const InterfaceMesh mesh_;

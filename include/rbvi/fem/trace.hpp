@@ -24,6 +24,9 @@ Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural);
 /// Some of the contact dofs, numbered in the order of `dofs`. Not collective.
 Trace part_of(const Trace &trace, const std::vector<Index> &dofs);
 
+/// Collective. The row of each contact dof, on every rank; `first`: this rank's first row.
+std::vector<PetscInt> global_rows(const Trace &trace, PetscInt first);
+
 /// Collective. E^T u, on every rank.
 Vector restrict_to(const Trace &trace, Vec u);
 

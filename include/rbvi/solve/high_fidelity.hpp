@@ -2,13 +2,15 @@
 // solve/nitsche.hpp; the multipliers are then minus the stress at the vertices of the curve. The
 // mixed problem: three methods that agree,
 //
-//   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column:
-//               the truth
+//   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column,
+//               with B on every rank: the truth
 //   uzawa       lambda <- Proj(lambda + rho (B u - G)), fixed step or accelerated: the baseline
 //   vi          SNES with its VI extension on the bound-constrained primal problem, on a support in
 //               local frames (scenes with vertex quadrature in b and g: there the constraint is a
 //               bound at each node; without friction; never two bodies, whose constraints couple
 //               the nodes of both)
+//
+// B, G and the multipliers of uzawa and vi are distributed over the ranks.
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
@@ -88,8 +90,9 @@ private:
     Matrix pressures;
   };
   const Solved *nearest(const Mu &mu) const;
-  Start nearest_start(const Mu &mu, const Operators &op) const;
-  MethodResult run(const Mu &mu, const Operators &op);
+  Start nearest_start(const Mu &mu, const Operators &op);
+  MethodResult run_condensed(const Mu &mu, const Operators &op, HfSolution &solution);
+  MethodResult run_over_ranks(const Operators &op, HfSolution &solution);
   Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);
 
@@ -100,6 +103,7 @@ private:
   std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
   bool part_fits_ = false;
   std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on
+  Handle<Mat> w_product_;            ///< over the ranks, where a method wants it
   std::vector<Solved> solved_;
   int solves_ = 0;
 };

@@ -61,18 +61,23 @@ MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, 
 /// Active set on a body with a scaled part, set to `op`.
 MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start);
 
-MethodResult solve_uzawa(KSP ksp, const Trace &trace, const Operators &op,
-                         const SparseMatrix &w_product, const HfOptions &options);
+/// `f`: the load; `w_product`: over the ranks. Collective.
+MethodResult solve_uzawa(KSP ksp, const DualLayout &layout, const DistributedContact &contact,
+                         Vec f, Mat w_product, const HfOptions &options);
 
 /// Throws bad_input, saying what to set, unless every interface bounds single nodes (vertex
 /// quadrature) without friction.
 void require_bounds_at_nodes(const Scene &scene);
 
 /// Needs bounds at nodes, else throws bad_input. Where the displacement is no scalar, the unknowns
-/// are those of local frames.
-MethodResult solve_vi(const Problem &problem, const Operators &op);
+/// are those of local frames. Collective.
+MethodResult solve_vi(Problem &problem, const DistributedContact &contact, const Operators &op);
 
-/// Collective.
+/// With all rows of B on every rank, or distributed. Collective.
 KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda);
+KktResidual kkt_residual(const DistributedContact &contact, const Operators &op, Vec u, Vec lambda);
+
+/// The nodes with a positive normal multiplier.
+std::vector<Index> in_contact(const NodeLaws &laws, const Vector &lambda);
 
 } // namespace rbvi

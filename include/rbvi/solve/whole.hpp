@@ -10,8 +10,7 @@ namespace rbvi {
 /// Collective on `comm`. All of `a`, sequential; on one rank `a` itself.
 Handle<Mat> whole_matrix(Mat a, MPI_Comm comm);
 
-/// Collective. Row of each contact dof of `trace` in it; `first`: this rank's first row.
+/// Collective. Row of each contact dof of `trace` in it.
 std::vector<PetscInt> whole_rows(Mat a, const Trace &trace);
-std::vector<PetscInt> whole_rows(PetscInt first, const Trace &trace);
 
 } // namespace rbvi

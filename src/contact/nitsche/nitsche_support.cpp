@@ -62,11 +62,12 @@ public:
   }
 
   const NitscheCurve *nitsche() const override { return &curve_; }
-  void assemble(const FullMu &mu, const ContactState &, ContactOperators &operators) override {
+  void assemble(const FullMu &mu, const ContactState &, const WantedNodes &,
+                ContactOperators &operators) override {
     std::vector<Point> mapped;
     for (const Point &x : dual_.points)
       mapped.push_back(scene_.map(mu, x));
-    set_constraints(mu, mapped, operators);
+    set_constraints(mu, mapped, {}, operators);
   }
   FrictionBound bound(const FullMu &mu) const override {
     return friction_bound(curve_.support.friction, mu);

@@ -22,7 +22,8 @@ class PairInterface : public ContactInterface {
 public:
   PairInterface(const Scene &scene, InterfaceMesh mesh, Pair pair);
 
-  void assemble(const FullMu &mu, const ContactState &state, ContactOperators &operators) override {
+  void assemble(const FullMu &mu, const ContactState &, const WantedNodes &,
+                ContactOperators &operators) override {
     PairOperators coupled = couple_at(mu);
     operators.b = at_contact_dofs(std::move(coupled.b));
     operators.g = std::move(coupled.g);
@@ -30,7 +31,6 @@ public:
     operators.nodal_b = at_contact_dofs(std::move(coupled.nodal_b));
     operators.nodal_gap = std::move(coupled.nodal_gap);
     operators.uncovered = std::move(coupled.uncovered);
-    (void)state; // deformations are small
   }
   void outputs(const FullMu &, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override {

@@ -150,6 +150,9 @@ std::vector<Option> of_solvers() {
                       "SNES with its VI extension; with -lumped yes and without friction, as it "
                       "bounds single nodes"}),
              AT(hf.method), "high-fidelity solver"),
+      number("contact_gather", {0, 1000000000}, AT(contact_gather),
+             "multipliers of an interface up to which each rank evaluates all of it; of larger "
+             "ones (not pairs) each evaluates its part"),
       number("uzawa_tolerance", {1e-15, 0.1}, AT(hf.uzawa_tolerance),
              "relative change of the multiplier"),
       number("uzawa_max_iterations", {1, 100000000}, AT(hf.uzawa_max_iterations),

@@ -19,6 +19,7 @@ struct ToolOptions {
   std::string train, valid; ///< as parse_set reads them
   HfOptions hf;
   ReduceOptions reduce;
+  int contact_gather = static_cast<int>(default_contact_gather);
   int ranks_per_solve = 1;
   double max_failures = 0.1;       ///< share of a set that may fail
   std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory

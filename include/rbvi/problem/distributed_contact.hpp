@@ -1,0 +1,50 @@
+// The contact side over the ranks, for solvers that condense nothing: B is a PETSc matrix, dual x
+// free displacement dofs, and g, the weights and multipliers are vectors of its rows. A dual node
+// belongs to the rank that owns it in the mesh, and its multipliers are successive rows there: the
+// normal one, then the tangential ones. ContactOperators of a single rank number them otherwise
+// (DualSpace::gram), which `rows` of the layout translates.
+#pragma once
+
+#include "rbvi/contact/contact.hpp"
+#include "rbvi/fem/interface_mesh.hpp"
+
+namespace rbvi {
+
+struct DualLayout {
+  MPI_Comm comm = MPI_COMM_NULL;
+  std::vector<WantedNodes> own;  ///< per interface: its nodes that belong to this rank
+  std::vector<Index> nodes;      ///< those, over all interfaces (NodeLaws)
+  std::vector<Index> rows;       ///< this rank's multipliers, by their rows in ContactOperators::b
+  std::vector<PetscInt> numbers; ///< of all those rows: the rows of the distributed B
+  std::vector<PetscInt> columns; ///< of all contact dofs: the free displacement dofs
+  PetscInt local_columns = 0;    ///< free displacement dofs of this rank
+};
+
+/// Collective. Nodes that are none of the mesh (macro-edges) are shared in equal parts.
+DualLayout share_dual(const Contact &contact, const InterfacePlaces &places, const Mesh &mesh,
+                      const Dofs &dofs);
+
+struct DistributedContact {
+  Handle<Mat> b;
+  Handle<Vec> g;
+  Handle<Vec> weights; ///< of the node of each multiplier
+  NodeLaws laws;       ///< of this rank's multipliers, numbered from 0
+};
+
+/// Collective. `operators`: at least the rows of this rank; `laws`: of all nodes.
+DistributedContact distribute(const DualLayout &layout, const ContactOperators &operators,
+                              const NodeLaws &laws);
+
+/// The Gram matrix of W, dual x dual. Collective.
+Handle<Mat> distribute(const DualLayout &layout, const SparseMatrix &w_product);
+
+/// All multipliers, from every rank onto the ranks and back. Collective.
+Handle<Vec> distribute(const DualLayout &layout, const Vector &multipliers);
+Vector on_every_rank(const DualLayout &layout, Vec multipliers);
+
+/// Collective. `operators` of one interface: from this rank's rows to all of them on every rank.
+/// Its nodal constraint is one of the dual nodes (ContactInterface::can_be_split).
+void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t interface,
+                 ContactOperators &operators);
+
+} // namespace rbvi

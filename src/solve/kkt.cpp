@@ -1,0 +1,111 @@
+#include "rbvi/par/collective.hpp"
+#include "rbvi/solve/methods.hpp"
+#include "vectors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+double ratio(double value, double scale) {
+  return scale > 0 ? value / scale : value;
+}
+
+/// What the residuals of the multipliers are made of, over some nodes or all.
+struct DualMeasures {
+  /// Largest: penetration; |G| over the weight; -l_n, |l_n| and |l|; (|l_tau| - bound)_+.
+  std::array<double, 6> largest{0, 0, -std::numeric_limits<double>::infinity(), 0, 0, 0};
+  /// Sums: |l_n (B u - G)|; |l|^2; |G|^2; |bound |slip| - l_tau . slip|.
+  std::array<double, 4> sums{};
+};
+
+/// `weights`: per node; `excess`: B u - G, in its tangential rows the slip.
+DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vector &g,
+                          const Vector &lambda, const Vector &excess) {
+  DualMeasures result;
+  auto &[penetration, gap, negative, pressure, stress, above] = result.largest;
+  auto &[idle, lambda_squared, g_squared, idle_friction] = result.sums;
+  const Vector bounds = bounds_of(laws, lambda);
+  for (Index i = 0; i < laws.nodes(); ++i) {
+    const Index row = laws.normal[static_cast<std::size_t>(i)];
+    if (weights[i] > 0) { // a multiplier without weight has no constraint
+      penetration = std::max(penetration, excess[row] / weights[i]);
+      gap = std::max(gap, std::abs(g[row]) / weights[i]);
+    }
+    negative = std::max(negative, -lambda[row]);
+    pressure = std::max(pressure, std::abs(lambda[row]));
+    idle += std::abs(lambda[row] * excess[row]);
+    if (!laws.has_tangent(i)) continue;
+    const Index first = laws.tangent[static_cast<std::size_t>(i)];
+    const auto traction = lambda.segment(first, laws.tangents);
+    const auto slip = excess.segment(first, laws.tangents);
+    above = std::max(above, traction.norm() - bounds[i]);
+    idle_friction += std::abs(bounds[i] * slip.norm() - traction.dot(slip));
+  }
+  stress = lambda.size() > 0 ? lambda.cwiseAbs().maxCoeff() : 0;
+  lambda_squared = lambda.squaredNorm();
+  g_squared = g.squaredNorm();
+  return result;
+}
+
+KktResidual residual_of(const DualMeasures &dual, bool tangents) {
+  const auto &[penetration, gap, negative, pressure, stress, above] = dual.largest;
+  const auto &[idle, lambda_squared, g_squared, idle_friction] = dual.sums;
+  const double scale = std::sqrt(lambda_squared) * std::sqrt(g_squared);
+  KktResidual kkt;
+  kkt.feasibility = ratio(penetration, gap);
+  kkt.complementarity = ratio(idle, scale);
+  kkt.sign = std::max(0.0, ratio(negative, pressure));
+  if (tangents) kkt.friction = std::max(ratio(above, stress), ratio(idle_friction, scale));
+  return kkt;
+}
+
+/// KktResidual::stationarity. `reaction`: B^T lambda.
+double stationarity(const Operators &op, Vec u, Vec reaction) {
+  const Handle<Vec> r = like(op.f);
+  RBVI_CALL(MatMult(op.a, u, r.get()));
+  RBVI_CALL(VecAXPY(r.get(), 1, reaction));
+  RBVI_CALL(VecAXPY(r.get(), -1, op.f));
+  return ratio(norm(r.get()), norm(op.f) + norm(reaction));
+}
+
+} // namespace
+
+double KktResidual::largest() const {
+  return std::max({stationarity, feasibility, complementarity, sign, friction});
+}
+
+KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {
+  const Vector excess = op.b * restrict_to(trace, u) - op.g;
+  KktResidual kkt =
+      residual_of(measure_dual(op.laws, op.weights, op.g, lambda, excess), op.laws.has_tangents());
+  const Handle<Vec> reaction = like(op.f);
+  RBVI_CALL(VecZeroEntries(reaction.get()));
+  const Vector bt_lambda = op.b.transpose() * lambda;
+  add_extension(trace, bt_lambda, reaction.get());
+  kkt.stationarity = stationarity(op, u, reaction.get());
+  return kkt;
+}
+
+KktResidual kkt_residual(const DistributedContact &contact, const Operators &op, Vec u,
+                         Vec lambda) {
+  const Handle<Vec> excess = like(lambda), reaction = like(op.f);
+  RBVI_CALL(MatMult(contact.b.get(), u, excess.get()));
+  RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
+  const Vector weights = LocalValues(contact.weights.get()).get()(contact.laws.normal);
+  DualMeasures dual = measure_dual(contact.laws, weights, LocalValues(contact.g.get()).get(),
+                                   LocalValues(lambda).get(), LocalValues(excess.get()).get());
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(lambda));
+  over_ranks(comm, MPI_MAX, dual.largest);
+  over_ranks(comm, MPI_SUM, dual.sums);
+  KktResidual kkt = residual_of(dual, op.laws.has_tangents());
+  RBVI_CALL(MatMultTranspose(contact.b.get(), lambda, reaction.get()));
+  kkt.stationarity = stationarity(op, u, reaction.get());
+  return kkt;
+}
+
+} // namespace rbvi
