@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rbvi {
 
@@ -46,14 +47,9 @@ void EntitySum::integrate_beside_imposed(const FullMu &mu, const Cell &entity,
   values.g -= values.b * imposed_values(scene_, mu, nodes, imposed_by);
 }
 
-std::vector<Index> EntitySum::rows_of(Index entity) const {
-  const int *nodes = mesh_.nodes_of(entity);
-  std::vector<Index> result(nodes, nodes + entity_dim_ + 1);
-  const Index tangents = dual_.components - 1;
-  for (int a = 0; a <= entity_dim_; ++a)
-    for (Index k = 0; k < tangents; ++k)
-      result.push_back(dual_.nodes() + nodes[a] * tangents + k);
-  return result;
+std::span<const Index> EntitySum::rows_of(Index entity) const {
+  return std::span(rows_).subspan(static_cast<std::size_t>(entity * rows()),
+                                  static_cast<std::size_t>(rows()));
 }
 
 std::vector<Index> EntitySum::columns_of(Index entity) const {
@@ -75,22 +71,87 @@ Cell EntitySum::reference_entity(Index entity) const {
   return cell;
 }
 
-void EntitySum::set_dual(Index vertices, int components, SparseMatrix gram) {
-  for (Index i = 0; i < vertices; ++i) {
-    dual_.vertices.push_back(i);
-    dual_.points.push_back(mesh_.points[static_cast<std::size_t>(i)]);
+bool EntitySum::can_move(int node) const {
+  const auto first = mesh_.dofs.begin() + node * mesh_.components;
+  return std::any_of(first, first + mesh_.components, [](int dof) { return dof >= 0; });
+}
+
+/// EntitySum::dual_of_vertex.
+std::vector<Index> EntitySum::dual_functions(Index vertices, bool lumped) const {
+  std::vector<Index> result(static_cast<std::size_t>(vertices), -1);
+  Index count = 0;
+  for (Index v = 0; v < vertices; ++v)
+    if (can_move(static_cast<int>(v))) result[static_cast<std::size_t>(v)] = count++;
+  if (count == 0)
+    throw bad_input(
+        "scene " + scene_.name +
+        ": the displacement is fixed on all of a contact interface, which cannot move it");
+  if (count == vertices || lumped) return result;
+  const std::vector<Index> own = result;
+  std::vector<double> nearest(result.size(), std::numeric_limits<double>::infinity());
+  for (Index e = 0; e < mesh_.count(); ++e)
+    for (int a = 0; a <= entity_dim_; ++a)
+      for (int b = 0; b <= entity_dim_; ++b) {
+        const auto fixed = static_cast<std::size_t>(mesh_.nodes_of(e)[a]),
+                   beside = static_cast<std::size_t>(mesh_.nodes_of(e)[b]);
+        if (own[fixed] >= 0 || own[beside] < 0) continue;
+        const Point &x = mesh_.points[fixed], &y = mesh_.points[beside];
+        const double distance = std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
+        if (!(distance < nearest[fixed])) continue;
+        nearest[fixed] = distance;
+        result[fixed] = own[beside];
+      }
+  return result;
+}
+
+/// None of an entity that cannot move at all.
+void EntitySum::set_rows() {
+  const Index tangents = dual_.components - 1;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const int *nodes = mesh_.nodes_of(e);
+    const bool moves =
+        std::any_of(nodes, nodes + mesh_.per_entity, [&](int node) { return can_move(node); });
+    const auto dual = [&](int a) {
+      return moves ? dual_of_vertex_[static_cast<std::size_t>(nodes[a])] : Index{-1};
+    };
+    for (int a = 0; a <= entity_dim_; ++a)
+      rows_.push_back(dual(a));
+    for (int a = 0; a <= entity_dim_; ++a)
+      for (Index k = 0; k < tangents; ++k)
+        rows_.push_back(dual(a) < 0 ? -1 : dual_.nodes() + dual(a) * tangents + k);
+  }
+}
+
+void EntitySum::set_dual(Index vertices, int components, bool lumped, const SparseMatrix &gram) {
+  dual_of_vertex_ = dual_functions(vertices, lumped);
+  for (Index v = 0; v < vertices; ++v) {
+    if (!can_move(static_cast<int>(v))) continue;
+    dual_.vertices.push_back(v);
+    dual_.points.push_back(mesh_.points[static_cast<std::size_t>(v)]);
   }
   dual_.components = components;
-  dual_.gram = std::move(gram);
+  const Index tangents = components - 1;
+  std::vector<Eigen::Triplet<double>> parts; // hats -> dual functions
+  for (Index v = 0; v < vertices; ++v) {
+    const Index dual = dual_of_vertex_[static_cast<std::size_t>(v)];
+    if (dual < 0) continue;
+    parts.emplace_back(dual, v, 1.0);
+    for (Index k = 0; k < tangents; ++k)
+      parts.emplace_back(dual_.nodes() + dual * tangents + k, vertices + v * tangents + k, 1.0);
+  }
+  SparseMatrix sum(dual_.size(), gram.rows());
+  sum.setFromTriplets(parts.begin(), parts.end());
+  dual_.gram = dual_.nodes() == vertices ? gram : SparseMatrix(sum * gram * sum.transpose());
+  set_rows();
 }
 
 std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
   if (wanted.empty()) return {};
   std::vector<bool> result;
   for (Index e = 0; e < mesh_.count(); ++e) {
-    const int *nodes = mesh_.nodes_of(e);
-    result.push_back(std::any_of(nodes, nodes + entity_dim_ + 1,
-                                 [&](int node) { return is_wanted(wanted, node); }));
+    const std::span<const Index> rows = rows_of(e);
+    result.push_back(std::any_of(rows.begin(), rows.begin() + entity_dim_ + 1,
+                                 [&](Index dual) { return dual >= 0 && is_wanted(wanted, dual); }));
   }
   return result;
 }
@@ -100,7 +161,8 @@ void EntitySum::set_pattern(const WantedNodes &wanted) {
   entities_ = entities_at(wanted);
   const Index tangents = dual_.components - 1;
   const auto wanted_row = [&](Index row) {
-    return is_wanted(wanted, row < dual_.nodes() ? row : (row - dual_.nodes()) / tangents);
+    return row >= 0 &&
+           is_wanted(wanted, row < dual_.nodes() ? row : (row - dual_.nodes()) / tangents);
   };
   std::vector<Eigen::Triplet<double>> entries;
   const auto visit = [&](auto &&add) {
@@ -127,12 +189,12 @@ void EntitySum::set_pattern(const WantedNodes &wanted) {
 
 std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu,
                                               const std::vector<bool> &entities) const {
-  std::vector<bool> needed(static_cast<std::size_t>(dual_.nodes()),
-                           entities.empty() || entity_dim_ == 1);
+  std::vector<bool> needed(dual_of_vertex_.size(), entities.empty() || entity_dim_ == 1);
   for (std::size_t e = 0; e < entities.size(); ++e)
     for (int a = 0; a <= entity_dim_ && entities[e]; ++a)
       needed[static_cast<std::size_t>(mesh_.nodes_of(static_cast<Index>(e))[a])] = true;
-  std::vector<Point> mapped(mesh_.points.begin(), mesh_.points.begin() + dual_.nodes());
+  std::vector<Point> mapped(mesh_.points.begin(),
+                            mesh_.points.begin() + std::ssize(dual_of_vertex_));
   for (std::size_t i = 0; i < mapped.size(); ++i)
     if (needed[i]) mapped[i] = scene_.map(mu, mapped[i]);
   return mapped;
@@ -183,9 +245,9 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, const WantedNod
     integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
-    const std::vector<Index> dual = rows_of(e);
+    const std::span<const Index> dual = rows_of(e);
     for (std::size_t i = 0; i < dual.size(); ++i)
-      operators.g[dual[i]] += values.g[static_cast<Index>(i)];
+      if (dual[i] >= 0) operators.g[dual[i]] += values.g[static_cast<Index>(i)];
     add_weights(mu, e, cell, values, operators.weights);
   });
   set_constraints(mu, mapped, wanted, operators);
@@ -214,8 +276,10 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &, const Vec
 void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
                             Vector &weights) const {
   weigh(mu, cell, values);
+  const std::span<const Index> rows = rows_of(entity);
   for (int a = 0; a <= entity_dim_; ++a)
-    weights[mesh_.nodes_of(entity)[a]] += values.weights[a];
+    if (const Index dual = rows[static_cast<std::size_t>(a)]; dual >= 0)
+      weights[dual] += values.weights[a];
 }
 
 } // namespace rbvi

@@ -52,7 +52,7 @@ void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point
     if (!is_wanted(wanted, i)) continue;
     const Index node = dual_.vertices[static_cast<std::size_t>(i)];
     const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)],
-                                             mapped[static_cast<std::size_t>(i)]);
+                                             mapped[static_cast<std::size_t>(node)]);
     operators.nodal_gap[i] = at.gap;
     for (int c = 0; c < mesh_.components; ++c) {
       const Index at_node = node * mesh_.components + c;

@@ -9,20 +9,17 @@ namespace rbvi {
 
 namespace {
 
-bool any_fixed(const Dofs &dofs, std::size_t node, const std::vector<int> &components) {
-  return std::any_of(components.begin(), components.end(), [&](int c) {
+PetscInt fixed_components(const Dofs &dofs, std::size_t node, const std::vector<int> &components) {
+  return static_cast<PetscInt>(std::count_if(components.begin(), components.end(), [&](int c) {
     return dofs.free[node * static_cast<std::size_t>(dofs.components) +
                      static_cast<std::size_t>(c)] < 0;
-  });
+  }));
 }
 
 void check_curve(const std::vector<CurveNode> &nodes, PetscInt vertices, const std::string &name) {
   if (nodes.size() < 2 || nodes[1].natural >= vertices)
     throw bad_input("the contact curve '" + name + "' has no edge");
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i].fixed)
-      throw bad_input("the displacement is fixed on the contact curve '" + name +
-                      "': contact cannot move it");
     const bool first = i == 0 || (nodes[i].natural >= vertices && nodes[i - 1].natural < vertices);
     if (!first && !(nodes[i].point[0] > nodes[i - 1].point[0]))
       throw bad_input("two nodes of the contact curve '" + name + "' have the same x = " +
@@ -33,24 +30,30 @@ void check_curve(const std::vector<CurveNode> &nodes, PetscInt vertices, const s
 } // namespace
 
 std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary,
-                                    const std::vector<int> &components) {
+                                    const std::vector<int> &components, bool may_be_fixed) {
   const std::vector<bool> &on_curve = mesh.boundary.at(boundary);
   std::vector<PetscInt> numbers, fixed;
   std::vector<double> coordinates;
   for (std::size_t node = 0; node < mesh.points.size(); ++node) {
     if (!on_curve[node] || !mesh.owned_node[node]) continue;
     numbers.push_back(mesh.natural_node[node]);
-    fixed.push_back(any_fixed(dofs, node, components));
+    fixed.push_back(fixed_components(dofs, node, components));
     coordinates.insert(coordinates.end(), mesh.points[node].begin(), mesh.points[node].end());
   }
   numbers = gather_all(mesh.comm, numbers, MPIU_INT);
   fixed = gather_all(mesh.comm, fixed, MPIU_INT);
   coordinates = gather_all(mesh.comm, coordinates, MPI_DOUBLE);
   std::vector<CurveNode> nodes;
-  for (std::size_t i = 0; i < numbers.size(); ++i)
+  const auto all = static_cast<PetscInt>(components.size());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (fixed[i] > 0 && !(may_be_fixed && fixed[i] == all))
+      throw bad_input("the displacement is fixed on the contact curve '" + boundary + "'" +
+                      (fixed[i] < all ? " in some of its directions" : "") +
+                      ": contact cannot move it");
     nodes.push_back({numbers[i],
                      {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]},
-                     fixed[i] != 0});
+                     fixed[i] > 0});
+  }
   const auto key = [&](const CurveNode &node) {
     return std::pair(node.natural >= mesh.total_vertices, node.point[0]);
   };

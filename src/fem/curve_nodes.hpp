@@ -11,13 +11,14 @@ namespace rbvi {
 struct CurveNode {
   PetscInt natural;
   Point point;
-  bool fixed; ///< one of the components asked for is imposed
+  bool fixed; ///< all components asked for are
 };
 
 /// Everybody's owned nodes on a boundary: vertices and then middles of edges, each by increasing x.
-/// `components`: those that must be free. Throws bad_input where there are fewer than 2 vertices,
-/// two nodes have the same x, or a component is fixed. Collective.
+/// `components`: those that contact moves. Throws bad_input where there are fewer than 2 vertices,
+/// two nodes have the same x, or some of the components are fixed, and unless `may_be_fixed` where
+/// all are. Collective.
 std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary,
-                                    const std::vector<int> &components);
+                                    const std::vector<int> &components, bool may_be_fixed);
 
 } // namespace rbvi

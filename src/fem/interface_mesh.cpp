@@ -131,6 +131,7 @@ void add_edges(int first, int nodes, int degree, std::vector<int> &entities) {
 Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
                   const std::function<Point(const Point &)> &snap) {
   std::vector<int> components = entities.components;
+  const bool may_be_fixed = components.empty(); // functions at fixed nodes are modified
   if (components.empty()) {
     components.resize(static_cast<std::size_t>(dofs.components));
     std::iota(components.begin(), components.end(), 0);
@@ -138,7 +139,7 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
   Found found;
   found.mesh.per_entity = mesh.degree + 1;
   for (const std::string &name : entities.parts) {
-    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components);
+    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components, may_be_fixed);
     add_edges(static_cast<int>(found.natural.size()), static_cast<int>(nodes.size()), mesh.degree,
               found.mesh.entities);
     found.mesh.parts.push_back(static_cast<int>(nodes.size()));
@@ -148,7 +149,7 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
       found.mesh.points.push_back(middle && entities.snapped && snap ? snap(node.point)
                                                                      : node.point);
       for (int c = 0; c < dofs.components; ++c)
-        found.free.push_back(std::ranges::find(components, c) != components.end());
+        found.free.push_back(!node.fixed && std::ranges::find(components, c) != components.end());
     }
   }
   return found;

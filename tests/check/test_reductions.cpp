@@ -1,13 +1,15 @@
-// Each reduction of the multipliers where its mathematics allows: on obstacles, between two bodies, on
-// supports, with loads; and models of scenes that no catalogue has.
+// Each reduction of the multipliers where its mathematics allows: on obstacles, between two bodies,
+// on supports, with loads; and models of scenes that no catalogue has.
 #include "reduced.hpp"
 
+#include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <unistd.h>
 
@@ -173,6 +175,48 @@ TEST_F(ModelOfAnotherScene, SaysWhoseCodeItNeedsWhereOneHasNone) {
     EXPECT_NE(message.find("unknown scene 'my_block'"), std::string::npos) << message;
     EXPECT_NE(message.find("for 'motion'"), std::string::npos) << message;
   }
+}
+
+/// A block between walls that hold it, pressed from above onto a plate that tilts: the functions at
+/// the corners are joined to those beside them, in B and g interpolated, too.
+Scene block_between_walls(bool friction) {
+  Scene scene = make_scene("patch", {{"bodies", "one"}});
+  scene.parameters = free_only(scene.parameters, "indentation,shear");
+  scene.motion = {};
+  scene.fixed = {{"sides", {}}};
+  scene.f = {
+      exact_term(pressure_load("top", 1, 2, scene.degree), {{"load", affine(1, 5, 0), {0}}})};
+  HalfPlane plate{"contact", {0, -1, 0}, {0.5, 0, 0}, constant(0)};
+  plate.tilt = affine(0, 0.05, 1);
+  if (friction) plate.friction = {FrictionLaw::coulomb, constant(0.3)};
+  scene.contacts = {half_plane(plate)};
+  return scene;
+}
+
+TEST(JoinedFunctions, AreReducedLikeOthers) {
+  for (const bool friction : {false, true})
+    for (const MultiplierReduction reduction :
+         {MultiplierReduction::condensed, MultiplierReduction::collocated,
+          friction ? MultiplierReduction::cones : MultiplierReduction::cone}) {
+      SCOPED_TRACE(multiplier_reduction_names()[static_cast<std::size_t>(reduction)] +
+                   (friction ? ", friction" : ""));
+      Reduced r(block_between_walls(friction), "grid:5,5");
+      EXPECT_LT(r.problem.contact().nodes(),
+                r.problem.contact().interfaces.front()->mesh().count());
+      ReduceOptions options = everything();
+      options.multipliers.reduction = reduction;
+      if (reduction != MultiplierReduction::cone) options.cone.type = ConeType::mcpg;
+      options.eim.tolerance = 1e-10;
+      r.reduce(options);
+      EXPECT_GT(r.model.b.interpolation.rows(), 1) << "B is interpolated";
+      const Largest errors = errors_of(r, "random:6:3");
+      EXPECT_LE(errors.u, reduction == MultiplierReduction::condensed ? 1e-12 : 1e-5);
+      EXPECT_LE(errors.lambda, reduction == MultiplierReduction::condensed ? 1e-12 : 1e-5);
+      EXPECT_LE(errors.tangential, reduction == MultiplierReduction::condensed ? 1e-12 : 1e-4);
+      const ModelErrors of_training = r.errors_at(r.samples); // without tilt there is no gap at all
+      EXPECT_EQ(of_training.failed, 0);
+      EXPECT_LE(of_training.lambda.maxCoeff(), 1e-5);
+    }
 }
 
 } // namespace

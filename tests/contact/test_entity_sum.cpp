@@ -95,15 +95,18 @@ struct Sum {
       EntityValues values = interface.shape();
       interface.integrate(mu, entity, values);
       interface.weigh(mu, entity, values);
-      const std::vector<Index> rows = interface.rows_of(e), columns = interface.columns_of(e);
+      const auto rows = interface.rows_of(e);
+      const std::vector<Index> columns = interface.columns_of(e);
       for (std::size_t i = 0; i < rows.size(); ++i) {
         const auto row = static_cast<Index>(i);
+        if (rows[i] < 0) continue;
         g[rows[i]] += values.g[row];
         for (std::size_t j = 0; j < columns.size(); ++j)
           if (columns[j] >= 0) b(rows[i], columns[j]) += values.b(row, static_cast<Index>(j));
       }
       for (Index i = 0; i < values.weights.size(); ++i)
-        weights[rows[static_cast<std::size_t>(i)]] += values.weights[i];
+        if (const Index row = rows[static_cast<std::size_t>(i)]; row >= 0)
+          weights[row] += values.weights[i];
     }
   }
 };
@@ -193,32 +196,101 @@ TEST(EntitySum, RowsThatAreWantedAreThoseOfTheWhole) {
   expect_rows(curve, support_curve(random_curve(random, 9, -0.5, 0.8, -0.3), 2));
 }
 
-/// Rows and columns of what is seen are those of the whole.
-TEST(EntitySum, DofsThatAreNotSeenHaveNoColumn) {
+/// The same mesh with nodes that are fixed.
+template <class IsFixed> InterfaceMesh with_fixed(InterfaceMesh mesh, IsFixed &&is_fixed) {
+  for (Index node = 0; node < mesh.nodes(); ++node)
+    for (int c = 0; c < mesh.components; ++c)
+      if (is_fixed(mesh.points[static_cast<std::size_t>(node)]))
+        mesh.dofs[static_cast<std::size_t>(node * mesh.components + c)] = -1;
+  return mesh;
+}
+
+/// Hats -> dual functions: those of vertices that move, that of a fixed one added to `beside` it.
+Matrix joined(const DualSpace &dual, Index vertices, const std::map<Index, Index> &beside) {
+  const Index tangents = dual.components - 1;
+  Matrix sum = Matrix::Zero(dual.size(), vertices * dual.components);
+  for (Index v = 0; v < vertices; ++v) {
+    const auto found = beside.find(v);
+    const auto at = std::ranges::find(dual.vertices, found == beside.end() ? v : found->second);
+    if (at == dual.vertices.end()) continue;
+    const Index i = at - dual.vertices.begin();
+    sum(i, v) = 1;
+    for (Index k = 0; k < tangents; ++k)
+      sum(dual.nodes() + i * tangents + k, vertices + v * tangents + k) = 1;
+  }
+  return sum;
+}
+
+/// Of interfaces on `all` and, with some of its nodes fixed, on `held`: B, g, the weights and the
+/// Gram matrix are sums of the rows of hats; the nodal constraint is one of vertices that move.
+void expect_joined(const Scene &scene, const InterfaceMesh &all, const InterfaceMesh &held,
+                   const std::map<Index, Index> &beside) {
+  const auto whole = scene.contacts.front().make(scene, all),
+             part = scene.contacts.front().make(scene, held);
+  const DualSpace &hats = whole->dual(), &dual = part->dual();
+  const Matrix sum = joined(dual, hats.nodes(), beside);
+  ContactOperators of_hats, op;
+  whole->assemble_all({0.8}, {}, of_hats);
+  part->assemble_all({0.8}, {}, op);
+  Matrix expected = sum * of_hats.b;
+  for (std::size_t k = 0; k < held.dofs.size(); ++k)
+    if (held.dofs[k] < 0) expected.col(static_cast<Index>(k)).setZero();
+  EXPECT_LE((Matrix(op.b) - expected).norm(), 1e-15);
+  EXPECT_LE((op.g - sum * of_hats.g).norm(), 1e-15);
+  EXPECT_LE((op.weights - sum.topLeftCorner(dual.nodes(), hats.nodes()) * of_hats.weights).norm(),
+            1e-15);
+  EXPECT_LE((Matrix(dual.gram) - sum * hats.gram * sum.transpose()).norm(), 1e-15);
+  ASSERT_EQ(op.nodal_b.rows(), dual.nodes());
+  for (Index i = 0; i < dual.nodes(); ++i) {
+    const Index vertex = dual.vertices[static_cast<std::size_t>(i)];
+    EXPECT_EQ(Matrix(op.nodal_b.row(i)), Matrix(of_hats.nodal_b.row(vertex)));
+    EXPECT_EQ(op.nodal_gap[i], of_hats.nodal_gap[vertex]);
+  }
+}
+
+TEST(EntitySum, TheFunctionOfAFixedVertexJoinsThatBesideIt) {
   const Scene scene = membrane({"region", quadratic});
-  const InterfaceMesh all = square(3), part = partly_seen(all);
-  ContactOperators whole, seen;
-  scene.contacts.front().make(scene, all)->assemble_all({0.8}, {}, whole);
-  scene.contacts.front().make(scene, part)->assemble_all({0.8}, {}, seen);
-  EXPECT_EQ(seen.b.cols(), 21);
-  EXPECT_EQ(seen.g, whole.g);
-  Index columns = 0;
-  for (Index i = 0; i < all.nodes(); ++i)
-    if (const int dof = part.dofs[static_cast<std::size_t>(i)]; dof >= 0) {
-      EXPECT_EQ(Vector(seen.b.col(dof)), Vector(whole.b.col(i)));
-      EXPECT_EQ(Vector(seen.nodal_b.col(dof)), Vector(whole.nodal_b.col(i)));
-      ++columns;
-    }
-  EXPECT_EQ(columns, 11);
-  EXPECT_NEAR(
-      seen.b.squaredNorm(),
-      [&] {
-        double sum = 0;
-        for (Index i = 0; i < all.nodes(); ++i)
-          if (part.dofs[static_cast<std::size_t>(i)] >= 0) sum += whole.b.col(i).squaredNorm();
-        return sum;
-      }(),
-      1e-15);
+  const auto on_the_left = [](const Point &x) { return x[0] < 0.01; };
+  const std::map<Index, Index> to_the_right{{0, 1}, {4, 5}, {8, 9}, {12, 13}};
+  for (const InterfaceMesh &mesh : {square(3), quadratic_square(3)}) {
+    const InterfaceMesh held = with_fixed(mesh, on_the_left);
+    expect_joined(scene, mesh, held, to_the_right);
+    expect_sum(scene, held);
+  }
+  Random random(1);
+  const Curve vertices = random_curve(random, 7, -0.5, 0.8, -0.3);
+  for (const int degree : {1, 2}) { // normal and tangential functions
+    SupportScene clamped = crooked(degree);
+    clamped.contacts = {rigid_support(clamped.support)};
+    const InterfaceMesh mesh = support_curve(vertices, degree);
+    const InterfaceMesh held = with_fixed(
+        mesh, [&](const Point &x) { return x == vertices.front() || x == vertices.back(); });
+    expect_joined(clamped, mesh, held, {{0, 1}, {7, 6}});
+    expect_sum(clamped, held);
+  }
+}
+
+/// A function of vertex quadrature acts on its own vertex alone.
+TEST(EntitySum, WithVertexQuadratureItIsLeftOut) {
+  const Scene scene = membrane({"region", quadratic, true});
+  const InterfaceMesh all = square(3),
+                      held = with_fixed(all, [](const Point &x) { return x[0] < 0.01; });
+  expect_joined(scene, all, held, {});
+  expect_sum(scene, held);
+}
+
+/// No function is above zero there, and no gap counts.
+TEST(EntitySum, WhatCannotMoveAtAllIsNoContact) {
+  const Scene scene = membrane({"region", quadratic});
+  const auto interface = scene.contacts.front().make(
+      scene, with_fixed(square(3), [](const Point &x) { return x[0] < 0.4; }));
+  EXPECT_EQ(interface->dual().nodes(), 8);
+  ContactOperators op;
+  interface->assemble_all({0.8}, {}, op);
+  EXPECT_NEAR(op.weights.sum(), 0.8 * 2 / 3, 1e-15);
+  EXPECT_TRUE(refuses("fixed on all of a contact interface", [&] {
+    scene.contacts.front().make(scene, with_fixed(square(3), [](const Point &) { return true; }));
+  }));
 }
 
 /// -B 1 = the weights, whose sum is the mapped area; -g over all rows is the integral of psi.

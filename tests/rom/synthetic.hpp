@@ -164,7 +164,7 @@ public:
   ToyContact(const Scene &scene, InterfaceMesh region) : EntitySum(scene, std::move(region), 2) {
     SparseMatrix gram(mesh_.nodes(), mesh_.nodes());
     gram.setIdentity();
-    set_dual(mesh_.nodes(), 1, gram);
+    set_dual(mesh_.nodes(), 1, false, gram);
   }
   void integrate(const FullMu &mu, const Cell &, EntityValues &values) const override {
     for (int i = 0; i < 9; ++i)

@@ -5,6 +5,8 @@
 
 #include "rbvi/contact/interface.hpp"
 
+#include <span>
+
 namespace rbvi {
 
 /// What one entity adds. Rows: normal multipliers of its vertices, then their tangential ones;
@@ -35,8 +37,9 @@ public:
   int entity_dim() const { return entity_dim_; }
   /// Zero values of the shape of an entity.
   EntityValues shape() const;
-  /// The dual rows of an entity, in the order of EntityValues.
-  std::vector<Index> rows_of(Index entity) const;
+  /// The dual rows of an entity, in the order of EntityValues; -1 where there is none. A row can
+  /// stand there twice, at a vertex and at a fixed one beside it.
+  std::span<const Index> rows_of(Index entity) const;
   /// Its columns of B, -1 where there is none.
   std::vector<Index> columns_of(Index entity) const;
   /// Its reference vertices, and by what its dofs are imposed; valid as long as the interface.
@@ -44,10 +47,19 @@ public:
 
 protected:
   EntitySum(const Scene &scene, InterfaceMesh mesh, int entity_dim);
-  /// The dual functions are the hats of the first `vertices` nodes of the mesh.
-  void set_dual(Index vertices, int components, SparseMatrix gram);
+  /// The dual functions are the hats of the first `vertices` nodes of the mesh that can move. The
+  /// hat of a fixed one, which has no displacement to act on, is added to that of the nearest
+  /// vertex beside it that can, so that the functions sum to 1 still; with vertex quadrature
+  /// (`lumped`), where a function acts on its own vertex alone, it is left out. `gram`: of all
+  /// hats. Throws bad_input where no vertex can move.
+  void set_dual(Index vertices, int components, bool lumped, const SparseMatrix &gram);
+  /// Per vertex: its dual function, -1 where there is none.
+  const std::vector<Index> &dual_of_vertex() const { return dual_of_vertex_; }
 
 private:
+  bool can_move(int node) const;
+  std::vector<Index> dual_functions(Index vertices, bool lumped) const;
+  void set_rows();
   Index rows() const { return (entity_dim_ + 1) * dual_.components; }
   /// The entities on which the function of a wanted node does not vanish; empty: all.
   std::vector<bool> entities_at(const WantedNodes &wanted) const;
@@ -64,6 +76,8 @@ private:
                    Vector &weights) const;
 
   int entity_dim_;
+  std::vector<Index> dual_of_vertex_;
+  std::vector<Index> rows_;     ///< of each entity
   std::vector<int> imposed_by_; ///< of the dofs of each entity; empty: nothing is imposed
   SparseMatrix pattern_;        ///< of b, zero values; made by the first assemble
   WantedNodes pattern_wanted_;  ///< the rows that it has

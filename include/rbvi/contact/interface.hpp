@@ -136,8 +136,9 @@ public:
   virtual const NitscheCurve *nitsche() const { return nullptr; }
 
 protected:
-  /// nodal_b and nodal_gap from constraint_at at the wanted vertices of the dual space, which are
-  /// `mapped` there, the imposed values taken into the gap; zero at the others.
+  /// nodal_b and nodal_gap from constraint_at at the wanted vertices of the dual space, the imposed
+  /// values taken into the gap; zero at the others. `mapped`: per node of the mesh that is a
+  /// vertex.
   void set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
                        const WantedNodes &wanted, ContactOperators &operators) const;
 

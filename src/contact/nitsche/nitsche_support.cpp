@@ -65,7 +65,7 @@ public:
   void assemble(const FullMu &mu, const ContactState &, const WantedNodes &,
                 ContactOperators &operators) override {
     std::vector<Point> mapped;
-    for (const Point &x : dual_.points)
+    for (const Point &x : mesh_.points)
       mapped.push_back(scene_.map(mu, x));
     set_constraints(mu, mapped, {}, operators);
   }

@@ -22,7 +22,7 @@ public:
       throw bad_input("scene " + scene.name + ": an obstacle is for scalar displacements");
     for (Index e = 0; e < mesh_.count(); ++e)
       simplices_.insert(simplices_.end(), mesh_.nodes_of(e), mesh_.nodes_of(e) + mesh_.dim + 1);
-    set_dual(1 + *std::ranges::max_element(simplices_), 1, gram());
+    set_dual(1 + *std::ranges::max_element(simplices_), 1, obstacle_.lumped, gram());
   }
 
   void integrate(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
@@ -44,6 +44,7 @@ public:
 
 private:
   SparseMatrix gram() const;
+  Vector at_vertices(const Vector &normal) const;
 
   Obstacle obstacle_;
   Form b_, g_;
@@ -67,21 +68,30 @@ SparseMatrix ObstacleInterface::gram() const {
   return result;
 }
 
+/// From dual functions; zero where there is none.
+Vector ObstacleInterface::at_vertices(const Vector &normal) const {
+  const std::vector<Index> &dual = dual_of_vertex();
+  return Vector::NullaryExpr(std::ssize(dual), [&](Index v) {
+    const Index i = dual[static_cast<std::size_t>(v)];
+    return i < 0 ? 0.0 : normal[i];
+  });
+}
+
 void ObstacleInterface::outputs(const FullMu &, const ContactOperators &operators,
                                 const Vector &lambda, double least, Outputs &outputs) const {
   pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
-  if (obstacle_.lumped)
-    outputs.contact_measure =
-        scene_.mirror_images * contact_area(operators.weights,
-                                            (lambda.array() > least).select(lambda, 0), simplices_,
-                                            mesh_.dim + 1);
+  if (!obstacle_.lumped) return;
+  const Vector pressed = (lambda.array() > least).select(lambda, 0);
+  outputs.contact_measure =
+      scene_.mirror_images *
+      contact_area(at_vertices(operators.weights), at_vertices(pressed), simplices_, mesh_.dim + 1);
 }
 
 Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
   Matrix points = mapped_points(scene_, mu, mesh_.points);
   straighten_edges(mesh_.entities, mesh_.dim, mesh_.degree, points);
   Matrix pressure = Matrix::Zero(mesh_.nodes(), 1);
-  pressure.topRows(lambda.size()) = lambda;
+  pressure.topRows(std::ssize(dual_of_vertex())) = at_vertices(lambda);
   straighten_edges(mesh_.entities, mesh_.dim, mesh_.degree, pressure);
   Vector gap(mesh_.nodes());
   for (Index i = 0; i < gap.size(); ++i) {

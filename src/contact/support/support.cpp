@@ -51,7 +51,7 @@ public:
                       "components");
     const std::vector<Point> points(mesh_.points.begin(), mesh_.points.begin() + vertices);
     const int copies = support_.friction.law == FrictionLaw::none ? 1 : 2;
-    set_dual(vertices, copies, linear_gram(points, copies));
+    set_dual(vertices, copies, support_.lumped, linear_gram(points, copies));
   }
 
   void integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const override;
@@ -108,20 +108,22 @@ void SupportInterface::integrate(const FullMu &mu, const Cell &edge, EntityValue
     }
 }
 
-/// The work of every multiplier on a unit vertical displacement, B e_y.
+/// The work of every multiplier on a unit vertical displacement, B e_y. `mapped`: the vertices.
 Vector SupportInterface::lift(const FullMu &mu, const Matrix &mapped) const {
   Vector result = Vector::Zero(dual_.size());
   for (Index e = 0; e < mesh_.count(); ++e) {
     const Cell edge = reference_entity(e);
+    const std::span<const Index> rows = rows_of(e);
     const double whole = (mapped.row(e + 1) - mapped.row(e)).norm();
     for (const TracePoint &at : points_) {
       const Point &begin = edge.reference[0], &end = edge.reference[1];
       const Point n = support_.normal(mu, {at.eta[0] * begin[0] + at.eta[1] * end[0],
                                            at.eta[0] * begin[1] + at.eta[1] * end[1], 0});
-      for (Index a = 0; a < 2; ++a) {
-        const double eta = at.weight * whole * at.eta[static_cast<std::size_t>(a)];
-        result[e + a] += eta * n[1];
-        if (dual_.components > 1) result[dual_.nodes() + e + a] += eta * n[0];
+      for (std::size_t a = 0; a < 2; ++a) {
+        if (rows[a] < 0) continue;
+        const double eta = at.weight * whole * at.eta[a];
+        result[rows[a]] += eta * n[1];
+        if (dual_.components > 1) result[rows[2 + a]] += eta * n[0];
       }
     }
   }
@@ -130,8 +132,11 @@ Vector SupportInterface::lift(const FullMu &mu, const Matrix &mapped) const {
 
 void SupportInterface::outputs(const FullMu &mu, const ContactOperators &operators,
                                const Vector &lambda, double, Outputs &outputs) const {
-  const Matrix mapped = mapped_points(scene_, mu, dual_.points);
-  support_outputs({lambda, operators.weights, lift(mu, mapped), bound(mu), mapped}, outputs);
+  const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + mesh_.count() + 1);
+  const Matrix mapped = mapped_points(scene_, mu, vertices);
+  support_outputs(
+      {lambda, operators.weights, lift(mu, mapped), bound(mu), mapped(dual_.vertices, Eigen::all)},
+      outputs);
 }
 
 } // namespace

@@ -79,7 +79,7 @@ SampleMesh sample_interface(const EntitySum &interface, Index first_row,
   for (Index e = 0; e < interface.mesh().count(); ++e) {
     std::vector<PetscInt> rows, columns{0};
     for (const Index row : interface.rows_of(e))
-      rows.push_back(static_cast<PetscInt>(first_row + row));
+      rows.push_back(row < 0 ? -1 : static_cast<PetscInt>(first_row + row));
     if (matrix) {
       columns.clear();
       for (const Index column : interface.columns_of(e))
