@@ -20,12 +20,12 @@ from solution_figures import label_plane, solution
 
 
 def kind_of(run):
-    """What the model reduces: a "pair" of bases, the law at nodes ("support"), or the curve of
+    """What the model reduces: a "pair" of bases, the "law" at nodes, or the curve of
     "nitsche"."""
     with h5py.File(model_of(run), "r") as model:
         if int(np.ravel(model["nitsche/rule"][()])[0]) >= 0:
             return "nitsche"
-        return "support" if int(np.ravel(model["support/normal"][()])[0]) > 0 else "pair"
+        return "law" if int(np.ravel(model["law/normal"][()])[0]) > 0 else "pair"
 
 
 def nitsche_panels(run):
@@ -46,7 +46,7 @@ def nitsche_panels(run):
     return panels
 
 
-def support_panels(run):
+def law_panels(run):
     """What a model of contact with a rigid support was made from, beside its modes."""
     with h5py.File(run / "model.h5", "r") as model:
         collocated = "gcns" in model["histories/values"]
@@ -85,7 +85,7 @@ def bases(run):
     pod = history(run, "pod/error")
     pod = pod[pod > 1e-14]
     panels = [(np.arange(len(pod)), pod, "modes N", "relative error", "displacement, POD"),
-              *{"nitsche": nitsche_panels, "support": support_panels,
+              *{"nitsche": nitsche_panels, "law": law_panels,
                 "pair": pair_panels}[kind_of(run)](run)]
     figure, axes = plt.subplots(1, len(panels), figsize=(3.2 * len(panels), 3), squeeze=False,
                                 constrained_layout=True)

@@ -75,7 +75,7 @@ std::string solver_name(const Problem &problem, const HfOptions &options, bool c
   return "";
 }
 
-std::vector<Index> support(const Vector &lambda) {
+std::vector<Index> positive_entries(const Vector &lambda) {
   std::vector<Index> active;
   for (Index i = 0; i < lambda.size(); ++i)
     if (lambda[i] > 0) active.push_back(i);
@@ -149,7 +149,7 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
   Compliance compliance;
   Compliance *kept = constant_stiffness(problem.scene()) ? &compliance : nullptr;
   for (const Sample &truth : truths) {
-    const Start start{support(truth.lambda), truth.lambda};
+    const Start start{positive_entries(truth.lambda), truth.lambda};
     std::vector<double> at{MPI_Wtime()};
     const Operators &op = problem.assemble(truth.mu);
     at.push_back(MPI_Wtime());

@@ -77,7 +77,7 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
 
 /// Relative distances of the true multipliers to what the dual basis spans.
 Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const SparseMatrix &w) {
-  if (model.support) return Vector::Zero(truths.lambda_norm.size());
+  if (model.law) return Vector::Zero(truths.lambda_norm.size());
   const Index bounded = model.generators - model.free_modes;
   const Vector distance = distances_to_cone(truths.lambda, {model.dual_basis.leftCols(bounded)}, w,
                                             {model.dual_basis.rightCols(model.free_modes)}) *

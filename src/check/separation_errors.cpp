@@ -27,7 +27,7 @@ void add_contact(const ReducedModel &model, const Problem &problem, std::vector<
   const auto theta = [&](const FullMu &all) {
     return contact_coefficients(model.b, Part::b, problem.contact(), problem.scene(), all);
   };
-  const Index normal = model.support ? model.support->apart.normal : 0;
+  const Index normal = model.law ? model.law->apart.normal : 0;
   if (normal == 0) {
     parts.push_back(
         {"b", model.b.size(), [](const Operators &op) { return nonzero_values(op.b); }, theta});

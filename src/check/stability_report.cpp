@@ -38,8 +38,7 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
   check.space = make_riesz_space(problem.v_product(), problem.trace());
   check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis));
   check.dual = orthonormal_dual_basis(
-      model.support ? multiplier_functions(model.dual_basis, model.support->basis)
-                    : model.dual_basis,
+      model.law ? multiplier_functions(model.dual_basis, model.law->basis) : model.dual_basis,
       problem.w_product());
   return check;
 }

@@ -134,11 +134,9 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
 }
 
 /// The training multipliers, and where they are.
-void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis,
-                       SupportModel &support) {
-  support.starts = nodal_coefficients(basis, multipliers_of(samples));
-  support.starts_mu =
-      as_columns(parameters_of(samples), static_cast<int>(samples.front().mu.size()));
+void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis, NodalLaw &law) {
+  law.starts = nodal_coefficients(basis, multipliers_of(samples));
+  law.starts_mu = as_columns(parameters_of(samples), static_cast<int>(samples.front().mu.size()));
 }
 
 /// e_EIM along the terms, and the training number of each.
@@ -167,31 +165,31 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   model.modes = bases.modes;
   model.supremizers = bases.supremizers + bases.responses;
   model.online_enriched = bases.online_enriched;
-  model.dual_basis = by_nitsche(scene)               ? Matrix(problem.dual_size(), 0)
-                     : bases.support_dual.size() > 0 ? bases.support_dual
-                                                     : bases.cone.all();
+  model.dual_basis = by_nitsche(scene)             ? Matrix(problem.dual_size(), 0)
+                     : bases.nodal_dual.size() > 0 ? bases.nodal_dual
+                                                   : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
   model.generators = static_cast<int>(model.dual_basis.cols());
   return model;
 }
 
-SupportModel start_support(const Problem &problem, const std::vector<Sample> &samples,
-                           const AffineOperators &affine, const ReducedBases &bases,
-                           const ReducedModel &model) {
-  SupportModel support;
+NodalLaw start_law(const Problem &problem, const std::vector<Sample> &samples,
+                   const AffineOperators &affine, const ReducedBases &bases,
+                   const ReducedModel &model) {
+  NodalLaw law;
   for (Index column = 0; column < model.generators; ++column) {
     Index row = 0;
     model.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
-    if (dual_row(problem.contact(), row).normal) ++support.normal;
+    if (dual_row(problem.contact(), row).normal) ++law.normal;
   }
-  support.reduction = bases.reduction;
-  support.mended = bases.mended;
-  support.basis = bases.multipliers.basis;
-  support.condensed = bases.condensed;
+  law.reduction = bases.reduction;
+  law.mended = bases.mended;
+  law.basis = bases.multipliers.basis;
+  law.condensed = bases.condensed;
   if (affine.b_tangential.size() > 0)
-    support.apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
-  store_multipliers(samples, model.dual_basis, support);
-  return support;
+    law.apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
+  store_multipliers(samples, model.dual_basis, law);
+  return law;
 }
 
 /// The separated operators, their terms zero.
@@ -204,8 +202,7 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
   model.b = start_terms_of_b(affine, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n, std::ssize(problem.f_terms().exact));
   model.g = start_terms(affine.g, affine.sample_g, generators);
-  if (bases.support_dual.size() > 0)
-    model.support = start_support(problem, samples, affine, bases, model);
+  if (bases.nodal_dual.size() > 0) model.law = start_law(problem, samples, affine, bases, model);
 }
 
 /// Adds the operators of the snapshots that the terms are made of. Collective.

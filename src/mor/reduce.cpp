@@ -315,7 +315,7 @@ std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
 /// The law at nodes.
 void reduce_law(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
                 Reduction &result) {
-  result.bases = build_support_bases(problem, samples, options, result.affine, result.stages);
+  result.bases = build_law_bases(problem, samples, options, result.affine, result.stages);
   {
     const Stage stage(result.stages, stage::projection);
     result.model = project(problem, samples, result.affine, result.bases);

@@ -169,7 +169,7 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
             "the condensed operator, at the Chebyshev points of the parameters of A to " +
                 short_number(options.condensed.tolerance)};
   const CondensedOperator &condensed = made->bases.condensed;
-  std::string what = counted(made->bases.support_dual.cols(), "multiplier") + ", " +
+  std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") + ", " +
                      counted(made->bases.factorisations, "factorisation") + ", " +
                      counted(condensed.terms.cols(), "term");
   if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);
@@ -179,8 +179,8 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
 constexpr StageName pair_stages("cone, PGA");
 
 /// The law at nodes: the condensed operator in place of a reduced pair, or beside it.
-void add_support_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
-                      StageTable &rows) {
+void add_law_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
+                  StageTable &rows) {
   const MultiplierReduction reduction = options.multipliers.reduction;
   rows.push_back(condensation_row(options, made));
   if (reduction == MultiplierReduction::condensed)
@@ -232,7 +232,7 @@ StageTable reduction_stages(const Scene &of, const ReduceOptions &options, const
   if (by_nitsche(scene)) {
     add_curve_rows(options, made, rows);
   } else if (keeps_law(reduction_of(scene, options.multipliers.reduction))) {
-    add_support_rows(scene, options, made, rows);
+    add_law_rows(scene, options, made, rows);
   } else {
     rows.push_back(cone_row(options, made));
     add_supremizer_rows(scene, options, made, rows);

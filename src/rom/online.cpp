@@ -3,9 +3,9 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/rom/law/reduced_stiffness.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
-#include "rbvi/rom/support/reduced_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,8 +66,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());
     return;
   }
-  if (model.support) {
-    support_ = std::make_unique<SupportSolver>(model, scene_, contact_);
+  if (model.law) {
+    law_ = std::make_unique<LawSolver>(model, scene_, contact_);
     return;
   }
   const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
@@ -208,8 +208,8 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
     solution.iterations = answer.iterations;
     return solution;
   }
-  if (support_) {
-    SupportAnswer answer = support_->solve(all_parameters);
+  if (law_) {
+    LawAnswer answer = law_->solve(all_parameters);
     solution.u = std::move(answer.u);
     solution.x = std::move(answer.x);
     solution.theta_b = std::move(answer.theta_b);
@@ -295,7 +295,7 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   const Vector excess =
       operators.nodal_b * (model_.contact_trace * solution.u) - operators.nodal_gap;
   result.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
-  const double least = support_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
+  const double least = law_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   return result;
 }

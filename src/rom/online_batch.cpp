@@ -179,7 +179,7 @@ double violation(const Outputs &outputs) {
 
 void warn_of_violation(const ReducedModel &model, double violation, std::ostream &out) {
   constexpr double tolerated = 1e-6;
-  if (!model.support || violation <= tolerated) return;
+  if (!model.law || violation <= tolerated) return;
   out << "warning: the laws of contact and friction are violated by " << violation
       << " of the largest pressure at some node: reduce again with -multiplier_exact yes, which "
          "mends such answers\n";

@@ -67,11 +67,10 @@ void print_terms_of_rows(std::ostream &out, int terms, const TermsApart &apart) 
                            << apart.tangential_error << ")\n";
 }
 
-void print_support(std::ostream &out, const SupportModel &support, int multipliers) {
+void print_law(std::ostream &out, const NodalLaw &law, int multipliers) {
   label(out, "condensed operator")
-      << multipliers << " x " << multipliers << ", " << support.condensed.terms.cols() << " terms";
-  if (!support.condensed.axes.empty())
-    out << " (interpolation error " << support.condensed.error << ')';
+      << multipliers << " x " << multipliers << ", " << law.condensed.terms.cols() << " terms";
+  if (!law.condensed.axes.empty()) out << " (interpolation error " << law.condensed.error << ')';
   out << '\n';
 }
 
@@ -128,13 +127,13 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_parameters(out, model.parameters);
   print_failed(out, model);
   label(out, "modes") << model.modes << '\n';
-  const bool joined = model.support && model.support->reduction != MultiplierReduction::collocated;
+  const bool joined = model.law && model.law->reduction != MultiplierReduction::collocated;
   label(out, joined ? "responses" : "supremizers")
       << model.supremizers << (model.online_enriched ? " (the space is made online)" : "") << '\n';
   if (model.nitsche)
     print_curve(out, *model.nitsche, model.interfaces.front().mesh.count());
-  else if (model.support)
-    print_support(out, *model.support, model.generators);
+  else if (model.law)
+    print_law(out, *model.law, model.generators);
   else
     label(out, "cone generators") << model.generators - model.free_modes << '\n';
   if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
@@ -146,8 +145,8 @@ void print_model(std::ostream &out, const ReducedModel &model) {
     label(out, "b, g") << "assembled for each mu on " << nodes_of_interfaces(model)
                        << " contact nodes\n";
   } else {
-    if (model.support && model.support->apart.normal > 0)
-      print_terms_of_rows(out, model.b.size(), model.support->apart);
+    if (model.law && model.law->apart.normal > 0)
+      print_terms_of_rows(out, model.b.size(), model.law->apart);
     else
       print_terms(out, "b", model.b);
     print_terms(out, "g", model.g);

@@ -68,7 +68,7 @@ std::vector<int> generator_counts(const ReducedModel &model) {
   if (type != model.settings.end() && (type->second == "nodal" || type->second == "nmf"))
     return {model.generators};
   const int cone = model.generators - model.free_modes;
-  if (model.support || model.nitsche) return {model.generators};
+  if (model.law || model.nitsche) return {model.generators};
   if (model.free_modes > 0) return sizes_up_to(model.generators, {cone, cone + 4, cone + 8});
   return sizes_up_to(model.generators, {20, 50, 70, 100});
 }
@@ -237,8 +237,8 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
   });
 }
 
-std::string reduction_name(const SupportModel &support) {
-  return multiplier_reduction_names()[static_cast<std::size_t>(support.reduction)];
+std::string reduction_name(const NodalLaw &law) {
+  return multiplier_reduction_names()[static_cast<std::size_t>(law.reduction)];
 }
 
 std::string nitsche_name(const NitscheModel &nitsche) {
@@ -296,7 +296,7 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
           ? whole
           : model_errors(leading(model, model.modes, model.generators), {}, truths, w);
   const std::string name = model.nitsche            ? nitsche_name(*model.nitsche)
-                           : model.support          ? reduction_name(*model.support)
+                           : model.law              ? reduction_name(*model.law)
                            : model.supremizers == 0 ? "decorrelated"
                            : model.online_enriched  ? "online-enriched"
                                                     : "offline-enriched";

@@ -91,14 +91,14 @@ TEST(CondensedLaw, LoadsOnABodyWhoseStiffnessIsFree) {
 TEST(CondensedLaw, TwoBodiesKeepTheirNodesUnlessAskedOtherwise) {
   Reduced r(make_scene("two_disks", {{"arc_edges", "24"}}), "grid:9");
   r.reduce({});
-  EXPECT_TRUE(r.model.support.has_value());
+  EXPECT_TRUE(r.model.law.has_value());
   const Largest errors = errors_of(r, "random:6:3");
   EXPECT_LE(errors.u, 1e-6);
   EXPECT_LE(errors.lambda, 1e-9);
   ReduceOptions cone;
   cone.multipliers.reduction = MultiplierReduction::cone;
   r.reduce(cone);
-  EXPECT_FALSE(r.model.support.has_value());
+  EXPECT_FALSE(r.model.law.has_value());
 }
 
 TEST(Reductions, AConeWithSupremizersServesASupportWithoutFriction) {
@@ -109,7 +109,7 @@ TEST(Reductions, AConeWithSupremizersServesASupportWithoutFriction) {
   options.eim.tolerance = 1e-10;
   r.reduce(options);
   EXPECT_GT(r.model.supremizers, 0);
-  EXPECT_FALSE(r.model.support.has_value());
+  EXPECT_FALSE(r.model.law.has_value());
   const Largest errors = errors_of(r, "random:8:3");
   EXPECT_LE(errors.u, 1e-5);
   EXPECT_LE(errors.lambda, 1e-4);

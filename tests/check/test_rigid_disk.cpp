@@ -8,8 +8,8 @@
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
-#include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -166,11 +166,11 @@ TEST(MultiplierReductions, CollocatedWithoutTheCondensedOperatorIsAsAccurateAsPu
   options.multipliers.tangential = 1e-4;
   options.cone.tolerance = 1e-3;
   const Worst e = errors_of(r, options, unseen);
-  EXPECT_EQ(r.model.support->condensed.terms.size(), 0);
+  EXPECT_EQ(r.model.law->condensed.terms.size(), 0);
   EXPECT_LE(e.u, 1e-2);
   EXPECT_LE(e.lambda, 5e-2);
   EXPECT_LE(e.tangential, 0.39) << "the error published";
-  EXPECT_FALSE(r.model.support->basis.nodes.empty());
+  EXPECT_FALSE(r.model.law->basis.nodes.empty());
 }
 
 /// The published pair, without the condensed operator.
@@ -202,7 +202,7 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   // Generators of a greedy cone nearly depend on each other: orthonormal functions of their span.
   const Matrix w = Matrix(r.problem.w_product());
   const Eigen::LLT<Matrix> factor(w);
-  const Matrix functions = multiplier_functions(r.model.dual_basis, r.model.support->basis);
+  const Matrix functions = multiplier_functions(r.model.dual_basis, r.model.law->basis);
   const ThinSvd svd = thin_svd((factor.matrixU() * functions).colwise().normalized());
   ASSERT_GT(svd.values(functions.cols() - 1), 1e-8 * svd.values(0));
   const Matrix x = factor.matrixU().solve(svd.left);
@@ -302,8 +302,8 @@ TEST(MultiplierReductions, CollocatedWithoutFriction) {
   const Worst reduced = errors_of(r, options, unseen);
   EXPECT_LE(reduced.u, 1e-2);
   EXPECT_LE(reduced.lambda, 5e-2);
-  EXPECT_EQ(r.model.support->basis.tangential.size(), 0);
-  EXPECT_TRUE(r.model.support->basis.nodes.empty());
+  EXPECT_EQ(r.model.law->basis.tangential.size(), 0);
+  EXPECT_TRUE(r.model.law->basis.nodes.empty());
   const StabilityCheck check = make_stability_check(r.problem, r.model);
   for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, r.mus(), true))
     EXPECT_GE(c.off, c.hf * (1 - 1e-9)) << "the greedy's tolerance is that of (2.23)";
@@ -317,9 +317,9 @@ TEST(MultiplierReductions, CollocatedWithoutFriction) {
   Reduced slippery(scene, "grid:21");
   slippery.reduce(published());
   r.reduce(published());
-  const Matrix &cone = r.model.support->basis.normal;
-  ASSERT_EQ(slippery.model.support->basis.normal.cols(), cone.cols());
-  EXPECT_LE((slippery.model.support->basis.normal - cone).norm(), 1e-5 * cone.norm());
+  const Matrix &cone = r.model.law->basis.normal;
+  ASSERT_EQ(slippery.model.law->basis.normal.cols(), cone.cols());
+  EXPECT_LE((slippery.model.law->basis.normal - cone).norm(), 1e-5 * cone.norm());
   OnlineSolver a(r.model), b(slippery.model);
   for (const Sample &truth : unseen) {
     const double force = *a.outputs(truth.mu, a.solve(truth.mu)).normal_force;
@@ -335,11 +335,11 @@ TEST(MultiplierReductions, CollocatedWithOnlineEnrichment) {
   options.pga.tolerance = 1e-9;
   options.infsup_tolerance = false;
   const Worst offline = errors_of(r, options, unseen);
-  const std::vector<int> nodes = r.model.support->basis.nodes;
+  const std::vector<int> nodes = r.model.law->basis.nodes;
   options.enrichment = Enrichment::online;
   const Worst online = errors_of(r, options, unseen);
   EXPECT_TRUE(r.model.online_enriched);
-  EXPECT_EQ(r.model.support->basis.nodes, nodes);
+  EXPECT_EQ(r.model.law->basis.nodes, nodes);
   EXPECT_NEAR(online.u, offline.u, 1e-2 * offline.u);
   EXPECT_NEAR(online.lambda, offline.lambda, 1e-2 * offline.lambda);
   EXPECT_NEAR(online.tangential, offline.tangential, 1e-2 * offline.tangential);
@@ -357,7 +357,7 @@ TEST(MultiplierReductions, OnlineEnrichmentFollowsTheNormal) {
   EXPECT_LE(online.u, 1e-2);
   EXPECT_LE(online.lambda, 5e-2);
   EXPECT_LE(online.tangential, 5e-2);
-  const Matrix functions = multiplier_coefficients(r.model.support->basis);
+  const Matrix functions = multiplier_coefficients(r.model.law->basis);
   OnlineSolver solver(r.model);
   for (const Sample &truth : unseen) {
     const ReducedSolution answer = solver.solve(truth.mu);

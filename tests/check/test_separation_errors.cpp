@@ -4,8 +4,8 @@
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/stages.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
-#include "rbvi/rom/support/support_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,11 +51,11 @@ Pair with_both(Reduced &r, const ReduceOptions &options, const RowOptions &rows)
   StageTable stages = reduction_stages(r.problem.scene(), options);
   const AffineOperators joint = separate(r.problem, r.mus(), options.eim);
   Pair pair{{}, {}, separate(r.problem, r.mus(), options.eim, rows)};
-  const ReducedBases bases = build_support_bases(r.problem, r.samples, options, joint, stages);
+  const ReducedBases bases = build_law_bases(r.problem, r.samples, options, joint, stages);
   pair.joint = project(r.problem, r.samples, joint, bases);
   pair.apart = project(r.problem, r.samples, pair.separated, bases);
   (void)collocate(pair.joint, r.problem, r.samples, options.gcns);
-  pair.apart.support->basis.nodes = pair.joint.support->basis.nodes;
+  pair.apart.law->basis.nodes = pair.joint.law->basis.nodes;
   check_model(pair.joint);
   check_model(pair.apart);
   return pair;
@@ -79,9 +79,9 @@ TEST(RowsApart, AnswersAreThoseOfOneInterpolationWithinTheTolerance) {
   for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
     SCOPED_TRACE(tolerance);
     const Pair pair = with_both(r, options, {{.tolerance = tolerance}, {.tolerance = 1e-10}});
-    EXPECT_EQ(pair.apart.support->apart.normal, pair.separated.b.size());
+    EXPECT_EQ(pair.apart.law->apart.normal, pair.separated.b.size());
     EXPECT_EQ(pair.apart.b.size(), pair.separated.b_size());
-    EXPECT_EQ(pair.joint.support->apart.normal, 0);
+    EXPECT_EQ(pair.joint.law->apart.normal, 0);
     EXPECT_LE(difference(pair.joint, pair.apart), 20 * tolerance);
   }
   const Pair alike = with_both(r, options, {{.tolerance = 1e-10}, {.tolerance = 1e-10}});
@@ -96,12 +96,12 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
   options.eim_tangential = 1e-9;
   r.reduce(options);
   const ReducedModel &model = r.model;
-  EXPECT_LE(model.support->apart.normal_error, 1e-3);
-  EXPECT_LE(model.support->apart.tangential_error, 1e-9);
-  EXPECT_EQ(model.b.error, model.support->apart.normal_error);
+  EXPECT_LE(model.law->apart.normal_error, 1e-3);
+  EXPECT_LE(model.law->apart.tangential_error, 1e-9);
+  EXPECT_EQ(model.b.error, model.law->apart.normal_error);
   EXPECT_EQ(model.histories.count("eim/b"), 0U);
-  EXPECT_EQ(model.histories.at("eim/b_normal").back(), model.support->apart.normal_error);
-  const Index n = model.support->normal;
+  EXPECT_EQ(model.histories.at("eim/b_normal").back(), model.law->apart.normal_error);
+  const Index n = model.law->normal;
   const std::vector<PetscInt> &contact_dofs = r.problem.places().natural_dofs;
   Operators op;
   OnlineSolver online(model);
@@ -137,7 +137,7 @@ TEST(RowsApart, TheCondensedOperatorHasBoth) {
   r.reduce(options);
   check_model(r.model);
   const Index terms = r.model.b.size();
-  EXPECT_EQ(r.model.support->condensed.terms.cols(), terms * (terms + 1) / 2);
+  EXPECT_EQ(r.model.law->condensed.terms.cols(), terms * (terms + 1) / 2);
   const ModelErrors e = r.errors_at(unseen);
   EXPECT_EQ(e.failed, 0);
   EXPECT_LE(e.lambda.maxCoeff(), 1e-5);
@@ -145,7 +145,7 @@ TEST(RowsApart, TheCondensedOperatorHasBoth) {
   ReduceOptions condensed = options;
   condensed.multipliers.reduction = MultiplierReduction::condensed;
   r.reduce(condensed);
-  EXPECT_EQ(r.model.support->apart.normal, 0) << "there one interpolation serves both";
+  EXPECT_EQ(r.model.law->apart.normal, 0) << "there one interpolation serves both";
 }
 
 TEST(RowsApart, SurviveTheirFile) {
@@ -161,13 +161,13 @@ TEST(RowsApart, SurviveTheirFile) {
   ReducedModel again = read_model(path);
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
-  const TermsApart &was = r.model.support->apart, &is = again.support->apart;
+  const TermsApart &was = r.model.law->apart, &is = again.law->apart;
   EXPECT_GT(was.normal, 0);
   EXPECT_EQ(is.normal, was.normal);
   EXPECT_EQ(is.normal_error, was.normal_error);
   EXPECT_EQ(is.tangential_error, was.tangential_error);
   EXPECT_EQ(difference(r.model, again), 0);
-  again.support->apart.normal = again.b.size();
+  again.law->apart.normal = again.b.size();
   EXPECT_THROW(check_model(again), Error);
   again = r.model;
   again.b.interpolation(again.b.size() - 1, 0) = 0.5;

@@ -112,7 +112,7 @@ TEST(Condensed, TooFewPointsAreAnErrorThatSaysSo) {
   }
 }
 
-TEST(SupportDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
+TEST(NodalDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
   Problem problem(PETSC_COMM_WORLD, disk("radius"), {});
   const Index vertices = problem.contact().nodes(), half = (vertices + 1) / 2;
   Matrix lambda = Matrix::Zero(2 * vertices, 1);

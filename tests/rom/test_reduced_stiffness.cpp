@@ -1,6 +1,6 @@
 // The reduced stiffness on its common eigenvectors (one or two terms) and factorised (more),
 // against dense solves with the sum of its terms.
-#include "rbvi/rom/support/reduced_stiffness.hpp"
+#include "rbvi/rom/law/reduced_stiffness.hpp"
 
 #include "synthetic.hpp"
 

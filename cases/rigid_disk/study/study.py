@@ -61,7 +61,7 @@ def sizes(runs):
         for count in (61, 150):
             run = runs[variant, f"grid {count}"]
             terms = [separation_errors(run, form)[0] for form in forms]
-            rows.append([normal, len(stored(run, "support/starts_mu")[0]),
+            rows.append([normal, len(stored(run, "law/starts_mu")[0]),
                          first_at(history(run, "pod/error"), 1e-6),
                          first_at(history(run, "normal_cone/error"), 1e-3),
                          first_at(history(run, "tangential/error"), 1e-4)] +
@@ -104,11 +104,11 @@ def stability(runs):
 
 def functions_of(run):
     """Sizes of the bases of the multipliers, and the pairs of collocation nodes."""
-    normal, tangential = (stored(run, "support/basis/" + name) for name in ("normal", "tangential"))
-    nodes = len(stored(run, "support/basis/nodes"))
+    normal, tangential = (stored(run, "law/basis/" + name) for name in ("normal", "tangential"))
+    nodes = len(stored(run, "law/basis/nodes"))
     if normal.size == 0:
         return [f"{stored(run, 'size/generators')}", "all"]
-    joint = int(stored(run, "support/reduction")) == 3
+    joint = int(stored(run, "law/reduction")) == 3
     count = f"{normal.shape[1]}" if joint else f"{normal.shape[1]} + {tangential.shape[1]}"
     return [count, f"{nodes}" if nodes else "all"]
 
@@ -137,7 +137,7 @@ def free_parameters(study, runs):
         linear, solver = (next(row for (method, _), row in benched.items() if method == wanted)
                           for wanted in ("multilinear interpolation", "active_set warm-started"))
         rows.append([names, training, f"{s['N']:.0f} + {s['S']:.0f}",
-                     stored(runs[key], "support/terms").shape[1],
+                     stored(runs[key], "law/terms").shape[1],
                      *(short(value) for value in largest_errors(runs[key])),
                      f"{1e3 * s['seconds']:.2f}", f"{float(solver['median_ms']):.1f}", grid,
                      *(short(float(linear[name])) for name in ("u_max", "lambda_max"))])

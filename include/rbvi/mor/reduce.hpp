@@ -53,10 +53,10 @@ struct ReducedBases {
   Pod pod; ///< basis: N modes, then the S supremizers or responses, V-orthonormal
   Cone cone;
   Pga pga;
-  Matrix support_dual; ///< the law at nodes: the nodal dual basis; cone is empty
+  Matrix nodal_dual; ///< the law at nodes: the nodal dual basis; cone is empty
   CondensedOperator condensed;
   MultiplierReduction reduction = MultiplierReduction::condensed;
-  bool mended = true; ///< SupportModel::mended
+  bool mended = true; ///< NodalLaw::mended
   MultiplierBases multipliers;
   int modes = 0;          ///< N
   int supremizers = 0;    ///< S
@@ -68,7 +68,7 @@ struct ReducedBases {
 
 /// What `automatic` means for a scene; else `chosen`.
 MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen);
-/// Whether a reduction is one of the law at nodes (SupportModel), not of a pair of spaces.
+/// Whether a reduction is one of the law at nodes (NodalLaw), not of a pair of spaces.
 bool keeps_law(MultiplierReduction reduction);
 /// Throws bad_input for reductions of the multipliers that a load of the scene, its law of
 /// friction, its B or the type of the cones does not allow.
@@ -93,9 +93,9 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
 
 /// The law at nodes: POD, the condensed operator, and, where the multipliers are
 /// reduced further, their functions and (collocated) the supremizers of the pair. Collective.
-ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
-                                 const ReduceOptions &options, const AffineOperators &affine,
-                                 StageTable &stages);
+ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &samples,
+                             const ReduceOptions &options, const AffineOperators &affine,
+                             StageTable &stages);
 
 /// A reduced pair of spaces: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a
 /// factor only, so one training mu serves the supremizers. Collective.

@@ -7,14 +7,14 @@
 // term too. B and G that do not separate are evaluated anew, on the interfaces alone. Free modes
 // have equations in place of inequalities. An online-enriched model is first reduced to V_N +
 // S_R(mu) (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
-// rom/support/support_solver.hpp, by Nitsche's method rom/nitsche/nitsche_solver.hpp.
+// rom/law/law_solver.hpp, by Nitsche's method rom/nitsche/nitsche_solver.hpp.
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/law/qp/mixed_qp.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/model.hpp"
 #include "rbvi/rom/nitsche/nitsche_solver.hpp"
-#include "rbvi/rom/support/support_solver.hpp"
 
 #include <memory>
 
@@ -72,7 +72,7 @@ private:
   const Sum imposed_energy_;
   Contact contact_;
   // Contact with a rigid support: the rest is not used.
-  std::unique_ptr<SupportSolver> support_;
+  std::unique_ptr<LawSolver> law_;
   std::unique_ptr<ReducedNitsche> nitsche_;
   MixedQp qp_;
   bool positive_; ///< every pressure is: no free modes, no negative entry of a generator

@@ -3,7 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/least_squares_friction.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "rbvi/rom/support/reduced_law.hpp"
+#include "rbvi/rom/law/reduced_law.hpp"
 
 #include <algorithm>
 #include <cmath>

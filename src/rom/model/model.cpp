@@ -126,45 +126,42 @@ void check_fields(const ReducedModel &model, int dim) {
           "fields/cells is not a list of cells");
 }
 
-void check_support(const ReducedModel &model, const SupportModel &support) {
-  const CondensedOperator &condensed = support.condensed;
+void check_law(const ReducedModel &model, const NodalLaw &law) {
+  const CondensedOperator &condensed = law.condensed;
   const Index m = model.generators, b = model.b.size();
   const Index blocks = model.evaluates_contact() ? 1 : b * (b + 1) / 2;
   const Index size = model.evaluates_contact() ? model.contact_trace.rows() : m;
-  require(support.normal > 0 && support.normal <= m, "support/normal does not fit");
-  require(support.reduction >= MultiplierReduction::condensed &&
-              support.reduction <= MultiplierReduction::joint,
-          "support/reduction is none that this build has");
+  require(law.normal > 0 && law.normal <= m, "law/normal does not fit");
+  require(law.reduction >= MultiplierReduction::condensed &&
+              law.reduction <= MultiplierReduction::joint,
+          "law/reduction is none that this build has");
   for (const ChebyshevAxis &axis : condensed.axes)
     require(axis.points > 0 && axis.lower < axis.upper && axis.parameter >= 0 &&
                 axis.parameter < static_cast<int>(model.parameters.all.size()),
-            "support/axes do not fit");
+            "law/axes do not fit");
   if (condensed.terms.size() > 0) {
-    require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes),
-                  "support/shape");
-    require_shape(condensed.terms, size * size, blocks * condensed.shape.rows(), "support/terms");
+    require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes), "law/shape");
+    require_shape(condensed.terms, size * size, blocks * condensed.shape.rows(), "law/terms");
   } else {
-    require(support.reduction == MultiplierReduction::collocated, "it has no condensed operator");
+    require(law.reduction == MultiplierReduction::collocated, "it has no condensed operator");
   }
-  if (support.reduction != MultiplierReduction::condensed) {
-    const MultiplierBasis &basis = support.basis;
-    require(m == 2 * support.normal || support.reduction == MultiplierReduction::collocated,
-            "support/basis is for contact with friction");
-    require_shape(basis.normal, support.normal, basis.normal.cols(), "support/basis/normal");
-    require_shape(basis.tangential, m - support.normal, basis.tangential.cols(),
-                  "support/basis/tangential");
-    if (support.reduction == MultiplierReduction::cones)
-      require_shape(basis.slip, support.normal, 1, "support/basis/slip");
-    require_indices(basis.nodes, support.normal, "support/basis/nodes");
+  if (law.reduction != MultiplierReduction::condensed) {
+    const MultiplierBasis &basis = law.basis;
+    require(m == 2 * law.normal || law.reduction == MultiplierReduction::collocated,
+            "law/basis is for contact with friction");
+    require_shape(basis.normal, law.normal, basis.normal.cols(), "law/basis/normal");
+    require_shape(basis.tangential, m - law.normal, basis.tangential.cols(),
+                  "law/basis/tangential");
+    if (law.reduction == MultiplierReduction::cones)
+      require_shape(basis.slip, law.normal, 1, "law/basis/slip");
+    require_indices(basis.nodes, law.normal, "law/basis/nodes");
   }
-  const int apart = support.apart.normal, all = model.b.size();
-  require(apart >= 0 && (apart == 0 || (apart < all && m > support.normal)),
-          "support/apart does not fit");
+  const int apart = law.apart.normal, all = model.b.size();
+  require(apart >= 0 && (apart == 0 || (apart < all && m > law.normal)), "law/apart does not fit");
   require(model.b.interpolation.bottomLeftCorner(all - apart, apart).isZero(0),
           "b/interpolation mixes terms of B^n and of B^tau");
-  require_shape(support.starts, m, support.starts.cols(), "support/starts");
-  require_shape(support.starts_mu, model.parameters.size(), support.starts.cols(),
-                "support/starts_mu");
+  require_shape(law.starts, m, law.starts.cols(), "law/starts");
+  require_shape(law.starts_mu, model.parameters.size(), law.starts.cols(), "law/starts_mu");
 }
 
 /// `entries`: of the reduced operator.
@@ -240,7 +237,7 @@ void check_model(const ReducedModel &model) {
   check_terms(model.f, n, dim, 1, "f");
   check_terms(model.g, r, dim, interfaces, "g");
   check_terms(model.imposed_energy, 1, dim, 1, "imposed_energy");
-  if (model.support) check_support(model, *model.support);
+  if (model.law) check_law(model, *model.law);
   if (model.nitsche) check_nitsche(model, *model.nitsche);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
@@ -268,7 +265,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
     throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
                     " dual functions in a model of " + std::to_string(model.primal_size()) +
                     " and " + std::to_string(model.generators));
-  if (model.support && r != model.generators)
+  if (model.law && r != model.generators)
     throw bad_input("a model of contact with a support has no part with fewer multipliers");
   ReducedModel result = model;
   result.modes = std::min(n, model.modes);

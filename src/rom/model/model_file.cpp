@@ -180,54 +180,54 @@ void read_history(const H5Reader &file, ReducedModel &model) {
   model.self_check = read_self_check(file);
 }
 
-void write_support(H5Writer &file, const std::optional<SupportModel> &support) {
-  file.write("support/normal", support ? support->normal : 0);
-  if (!support) return;
+void write_law(H5Writer &file, const std::optional<NodalLaw> &law) {
+  file.write("law/normal", law ? law->normal : 0);
+  if (!law) return;
   std::vector<double> axes;
-  for (const ChebyshevAxis &axis : support->condensed.axes)
+  for (const ChebyshevAxis &axis : law->condensed.axes)
     axes.insert(axes.end(), {static_cast<double>(axis.parameter), axis.lower, axis.upper,
                              static_cast<double>(axis.points)});
-  file.write("support/axes", axes);
-  file.write("support/error", support->condensed.error);
-  file.write("support/shape", support->condensed.shape);
-  file.write("support/terms", support->condensed.terms);
-  const TermsApart &apart = support->apart;
-  file.write("support/apart", std::vector<double>{static_cast<double>(apart.normal),
-                                                  apart.normal_error, apart.tangential_error});
-  file.write("support/reduction", static_cast<int>(support->reduction));
-  file.write("support/mended", support->mended ? 1 : 0);
-  file.write("support/basis/normal", support->basis.normal);
-  file.write("support/basis/tangential", support->basis.tangential);
-  file.write("support/basis/slip", support->basis.slip);
-  file.write("support/basis/nodes", support->basis.nodes);
-  file.write("support/starts", support->starts);
-  file.write("support/starts_mu", support->starts_mu);
+  file.write("law/axes", axes);
+  file.write("law/error", law->condensed.error);
+  file.write("law/shape", law->condensed.shape);
+  file.write("law/terms", law->condensed.terms);
+  const TermsApart &apart = law->apart;
+  file.write("law/apart", std::vector<double>{static_cast<double>(apart.normal), apart.normal_error,
+                                              apart.tangential_error});
+  file.write("law/reduction", static_cast<int>(law->reduction));
+  file.write("law/mended", law->mended ? 1 : 0);
+  file.write("law/basis/normal", law->basis.normal);
+  file.write("law/basis/tangential", law->basis.tangential);
+  file.write("law/basis/slip", law->basis.slip);
+  file.write("law/basis/nodes", law->basis.nodes);
+  file.write("law/starts", law->starts);
+  file.write("law/starts_mu", law->starts_mu);
 }
 
-std::optional<SupportModel> read_support(const H5Reader &file) {
-  SupportModel support;
-  support.normal = file.integer("support/normal");
-  if (support.normal == 0) return std::nullopt;
-  const std::vector<double> axes = file.doubles("support/axes");
-  if (axes.size() % 4 != 0) throw bad_input("support/axes are not groups of four");
+std::optional<NodalLaw> read_law(const H5Reader &file) {
+  NodalLaw law;
+  law.normal = file.integer("law/normal");
+  if (law.normal == 0) return std::nullopt;
+  const std::vector<double> axes = file.doubles("law/axes");
+  if (axes.size() % 4 != 0) throw bad_input("law/axes are not groups of four");
   for (std::size_t i = 0; i < axes.size(); i += 4)
-    support.condensed.axes.push_back(
+    law.condensed.axes.push_back(
         {static_cast<int>(axes[i]), axes[i + 1], axes[i + 2], static_cast<int>(axes[i + 3])});
-  support.condensed.error = file.number("support/error");
-  support.condensed.shape = file.matrix("support/shape");
-  support.condensed.terms = file.matrix("support/terms");
-  const std::vector<double> apart = file.doubles("support/apart");
-  if (apart.size() != 3) throw bad_input("support/apart has not 3 entries");
-  support.apart = {static_cast<int>(apart[0]), apart[1], apart[2]};
-  support.reduction = static_cast<MultiplierReduction>(file.integer("support/reduction"));
-  support.mended = file.integer("support/mended") != 0;
-  support.basis.normal = file.matrix("support/basis/normal");
-  support.basis.tangential = file.matrix("support/basis/tangential");
-  support.basis.slip = file.vector("support/basis/slip");
-  support.basis.nodes = file.ints("support/basis/nodes");
-  support.starts = file.matrix("support/starts");
-  support.starts_mu = file.matrix("support/starts_mu");
-  return support;
+  law.condensed.error = file.number("law/error");
+  law.condensed.shape = file.matrix("law/shape");
+  law.condensed.terms = file.matrix("law/terms");
+  const std::vector<double> apart = file.doubles("law/apart");
+  if (apart.size() != 3) throw bad_input("law/apart has not 3 entries");
+  law.apart = {static_cast<int>(apart[0]), apart[1], apart[2]};
+  law.reduction = static_cast<MultiplierReduction>(file.integer("law/reduction"));
+  law.mended = file.integer("law/mended") != 0;
+  law.basis.normal = file.matrix("law/basis/normal");
+  law.basis.tangential = file.matrix("law/basis/tangential");
+  law.basis.slip = file.vector("law/basis/slip");
+  law.basis.nodes = file.ints("law/basis/nodes");
+  law.starts = file.matrix("law/starts");
+  law.starts_mu = file.matrix("law/starts_mu");
+  return law;
 }
 
 struct NamedTerms {
@@ -309,7 +309,7 @@ ReducedModel read_members(const H5Reader &file) {
   model.f = read_terms(file, "f");
   model.g = read_terms(file, "g");
   model.imposed_energy = read_terms(file, "imposed_energy");
-  model.support = read_support(file);
+  model.law = read_law(file);
   model.nitsche = read_nitsche(file);
   read_contact(file, model);
   read_history(file, model);
@@ -338,7 +338,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "f", model.f);
   write_terms(file, "g", model.g);
   write_terms(file, "imposed_energy", model.imposed_energy);
-  write_support(file, model.support);
+  write_law(file, model.law);
   write_nitsche(file, model.nitsche);
   write_contact(file, model);
   file.write("fields/key", key_of_fields(model));

@@ -128,7 +128,7 @@ struct TermsApart {
 
 /// The law of contact and friction at every node, or on functions of the nodes. The dual basis of
 /// the model is nodal: a column for every node of the interfaces, or pair of mirror images.
-struct SupportModel {
+struct NodalLaw {
   int normal = 0; ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
   MultiplierReduction reduction = MultiplierReduction::condensed; ///< neither of the first two
   MultiplierBasis basis;       ///< empty where reduction is condensed
@@ -211,7 +211,7 @@ struct ReducedModel {
   Matrix contact_trace; ///< contact dofs x n: the primal basis there
   /// B and G do not separate: they are evaluated for each mu on the interfaces.
   bool evaluates_contact() const { return b.size() == 0 && !nitsche; }
-  std::optional<SupportModel> support;
+  std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
 
   // Full order, for reconstruction.
@@ -228,14 +228,15 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 9;
+inline constexpr int model_schema = 10;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).
 void check_model(const ReducedModel &model);
 
 /// What reconstruction alone needs, primal_basis, mesh_points, mesh_cells and imposed_by, is in a
-/// file of its own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the model is not.
+/// file of its own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the
+/// model is not.
 std::filesystem::path fields_file(const std::filesystem::path &model);
 
 /// Writes both files; that of the fields first, and only where it holds others or is not there, and

@@ -1,4 +1,4 @@
-#include "rbvi/rom/support/support_solver.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
@@ -19,18 +19,18 @@ constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at 
 
 } // namespace
 
-SupportSolver::SupportSolver(const ReducedModel &model, const Scene &scene, const Contact &contact)
+LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact)
     : model_(model), scene_(scene), contact_(contact), stiffness_(model, scene) {
-  if (!model.support) throw bad_input("the model has no law of contact at nodes");
-  if (model.support->reduction != MultiplierReduction::condensed) law_.emplace(*model.support);
-  samples_ = parts_of_box(scene.parameters, model.support->starts_mu);
+  if (!model.law) throw bad_input("the model has no law of contact at nodes");
+  if (model.law->reduction != MultiplierReduction::condensed) law_.emplace(*model.law);
+  samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
   set_laws();
   if (model.evaluates_contact()) nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
 }
 
 /// A column of the dual basis is a node, or a pair of mirror images, of one interface: x_n of all
 /// come first, then x_tau in the same order.
-void SupportSolver::set_laws() {
+void LawSolver::set_laws() {
   const std::size_t interfaces = contact_.interfaces.size();
   std::vector<std::vector<Index>> normal(interfaces), tangent(interfaces);
   for (Index column = 0; column < model_.generators; ++column) {
@@ -49,7 +49,7 @@ void SupportSolver::set_laws() {
   laws_.bound.resize(laws_.normal.size());
 }
 
-NodeLaws SupportSolver::laws_at(const FullMu &all_parameters) const {
+NodeLaws LawSolver::laws_at(const FullMu &all_parameters) const {
   NodeLaws laws = laws_;
   for (std::size_t i = 0; i < contact_.interfaces.size(); ++i) {
     const FrictionBound bound = contact_.interfaces[i]->bound(all_parameters);
@@ -60,17 +60,17 @@ NodeLaws SupportSolver::laws_at(const FullMu &all_parameters) const {
 }
 
 /// The free parameters as parts of the box.
-Vector SupportSolver::start_at(const Vector &here) const {
+Vector LawSolver::start_at(const Vector &here) const {
   constexpr double far_nearer = 0.1;
   const double next = samples_.cols() > 0 ? (samples_.colwise() - here).colwise().norm().minCoeff()
                                           : std::numeric_limits<double>::infinity();
   if (last_start_.size() > 0 && (last_ - here).norm() <= far_nearer * next) return last_start_;
   if (samples_.cols() == 0) return {};
-  return local_fit(model_.support->starts, samples_, here);
+  return local_fit(model_.law->starts, samples_, here);
 }
 
-Vector SupportSolver::term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const {
-  const CondensedOperator &condensed = model_.support->condensed;
+Vector LawSolver::term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const {
+  const CondensedOperator &condensed = model_.law->condensed;
   const Vector shape = condensed.shape * grid_weights(scene_, condensed.axes, all_parameters);
   if (model_.evaluates_contact()) return shape;
   Vector result(condensed.terms.cols());
@@ -81,8 +81,8 @@ Vector SupportSolver::term_coefficients(const FullMu &all_parameters, const Vect
   return result;
 }
 
-BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, SupportAnswer &answer) {
-  const SupportModel &support = *model_.support;
+BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer) {
+  const NodalLaw &law = *model_.law;
   BodyAtMu body;
   if (model_.evaluates_contact()) {
     assemble(contact_, all_parameters, {}, answer.contact);
@@ -94,15 +94,15 @@ BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, SupportAnswer &ans
              contact_coefficients(model_.g, Part::g, contact_, scene_, all_parameters);
   }
   const Vector &theta_b = answer.theta_b;
-  if (support.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
+  if (law.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
   if (model_.evaluates_contact() && model_.f.size() > 0)
     body.b = body.b_contact * model_.contact_trace;
-  else if (support.reduction == MultiplierReduction::collocated || model_.f.size() > 0)
+  else if (law.reduction == MultiplierReduction::collocated || model_.f.size() > 0)
     body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
   stiffness_.set(all_parameters);
   if (model_.online_enriched)
-    stiffness_.restrict_to(enriched_subspace(
-        multiplier_coefficients(support.basis).transpose() * body.b, model_.modes));
+    stiffness_.restrict_to(
+        enriched_subspace(multiplier_coefficients(law.basis).transpose() * body.b, model_.modes));
   body.stiffness = &stiffness_;
   if (model_.f.size() > 0) {
     body.load = stiffness_.half_response(
@@ -113,9 +113,8 @@ BodyAtMu SupportSolver::body_at(const FullMu &all_parameters, SupportAnswer &ans
   return body;
 }
 
-Matrix SupportSolver::condensed_columns(const BodyAtMu &body,
-                                        const std::vector<Index> &which) const {
-  const Matrix &terms = model_.support->condensed.terms;
+Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) const {
+  const Matrix &terms = model_.law->condensed.terms;
   const auto count = static_cast<Index>(which.size());
   if (!model_.evaluates_contact()) {
     const Index m = model_.generators;
@@ -135,7 +134,7 @@ Matrix SupportSolver::condensed_columns(const BodyAtMu &body,
   return body.b_contact * moved;
 }
 
-SupportSolver::AtAllNodes SupportSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) const {
+LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) const {
   std::vector<Index> all(static_cast<std::size_t>(model_.generators));
   std::iota(all.begin(), all.end(), 0);
   const Matrix h = condensed_columns(body, all);
@@ -145,15 +144,15 @@ SupportSolver::AtAllNodes SupportSolver::at_all_nodes(const BodyAtMu &body, cons
   return result;
 }
 
-Vector SupportSolver::start_of(const FullMu &all_parameters, const Vector &x) {
-  SupportAnswer answer;
+Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x) {
+  LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
   return at_all_nodes(body, x).start;
 }
 
-bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer) {
-  const bool checks = model_.support->condensed.terms.size() > 0;
-  const bool mends = model_.support->mended && checks;
+bool LawSolver::solve_reduced_law(const BodyAtMu &body, LawAnswer &answer) {
+  const bool checks = model_.law->condensed.terms.size() > 0;
+  const bool mends = model_.law->mended && checks;
   try {
     ReducedLawAnswer reduced = law_->solve(body);
     answer.x = std::move(reduced.x);
@@ -167,13 +166,12 @@ bool SupportSolver::solve_reduced_law(const BodyAtMu &body, SupportAnswer &answe
   AtAllNodes nodes = at_all_nodes(body, answer.x);
   answer.energy = 0.5 * (answer.x.dot(nodes.w - body.q) - body.load.squaredNorm());
   answer.residual =
-      natural_residual(answer.x, nodes.w, nodes.diagonal, model_.support->normal, body.bound);
+      natural_residual(answer.x, nodes.w, nodes.diagonal, model_.law->normal, body.bound);
   answer.start = std::move(nodes.start);
   return !mends || answer.residual <= mended_above;
 }
 
-void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters,
-                              SupportAnswer &answer) {
+void LawSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer) {
   if (law_ && solve_reduced_law(body, answer)) return;
   const auto columns = [&](const std::vector<Index> &which) {
     return condensed_columns(body, which);
@@ -194,8 +192,8 @@ void SupportSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters
   answer.start = std::move(found.start);
 }
 
-SupportAnswer SupportSolver::solve(const FullMu &all_parameters) {
-  SupportAnswer answer;
+LawAnswer LawSolver::solve(const FullMu &all_parameters) {
+  LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
   solve_law(body, all_parameters, answer);
   if (model_.evaluates_contact())
@@ -204,7 +202,7 @@ SupportAnswer SupportSolver::solve(const FullMu &all_parameters) {
   else
     answer.u = -stiffness_.response(answer.theta_b, answer.x);
   if (body.load.size() > 0) answer.u += stiffness_.transposed_half_response(body.load);
-  if (model_.support->condensed.terms.size() == 0)
+  if (model_.law->condensed.terms.size() == 0)
     answer.energy = 0.5 * (stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm() -
                            body.load.squaredNorm());
   last_start_ = answer.start;

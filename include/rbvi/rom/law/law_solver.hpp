@@ -1,16 +1,16 @@
 // The online stage of contact with a rigid support: the condensed operator and the gap at mu, the
 // law of contact and friction at every node by solve_friction, then the displacement in V_N by
 // A_N u = F_N - B_N^T x. Where the multipliers are reduced further, the law is that of
-// rom/support/reduced_law.hpp; with the condensed operator its answer is checked at all nodes, and
+// rom/law/reduced_law.hpp; with the condensed operator its answer is checked at all nodes, and
 // mended by solve_friction, which starts from it, where it fails.
 #pragma once
 
-#include "rbvi/rom/support/reduced_law.hpp"
+#include "rbvi/rom/law/reduced_law.hpp"
 
 namespace rbvi {
 
 /// What a query gives.
-struct SupportAnswer {
+struct LawAnswer {
   Vector u, x; ///< coefficients of the primal and of the dual basis
   Vector theta_b;
   double energy = 0; ///< a(u,u)/2 - f(u)
@@ -23,15 +23,15 @@ struct SupportAnswer {
 
 /// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
 /// query if that is far nearer.
-class SupportSolver {
+class LawSolver {
 public:
   /// `model`, `scene` and `contact` must outlive it. Throws bad_input where they do not fit.
-  SupportSolver(const ReducedModel &model, const Scene &scene, const Contact &contact);
+  LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact);
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
-  SupportAnswer solve(const FullMu &all_parameters);
+  LawAnswer solve(const FullMu &all_parameters);
   /// What the elastic body says at mu; valid until the next call of either. Sets theta_b or contact
   /// of the answer.
-  BodyAtMu body_at(const FullMu &all_parameters, SupportAnswer &answer);
+  BodyAtMu body_at(const FullMu &all_parameters, LawAnswer &answer);
   /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
   /// operator.
   Vector start_of(const FullMu &all_parameters, const Vector &x);
@@ -46,8 +46,8 @@ private:
   /// H(:, which), m x which.size().
   Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) const;
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
-  bool solve_reduced_law(const BodyAtMu &body, SupportAnswer &answer);
-  void solve_law(const BodyAtMu &body, const FullMu &all_parameters, SupportAnswer &answer);
+  bool solve_reduced_law(const BodyAtMu &body, LawAnswer &answer);
+  void solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer);
   Vector start_at(const Vector &here) const;
   Vector term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const;
 

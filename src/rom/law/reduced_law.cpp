@@ -1,4 +1,4 @@
-#include "rbvi/rom/support/reduced_law.hpp"
+#include "rbvi/rom/law/reduced_law.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -73,11 +73,11 @@ double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal
   return size > 0 ? largest / size : largest;
 }
 
-ReducedLaw::ReducedLaw(const SupportModel &support) : support_(support) {
-  const MultiplierBasis &basis = support.basis;
-  const Index nodes = support.normal, m = 2 * nodes;
-  if (support.reduction == MultiplierReduction::collocated) return;
-  const bool cones = support.reduction == MultiplierReduction::cones;
+ReducedLaw::ReducedLaw(const NodalLaw &law) : law_(law) {
+  const MultiplierBasis &basis = law.basis;
+  const Index nodes = law.normal, m = 2 * nodes;
+  if (law.reduction == MultiplierReduction::collocated) return;
+  const bool cones = law.reduction == MultiplierReduction::cones;
   if (cones) {
     functions_ = functions_of_cones(basis);
   } else {
@@ -87,8 +87,8 @@ ReducedLaw::ReducedLaw(const SupportModel &support) : support_(support) {
   std::vector<Index> rows(basis.nodes.begin(), basis.nodes.end());
   for (const int node : basis.nodes)
     rows.push_back(nodes + node);
-  for (Index t = 0; t < support.condensed.terms.cols(); ++t) {
-    const Matrix term = support.condensed.terms.col(t).reshaped(m, m);
+  for (Index t = 0; t < law.condensed.terms.cols(); ++t) {
+    const Matrix term = law.condensed.terms.col(t).reshaped(m, m);
     const Matrix product = term * functions_;
     terms_.push_back(cones ? Matrix(functions_.transpose() * product)
                            : Matrix(product(rows, Eigen::all)));
@@ -97,7 +97,7 @@ ReducedLaw::ReducedLaw(const SupportModel &support) : support_(support) {
 }
 
 ReducedLawAnswer ReducedLaw::solve_cones(const BodyAtMu &body) {
-  const Index r = support_.basis.normal.cols(), s = support_.basis.tangential.cols();
+  const Index r = law_.basis.normal.cols(), s = law_.basis.tangential.cols();
   const Matrix h = sum_of(terms_, body.terms);
   // Coefficients of D from z = (a, c): (a, nu_F a, t, -c).
   Matrix combine = Matrix::Zero(2 * r + 1 + s, r + s);
@@ -121,13 +121,13 @@ ReducedLawAnswer ReducedLaw::solve_cones(const BodyAtMu &body) {
 }
 
 ReducedLawAnswer ReducedLaw::solve_joint(const BodyAtMu &body) {
-  const MultiplierBasis &basis = support_.basis;
+  const MultiplierBasis &basis = law_.basis;
   const auto count = static_cast<Index>(basis.nodes.size());
   const Matrix rows = sum_of(terms_, body.terms);
   Vector diagonal = Vector::Zero(2 * count);
   for (std::size_t t = 0; t < diagonals_.size(); ++t)
     diagonal += body.terms[static_cast<Index>(t)] * diagonals_[t];
-  const auto q_n = body.q.head(support_.normal), q_t = body.q.tail(support_.normal);
+  const auto q_n = body.q.head(law_.normal), q_t = body.q.tail(law_.normal);
   const LeastSquaresResult found = solve_least_squares(
       {basis.normal(basis.nodes, Eigen::all), basis.tangential(basis.nodes, Eigen::all),
        rows.topRows(count), rows.bottomRows(count), q_n(basis.nodes), q_t(basis.nodes),
@@ -139,9 +139,9 @@ ReducedLawAnswer ReducedLaw::solve_joint(const BodyAtMu &body) {
 }
 
 ReducedLawAnswer ReducedLaw::solve(const BodyAtMu &body) {
-  if (support_.reduction == MultiplierReduction::cones) return solve_cones(body);
-  if (support_.reduction == MultiplierReduction::joint) return solve_joint(body);
-  const MultiplierBasis &basis = support_.basis;
+  if (law_.reduction == MultiplierReduction::cones) return solve_cones(body);
+  if (law_.reduction == MultiplierReduction::joint) return solve_joint(body);
+  const MultiplierBasis &basis = law_.basis;
   const CollocatedResult found = solve_collocated(collocated_problem(basis, body), last_);
   if (!found.converged) not_solved(found.reason);
   last_ = found.x;

@@ -2,8 +2,8 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
-#include "rbvi/rom/support/support_solver.hpp"
 
 namespace rbvi {
 
@@ -52,9 +52,9 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
                     multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
 }
 
-ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &samples,
-                                 const ReduceOptions &options, const AffineOperators &affine,
-                                 StageTable &stages) {
+ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &samples,
+                             const ReduceOptions &options, const AffineOperators &affine,
+                             StageTable &stages) {
   const Matrix multipliers = multipliers_of(samples);
   const Scene &scene = problem.scene();
   const MultiplierOptions &choice = options.multipliers;
@@ -64,8 +64,8 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
   bases.reduction = choice.reduction;
   bases.mended = choice.exact;
   add_modes(problem, samples, options.pod, bases, stages);
-  bases.support_dual = nodal_dual_basis(problem, multipliers);
-  const Matrix &nodal = bases.support_dual;
+  bases.nodal_dual = nodal_dual_basis(problem, multipliers);
+  const Matrix &nodal = bases.nodal_dual;
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
@@ -97,37 +97,37 @@ ReducedBases build_support_bases(Problem &problem, const std::vector<Sample> &sa
 }
 
 void add_starts(ReducedModel &model, const Problem &problem) {
-  Matrix starts = model.support->starts;
-  SupportSolver solver(model, problem.scene(), problem.contact());
+  Matrix starts = model.law->starts;
+  LawSolver solver(model, problem.scene(), problem.contact());
   for (Index p = 0; p < starts.cols(); ++p) {
-    const Vector mu = model.support->starts_mu.col(p);
+    const Vector mu = model.law->starts_mu.col(p);
     starts.col(p) =
         solver.start_of(expand(problem.scene().parameters, {mu.begin(), mu.end()}), starts.col(p));
   }
-  model.support->starts = std::move(starts);
+  model.law->starts = std::move(starts);
 }
 
 Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
                const GcnsOptions &options) {
   const Scene &scene = problem.scene();
-  SupportModel &support = *model.support;
-  SupportSolver solver(model, problem.scene(), problem.contact());
-  const Index nodes = support.normal;
+  NodalLaw &law = *model.law;
+  LawSolver solver(model, problem.scene(), problem.contact());
+  const Index nodes = law.normal;
   const Matrix &nodal = model.dual_basis;
   const Matrix coefficients = nodal_coefficients(nodal, multipliers_of(samples));
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
-    SupportAnswer unused;
+    LawAnswer unused;
     const BodyAtMu body = solver.body_at(all, unused);
-    CollocatedProblem reduced = collocated_problem(support.basis, body);
+    CollocatedProblem reduced = collocated_problem(law.basis, body);
     problems.push_back({std::move(reduced.h), std::move(reduced.q), body.bound,
                         coefficients.col(static_cast<Index>(p)).tail(nodes)});
   }
   const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
-  Gcns selected = select_collocation_nodes(problems, support.basis.normal, support.basis.tangential,
+  Gcns selected = select_collocation_nodes(problems, law.basis.normal, law.basis.tangential,
                                            w.block(nodes, nodes, nodes, nodes), options);
-  support.basis.nodes = selected.nodes;
+  law.basis.nodes = selected.nodes;
   return selected;
 }
 

@@ -1,4 +1,4 @@
-#include "rbvi/rom/support/reduced_stiffness.hpp"
+#include "rbvi/rom/law/reduced_stiffness.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"

@@ -5,7 +5,7 @@
 
 #include "rbvi/law/friction/collocated_friction.hpp"
 #include "rbvi/law/friction/least_squares_friction.hpp"
-#include "rbvi/rom/support/reduced_stiffness.hpp"
+#include "rbvi/rom/law/reduced_stiffness.hpp"
 
 namespace rbvi {
 
@@ -29,8 +29,8 @@ struct ReducedLawAnswer {
 /// Keeps the last answer as the next start.
 class ReducedLaw {
 public:
-  /// `support` must outlive it; its reduction is not `condensed`.
-  explicit ReducedLaw(const SupportModel &support);
+  /// `law` must outlive it; its reduction is not `condensed`.
+  explicit ReducedLaw(const NodalLaw &law);
   /// Throws failure, saying what to try, where the reduced law is not solved.
   ReducedLawAnswer solve(const BodyAtMu &body);
 
@@ -38,7 +38,7 @@ private:
   ReducedLawAnswer solve_cones(const BodyAtMu &body);
   ReducedLawAnswer solve_joint(const BodyAtMu &body);
 
-  const SupportModel &support_;
+  const NodalLaw &law_;
   std::vector<Matrix> terms_; ///< of the condensed operator: cones D^T H D, joint H Z at the nodes
   std::vector<Vector> diagonals_;      ///< joint: of H at the nodes, n and then tau
   Matrix functions_;                   ///< cones: D, m x (R + middle + M); joint: Z, m x k
