@@ -264,8 +264,10 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &, const Vec
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
   WantedNodes loaded;
-  for (Index i = 0; i < dual_.nodes() && lambda.size() > 0 && dual_.components == 1; ++i)
-    loaded.push_back(lambda[i] != 0);
+  const Index tangents = dual_.components - 1;
+  for (Index i = 0; i < dual_.nodes() && lambda.size() > 0; ++i)
+    loaded.push_back(lambda[i] != 0 ||
+                     !lambda.segment(dual_.nodes() + i * tangents, tangents).isZero(0));
   const std::vector<Point> mapped = mapped_vertices(mu, {});
   visit_entities(mu, mapped, entities_at(loaded), [&](Index e, const Cell &cell) {
     add_weights(mu, e, cell, values, operators.weights);

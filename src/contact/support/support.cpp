@@ -73,7 +73,7 @@ public:
   }
 
 private:
-  Vector lift(const FullMu &mu, const Matrix &mapped) const;
+  Vector lift(const FullMu &mu, const Matrix &mapped, const Vector &lambda) const;
 
   Support support_;
   std::vector<TracePoint> points_;
@@ -108,12 +108,15 @@ void SupportInterface::integrate(const FullMu &mu, const Cell &edge, EntityValue
     }
 }
 
-/// The work of every multiplier on a unit vertical displacement, B e_y. `mapped`: the vertices.
-Vector SupportInterface::lift(const FullMu &mu, const Matrix &mapped) const {
+/// The work of multipliers on a unit vertical displacement, B e_y, where `lambda` is not zero.
+/// `mapped`: the vertices.
+Vector SupportInterface::lift(const FullMu &mu, const Matrix &mapped, const Vector &lambda) const {
   Vector result = Vector::Zero(dual_.size());
   for (Index e = 0; e < mesh_.count(); ++e) {
-    const Cell edge = reference_entity(e);
     const std::span<const Index> rows = rows_of(e);
+    if (std::ranges::none_of(rows, [&](Index row) { return row >= 0 && lambda[row] != 0; }))
+      continue;
+    const Cell edge = reference_entity(e);
     const double whole = (mapped.row(e + 1) - mapped.row(e)).norm();
     for (const TracePoint &at : points_) {
       const Point &begin = edge.reference[0], &end = edge.reference[1];
@@ -134,9 +137,9 @@ void SupportInterface::outputs(const FullMu &mu, const ContactOperators &operato
                                const Vector &lambda, double, Outputs &outputs) const {
   const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + mesh_.count() + 1);
   const Matrix mapped = mapped_points(scene_, mu, vertices);
-  support_outputs(
-      {lambda, operators.weights, lift(mu, mapped), bound(mu), mapped(dual_.vertices, Eigen::all)},
-      outputs);
+  support_outputs({lambda, operators.weights, lift(mu, mapped, lambda), bound(mu),
+                   mapped(dual_.vertices, Eigen::all)},
+                  outputs);
 }
 
 } // namespace
