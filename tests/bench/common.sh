@@ -48,7 +48,7 @@ targets_csv() {
 report() { # title, run directory, log of verify
   printf '\n## Run time against error, %s\n\n' "$1"
   sed '/^Tables:/d; /^.*samples per group/d' "$2/bench/table.md"
-  printf '\n```\n%s\n```\n' "$(sed -n '/^Inf-sup/,/fewest\|all [0-9]* supremizers/p' "$work/$3.log")"
+  printf '\n```\n%s\n```\n' "$(sed -n '/^Inf-sup/,/fewest\|all [0-9]* supremizers/p' "$work/$3.log" | sed '/^wrote/d')"
 }
 finish() { # results: path without its ending
   say "written: $1.md, $1.csv"

@@ -125,8 +125,10 @@ def nodes(runs, directory):
     figure, axes = plt.subplots(1, 2, figsize=(11, 3.4), constrained_layout=True, sharey=True)
     for axis, (key, (name, colour)) in zip(axes, SIZES.items()):
         run = runs["radius", key]
-        points, chosen = stored(run, "contact/points"), stored(run, "law/basis/nodes")
-        right = points[::-1, 0][:len(points) // 2 + 1]  # of pair 0, 1, ...: mirror images
+        chosen, per_edge = stored(run, "law/basis/nodes"), stored(run, "interfaces/0/sizes")[3]
+        vertices = len(stored(run, "interfaces/0/entities")) // per_edge + 1
+        x = stored(run, "interfaces/0/points")[:vertices, 0]
+        right = x[::-1][:vertices // 2 + 1]  # of pair 0, 1, ...: mirror images
         rows = rows_of(run / "samples.csv")
         for column, shade, label in (("contact_half_width", GREY, "edge of contact"),
                                      ("stick_half_width", PURPLE, "edge of stick")):
