@@ -46,6 +46,22 @@ Index solved_size(const ReducedModel &model) {
   return model.modes + std::min(model.supremizers, model.generators);
 }
 
+/// The contact dofs that constraints at single nodes act on, where they are not all: those of the
+/// vertices.
+std::vector<Index> nodal_dofs(const Contact &contact) {
+  std::vector<Index> dofs;
+  for (const auto &interface : contact.interfaces) {
+    if (interface->dual().vertices.empty()) return {};
+    const InterfaceMesh &mesh = interface->mesh();
+    for (const Index node : interface->dual().vertices)
+      for (int c = 0; c < mesh.components; ++c)
+        if (const int dof = mesh.dofs[static_cast<std::size_t>(node * mesh.components + c)];
+            dof >= 0)
+          dofs.push_back(dof);
+  }
+  return dofs;
+}
+
 } // namespace
 
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
@@ -66,8 +82,11 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());
     return;
   }
+  nodal_dofs_ = nodal_dofs(contact_);
+  nodal_trace_ = model.contact_trace(nodal_dofs_, Eigen::all);
   if (model.law) {
     law_ = std::make_unique<LawSolver>(model, scene_, contact_);
+    nodal_basis_ = model.dual_basis.sparseView();
     return;
   }
   const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
@@ -248,7 +267,7 @@ ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
 Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
   if (nitsche_)
     return nitsche_multiplier(nitsche_->fields(solution.mu, solution.u), has_friction(scene_));
-  return model_.dual_basis * solution.x;
+  return law_ ? Vector(nodal_basis_ * solution.x) : Vector(model_.dual_basis * solution.x);
 }
 
 ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution,
@@ -261,7 +280,15 @@ ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution,
 
 Vector OnlineSolver::contact_gap(const ReducedSolution &solution) const {
   const ContactOperators operators = nodal_operators(solution, multiplier(solution));
-  return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * solution.u);
+  return gap_left(operators, solution.u);
+}
+
+Vector OnlineSolver::gap_left(const ContactOperators &operators, const Vector &u) const {
+  if (nodal_dofs_.empty())
+    return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * u);
+  Vector at_contact = Vector::Zero(model_.contact_trace.rows());
+  at_contact(nodal_dofs_) = nodal_trace_ * u;
+  return operators.nodal_gap - operators.nodal_b * at_contact;
 }
 
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
@@ -292,9 +319,8 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   }
   const Vector lambda = multiplier(solution);
   const ContactOperators operators = nodal_operators(solution, lambda);
-  const Vector excess =
-      operators.nodal_b * (model_.contact_trace * solution.u) - operators.nodal_gap;
-  result.max_penetration = excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0;
+  const Vector gap = gap_left(operators, solution.u);
+  result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
   const double least = law_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   return result;

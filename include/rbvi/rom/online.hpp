@@ -64,6 +64,8 @@ private:
   void enrich();
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
+  /// nodal_gap - nodal_b u.
+  Vector gap_left(const ContactOperators &operators, const Vector &u) const;
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedSolution &solution, const Vector &lambda) const;
 
@@ -71,8 +73,11 @@ private:
   const Scene scene_; ///< with_imposed_loads
   const Sum imposed_energy_;
   Contact contact_;
-  // Contact with a rigid support: the rest is not used.
+  std::vector<Index> nodal_dofs_; ///< contact dofs that nodal_b acts on; empty: all
+  Matrix nodal_trace_;            ///< the primal basis there
+  // The law at nodes, or Nitsche's method: the rest is not used.
   std::unique_ptr<LawSolver> law_;
+  SparseMatrix nodal_basis_; ///< with it: the dual basis
   std::unique_ptr<ReducedNitsche> nitsche_;
   MixedQp qp_;
   bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
