@@ -1,6 +1,7 @@
 #include "local_frames.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/mat_entries.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "vectors.hpp"
 
@@ -67,28 +68,20 @@ std::vector<NodalBound> nodal_bounds(const Contact &contact, const DualLayout &l
   return bounds;
 }
 
-/// visit(local row, column, value) of this rank's rows.
-template <class Visit> void visit_entries(Mat b, Visit &&visit) {
-  PetscInt first = 0, last = 0;
-  RBVI_CALL(MatGetOwnershipRange(b, &first, &last));
-  for (PetscInt row = first; row < last; ++row) {
-    PetscInt count = 0;
-    const PetscInt *columns = nullptr;
-    const PetscScalar *values = nullptr;
-    RBVI_CALL(MatGetRow(b, row, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k)
-      visit(row - first, columns[k], values[k]);
-    RBVI_CALL(MatRestoreRow(b, row, &count, &columns, &values));
-  }
+PetscInt first_row(Mat b) {
+  PetscInt first = 0;
+  RBVI_CALL(MatGetOwnershipRange(b, &first, nullptr));
+  return first;
 }
 
 /// Scalar displacements: row i of b reads b_i u_c <= g_i.
 void set_bounds(const DistributedContact &contact, PrimalProblem &primal) {
   LocalValues g(contact.g.get());
+  const PetscInt first = first_row(contact.b.get());
   visit_entries(contact.b.get(), [&](PetscInt row, PetscInt column, double value) {
     if (value == 0) return;
     const Handle<Vec> &bound = value < 0 ? primal.lower : primal.upper;
-    RBVI_CALL(VecSetValue(bound.get(), column, g.get()[row] / value, INSERT_VALUES));
+    RBVI_CALL(VecSetValue(bound.get(), column, g.get()[row - first] / value, INSERT_VALUES));
   });
   for (const Handle<Vec> *bound : {&primal.lower, &primal.upper}) {
     RBVI_CALL(VecAssemblyBegin(bound->get()));
@@ -107,8 +100,10 @@ Handle<Vec> recover_multiplier(const DistributedContact &contact, const Operator
   RBVI_CALL(MatMult(contact.b.get(), u, bu.get()));
   LocalValues value(lambda.get()), constraint(bu.get()), g(contact.g.get());
   Vector squares = Vector::Zero(g.get().size());
-  visit_entries(contact.b.get(),
-                [&](PetscInt row, PetscInt, double entry) { squares[row] += entry * entry; });
+  const PetscInt first = first_row(contact.b.get());
+  visit_entries(contact.b.get(), [&](PetscInt row, PetscInt, double entry) {
+    squares[row - first] += entry * entry;
+  });
   for (Index i = 0; i < squares.size(); ++i) {
     const double size = std::sqrt(squares[i]);
     const double scale = size > 0 ? std::max(std::abs(g.get()[i]) / size, gap) : 0;

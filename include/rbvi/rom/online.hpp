@@ -6,7 +6,7 @@
 // What does not depend on mu is done once: the factor L where A has one term, Y where B has one
 // term too. B and G that do not separate are evaluated anew, on the interfaces alone. Free modes
 // have equations in place of inequalities. An online-enriched model is first reduced to V_N +
-// S_R(mu) (2.17): the rows of B are the coordinates of T(mu) chi_r. Contact with a rigid support:
+// S_R(mu) (2.17): the rows of B are the coordinates of T(mu) chi_r. The law at the nodes:
 // rom/law/law_solver.hpp, by Nitsche's method rom/nitsche/nitsche_solver.hpp.
 #pragma once
 

@@ -64,9 +64,10 @@ public:
   const NitscheCurve *nitsche() const override { return &curve_; }
   void assemble(const FullMu &mu, const ContactState &, const WantedNodes &,
                 ContactOperators &operators) override {
-    std::vector<Point> mapped;
-    for (const Point &x : mesh_.points)
-      mapped.push_back(scene_.map(mu, x));
+    std::vector<Point> mapped(mesh_.points.size());
+    for (const Index node : dual_.vertices)
+      mapped[static_cast<std::size_t>(node)] =
+          scene_.map(mu, mesh_.points[static_cast<std::size_t>(node)]);
     set_constraints(mu, mapped, {}, operators);
   }
   FrictionBound bound(const FullMu &mu) const override {

@@ -2,24 +2,10 @@
 #pragma once
 
 #include "rbvi/mor/separation/eim.hpp"
+#include "rbvi/par/mat_entries.hpp"
 #include "rbvi/problem/problem.hpp"
 
 namespace rbvi {
-
-/// Calls visitor(row, column, value) for each local entry. Not collective.
-template <class Visitor> void visit_entries(Mat a, Visitor &&visitor) {
-  PetscInt begin = 0, end = 0;
-  RBVI_CALL(MatGetOwnershipRange(a, &begin, &end));
-  for (PetscInt row = begin; row < end; ++row) {
-    PetscInt count = 0;
-    const PetscInt *columns = nullptr;
-    const PetscScalar *values = nullptr;
-    RBVI_CALL(MatGetRow(a, row, &count, &columns, &values));
-    for (PetscInt k = 0; k < count; ++k)
-      visitor(row, columns[k], values[k]);
-    RBVI_CALL(MatRestoreRow(a, row, &count, &columns, &values));
-  }
-}
 
 /// The local entries of the lower triangle of a symmetric matrix over the free dofs, by natural
 /// numbers, and where their values stand.

@@ -1,4 +1,4 @@
-// The online stage of contact with a rigid support: the condensed operator and the gap at mu, the
+// The online stage of the law at the nodes: the condensed operator and the gap at mu, the
 // law of contact and friction at every node by solve_friction, then the displacement in V_N by
 // A_N u = F_N - B_N^T x. Where the multipliers are reduced further, the law is that of
 // rom/law/reduced_law.hpp; with the condensed operator its answer is checked at all nodes, and
