@@ -93,7 +93,7 @@ private:
 
 /// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
 /// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with
-/// s = max(|g|, |B u|, 1e-6 terms) in the maximum norm. au = A u, bu = B u, btx = B^T x; `terms`:
+/// s = max(|g|, |B u|, 1e-4 terms) in the maximum norm. au = A u, bu = B u, btx = B^T x; `terms`:
 /// |B| |u|, what cancels in B u. The last `free` rows are equations: B u = g.
 double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
                     const Vector &g, const Vector &x, Index free = 0, double terms = 0);
