@@ -9,9 +9,13 @@
 // similarity, which leaves a plane stiffness as it is and multiplies b by R. What does depend on R
 // is the gap. The same with Nitsche's method in place of multipliers (Niakh 2022, chapter 4), on a
 // finer curve by default.
+//
+// Large deformations (Niakh 2022, appendix A): the condition is that of the deformed body on a
+// wider arc, within 45 degrees; the elasticity stays linear.
 #include "scene.hpp"
 
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"
@@ -31,7 +35,7 @@ constexpr int nitsche_edges = 316; // 2.5 mm, the mesh of the published study
 constexpr double deepest = 0.13;
 
 /// Positions of the parameters.
-enum Position { radius, indentation, friction, core_stiffness, poisson_ratio };
+enum Position { radius, indentation, friction, core_stiffness, poisson_ratio, offset };
 
 double norm(const Point &x) {
   return std::sqrt(x[0] * x[0] + x[1] * x[1]);
@@ -43,9 +47,9 @@ Point on_arc(const FullMu &mu, const Point &x) {
   return {scale * x[0], scale * x[1], 0};
 }
 
-/// From the centre of the rigid disk, (0, -R - initial_gap - 1), to a point.
+/// From the centre of the rigid disk, (offset, -R - initial_gap - 1), to a point.
 Point from_support(const FullMu &mu, const Point &x) {
-  return {x[0], x[1] + mu[radius] + initial_gap + 1, 0};
+  return {x[0] - mu[offset], x[1] + mu[radius] + initial_gap + 1, 0};
 }
 
 Point radial_normal(const FullMu &, const Point &x) {
@@ -66,6 +70,15 @@ double gap_along(const Point &p, const Point &n) {
   return -half - std::sqrt(root);
 }
 
+SurfacePoint rigid_disk_at(const FullMu &mu, const Point &y) {
+  const Point p = from_support(mu, y);
+  const double distance = norm(p);
+  if (!(distance > 0)) throw failure("a point of the body is at the centre of the rigid disk");
+  return {distance - 1, {p[0] / distance, p[1] / distance, 0}, 1 / distance};
+}
+
+const auto surfaces = plain<Surface>("rigid_disk/surface", 1, rigid_disk_at);
+const auto points_on_arc = plain<PointMap>("rigid_disk/on_arc", 1, on_arc);
 const auto radial_normals = plain<PointMap>("rigid_disk/radial_normal", 1, radial_normal);
 const auto rigid_normals = plain<PointMap>("rigid_disk/rigid_normal", 1, rigid_normal);
 
@@ -111,30 +124,35 @@ Friction friction_of(const SceneOptions &options) {
   return result;
 }
 
-ParameterSpace parameters(FrictionLaw law, bool nitsche, double young) {
+ParameterSpace parameters(FrictionLaw law, bool nitsche, bool large, double young) {
   ParameterSpace space =
       all_free({{"radius", "m", 0.7, 1.3, 1, {0.1, 10}},
-                {"indentation", "m", 0.01, 0.09, 0.09, {0, 1.3}},
+                {"indentation", "m", 0.01, large ? 0.2 : 0.09, 0.09, {0, 1.3}},
                 {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2, friction_range},
                 {"core_stiffness", "", 0.2, 5, 1, {1e-3, 1e3}},
-                {"poisson_ratio", "", 0.2, 0.45, 0.35, poisson_range}});
+                {"poisson_ratio", "", 0.2, 0.45, 0.35, poisson_range},
+                {"offset", "m", -0.1, 0.1, 0, {-1, 1}}});
   if (law == FrictionLaw::tresca)
     space.all[friction] = {"friction_threshold", "Pa", 0, 0.2, 0.1, {0, 1e4 * young}};
   space.free = {radius};
   return space;
 }
 
-MeshRecipe mesh(int edges) {
+MeshRecipe mesh(int edges, bool large) {
   constexpr double pi = std::numbers::pi, down = -pi / 2;
+  const double half_angle = large ? pi / 4 : pi / 8;
   const Point centre{0, 0, 0};
-  MeshRecipe recipe{"half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+  MeshRecipe recipe{
+      large ? "wide_half_disc" : "half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
   recipe.facts = {{"", "the half y <= 0 of the disk of radius 1 m about the origin",
                    common_part(disk(centre, 1), box({-1, -1, 0}, {1, 0, 0})), pi / 2},
                   {"core", "the half disk of radius 0.6 m about the origin",
                    disk(centre, core_radius), pi / 2 * core_radius * core_radius},
                   {"top", "the flat side y = 0", segment({-1, 0, 0}, {1, 0, 0}), 2},
-                  {"contact", "the arc of radius 1 m within 22.5 degrees of (0, -1)",
-                   arc(centre, 1, down, pi / 8), pi / 4, "arc"},
+                  {"contact",
+                   "the arc of radius 1 m within " + short_number(half_angle * 180 / pi) +
+                       " degrees of (0, -1)",
+                   arc(centre, 1, down, half_angle), 2 * half_angle, "arc"},
                   {"arc", "the whole half circle of radius 1 m, 'contact' included",
                    arc(centre, 1, down, pi / 2), pi}};
   recipe.inclusion = {"core", centre, core_radius};
@@ -205,32 +223,62 @@ const auto pushed_down =
 
 const auto indentation_check = plain<Check>("rigid_disk/indentation", 1, check_indentation);
 
+/// Contact that follows the displacement.
+ContactRecipe following_contact(const SceneOptions &options, const Friction &friction) {
+  if (asks_for_nitsche(options))
+    throw bad_input("-kinematics large is for contact by multipliers: leave out -formulation "
+                    "nitsche");
+  if (options.at("gap") != "closest")
+    throw bad_input("-kinematics large measures the gap to the next point: leave out -gap " +
+                    options.at("gap"));
+  const std::string &normal = options.at("normal");
+  if (normal == "radial")
+    throw bad_input("-normal radial is that of the undeformed body: with -kinematics large use "
+                    "rigid or body");
+  RigidSurface surface{"contact", surfaces()};
+  if (options.at("gap_from") == "arc") surface.at_rest = points_on_arc();
+  if (normal == "body") surface.body_normal = radial_normals();
+  surface.friction = friction;
+  surface.lumped = options.at("lumped") == "yes";
+  return rigid_surface(surface);
+}
+
+/// Contact on the undeformed body.
+ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction) {
+  const std::string &choice = options.at("normal");
+  if (choice == "body")
+    throw bad_input("-normal body is that of the deformed body: use it with -kinematics large");
+  const Named<PointMap> normal = choice == "rigid" ? rigid_normals() : radial_normals();
+  const Support support{"contact", normal, gap_of(options, normal), friction,
+                        options.at("lumped") == "yes"};
+  if (support.lumped && asks_for_nitsche(options))
+    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
+  return support_contact(support, options);
+}
+
 Scene make(const SceneOptions &options) {
   Scene scene;
   const int edges = arc_edges(options);
   const double young = number_in(options, "young");
   scene.components = 2;
   scene.degree = 2;
-  const Named<PointMap> normal =
-      options.at("normal") == "rigid" ? rigid_normals() : radial_normals();
-  const Support support{"contact", normal, gap_of(options, normal), friction_of(options),
-                        options.at("lumped") == "yes"};
-  const bool nitsche = asks_for_nitsche(options);
-  if (support.lumped && nitsche)
-    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
-  scene.contacts = {support_contact(support, options)};
+  const Friction friction = friction_of(options);
+  const bool nitsche = asks_for_nitsche(options), large = options.at("kinematics") == "large";
+  scene.contacts = {large ? following_contact(options, friction)
+                          : contact_at_rest(options, friction)};
   scene.material = ring_and_core({{"young", {young}}});
-  scene.parameters = parameters(support.friction.law, nitsche, young);
-  scene.check_parameters = indentation_check();
+  scene.parameters = parameters(friction.law, nitsche, large, young);
+  if (!large) scene.check_parameters = indentation_check();
   scene.training = "grid:61";
   scene.validation = "random:30:1";
-  scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges);
+  scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges, large);
   scene.map = scaled();
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
   scene.motion = pushed_down();
   scene.a = stiffness(young);
   scene.symmetric = true;
+  scene.skewed_by = offset;
   scene.v_product = {exact_term(h1_product(1, 2, 2))};
   return scene;
 }
@@ -244,10 +292,16 @@ SceneEntry rigid_disk() {
        "arc",
        "Tresca's bound holds on the whole arc, or where there is contact",
        {"arc", "contact"}},
+      {"kinematics",
+       "small",
+       "contact of the undeformed body, or (large) where the body now is, on a wider arc",
+       {"small", "large"}},
       {"normal",
-       "radial",
-       "of the half-disk (radial), or of the rigid disk at the next point",
-       {"radial", "rigid"}},
+       "auto",
+       "of the half-disk (radial; auto with -kinematics small), of the rigid disk at the next "
+       "point "
+       "(rigid; auto with large), or of the deformed body",
+       {"auto", "radial", "rigid", "body"}},
       {"gap",
        "closest",
        "along the normal to the next point, along a ray, or to the point below",
@@ -258,7 +312,8 @@ SceneEntry rigid_disk() {
        {"arc", "edges"}},
       {"arc_edges",
        "0",
-       "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316",
+       "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316, with "
+       "-kinematics large 200",
        {},
        {0, 10000},
        true},
@@ -270,8 +325,8 @@ SceneEntry rigid_disk() {
           "Hertz contact of an elastic half-disk with a rigid disk, with friction",
           options,
           make,
-          {radial_normals, rigid_normals, gaps("closest"), gaps("ray"), gaps("vertical"),
-           ring_and_core, scaled, pushed_down, indentation_check}};
+          {surfaces, points_on_arc, radial_normals, rigid_normals, gaps("closest"), gaps("ray"),
+           gaps("vertical"), ring_and_core, scaled, pushed_down, indentation_check}};
 }
 
 } // namespace rbvi

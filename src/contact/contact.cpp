@@ -54,6 +54,8 @@ void stack_nodal(const std::vector<ContactOperators> &all, ContactOperators &ope
   operators.weights = stacked(each(all, &ContactOperators::weights));
   operators.nodal_b = stacked(each(all, &ContactOperators::nodal_b), false);
   operators.nodal_gap = stacked(each(all, &ContactOperators::nodal_gap));
+  for (const ContactOperators &of_one : all)
+    if (of_one.state.displacement.size() > 0) operators.state = of_one.state;
 }
 
 bool by_multipliers(const Scene &scene) {
@@ -138,6 +140,46 @@ void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState
   stack_nodal(all, operators);
 }
 
+bool follows_state(const Contact &contact) {
+  return std::ranges::any_of(contact.interfaces,
+                             [](const auto &interface) { return interface->follows_state(); });
+}
+
+bool has_curvature(const Contact &contact) {
+  return std::ranges::all_of(contact.interfaces, [](const auto &interface) {
+    return !interface->follows_state() || interface->has_curvature();
+  });
+}
+
+Curvature curvature(const Contact &contact, const FullMu &mu, const ContactState &state,
+                    const Vector &lambda) {
+  std::vector<SparseMatrix> s, e;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const ContactInterface &interface = *contact.interfaces[i];
+    if (!interface.follows_state()) continue;
+    Curvature one = interface.curvature(
+        mu, state, lambda.segment(contact.first_row[i], interface.dual().size()));
+    if (contact.interfaces.size() == 1) return one;
+    s.push_back(std::move(one.s));
+    e.push_back(std::move(one.e));
+  }
+  return {stacked(s, false), stacked(e, false)};
+}
+
+Vector undeformed(const Contact &contact, const Scene &scene, const FullMu &mu) {
+  Vector state = Vector::Zero(contact.interfaces.front()->mesh().columns);
+  for (const auto &interface : contact.interfaces) {
+    const InterfaceMesh &mesh = interface->mesh();
+    for (std::size_t i = 0; i < mesh.points.size() && scene.motion; ++i) {
+      const Point motion = scene.motion(mu, mesh.points[i]);
+      for (std::size_t c = 0; c < static_cast<std::size_t>(mesh.components); ++c)
+        if (const int dof = mesh.dofs[i * static_cast<std::size_t>(mesh.components) + c]; dof >= 0)
+          state[dof] = -motion[c];
+    }
+  }
+  return state;
+}
+
 NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
   NodeLaws laws;
   for (const auto &interface : contact.interfaces) {
@@ -159,13 +201,15 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     const ContactInterface &interface = *contact.interfaces[i];
     ContactOperators part;
     part.weights = operators.weights.segment(node, interface.dual().nodes());
+    part.state = operators.state;
     node += interface.dual().nodes();
     Outputs one;
     interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
                       least, one);
     for (const auto member :
          {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
-          &Outputs::contact_measure, &Outputs::contact_nodes, &Outputs::stick_nodes})
+          &Outputs::horizontal_reaction, &Outputs::contact_measure, &Outputs::contact_nodes,
+          &Outputs::stick_nodes})
       combine(outputs.*member, one.*member, true);
     for (const auto member : {&Outputs::peak_pressure, &Outputs::friction_violation})
       combine(outputs.*member, one.*member, false);

@@ -47,6 +47,26 @@ void EntitySum::integrate_beside_imposed(const FullMu &mu, const Cell &entity,
   values.g -= values.b * imposed_values(scene_, mu, nodes, imposed_by);
 }
 
+void EntitySum::set_displacement(const FullMu &mu, Index entity, const ContactState &state,
+                                 Cell &cell, std::vector<double> &values) const {
+  if (state.displacement.size() == 0) return;
+  const auto components = static_cast<std::size_t>(mesh_.components);
+  values.assign(static_cast<std::size_t>(mesh_.per_entity) * components, 0);
+  const int *nodes = mesh_.nodes_of(entity);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const auto node = static_cast<std::size_t>(nodes[k / components]);
+    const int dof = mesh_.dofs[node * components + k % components];
+    if (dof >= 0) values[k] = state.displacement[dof];
+  }
+  if (cell.imposed_by != nullptr) {
+    const std::vector<int> imposed_by(cell.imposed_by, cell.imposed_by + values.size());
+    const std::vector<Point> points = node_points(entity_dim_, mesh_.degree, cell);
+    Eigen::Map<Vector>(values.data(), std::ssize(values)) +=
+        imposed_values(scene_, mu, points, imposed_by);
+  }
+  cell.displacement = values.data();
+}
+
 std::span<const Index> EntitySum::rows_of(Index entity) const {
   return std::span(rows_).subspan(static_cast<std::size_t>(entity * rows()),
                                   static_cast<std::size_t>(rows()));
@@ -232,7 +252,7 @@ void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped
                     describe(scene_.parameters, mu));
 }
 
-void EntitySum::assemble(const FullMu &mu, const ContactState &, const WantedNodes &wanted,
+void EntitySum::assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
                          ContactOperators &operators) {
   if (pattern_.rows() == 0 || wanted != pattern_wanted_) set_pattern(wanted);
   clear(pattern_, operators.b);
@@ -241,7 +261,9 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, const WantedNod
   EntityValues values = shape();
   const Index *position = position_.data();
   const std::vector<Point> mapped = mapped_vertices(mu, entities_);
-  visit_entities(mu, mapped, entities_, [&](Index e, const Cell &cell) {
+  std::vector<double> displacement;
+  visit_entities(mu, mapped, entities_, [&](Index e, Cell &cell) {
+    if (follows_state()) set_displacement(mu, e, state, cell, displacement);
     integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
@@ -250,7 +272,8 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, const WantedNod
       if (dual[i] >= 0) operators.g[dual[i]] += values.g[static_cast<Index>(i)];
     add_weights(mu, e, cell, values, operators.weights);
   });
-  set_constraints(mu, mapped, wanted, operators);
+  set_constraints(mu, mapped, state, wanted, operators);
+  if (follows_state()) operators.state = state;
   for (Index i = 0; i < dual_.nodes() && !wanted.empty(); ++i) {
     if (is_wanted(wanted, i)) continue; // else some of its entities were left out
     const Index tangents = dual_.components - 1;
@@ -259,7 +282,7 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &, const WantedNod
   }
 }
 
-void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &, const Vector &lambda,
+void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &state, const Vector &lambda,
                                ContactOperators &operators) {
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
@@ -272,7 +295,8 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &, const Vec
   visit_entities(mu, mapped, entities_at(loaded), [&](Index e, const Cell &cell) {
     add_weights(mu, e, cell, values, operators.weights);
   });
-  set_constraints(mu, mapped, {}, operators);
+  set_constraints(mu, mapped, state, {}, operators);
+  if (follows_state()) operators.state = state;
 }
 
 void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,

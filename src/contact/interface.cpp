@@ -23,6 +23,10 @@ bool separable_contact(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, &ContactRecipe::separable);
 }
 
+bool follows_state(const Scene &scene) {
+  return std::ranges::any_of(scene.contacts, &ContactRecipe::follows_state);
+}
+
 bool keeps_nodes(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, &ContactRecipe::keeps_nodes);
 }
@@ -35,13 +39,17 @@ FrictionBound ContactInterface::bound(const FullMu &) const {
   return {};
 }
 
-PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &,
+PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &, const Point &,
                                                 const Point &) const {
   throw failure("this kind of contact has no constraint at single points");
 }
 
+Curvature ContactInterface::curvature(const FullMu &, const ContactState &, const Vector &) const {
+  throw failure("this kind of contact has no curvature");
+}
+
 void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
-                                       const WantedNodes &wanted,
+                                       const ContactState &state, const WantedNodes &wanted,
                                        ContactOperators &operators) const {
   const auto rows = static_cast<Index>(dual_.vertices.size());
   SparseMatrix b(rows, mesh_.columns);
@@ -51,8 +59,15 @@ void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point
   for (Index i = 0; i < rows; ++i) {
     if (!is_wanted(wanted, i)) continue;
     const Index node = dual_.vertices[static_cast<std::size_t>(i)];
+    Point displacement{};
+    for (int c = 0; c < mesh_.components && state.displacement.size() > 0; ++c) {
+      const Index at_node = node * mesh_.components + c;
+      const int dof = mesh_.dofs[static_cast<std::size_t>(at_node)];
+      if (dof >= 0) displacement[static_cast<std::size_t>(c)] = state.displacement[dof];
+      if (imposed.size() > 0) displacement[static_cast<std::size_t>(c)] += imposed[at_node];
+    }
     const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)],
-                                             mapped[static_cast<std::size_t>(node)]);
+                                             mapped[static_cast<std::size_t>(node)], displacement);
     operators.nodal_gap[i] = at.gap;
     for (int c = 0; c < mesh_.components; ++c) {
       const Index at_node = node * mesh_.components + c;

@@ -74,6 +74,7 @@ template Named<Coefficient> made(const Record &);
 template Named<Check> made(const Record &);
 template Named<PointValue> made(const Record &);
 template Named<PointMap> made(const Record &);
+template Named<Surface> made(const Record &);
 template Named<Material> made(const Record &);
 template Named<Kernel> made(const Record &);
 template Named<Traction> made(const Record &);

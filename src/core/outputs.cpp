@@ -16,6 +16,8 @@ const std::vector<OutputColumn> &output_columns() {
       {"tangential_force", &Outputs::tangential_force, quantity,
        "integral of the magnitude of the tangential stress"},
       {"reaction", &Outputs::reaction, quantity, "vertical force of the support on the body"},
+      {"horizontal_reaction", &Outputs::horizontal_reaction, quantity,
+       "horizontal force of the support on the body, to the right"},
       {"contact_measure", &Outputs::contact_measure, measure,
        "length or area in contact: weights of the nodes with pressure (of the membrane with "
        "-lumped each by its pressure over the largest beside it)"},
@@ -47,6 +49,8 @@ const std::vector<OutputColumn> &output_columns() {
       {"expected_error_lambda", &Outputs::expected_error_lambda, check,
        "largest error of the multipliers that verify measured, relative"},
       {"iterations", &Outputs::iterations, check, "steps of the solver"},
+      {"contraction", &Outputs::contraction, check,
+       "large deformations: change in the last step over that in the one before"},
       {"seconds", &Outputs::seconds, check, "wall time of the answer"}};
   return columns;
 }

@@ -23,6 +23,13 @@ void check_option(const SceneOption &option, const std::string &value) {
 
 } // namespace
 
+bool is_symmetric(const Scene &scene) {
+  if (!scene.symmetric || scene.skewed_by < 0) return scene.symmetric;
+  const ParameterSpace &space = scene.parameters;
+  return std::ranges::find(space.free, scene.skewed_by) == space.free.end() &&
+         space.all[static_cast<std::size_t>(scene.skewed_by)].value == 0;
+}
+
 bool constant_stiffness(const Scene &scene) {
   return is_constant(scene.a, scene.parameters);
 }

@@ -53,6 +53,11 @@ constexpr std::array generators{
                 return recipe.edges == 0 ? half_disc() : half_disc(recipe.edges);
               },
               true},
+    Generator{"wide_half_disc",
+              [](const MeshRecipe &recipe) {
+                return recipe.edges == 0 ? wide_half_disc() : wide_half_disc(recipe.edges);
+              },
+              true},
     Generator{"one_block", [](const MeshRecipe &) { return one_block(); }},
     Generator{"annulus",
               [](const MeshRecipe &recipe) {

@@ -43,6 +43,7 @@ Outputs measure(const Problem &problem, const Operators &op, const Vector &weigh
   outputs.iterations = result.iterations;
   ContactOperators of_outputs;
   of_outputs.weights = weights;
+  of_outputs.state = op.state;
   contact_outputs(problem.contact(), op.mu, of_outputs, result.lambda, 0, outputs);
   return outputs;
 }
@@ -77,6 +78,9 @@ const std::vector<std::string> &hf_method_names() {
 
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
+  if (options.method != HfMethod::active_set && follows_state(problem.contact()))
+    throw bad_input("-method " + hf_method_names()[static_cast<std::size_t>(options.method)] +
+                    " is for small deformations: leave it out, or use -kinematics small");
   if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
   if (problem.nitsche()) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
@@ -159,6 +163,23 @@ MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, HfSo
   return result;
 }
 
+MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
+                                         HfSolution &solution) {
+  NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), at_rest.mu), {}};
+  if (!solved_.empty()) start = {nearest(mu)->state, nearest(mu)->start.lambda};
+  Compliance own;
+  Operators op = at_rest;
+  NonlinearResult steps;
+  MethodResult result = solve_following(ksp_.get(), problem_, compliance_ ? *compliance_ : own, op,
+                                        start, options_.nonlinear, steps);
+  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
+  solution.outputs = measure(problem_, op, op.weights, result, solution);
+  solution.outputs.contraction = steps.rate;
+  solution.states = std::move(steps.iterates);
+  solution.states.push_back(std::move(steps.state));
+  return result;
+}
+
 MethodResult HighFidelity::run_over_ranks(const Operators &op, HfSolution &solution) {
   const DualLayout &layout = problem_.dual_layout();
   const DistributedContact contact = distribute(layout, op, op.laws);
@@ -190,8 +211,10 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   }
   RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
   HfSolution solution;
-  const MethodResult result =
-      condensed ? run_condensed(mu, op, solution) : run_over_ranks(op, solution);
+  const bool follows = follows_state(problem_.contact());
+  const MethodResult result = follows     ? run_following(mu, op, solution)
+                              : condensed ? run_condensed(mu, op, solution)
+                                          : run_over_ranks(op, solution);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
   solution.u = whole_displacement(problem_, mu, result.u.get());
@@ -202,12 +225,17 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   solution.columns = result.columns;
   solution.reason = result.reason;
   solution.outputs.seconds = MPI_Wtime() - start;
-  if (condensed && solution.kkt.largest() > 1e-10)
-    throw failure("the KKT residual is " + short_number(solution.kkt.largest()) +
-                  ", above 1e-10: is the mesh or the parameter extreme? Try "
+  const double allowed = follows ? std::max(1e-10, 10 * options_.nonlinear.tolerance) : 1e-10;
+  if (condensed && solution.kkt.largest() > allowed)
+    throw failure("the KKT residual is " + short_number(solution.kkt.largest()) + ", above " +
+                  short_number(allowed) +
+                  ": is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps");
-  solved_.push_back(
-      {mu, {solution.active, result.start.size() > 0 ? result.start : solution.lambda}, {}, {}});
+  solved_.push_back({mu,
+                     {solution.active, result.start.size() > 0 ? result.start : solution.lambda},
+                     {},
+                     {},
+                     follows ? solution.states.back() : Vector{}});
   return solution;
 }
 

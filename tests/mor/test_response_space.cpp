@@ -56,7 +56,7 @@ double worst_compliance(Problem &problem, const Matrix &loads, const LinearBasis
   return worst;
 }
 
-const FullMu all{1, 0.09, 0.2, 1, 0.35};
+const FullMu all{1, 0.09, 0.2, 1, 0.35, 0};
 
 TEST(ResponseSpace, HoldsTheResponsesAtUnseenParameters) {
   Problem problem(PETSC_COMM_WORLD, disk(), {});

@@ -175,7 +175,8 @@ public:
   void weigh(const FullMu &, const Cell &, EntityValues &values) const override {
     values.weights.setOnes();
   }
-  PointConstraint constraint_at(const FullMu &, const Point &, const Point &) const override {
+  PointConstraint constraint_at(const FullMu &, const Point &, const Point &,
+                                const Point &) const override {
     return {{-1, 0, 0}, 0};
   }
   void outputs(const FullMu &, const ContactOperators &operators, const Vector &lambda,

@@ -269,7 +269,7 @@ TEST(CentreStresses, MaterialsAreThoseOfTheScenes) {
     EXPECT_NEAR(material.lambda, 15 * 0.35 / (1.35 * 0.3), 1e-13) << name;
   }
   const Scene disk = make_scene("rigid_disk");
-  const FullMu mu{1, 0.09, 0.2, 3, 0.35};
+  const FullMu mu{1, 0.09, 0.2, 3, 0.35, 0};
   EXPECT_NEAR(disk.material(mu, {0, -0.3, 0}).shear, 3 * disk.material(mu, {0, -0.9, 0}).shear,
               1e-12);
 }

@@ -31,6 +31,16 @@ void stack(const Contact &contact, const std::vector<ContactOperators> &all,
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
                     const Vector &lambda, ContactOperators &operators);
 
+/// Whether some interface follows the state; whether all that do have a curvature.
+bool follows_state(const Contact &contact);
+bool has_curvature(const Contact &contact);
+/// That of all interfaces; those that follow no state have none.
+Curvature curvature(const Contact &contact, const FullMu &mu, const ContactState &state,
+                    const Vector &lambda);
+/// The state in which the bodies are where the map puts them: minus the motion of the scene, at the
+/// columns of B.
+Vector undeformed(const Contact &contact, const Scene &scene, const FullMu &mu);
+
 /// The laws of all multipliers at mu. Throws failure for a bound that is negative.
 NodeLaws laws_at(const Contact &contact, const FullMu &mu);
 

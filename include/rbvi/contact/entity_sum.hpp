@@ -20,7 +20,8 @@ struct EntityValues {
 
 class EntitySum : public ContactInterface {
 public:
-  /// Sets b and g of `values`, which has its shape. `entity`: its vertices, reference and mapped.
+  /// Sets b and g of `values`, which has its shape. `entity`: its vertices, reference and mapped,
+  /// and the state, where there is one.
   virtual void integrate(const FullMu &mu, const Cell &entity, EntityValues &values) const = 0;
   /// The same, less b times the values imposed on the entity in g.
   void integrate_beside_imposed(const FullMu &mu, const Cell &entity, EntityValues &values) const;
@@ -44,6 +45,10 @@ public:
   std::vector<Index> columns_of(Index entity) const;
   /// Its reference vertices, and by what its dofs are imposed; valid as long as the interface.
   Cell reference_entity(Index entity) const;
+  /// Sets the displacement of an entity to that of a state, imposed values included, which it keeps
+  /// in `values`; leaves it null at rest.
+  void set_displacement(const FullMu &mu, Index entity, const ContactState &state, Cell &cell,
+                        std::vector<double> &values) const;
 
 protected:
   EntitySum(const Scene &scene, InterfaceMesh mesh, int entity_dim);

@@ -57,7 +57,8 @@ struct DualSpace {
 /// What the condition may depend on beside mu: where the bodies are now. Small deformations ignore
 /// it.
 struct ContactState {
-  Vector displacement; ///< at the columns of B
+  /// At the columns of B, beside the motion of the scene and the imposed values; empty: zero.
+  Vector displacement{};
 };
 
 struct ContactOperators {
@@ -67,6 +68,12 @@ struct ContactOperators {
   SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
   Vector nodal_gap;
   std::vector<Index> uncovered; ///< multipliers that do not face a partner everywhere
+  ContactState state;           ///< where they were evaluated, if the interface follows it
+};
+
+/// The derivative of B(s)^T lambda by the state s, at the columns: -(S^T E + E^T S).
+struct Curvature {
+  SparseMatrix s, e; ///< any number of rows each
 };
 
 /// At one point: direction . u <= gap, u the displacement without the motion of the scene, with the
@@ -113,17 +120,26 @@ public:
                               const Vector & /*lambda*/, ContactOperators &operators) {
     assemble_all(mu, state, operators);
   }
+  /// Whether B and g depend on the state (large deformations).
+  virtual bool follows_state() const { return false; }
+  /// Whether it has a curvature; without friction Newton's method is then quadratic.
+  virtual bool has_curvature() const { return false; }
+  /// Of multipliers at a state. Throws failure where there is none.
+  virtual Curvature curvature(const FullMu &mu, const ContactState &state,
+                              const Vector &lambda) const;
   /// Of |lambda_tau| at every node. Throws failure, naming the value, for a negative one.
   virtual FrictionBound bound(const FullMu &mu) const;
-  /// The constraint at a point of the reference boundary or region; `mapped`: where h(mu) takes it.
-  virtual PointConstraint constraint_at(const FullMu &mu, const Point &x,
-                                        const Point &mapped) const;
-  PointConstraint constraint_at(const FullMu &mu, const Point &x) const {
-    return constraint_at(mu, x, scene_.map(mu, x));
+  /// The constraint at a point of the reference boundary or region; `mapped`: where h(mu) takes it;
+  /// `displacement`: the state there, the imposed values included.
+  virtual PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &mapped,
+                                        const Point &displacement) const;
+  PointConstraint constraint_at(const FullMu &mu, const Point &x,
+                                const Point &displacement = {}) const {
+    return constraint_at(mu, x, scene_.map(mu, x), displacement);
   }
 
-  /// Fills the outputs of contact. `operators`: at least those of assemble_nodal; `lambda`: a node
-  /// with at most `least` counts as free.
+  /// Fills the outputs of contact. `operators`: at least those of assemble_nodal, with the state;
+  /// `lambda`: a node with at most `least` counts as free.
   virtual void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                        double least, Outputs &outputs) const = 0;
   /// The mapped interface with its pressure, gap, ...; no cell where nothing can touch. `u`: at its
@@ -140,7 +156,8 @@ protected:
   /// values taken into the gap; zero at the others. `mapped`: per node of the mesh that is a
   /// vertex.
   void set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
-                       const WantedNodes &wanted, ContactOperators &operators) const;
+                       const ContactState &state, const WantedNodes &wanted,
+                       ContactOperators &operators) const;
 
   const Scene &scene_;
   const InterfaceMesh mesh_;

@@ -44,6 +44,9 @@ struct ContactRecipe {
   /// B and G are sums over the entities, of a pattern that does not depend on mu: empirical
   /// interpolation over mu separates them. Otherwise they are evaluated at each mu, online too.
   bool separable = true;
+  /// B and G depend on the displacement as well (large deformations): the problem is solved by
+  /// Kacanov's or Newton's iteration. Not separable.
+  bool follows_state = false;
   /// A reduced model keeps a multiplier at every node, unless asked otherwise: the law is exact.
   bool keeps_nodes = false;
   /// `scene` must outlive the interface. Throws bad_input where the mesh does not suit it.
@@ -63,6 +66,8 @@ struct ContactKind {
 bool has_friction(const Scene &scene);
 bool by_nitsche(const Scene &scene);
 bool separable_contact(const Scene &scene);
+/// Whether some interface follows the state.
+bool follows_state(const Scene &scene);
 bool keeps_nodes(const Scene &scene);
 /// Whether every interface bounds single nodes, without friction.
 bool bounds_nodes(const Scene &scene);

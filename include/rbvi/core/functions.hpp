@@ -22,6 +22,17 @@ struct Cell {
   /// Of each dof of a form's nodes, the fixed boundary that imposes a value on it (its number in
   /// Scene::fixed), or -1; null: none does. For the forms of element/imposed.hpp.
   const int *imposed_by = nullptr;
+  /// State of contact: the displacement at the nodes, node * components + c, beside the motion of
+  /// the scene; null: at rest.
+  const double *displacement = nullptr;
+};
+
+/// A rigid surface as a point y sees it.
+struct SurfacePoint {
+  double distance;  ///< of y, signed: negative inside
+  Point normal;     ///< gradient of the distance: at the next point of the surface, towards y
+  double curvature; ///< second derivative of the distance along the tangent (2D): of a disk 1 over
+                    ///< the distance from its centre
 };
 
 /// The two constants of an isotropic material, pressures:
@@ -35,13 +46,15 @@ using Coefficient = double(const FullMu &mu); ///< theta, a coefficient of frict
 using Check = void(const FullMu &mu);         ///< throws bad_input
 using PointValue = double(const FullMu &mu, const Point &x);
 using PointMap = Point(const FullMu &mu, const Point &x);
+using Surface = SurfacePoint(const FullMu &mu, const Point &y);
 using Material = Lame(const FullMu &mu, const Point &x);
 using Kernel = void(const FullMu &mu, const Cell &cell, double *values); ///< see Form
 /// A force per length or area at a point x of the mapped boundary, n its unit normal outwards.
 using Traction = Point(const FullMu &mu, const Point &x, const Point &n);
 
 using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
-                              Maker<PointMap>, Maker<Material>, Maker<Kernel>, Maker<Traction>>;
+                              Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>,
+                              Maker<Traction>>;
 using FunctionLibrary = std::vector<AnyMaker>;
 
 /// The makers of this build: those of core and element, then each scene's; cases/catalogue.cpp.

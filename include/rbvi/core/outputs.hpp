@@ -14,7 +14,7 @@ namespace rbvi {
 struct Outputs {
   std::optional<double> energy;       ///< J(u) = a(u,u)/2 - f(u)
   std::optional<double> normal_force; ///< integral of the multiplier
-  std::optional<double> tangential_force, reaction;
+  std::optional<double> tangential_force, reaction, horizontal_reaction;
   /// Sum of the lumped weights of the active nodes; of an obstacle by vertex quadrature,
   /// contact_area.
   std::optional<double> contact_measure;
@@ -38,6 +38,8 @@ struct Outputs {
   /// Largest relative errors of the reduced model over its validation set (not of this answer).
   std::optional<double> expected_error_u, expected_error_lambda;
   std::optional<double> iterations;
+  /// Large deformations: the change in the last step over that in the one before.
+  std::optional<double> contraction;
   std::optional<double> seconds;
 };
 

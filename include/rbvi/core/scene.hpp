@@ -98,8 +98,10 @@ struct Scene {
   /// measured from: u = motion + w, w = 0 (or FixedBoundary::values) where it is fixed. Costs
   /// nothing, unlike other Dirichlet data; empty: zero.
   Named<PointMap> motion;
-  /// The data are symmetric about x = 0, and so are the solutions on a mesh that is.
+  /// The data are symmetric about x = 0, and so are the solutions on a mesh that is, where the
+  /// parameter `skewed_by`, if there is one, is fixed at zero; see is_symmetric.
   bool symmetric = false;
+  int skewed_by = -1;
   /// The domain is one of so many mirror images: energy, forces and measures are the whole's.
   double mirror_images = 1;
 
@@ -121,6 +123,9 @@ struct SceneEntry {
   Scene (*make)(const SceneOptions &);
   FunctionLibrary functions{}; ///< those of its own that files know by name
 };
+
+/// Whether data and solutions are symmetric about x = 0 for all free parameters.
+bool is_symmetric(const Scene &scene);
 
 /// Whether a is the same for all values of the free parameters.
 bool constant_stiffness(const Scene &scene);

@@ -106,6 +106,9 @@ SerialMesh two_blocks();
 /// of that arc and rings in the core. Throws bad_input unless `edges` is even and >= 8.
 SerialMesh half_disc(int edges = 100);
 
+/// The same with the contact arc of polar angle -3 pi / 4 to -pi / 4, for large deformations.
+SerialMesh wide_half_disc(int edges = 200);
+
 /// One block for patch tests, [0, 1] x [0, 0.5]. Boundaries: "sides" (x = 0 and x = 1), "top",
 /// "contact" (y = 0, 8 edges of four different lengths). 54 nodes, irregular spacing mirrored about
 /// x = 1/2, aspect ratios <= 1.9.

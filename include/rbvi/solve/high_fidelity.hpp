@@ -10,10 +10,14 @@
 //               bound at each node; without friction; never two bodies, whose constraints couple
 //               the nodes of both)
 //
+// Where contact follows the displacement (large deformations), active_set solves each linearised
+// problem of Kacanov's or Newton's iteration (law/nonlinear), which share the columns of A^-1.
+//
 // B, G and the multipliers of uzawa and vi are distributed over the ranks.
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/problem/problem.hpp"
 #include "rbvi/solve/nitsche.hpp"
 
@@ -31,6 +35,7 @@ struct HfOptions {
   int uzawa_max_iterations = 20000;
   bool uzawa_accelerated = false; ///< Nesterov's extrapolation, restarted when it overshoots
   double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
+  NonlinearOptions nonlinear; ///< where contact follows the displacement
   NitscheOptions nitsche;
 };
 
@@ -54,6 +59,9 @@ struct HfSolution {
   Outputs outputs;
   int iterations = 0;
   int columns = 0;    ///< active_set: columns of the condensed operator
+  /// Where contact follows the displacement: the states at the contact dofs at which its condition
+  /// was linearised, that of the solution last.
+  std::vector<Vector> states;
   std::string reason; ///< why the solver stopped
 };
 
@@ -88,9 +96,11 @@ private:
     Start start;
     Handle<Vec> u; ///< Nitsche's method, as the pressures
     Matrix pressures;
+    Vector state{}; ///< where contact follows the displacement
   };
   const Solved *nearest(const Mu &mu) const;
   Start nearest_start(const Mu &mu, const Operators &op);
+  MethodResult run_following(const Mu &mu, const Operators &op, HfSolution &solution);
   MethodResult run_condensed(const Mu &mu, const Operators &op, HfSolution &solution);
   MethodResult run_over_ranks(const Operators &op, HfSolution &solution);
   Matrix predicted_pressures(const Mu &mu) const;

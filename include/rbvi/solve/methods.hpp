@@ -1,6 +1,7 @@
 // The methods behind HighFidelity, each on one assembled problem.
 #pragma once
 
+#include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/scaled_part.hpp"
 
@@ -45,9 +46,14 @@ public:
                            const std::vector<Index> &which);
 
   Index count() const { return count_; } ///< of the columns that are kept
+  /// Makes these columns exist. Collective.
+  void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs);
+  /// One that was required.
+  Eigen::Map<const Vector> column(Index contact_dof) const {
+    return {columns_.col(slot_[static_cast<std::size_t>(contact_dof)]).data(), columns_.rows()};
+  }
 
 private:
-  void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs);
 
   Matrix columns_; ///< n_c x room
   Index count_ = 0;
@@ -60,6 +66,13 @@ MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, 
 
 /// Active set on a body with a scaled part, set to `op`.
 MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start);
+
+/// Contact that follows the displacement: Kacanov's or Newton's iteration on the condensed problem,
+/// every step on every rank. `op`: at mu; its contact operators become those of the solution.
+/// `steps` tells how it went. Throws failure where it does not converge. Collective.
+MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compliance, Operators &op,
+                             const NonlinearStart &start, const NonlinearOptions &options,
+                             NonlinearResult &steps);
 
 /// `f`: the load; `w_product`: over the ranks. Collective.
 MethodResult solve_uzawa(KSP ksp, const DualLayout &layout, const DistributedContact &contact,

@@ -5,6 +5,7 @@
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/pair/pair.hpp"
 #include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -12,9 +13,9 @@
 namespace rbvi {
 
 const std::vector<ContactKind> &contact_kinds() {
-  static const std::vector<ContactKind> kinds{obstacle_kind(), two_bodies_kind(),
+  static const std::vector<ContactKind> kinds{obstacle_kind(),      two_bodies_kind(),
                                               rigid_support_kind(), nitsche_support_kind(),
-                                              half_plane_kind()};
+                                              half_plane_kind(),    rigid_surface_kind()};
   return kinds;
 }
 

@@ -68,12 +68,13 @@ public:
     for (const Index node : dual_.vertices)
       mapped[static_cast<std::size_t>(node)] =
           scene_.map(mu, mesh_.points[static_cast<std::size_t>(node)]);
-    set_constraints(mu, mapped, {}, operators);
+    set_constraints(mu, mapped, {}, {}, operators);
   }
   FrictionBound bound(const FullMu &mu) const override {
     return friction_bound(curve_.support.friction, mu);
   }
-  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &) const override {
+  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
+                                const Point &) const override {
     const SupportPoint at = support_point(scene_, curve_.support, mu, x);
     return {at.normal, at.gap};
   }

@@ -33,8 +33,8 @@ public:
     static const Form hat_integrals = constant_load("", 1);
     hat_integrals.kernel(mu, cell, values.weights.data());
   }
-  PointConstraint constraint_at(const FullMu &mu, const Point &,
-                                const Point &mapped) const override {
+  PointConstraint constraint_at(const FullMu &mu, const Point &, const Point &mapped,
+                                const Point &) const override {
     return {{-1, 0, 0}, -obstacle_.height(mu, mapped)};
   }
 

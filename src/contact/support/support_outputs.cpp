@@ -47,6 +47,7 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
   outputs.contact_nodes = static_cast<double>((pressure.array() > 0).count());
   outputs.normal_force = state.weights.dot(pressure);
   outputs.reaction = -state.lift.dot(state.lambda);
+  outputs.horizontal_reaction = -state.push.dot(state.lambda);
   outputs.contact_measure = contact;
   outputs.contact_half_width = contact / 2;
   outputs.peak_pressure = pressure.maxCoeff();

@@ -29,12 +29,16 @@ SerialMesh mirrored(const SerialMesh &right) {
   return mesh;
 }
 
-} // namespace
-
-SerialMesh half_disc(int edges) {
+void check_edges(int edges) {
   if (edges < 8 || edges % 2 != 0)
     throw bad_input("the mesh of the half disc cannot have " + std::to_string(edges) +
                     " contact edges: their number must be even and at least 8");
+}
+
+} // namespace
+
+SerialMesh half_disc(int edges) {
+  check_edges(edges);
   // With these values 100 contact edges give 787 nodes and 5950 dofs of degree 2.
   SerialMesh right = quarter_disc({.contact_angle = std::numbers::pi / 8,
                                    .edges = edges / 2,
@@ -44,6 +48,20 @@ SerialMesh half_disc(int edges) {
                                    .longest_edge = 0.135,
                                    .inner_end = 0.61,
                                    .outer_end = 0.88});
+  right.boundary.erase("axis");
+  return mirrored(right);
+}
+
+SerialMesh wide_half_disc(int edges) {
+  check_edges(edges);
+  SerialMesh right = quarter_disc({.contact_angle = std::numbers::pi / 4,
+                                   .edges = edges / 2,
+                                   .growth = 0.2255,
+                                   .corner_edge = std::min(0.021, 12.0 / edges),
+                                   .rim_edge = 0.06,
+                                   .longest_edge = 0.135,
+                                   .inner_end = 0.95,
+                                   .outer_end = 1.3});
   right.boundary.erase("axis");
   return mirrored(right);
 }

@@ -151,7 +151,7 @@ std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &
 Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots) {
   const Contact &contact = problem.contact();
   const double largest = snapshots.cwiseAbs().maxCoeff();
-  bool halves = problem.scene().symmetric;
+  bool halves = is_symmetric(problem.scene());
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
     const DualSpace &dual = contact.interfaces[i]->dual();
     halves =

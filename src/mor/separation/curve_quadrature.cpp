@@ -28,7 +28,7 @@ public:
   AllPoints(const ReducedModel &model, const NitscheCurve &curve,
             const std::vector<Sample> &samples)
       : model_(model), solver_(model_, curve), scene_(curve.scene), samples_(samples),
-        of_curve_(4 * static_cast<Index>(curve.cells.size())), symmetric_(curve.scene.symmetric) {
+        of_curve_(4 * static_cast<Index>(curve.cells.size())), symmetric_(is_symmetric(curve.scene)) {
     const std::vector<CurveCell> &cells = curve.cells;
     const auto count = static_cast<Index>(samples.size());
     answers_.resize(model.primal_size(), count);

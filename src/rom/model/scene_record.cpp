@@ -161,6 +161,7 @@ Record record_of(const Scene &scene) {
                  {"components", {double(scene.components)}},
                  {"degree", {double(scene.degree)}},
                  {"symmetric", {double(scene.symmetric)}},
+                 {"skewed_by", {double(scene.skewed_by)}},
                  {"mirror_images", {scene.mirror_images}}}};
   add_functions(scene, record);
   add_list("contact", scene.contacts, record, [](const ContactRecipe &c) { return c.record; });
@@ -183,6 +184,7 @@ Scene scene_in(const Record &record) {
   scene.components = integer(record, "components");
   scene.degree = integer(record, "degree");
   scene.symmetric = integer(record, "symmetric") != 0;
+  scene.skewed_by = integer(record, "skewed_by");
   scene.mirror_images = number(record, "mirror_images");
   scene.map = made<PointMap>(part(record, "map"));
   if (record.parts.contains("motion")) scene.motion = made<PointMap>(part(record, "motion"));

@@ -30,7 +30,7 @@ ChosenPoints points_of(const NitscheModel &nitsche, const NitscheCurve &curve) {
 /// on one half, which stands for both: those of that half, which count twice.
 ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheCurve &curve) {
   const Vector x = point_abscissae(curve.cells);
-  const bool half = curve.scene.symmetric && nitsche.rule == CurveRule::empirical &&
+  const bool half = is_symmetric(curve.scene) && nitsche.rule == CurveRule::empirical &&
                     std::all_of(nitsche.points.begin(), nitsche.points.end(),
                                 [&](int point) { return x[point] < 0; });
   ChosenPoints chosen;

@@ -162,6 +162,22 @@ std::vector<Option> of_solvers() {
              "step rho; 0: 1 / largest eigenvalue of B A^-1 B^T")};
 }
 
+std::vector<Option> of_iterations() {
+  return {
+      choice("nonlinear_method",
+             choices(nonlinear_method_names(),
+                     {"newton where there is a curvature and no friction, else kacanov",
+                      "each linearised problem at the solution of the last (A.7)",
+                      "with the curvature of the condition: quadratic; without friction",
+                      "kacanov accelerated with three earlier states (Anderson)"}),
+             AT(hf.nonlinear.method), "iteration of contact that follows the displacement"),
+      number("nonlinear_tolerance", {1e-13, 0.1}, AT(hf.nonlinear.tolerance),
+             "relative change of u and of the multipliers (A.8)"),
+      number("nonlinear_max_steps", {1, 100000}, AT(hf.nonlinear.max_steps), "most steps"),
+      number("nonlinear_load_steps", {0, 1000}, AT(hf.nonlinear.load_steps),
+             "load steps where the first attempt fails; 0: that is an error")};
+}
+
 std::vector<Option> of_sweeps() {
   return {number("sweep_ranks_per_solve", {1, 1000000}, AT(ranks_per_solve),
                  "ranks that share one solve; divides the ranks"),
@@ -318,6 +334,7 @@ const std::vector<Option> &tool_options() {
     add("Run", of_runs(), all);
     add("Mesh", of_meshes(), all);
     add("High-fidelity solver", of_solvers(), all);
+    add("Large deformations", of_iterations(), all);
     add("Sweep", of_sweeps(), all);
     add("Bases", of_bases(), all);
     add("Stability", of_stability(), all);

@@ -15,15 +15,16 @@ double centre_pressure(const Vector &pressure, const Vector &arc_length, double 
 struct SupportState {
   const Vector &lambda;  ///< normal multipliers, then tangential ones if there are any
   const Vector &weights; ///< vertices: integral of the hat function
-  const Vector &lift;    ///< multipliers: their work on a unit vertical displacement, B e_y
+  const Vector &push;    ///< multipliers: their work on a unit horizontal displacement, B e_x
+  const Vector &lift;    ///< and on a vertical one, B e_y
   FrictionBound bound;
   const Matrix &points; ///< mapped vertices x dim, in the order of the curve
 };
 
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
-/// peak_pressure, centre_pressure and, with friction, tangential_force, stick_half_width,
-/// friction_violation (a pressure). A node sticks where it is below its bound by more than
-/// that.
+/// horizontal_reaction, peak_pressure, centre_pressure and, with friction, tangential_force,
+/// stick_half_width, friction_violation (a pressure). A node sticks where it is below its bound by
+/// more than that.
 void support_outputs(const SupportState &state, Outputs &outputs);
 
 } // namespace rbvi

@@ -1,0 +1,118 @@
+#include "rbvi/contact/support/curve_support.hpp"
+
+#include "rbvi/contact/curve.hpp"
+#include "rbvi/contact/support/support_outputs.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+TracePoint trace_point(int degree, const EdgePoint &at) {
+  TracePoint point{at.s, at.weight, {1 - at.s, at.s}, {}};
+  lagrange_values(1, degree, point.eta, point.phi);
+  return point;
+}
+
+/// Four Gauss points, or the two vertices: there only the vertex itself moves, a middle is free.
+std::vector<TracePoint> trace_points(int degree, bool lumped) {
+  if (lumped) return {trace_point(degree, {0, 0.5}), trace_point(degree, {1, 0.5})};
+  std::vector<TracePoint> points;
+  for (const EdgePoint &at : edge_quadrature)
+    points.push_back(trace_point(degree, at));
+  return points;
+}
+
+} // namespace
+
+double length_of(const Cell &edge) {
+  return std::hypot(edge.mapped[1][0] - edge.mapped[0][0], edge.mapped[1][1] - edge.mapped[0][1]);
+}
+
+CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh, Friction friction,
+                           bool lumped)
+    : EntitySum(scene, std::move(interface_mesh), 1), friction_(std::move(friction)),
+      points_(trace_points(mesh_.degree, lumped)) {
+  const Index vertices = check_curve(mesh_, 0, "support's boundary");
+  if (mesh_.components != 2)
+    throw bad_input("scene " + scene.name +
+                    ": a rigid support is for displacements of two "
+                    "components");
+  const std::vector<Point> points(mesh_.points.begin(), mesh_.points.begin() + vertices);
+  const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
+  set_dual(vertices, copies, lumped, linear_gram(points, copies));
+}
+
+void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const {
+  const double whole = length_of(edge);
+  const Index columns = values.b.cols(), nodes = columns / 2;
+  const bool friction = values.b.rows() > 2;
+  values.b.setZero();
+  values.g.setZero();
+  for (const TracePoint &at : points_) {
+    const double weight = at.weight * whole;
+    const SupportPoint here = support_at(mu, edge, at, point_on(edge, at));
+    for (Index a = 0; a < 2; ++a) {
+      const double eta = weight * at.eta[static_cast<std::size_t>(a)];
+      for (Index node = 0; node < nodes; ++node)
+        for (Index c = 0; c < 2; ++c)
+          values.b(a, 2 * node + c) += eta * at.phi[static_cast<std::size_t>(node)] *
+                                       here.normal[static_cast<std::size_t>(c)];
+      values.g[a] += here.gap * eta;
+      if (friction) values.g[2 + a] -= here.slip * eta;
+    }
+  }
+  for (Index a = 0; a < 2 && friction; ++a) // v . tau is v . n with v turned: (v_y, -v_x) . n
+    for (Index k = 0; k < columns; k += 2) {
+      values.b(2 + a, k) = -values.b(a, k + 1);
+      values.b(2 + a, k + 1) = values.b(a, k);
+    }
+}
+
+/// The work of multipliers on a unit displacement, B e_x and B e_y, where `lambda` is not zero.
+/// `mapped`: the vertices.
+CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &state,
+                                      const Matrix &mapped, const Vector &lambda) const {
+  Lift result{Vector::Zero(dual_.size()), Vector::Zero(dual_.size())};
+  std::vector<double> displacement;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::span<const Index> rows = rows_of(e);
+    if (std::ranges::none_of(rows, [&](Index row) { return row >= 0 && lambda[row] != 0; }))
+      continue;
+    Cell edge = reference_entity(e);
+    if (follows_state()) set_displacement(mu, e, state, edge, displacement);
+    for (Index i = 0; i < 2; ++i)
+      edge.mapped[static_cast<std::size_t>(i)] = {mapped(e + i, 0), mapped(e + i, 1), 0};
+    const double whole = length_of(edge);
+    for (const TracePoint &at : points_) {
+      const Point n = normal_at(mu, edge, at, point_on(edge, at));
+      for (std::size_t a = 0; a < 2; ++a) {
+        if (rows[a] < 0) continue;
+        const double eta = at.weight * whole * at.eta[a];
+        result.horizontal[rows[a]] += eta * n[0];
+        result.vertical[rows[a]] += eta * n[1];
+        if (dual_.components == 1) continue;
+        result.horizontal[rows[2 + a]] -= eta * n[1];
+        result.vertical[rows[2 + a]] += eta * n[0];
+      }
+    }
+  }
+  return result;
+}
+
+void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
+                           const Vector &lambda, double, Outputs &outputs) const {
+  const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + mesh_.count() + 1);
+  const Matrix mapped = mapped_points(scene_, mu, vertices);
+  const Lift unit = lift(mu, operators.state, mapped, lambda);
+  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
+                   mapped(dual_.vertices, Eigen::all)},
+                  outputs);
+}
+
+} // namespace rbvi

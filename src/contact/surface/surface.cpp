@@ -1,0 +1,185 @@
+#include "rbvi/contact/surface/surface.hpp"
+
+#include "rbvi/contact/support/curve_support.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+/// Derivatives of the displacement's functions on an edge by s: vertices, middle.
+std::array<double, 3> slopes(int degree, double s) {
+  if (degree == 1) return {-1, 1, 0};
+  return {4 * s - 3, 4 * s - 1, 4 - 8 * s};
+}
+
+class SurfaceInterface : public CurveSupport {
+public:
+  SurfaceInterface(const Scene &scene, InterfaceMesh interface_mesh, RigidSurface surface)
+      : CurveSupport(scene, std::move(interface_mesh), surface.friction, surface.lumped),
+        surface_(std::move(surface)) {}
+
+  bool follows_state() const override { return true; }
+  const EntitySum *entity_sum() const override { return nullptr; }
+  bool has_curvature() const override { return !surface_.body_normal; }
+  Curvature curvature(const FullMu &mu, const ContactState &state,
+                      const Vector &lambda) const override;
+  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
+                                const Point &displacement) const override {
+    const SurfacePoint at = surface_.surface(mu, moved(mu, x, displacement));
+    return constraint(at, {-at.normal[0], -at.normal[1], 0}, displacement);
+  }
+
+protected:
+  SupportPoint support_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
+                          const Point &x) const override;
+  Point normal_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
+                  const Point &x) const override {
+    return support_at(mu, edge, at, x).normal;
+  }
+
+private:
+  Point moved(const FullMu &mu, const Point &x, const Point &displacement) const;
+  Point displacement_at(const Cell &edge, const TracePoint &at) const;
+  Point body_normal(const FullMu &mu, const Cell &edge, const TracePoint &at, const Point &x) const;
+  static PointConstraint constraint(const SurfacePoint &at, const Point &n, const Point &state) {
+    const double facing = -(n[0] * at.normal[0] + n[1] * at.normal[1]);
+    return {n, facing * at.distance + n[0] * state[0] + n[1] * state[1]};
+  }
+
+  RigidSurface surface_;
+};
+
+/// Where the point is now.
+Point SurfaceInterface::moved(const FullMu &mu, const Point &x, const Point &displacement) const {
+  Point y = surface_.at_rest ? surface_.at_rest(mu, x) : scene_.map(mu, x);
+  const Point motion = scene_.motion ? scene_.motion(mu, x) : Point{};
+  for (std::size_t c = 0; c < 2; ++c)
+    y[c] += motion[c] + displacement[c];
+  return y;
+}
+
+Point SurfaceInterface::displacement_at(const Cell &edge, const TracePoint &at) const {
+  Point result{};
+  for (int node = 0; node < mesh_.per_entity && edge.displacement != nullptr; ++node)
+    for (std::size_t c = 0; c < 2; ++c)
+      result[c] += at.phi[static_cast<std::size_t>(node)] *
+                   edge.displacement[2 * static_cast<std::size_t>(node) + c];
+  return result;
+}
+
+/// Of the deformed curve: the tangent at rest, as long as the edge, and the slope of the
+/// displacement.
+Point SurfaceInterface::body_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
+                                    const Point &x) const {
+  const Point rest = surface_.body_normal(mu, x);
+  const double length = length_of(edge);
+  Point tangent{-length * rest[1], length * rest[0], 0};
+  const std::array<double, 3> slope = slopes(mesh_.degree, at.s);
+  for (int node = 0; node < mesh_.per_entity && edge.displacement != nullptr; ++node)
+    for (std::size_t c = 0; c < 2; ++c)
+      tangent[c] += slope[static_cast<std::size_t>(node)] *
+                    edge.displacement[2 * static_cast<std::size_t>(node) + c];
+  const double norm = std::hypot(tangent[0], tangent[1]);
+  if (!(norm > 1e-3 * length)) throw failure("an edge of the contact curve has lost its length");
+  return {tangent[1] / norm, -tangent[0] / norm, 0};
+}
+
+SupportPoint SurfaceInterface::support_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
+                                          const Point &x) const {
+  const Point displacement = displacement_at(edge, at);
+  const SurfacePoint below = surface_.surface(mu, moved(mu, x, displacement));
+  const Point n = surface_.body_normal ? body_normal(mu, edge, at, x)
+                                       : Point{-below.normal[0], -below.normal[1], 0};
+  const PointConstraint condition = constraint(below, n, displacement);
+  SupportPoint point{n, condition.gap, 0};
+  if (!scene_.motion) return point;
+  const Point motion = scene_.motion(mu, x);
+  point.slip = motion[1] * n[0] - motion[0] * n[1];
+  return point;
+}
+
+Curvature SurfaceInterface::curvature(const FullMu &mu, const ContactState &state,
+                                      const Vector &lambda) const {
+  const Index rows = mesh_.count() * static_cast<Index>(points().size());
+  const Index per_row = mesh_.per_entity * 2;
+  Curvature result{SparseMatrix(rows, mesh_.columns), SparseMatrix(rows, mesh_.columns)};
+  result.s.reserve(Eigen::VectorXi::Constant(rows, static_cast<int>(per_row)));
+  result.e.reserve(Eigen::VectorXi::Constant(rows, static_cast<int>(per_row)));
+  std::vector<double> displacement;
+  Index row = 0;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::span<const Index> dual = rows_of(e);
+    const auto pressure = [&](std::size_t a) { return dual[a] < 0 ? 0 : lambda[dual[a]]; };
+    if (pressure(0) == 0 && pressure(1) == 0) continue;
+    Cell edge = reference_entity(e);
+    for (std::size_t i = 0; i < 2; ++i)
+      edge.mapped[i] = scene_.map(mu, edge.reference[i]);
+    set_displacement(mu, e, state, edge, displacement);
+    const std::vector<Index> columns = columns_of(e);
+    for (const TracePoint &at : points()) {
+      const Point x = point_on(edge, at);
+      const SurfacePoint below = surface_.surface(mu, moved(mu, x, displacement_at(edge, at)));
+      const double weight = at.weight * length_of(edge) * below.curvature *
+                            (at.eta[0] * pressure(0) + at.eta[1] * pressure(1)) / 2;
+      const Point tau{below.normal[1], -below.normal[0], 0};
+      for (std::size_t k = 0; k < columns.size(); ++k) {
+        if (columns[k] < 0) continue;
+        const double value = at.phi[k / 2] * tau[k % 2];
+        result.s.insert(row, columns[k]) = value;
+        result.e.insert(row, columns[k]) = weight * value;
+      }
+      ++row;
+    }
+  }
+  result.s.conservativeResize(row, mesh_.columns);
+  result.e.conservativeResize(row, mesh_.columns);
+  return result;
+}
+
+Record record_of(const RigidSurface &surface) {
+  Record record{"rigid_surface",
+                1,
+                {{"lumped", {surface.lumped ? 1.0 : 0.0}}},
+                {{"boundary", surface.boundary}},
+                {{"surface", surface.surface.record}}};
+  if (surface.at_rest) record.parts["at_rest"] = surface.at_rest.record;
+  if (surface.body_normal) record.parts["body_normal"] = surface.body_normal.record;
+  add_friction(surface.friction, record);
+  return record;
+}
+
+RigidSurface surface_in(const Record &record) {
+  RigidSurface surface{text(record, "boundary"), made<Surface>(part(record, "surface"))};
+  if (record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(record, "at_rest"));
+  if (record.parts.contains("body_normal"))
+    surface.body_normal = made<PointMap>(part(record, "body_normal"));
+  surface.friction = friction_in(record);
+  surface.lumped = number(record, "lumped") != 0;
+  return surface;
+}
+
+} // namespace
+
+ContactRecipe rigid_surface(RigidSurface surface) {
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::curves, {surface.boundary}};
+  recipe.friction = surface.friction.law;
+  recipe.separable = false;
+  recipe.follows_state = true;
+  recipe.keeps_nodes = true;
+  recipe.make = [surface](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<SurfaceInterface>(scene, std::move(mesh), surface);
+  };
+  recipe.record = record_of(surface);
+  return recipe;
+}
+
+ContactKind rigid_surface_kind() {
+  return {"rigid_surface", 1,
+          [](const Record &record) { return rigid_surface(surface_in(record)); }};
+}
+
+} // namespace rbvi

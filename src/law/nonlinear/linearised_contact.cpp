@@ -1,0 +1,207 @@
+#include "linearised_contact.hpp"
+
+#include "../index.hpp"
+#include "../pivoting.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/law/nonlinear/anderson.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// K on the contact dofs that it touches.
+class CurvatureLoad {
+public:
+  explicit CurvatureLoad(const CurvatureRows &rows) : s_(rows.s), e_(rows.e) {
+    position_.assign(at(rows.s.cols()), -1);
+    touch(rows.s);
+    touch(rows.e);
+    s_ = local(rows.s);
+    e_ = local(rows.e);
+  }
+  const std::vector<Index> &dofs() const { return dofs_; }
+  /// K change, both on dofs().
+  Vector operator()(const Vector &change) const {
+    return -(s_.transpose() * (e_ * change) + e_.transpose() * (s_ * change));
+  }
+
+private:
+  void touch(const SparseMatrix &rows) {
+    for (Index row = 0; row < rows.rows(); ++row)
+      for (SparseMatrix::InnerIterator entry(rows, row); entry; ++entry)
+        if (position_[at(entry.col())] < 0) {
+          position_[at(entry.col())] = std::ssize(dofs_);
+          dofs_.push_back(entry.col());
+        }
+  }
+  SparseMatrix local(const SparseMatrix &rows) const {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Index row = 0; row < rows.rows(); ++row)
+      for (SparseMatrix::InnerIterator entry(rows, row); entry; ++entry)
+        entries.emplace_back(row, position_[at(entry.col())], entry.value());
+    SparseMatrix result(rows.rows(), std::ssize(dofs_));
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+
+  std::vector<Index> dofs_, position_;
+  SparseMatrix s_, e_;
+};
+
+/// The solution of d = right - image(d), by Anderson's acceleration with all iterates: GMRES.
+template <class Image> Vector fixed_point(const Vector &right, double tolerance, Image &&image) {
+  constexpr int most = 60;
+  Anderson accelerated(most);
+  std::vector<Vector> images;
+  Vector d = right;
+  for (int k = 0; k < most; ++k) {
+    images.push_back(right - image(d));
+    const Vector residual = images.back() - d;
+    if (residual.norm() <= tolerance * right.norm()) break;
+    const Vector shares = accelerated.combine(residual);
+    d.setZero();
+    for (Index j = 0; j < shares.size(); ++j)
+      d += shares[j] * images[at(j)];
+  }
+  return images.back();
+}
+
+} // namespace
+
+LinearisedContact::LinearisedContact(const NonlinearContact &contact, const Vector &state,
+                                     double part)
+    : contact_(contact), state_(state), back_((1 - part) * contact.undeformed),
+      free_(part * contact.free), moved_(at(contact.laws.rows)) {
+  contact.linearise(state + back_, at_);
+  if (part < 1) at_.g -= at_.b * back_;
+  q_ = at_.g - at_.b * free_;
+}
+
+Matrix LinearisedContact::columns(const std::vector<Index> &which) {
+  std::vector<Index> dofs;
+  for (const Index row : which)
+    for (SparseMatrix::InnerIterator entry(at_.b, row); entry; ++entry)
+      dofs.push_back(entry.col());
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  contact_.compliance.require(dofs);
+  Matrix result(at_.b.rows(), std::ssize(which));
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    Vector &of_row = moved_[at(which[k])];
+    of_row = Vector::Zero(at_.b.cols());
+    for (SparseMatrix::InnerIterator entry(at_.b, which[k]); entry; ++entry)
+      of_row += entry.value() * contact_.compliance.column(entry.col());
+    result.col(static_cast<Index>(k)) = at_.b * of_row;
+  }
+  return result;
+}
+
+Matrix LinearisedContact::moved(const std::vector<Index> &which) const {
+  Matrix result(at_.b.cols(), std::ssize(which));
+  for (std::size_t k = 0; k < which.size(); ++k)
+    result.col(static_cast<Index>(k)) = moved_[at(which[k])];
+  return result;
+}
+
+Iterate LinearisedContact::iterate(Vector x) const {
+  Iterate result;
+  result.u = free_;
+  for (Index row = 0; row < x.size(); ++row)
+    if (x[row] != 0) result.u -= x[row] * moved_[at(row)];
+  result.reaction = at_.b.transpose() * x;
+  result.x = std::move(x);
+  return result;
+}
+
+Iterate LinearisedContact::solve(const Iterate &start) {
+  const auto source = [this](const std::vector<Index> &which) { return columns(which); };
+  if (contact_.laws.has_tangents()) {
+    FrictionResult found = solve_friction(source, q_, contact_.laws, start.start);
+    if (!found.converged) throw failure(found.reason);
+    Iterate result = iterate(std::move(found.x));
+    result.start = std::move(found.start);
+    result.active = std::move(found.active);
+    return result;
+  }
+  LcpResult found = solve_lcp(source, q_, start.active);
+  if (!found.converged) throw failure(found.reason);
+  Iterate result = iterate(std::move(found.x));
+  result.active = std::move(found.active);
+  return result;
+}
+
+/// Multipliers that pull, and conditions that are not met.
+std::vector<Index> LinearisedContact::violated(const std::vector<Index> &active, const Vector &x,
+                                               const Vector &u) const {
+  constexpr double round_off = 1e-12;
+  const Vector w = at_.g - at_.b * u;
+  const Vector terms = at_.b.cwiseAbs() * u.cwiseAbs() + at_.g.cwiseAbs();
+  std::vector<Index> result;
+  std::size_t next = 0;
+  const double largest = x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
+  for (Index row = 0; row < w.size(); ++row) {
+    const bool is_active = next < active.size() && active[next] == row;
+    const bool wrong = is_active ? x[static_cast<Index>(next)] < -round_off * largest
+                                 : w[row] < -round_off * terms[row];
+    if (is_active) ++next;
+    if (wrong) result.push_back(row);
+  }
+  return result;
+}
+
+/// With the rows of the active set I held as equations, H = B_I C B_I^T and z = K d, d = u - s:
+///
+///   d + S z = u_I - s,    S = C - C B_I^T H^-1 B_I C,    u_I: the solution without curvature,
+///
+/// on the dofs that K touches.
+std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &start,
+                                                               double tolerance) {
+  constexpr int most_sets = 20;
+  const CurvatureLoad curvature(contact_.curvature(state_ + back_, start.x));
+  const std::vector<Index> &dofs = curvature.dofs();
+  contact_.compliance.require(dofs);
+  Matrix all(free_.size(), std::ssize(dofs)); // C on these dofs
+  for (std::size_t k = 0; k < dofs.size(); ++k)
+    all.col(static_cast<Index>(k)) = contact_.compliance.column(dofs[k]);
+  const Matrix local = all(dofs, Eigen::all);
+  std::vector<Index> active = start.active;
+  for (int set = 0; set < most_sets; ++set) {
+    std::vector<Index> fresh;
+    std::copy_if(active.begin(), active.end(), std::back_inserter(fresh),
+                 [this](Index row) { return moved_[at(row)].size() == 0; });
+    (void)columns(fresh);
+    const Matrix of_active = moved(active), near = of_active(dofs, Eigen::all);
+    Matrix h(of_active.cols(), of_active.cols());
+    for (std::size_t k = 0; k < active.size(); ++k)
+      for (Index j = 0; j < h.cols(); ++j)
+        h(static_cast<Index>(k), j) = at_.b.row(active[k]).dot(of_active.col(j));
+    const Eigen::LLT<Matrix> factor(h);
+    if (!active.empty() && factor.info() != Eigen::Success) return std::nullopt;
+    const Vector x0 = -factor.solve(q_(active));
+    const Vector right = free_(dofs) - near * x0 - state_(dofs);
+    const Vector d = fixed_point(right, tolerance, [&](const Vector &change) -> Vector {
+      const Vector z = curvature(change);
+      return local * z - near * factor.solve(near.transpose() * z);
+    });
+    const Vector z = curvature(d);
+    const Vector x = x0 - factor.solve(near.transpose() * z);
+    const Vector u = free_ - of_active * x - all * z;
+    const std::vector<Index> wrong = violated(active, x, u);
+    if (!wrong.empty()) {
+      active = pivoting::exchanged(active, wrong);
+      continue;
+    }
+    Iterate result{Vector::Zero(q_.size()), {}, u, {}, active};
+    result.x(active) = x.cwiseMax(0.0);
+    result.reaction = at_.b.transpose() * result.x;
+    result.reaction(dofs) += z;
+    return result;
+  }
+  return std::nullopt;
+}
+
+} // namespace rbvi

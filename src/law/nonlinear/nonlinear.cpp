@@ -1,0 +1,180 @@
+#include "rbvi/law/nonlinear/nonlinear.hpp"
+
+#include "../index.hpp"
+#include "linearised_contact.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/law/nonlinear/anderson.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+const std::vector<std::string> &nonlinear_method_names() {
+  static const std::vector<std::string> names{"auto", "kacanov", "newton", "anderson"};
+  return names;
+}
+
+namespace {
+
+constexpr int patience = 15; ///< steps without a smaller change before it is given up
+
+class Iteration {
+public:
+  Iteration(const NonlinearContact &contact, const NonlinearOptions &options)
+      : contact_(contact), options_(options), method_(options.method) {
+    const bool newton = contact.curvature && !contact.laws.has_tangents();
+    if (method_ == NonlinearMethod::automatic)
+      method_ = newton ? NonlinearMethod::newton : NonlinearMethod::kacanov;
+    if (method_ == NonlinearMethod::newton && !newton) method_ = NonlinearMethod::kacanov;
+  }
+
+  /// Steps from `iterate`, whose u is the first state, until the changes are at most `tolerance`.
+  /// `part`: of the motion and the loads.
+  /// False: `result.reason` says why not.
+  bool run(Iterate &iterate, double part, double tolerance, NonlinearResult &result);
+
+private:
+  Iterate step(const Vector &state, const Iterate &last, double change, double part);
+  void measure(const Iterate &next, const Vector &state, const Vector &reaction,
+               const Vector &last_x, double part, NonlinearResult &result) const;
+
+  const NonlinearContact &contact_;
+  const NonlinearOptions &options_;
+  NonlinearMethod method_;
+};
+
+Iterate Iteration::step(const Vector &state, const Iterate &last, double change, double part) {
+  LinearisedContact linearised(contact_, state, part);
+  if (method_ == NonlinearMethod::newton && last.x.size() > 0 && !last.active.empty()) {
+    // As exact as the next change, which is of second order, makes worth while.
+    const double tolerance = std::clamp(0.1 * change, 1e-12, 1e-2);
+    if (std::optional<Iterate> found = linearised.solve_with_curvature(last, tolerance))
+      return std::move(*found);
+  }
+  return linearised.solve(last);
+}
+
+/// The energy norm |v|^2 = r . C r of what a load r on the contact dofs moves.
+void Iteration::measure(const Iterate &next, const Vector &state, const Vector &reaction,
+                        const Vector &last_x, double part, NonlinearResult &result) const {
+  const auto ratio = [](double change, double size) {
+    return change == 0 ? 0 : size > 0 ? change / size : std::numeric_limits<double>::infinity();
+  };
+  const auto energy = [](const Vector &load, const Vector &moved) {
+    return std::sqrt(std::max(0.0, load.dot(moved)));
+  };
+  const auto dual = [&](const Vector &x) {
+    return std::sqrt(std::max(0.0, x.dot(contact_.w_product * x)));
+  };
+  result.change_u = reaction.size() == 0
+                        ? ratio((next.u - state).norm(), next.u.norm())
+                        : ratio(energy(next.reaction - reaction, state - next.u),
+                                energy(next.reaction, part * contact_.free - next.u));
+  result.change_x = last_x.size() == 0 ? ratio(dual(next.x), dual(next.x))
+                                       : ratio(dual(next.x - last_x), dual(next.x));
+}
+
+bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearResult &result) {
+  Vector state = iterate.u, reaction = iterate.reaction;
+  Anderson anderson(3);
+  std::vector<Iterate> images;
+  double best = std::numeric_limits<double>::infinity(), last = 0;
+  int since_best = 0;
+  for (int k = 0; k < options_.max_steps; ++k) {
+    const Vector last_x = iterate.x;
+    iterate = step(state, iterate, k == 0 ? 1 : last, part);
+    ++result.steps;
+    result.iterates.push_back(state);
+    measure(iterate, state, reaction, last_x, part, result);
+    const double change = std::max(result.change_u, result.change_x);
+    if (!std::isfinite(iterate.u.norm())) break;
+    result.rate = k == 0 ? 0 : change / last;
+    if (change <= tolerance) return true;
+    since_best = change < best ? 0 : since_best + 1;
+    best = std::min(best, change);
+    if (since_best >= patience) break;
+    last = change;
+    state = iterate.u;
+    reaction = iterate.reaction;
+    if (method_ != NonlinearMethod::anderson) continue;
+    images.push_back(iterate);
+    const Vector shares = anderson.combine(iterate.u - result.iterates.back());
+    if (images.size() > at(shares.size())) images.erase(images.begin());
+    state.setZero();
+    reaction.setZero();
+    for (Index j = 0; j < shares.size(); ++j) {
+      state += shares[j] * images[at(j)].u;
+      reaction += shares[j] * images[at(j)].reaction;
+    }
+  }
+  result.reason = "the condition that follows the displacement does not settle: after " +
+                  std::to_string(result.steps) + " steps they change u by " +
+                  short_number(result.change_u) + " and the multipliers by " +
+                  short_number(result.change_x) + ", contraction " + short_number(result.rate) +
+                  ": try -nonlinear_method anderson (or newton), more -nonlinear_max_steps, or a "
+                  "smaller load";
+  return false;
+}
+
+bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &options,
+                   Iteration &iteration, Iterate &iterate, NonlinearResult &result) {
+  constexpr double on_the_way = 1e-3;
+  iterate = {};
+  iterate.u = Vector::Zero(contact.free.size()); // of no part of the motion: undeformed
+  for (int step = 1; step <= options.load_steps; ++step) {
+    const bool last = step == options.load_steps;
+    result.load_steps = step;
+    result.iterates.clear();
+    if (!iteration.run(iterate, static_cast<double>(step) / options.load_steps,
+                       last ? options.tolerance : on_the_way, result))
+      return false;
+  }
+  return true;
+}
+
+} // namespace
+
+NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
+                                const NonlinearOptions &options) {
+  NonlinearResult result;
+  Iteration iteration(contact, options);
+  Iterate iterate;
+  iterate.u = start.state;
+  if (contact.laws.has_tangents())
+    iterate.start = start.x;
+  else if (start.x.size() > 0) {
+    iterate.x = start.x;
+    for (Index row = 0; row < start.x.size(); ++row)
+      if (start.x[row] > 0) iterate.active.push_back(row);
+  }
+  std::string from_rest;
+  const auto attempt = [&](auto &&steps) {
+    try {
+      result.converged = steps();
+    } catch (const Error &error) {
+      result.reason = error.what();
+    }
+  };
+  attempt([&] { return iteration.run(iterate, 1, options.tolerance, result); });
+  if (!result.converged && options.load_steps > 0) {
+    from_rest = result.reason;
+    attempt([&] { return in_load_steps(contact, options, iteration, iterate, result); });
+  }
+  if (!result.converged) return result;
+  result.reason = std::to_string(result.steps) + " steps";
+  if (result.load_steps > 0)
+    result.reason += " in " + std::to_string(result.load_steps) +
+                     " load steps, as without them it failed (" + from_rest + ")";
+  result.reason += ", last change " + short_number(std::max(result.change_u, result.change_x)) +
+                   ", contraction " + short_number(result.rate);
+  result.x = std::move(iterate.x);
+  result.start = std::move(iterate.start);
+  result.state = std::move(iterate.u);
+  result.active = std::move(iterate.active);
+  return result;
+}
+
+} // namespace rbvi
