@@ -36,8 +36,11 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
   if (reduction == MultiplierReduction::cone && has_friction(scene))
     throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
                     "collocated, cones or joint");
-  if (!keeps_law(reduction)) return;
   if (reduction == MultiplierReduction::condensed) return;
+  if (follows_state(scene))
+    throw bad_input("contact that follows the displacement keeps its law at every node: use "
+                    "-multiplier_reduction condensed");
+  if (!keeps_law(reduction)) return;
   if (scene.contacts.size() > 1)
     throw bad_input("several contact interfaces have laws of their own: use -multiplier_reduction "
                     "condensed, or cone without friction");
@@ -102,7 +105,8 @@ void add_starts(ReducedModel &model, const Problem &problem) {
   for (Index p = 0; p < starts.cols(); ++p) {
     const Vector mu = model.law->starts_mu.col(p);
     starts.col(p) =
-        solver.start_of(expand(problem.scene().parameters, {mu.begin(), mu.end()}), starts.col(p));
+        solver.start_of(expand(problem.scene().parameters, {mu.begin(), mu.end()}), starts.col(p),
+                        model.law->states.size() > 0 ? Vector(model.law->states.col(p)) : Vector());
   }
   model.law->starts = std::move(starts);
 }

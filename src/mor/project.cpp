@@ -133,10 +133,15 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
   }
 }
 
-/// The training multipliers, and where they are.
-void store_multipliers(const std::vector<Sample> &samples, const Matrix &basis, NodalLaw &law) {
+/// The training multipliers, where they are, and the displacements that contact follows.
+void store_multipliers(const Problem &problem, const std::vector<Sample> &samples,
+                       const Matrix &basis, NodalLaw &law) {
   law.starts = nodal_coefficients(basis, multipliers_of(samples));
   law.starts_mu = as_columns(parameters_of(samples), static_cast<int>(samples.front().mu.size()));
+  if (!follows_state(problem.scene())) return;
+  law.states.resize(problem.trace().size, law.starts.cols());
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    law.states.col(static_cast<Index>(p)) = samples[p].u(problem.places().natural_dofs);
 }
 
 /// e_EIM along the terms, and the training number of each.
@@ -188,7 +193,7 @@ NodalLaw start_law(const Problem &problem, const std::vector<Sample> &samples,
   law.condensed = bases.condensed;
   if (affine.b_tangential.size() > 0)
     law.apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
-  store_multipliers(samples, model.dual_basis, law);
+  store_multipliers(problem, samples, model.dual_basis, law);
   return law;
 }
 

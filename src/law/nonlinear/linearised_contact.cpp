@@ -100,6 +100,19 @@ Matrix LinearisedContact::columns(const std::vector<Index> &which) {
   return result;
 }
 
+Vector LinearisedContact::diagonal() const {
+  Vector result = Vector::Zero(q_.size());
+  double sum = 0, count = 0;
+  for (Index row = 0; row < result.size(); ++row)
+    if (moved_[at(row)].size() > 0) {
+      result[row] = at_.b.row(row).dot(moved_[at(row)]);
+      sum += result[row];
+      ++count;
+    }
+  const double mean = sum > 0 ? sum / count : 1;
+  return (result.array() > 0).select(result, mean);
+}
+
 Matrix LinearisedContact::moved(const std::vector<Index> &which) const {
   Matrix result(at_.b.cols(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
@@ -114,6 +127,7 @@ Iterate LinearisedContact::iterate(Vector x) const {
     if (x[row] != 0) result.u -= x[row] * moved_[at(row)];
   result.reaction = at_.b.transpose() * x;
   result.x = std::move(x);
+  result.diagonal = diagonal();
   return result;
 }
 
@@ -195,7 +209,7 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
       active = pivoting::exchanged(active, wrong);
       continue;
     }
-    Iterate result{Vector::Zero(q_.size()), {}, u, {}, active};
+    Iterate result{Vector::Zero(q_.size()), {}, diagonal(), u, {}, active};
     result.x(active) = x.cwiseMax(0.0);
     result.reaction = at_.b.transpose() * result.x;
     result.reaction(dofs) += z;

@@ -11,7 +11,8 @@ namespace rbvi {
 /// A solution of one linearised problem.
 struct Iterate {
   Vector x;
-  Vector start; ///< FrictionResult::start, with friction
+  Vector start;    ///< with friction: where the next starts
+  Vector diagonal; ///< H_jj; where the column was not asked for the mean of the others
   Vector u;
   Vector reaction; ///< load on the contact dofs: u = u_0 - C reaction
   std::vector<Index> active;
@@ -29,6 +30,7 @@ public:
   std::optional<Iterate> solve_with_curvature(const Iterate &start, double tolerance);
 
 private:
+  Vector diagonal() const;
   Matrix columns(const std::vector<Index> &which);
   /// The columns of C B^T of these multipliers, which `columns` has made.
   Matrix moved(const std::vector<Index> &which) const;

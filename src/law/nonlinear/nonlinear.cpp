@@ -135,6 +135,20 @@ bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &opti
   return true;
 }
 
+/// The laws at the solution, with the condition there.
+void finish(const NonlinearContact &contact, Iterate found, NonlinearResult &result) {
+  Linearised here;
+  contact.linearise(found.u, here);
+  const Vector w = here.g - here.b * found.u;
+  result.start = found.x - w.cwiseQuotient(found.diagonal);
+  const double size = found.x.cwiseAbs().maxCoeff();
+  const double violation = (found.x - admissible(contact.laws, result.start)).cwiseAbs().maxCoeff();
+  result.residual = size > 0 ? violation / size : violation;
+  result.x = std::move(found.x);
+  result.state = std::move(found.u);
+  result.active = std::move(found.active);
+}
+
 } // namespace
 
 NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
@@ -146,7 +160,7 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
   if (contact.laws.has_tangents())
     iterate.start = start.x;
   else if (start.x.size() > 0) {
-    iterate.x = start.x;
+    iterate.x = start.x.cwiseMax(0.0);
     for (Index row = 0; row < start.x.size(); ++row)
       if (start.x[row] > 0) iterate.active.push_back(row);
   }
@@ -170,10 +184,7 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
                      " load steps, as without them it failed (" + from_rest + ")";
   result.reason += ", last change " + short_number(std::max(result.change_u, result.change_x)) +
                    ", contraction " + short_number(result.rate);
-  result.x = std::move(iterate.x);
-  result.start = std::move(iterate.start);
-  result.state = std::move(iterate.u);
-  result.active = std::move(iterate.active);
+  finish(contact, std::move(iterate), result);
   return result;
 }
 

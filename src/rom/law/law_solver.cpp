@@ -1,5 +1,7 @@
 #include "rbvi/rom/law/law_solver.hpp"
 
+#include "model_compliance.hpp"
+
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
@@ -14,7 +16,6 @@ namespace rbvi {
 
 namespace {
 
-constexpr double largest_residual = 1e-8;
 constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at all nodes
 
 } // namespace
@@ -26,7 +27,15 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
   samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
   set_laws();
   if (model.evaluates_contact()) nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
+  if (!follows_state(contact)) return;
+  if (law_)
+    throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
+  compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
+  nodal_is_identity_ = model.dual_basis.isIdentity(0);
+  w_product_ = nodal_ * contact.w_product * nodal_.transpose();
 }
+
+LawSolver::~LawSolver() = default;
 
 /// A column of the dual basis is a node, or a pair of mirror images, of one interface: x_n of all
 /// come first, then x_tau in the same order.
@@ -60,11 +69,16 @@ NodeLaws LawSolver::laws_at(const FullMu &all_parameters) const {
 }
 
 /// The free parameters as parts of the box.
-Vector LawSolver::start_at(const Vector &here) const {
+bool LawSolver::uses_last(const Vector &here) const {
   constexpr double far_nearer = 0.1;
+  if (last_start_.size() == 0) return false;
   const double next = samples_.cols() > 0 ? (samples_.colwise() - here).colwise().norm().minCoeff()
                                           : std::numeric_limits<double>::infinity();
-  if (last_start_.size() > 0 && (last_ - here).norm() <= far_nearer * next) return last_start_;
+  return (last_ - here).norm() <= far_nearer * next;
+}
+
+Vector LawSolver::start_at(const Vector &here) const {
+  if (uses_last(here)) return last_start_;
   if (samples_.cols() == 0) return {};
   return local_fit(model_.law->starts, samples_, here);
 }
@@ -81,11 +95,15 @@ Vector LawSolver::term_coefficients(const FullMu &all_parameters, const Vector &
   return result;
 }
 
-BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer) {
+Vector LawSolver::load_at(const FullMu &all_parameters) const {
+  return model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
+}
+
+BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, const Vector &state) {
   const NodalLaw &law = *model_.law;
   BodyAtMu body;
   if (model_.evaluates_contact()) {
-    assemble(contact_, all_parameters, {}, answer.contact);
+    assemble(contact_, all_parameters, {state}, answer.contact);
     body.b_contact = nodal_ * answer.contact.b;
     body.q = nodal_ * answer.contact.g;
   } else {
@@ -105,8 +123,7 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer) {
         enriched_subspace(multiplier_coefficients(law.basis).transpose() * body.b, model_.modes));
   body.stiffness = &stiffness_;
   if (model_.f.size() > 0) {
-    body.load = stiffness_.half_response(
-        model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters));
+    body.load = stiffness_.half_response(load_at(all_parameters));
     body.q -= stiffness_.half_response(body.b.transpose()).transpose() * body.load;
   }
   body.bound = contact_.interfaces.front()->bound(all_parameters);
@@ -144,9 +161,9 @@ LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector
   return result;
 }
 
-Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x) {
+Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x, const Vector &state) {
   LawAnswer answer;
-  const BodyAtMu body = body_at(all_parameters, answer);
+  const BodyAtMu body = body_at(all_parameters, answer, state);
   return at_all_nodes(body, x).start;
 }
 
@@ -193,6 +210,12 @@ void LawSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters, La
 }
 
 LawAnswer LawSolver::solve(const FullMu &all_parameters) {
+  if (compliance_) {
+    LawAnswer answer = solve_following(all_parameters);
+    last_start_ = answer.start;
+    last_ = parts_of_box(scene_.parameters, all_parameters);
+    return answer;
+  }
   LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
   solve_law(body, all_parameters, answer);

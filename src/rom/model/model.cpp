@@ -162,6 +162,8 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
           "b/interpolation mixes terms of B^n and of B^tau");
   require_shape(law.starts, m, law.starts.cols(), "law/starts");
   require_shape(law.starts_mu, model.parameters.size(), law.starts.cols(), "law/starts_mu");
+  if (law.states.size() > 0)
+    require_shape(law.states, model.contact_trace.rows(), law.starts.cols(), "law/states");
 }
 
 /// `entries`: of the reduced operator.

@@ -202,6 +202,7 @@ void write_law(H5Writer &file, const std::optional<NodalLaw> &law) {
   file.write("law/basis/nodes", law->basis.nodes);
   file.write("law/starts", law->starts);
   file.write("law/starts_mu", law->starts_mu);
+  file.write("law/states", law->states);
 }
 
 std::optional<NodalLaw> read_law(const H5Reader &file) {
@@ -227,6 +228,7 @@ std::optional<NodalLaw> read_law(const H5Reader &file) {
   law.basis.nodes = file.ints("law/basis/nodes");
   law.starts = file.matrix("law/starts");
   law.starts_mu = file.matrix("law/starts_mu");
+  law.states = file.matrix("law/states");
   return law;
 }
 

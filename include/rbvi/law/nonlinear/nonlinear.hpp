@@ -67,12 +67,12 @@ struct NonlinearOptions {
 
 struct NonlinearStart {
   Vector state; ///< at the contact dofs
-  Vector x; ///< a multiplier there, or FrictionResult::start with friction; empty: none is known
+  Vector x;     ///< as NonlinearResult::start; empty: none is known
 };
 
 struct NonlinearResult {
   Vector x;
-  Vector start; ///< with friction: FrictionResult::start
+  Vector start; ///< x - w / H_jj (FrictionResult::start)
   Vector state; ///< u
   std::vector<Index> active;
   std::vector<Vector> iterates; ///< the states at which the condition was linearised, in order
@@ -81,6 +81,9 @@ struct NonlinearResult {
   /// (A.8) of the last step: the energy norm of the change of u over that of u - u_0, and the norm
   /// of the change of x in W over that of x.
   double change_u = 0, change_x = 0;
+  /// Largest violation of the laws with the condition at the solution, relative:
+  /// |x - P(x - w / H_jj)| over max |x|, P the projection of the laws.
+  double residual = 0;
   double rate = 0; ///< contraction: the change of the last step over that of the one before
   bool converged = false;
   std::string reason; ///< why it stopped; not converged: what to try

@@ -5,6 +5,7 @@
 // mended by solve_friction, which starts from it, where it fails.
 #pragma once
 
+#include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/rom/law/reduced_law.hpp"
 
 namespace rbvi {
@@ -23,18 +24,21 @@ struct LawAnswer {
 
 /// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
 /// query if that is far nearer.
+class ModelCompliance;
+
 class LawSolver {
 public:
   /// `model`, `scene` and `contact` must outlive it. Throws bad_input where they do not fit.
   LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact);
+  ~LawSolver();
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
   LawAnswer solve(const FullMu &all_parameters);
-  /// What the elastic body says at mu; valid until the next call of either. Sets theta_b or contact
-  /// of the answer.
-  BodyAtMu body_at(const FullMu &all_parameters, LawAnswer &answer);
+  /// What the elastic body says at mu, contact at a state where it follows one; valid until the
+  /// next call of either. Sets theta_b or contact of the answer.
+  BodyAtMu body_at(const FullMu &all_parameters, LawAnswer &answer, const Vector &state = {});
   /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
-  /// operator.
-  Vector start_of(const FullMu &all_parameters, const Vector &x);
+  /// operator. `state`: the displacement at the contact dofs, where contact follows it.
+  Vector start_of(const FullMu &all_parameters, const Vector &x, const Vector &state);
 
 private:
   /// What the condensed operator says of multipliers x.
@@ -49,6 +53,11 @@ private:
   bool solve_reduced_law(const BodyAtMu &body, LawAnswer &answer);
   void solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer);
   Vector start_at(const Vector &here) const;
+  /// Whether the last query is far nearer than the samples.
+  bool uses_last(const Vector &here) const;
+  Vector load_at(const FullMu &all_parameters) const;
+  NonlinearStart following_start(const FullMu &all_parameters) const;
+  LawAnswer solve_following(const FullMu &all_parameters);
   Vector term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const;
 
   const ReducedModel &model_;
@@ -63,6 +72,11 @@ private:
   SparseMatrix nodal_;            ///< the dual basis transposed, where b does not separate
   Matrix samples_;                ///< where the starts are, as parts of the box
   Vector last_start_, last_;      ///< of the last query, and where it was
+  // Where contact follows the displacement:
+  std::unique_ptr<ModelCompliance> compliance_;
+  bool nodal_is_identity_ = false; ///< nodal_
+  SparseMatrix w_product_;         ///< of the columns of the dual basis
+  Vector last_state_;
   ReducedStiffness stiffness_;
 };
 

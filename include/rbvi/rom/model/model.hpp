@@ -138,6 +138,7 @@ struct NodalLaw {
   Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
                     ///< operator their multipliers), where a query starts from
   Matrix starts_mu; ///< free parameters x P: where they are
+  Matrix states;    ///< contact dofs x P: their displacements, where contact follows them; or empty
 };
 
 /// How a model of Nitsche's method takes the integrals of contact and friction.
@@ -228,7 +229,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 10;
+inline constexpr int model_schema = 11;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

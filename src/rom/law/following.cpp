@@ -1,0 +1,74 @@
+// Queries where contact follows the displacement: the condition is linearised at the states of the
+// iteration on the contact interfaces, and the body answers by its compliance on the contact dofs,
+// so that the multipliers are those of the full problem.
+#include "model_compliance.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/local_fit.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
+
+namespace rbvi {
+
+/// From the last query if that is far nearer than the samples, else from what they predict, else
+/// from the undeformed body.
+NonlinearStart LawSolver::following_start(const FullMu &all_parameters) const {
+  const Vector here = parts_of_box(scene_.parameters, all_parameters);
+  NonlinearStart start{{}, start_at(here)};
+  if (start.x.size() == 0)
+    start.state = undeformed(contact_, scene_, all_parameters);
+  else if (uses_last(here))
+    start.state = last_state_;
+  else
+    start.state = local_fit(model_.law->states, samples_, here);
+  return start;
+}
+
+LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
+  LawAnswer answer;
+  compliance_->set(term_coefficients(all_parameters, {}));
+  stiffness_.set(all_parameters);
+  Vector load; // half response to it
+  NonlinearContact problem{[&](const Vector &state, Linearised &linearised) {
+                             assemble(contact_, all_parameters, {state}, answer.contact);
+                             if (nodal_is_identity_)
+                               linearised = {answer.contact.b, answer.contact.g};
+                             else
+                               linearised = {nodal_ * answer.contact.b, nodal_ * answer.contact.g};
+                           },
+                           {},
+                           *compliance_,
+                           Vector::Zero(compliance_->size()),
+                           undeformed(contact_, scene_, all_parameters),
+                           laws_at(all_parameters),
+                           w_product_};
+  if (has_curvature(contact_))
+    problem.curvature = [&](const Vector &state, const Vector &x) -> CurvatureRows {
+      Curvature rows = curvature(contact_, all_parameters, {state},
+                                 nodal_is_identity_ ? x : Vector(nodal_.transpose() * x));
+      return {std::move(rows.s), std::move(rows.e)};
+    };
+  if (model_.f.size() > 0) {
+    load = stiffness_.half_response(load_at(all_parameters));
+    problem.free = model_.contact_trace * stiffness_.transposed_half_response(load);
+  }
+  const NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters));
+  if (!found.converged) throw failure(found.reason);
+  if (!(found.residual <= largest_residual))
+    throw failure("the law of contact and friction is met to " + short_number(found.residual) +
+                  " only: reduce again with more training parameters");
+  // The last linearisation was at the solution: answer.contact is that of it.
+  const Vector reaction = answer.contact.b.transpose() *
+                          (nodal_is_identity_ ? found.x : Vector(nodal_.transpose() * found.x));
+  answer.energy = 0.5 * (reaction.dot(problem.free - found.state) - load.squaredNorm());
+  answer.u = -stiffness_.response(model_.contact_trace.transpose() * reaction);
+  if (load.size() > 0) answer.u += stiffness_.transposed_half_response(load);
+  answer.residual = found.residual;
+  answer.iterations = found.steps;
+  answer.x = found.x;
+  answer.start = found.start;
+  last_state_ = found.state;
+  return answer;
+}
+
+} // namespace rbvi

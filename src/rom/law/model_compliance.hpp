@@ -1,0 +1,33 @@
+// E^T A^-1 E of a model on its contact dofs: the sum of its terms, a column when it is required.
+#pragma once
+
+#include "rbvi/law/nonlinear/nonlinear.hpp"
+#include "rbvi/rom/model/model.hpp"
+
+namespace rbvi {
+
+/// The law of a query has to be met to this.
+constexpr double largest_residual = 1e-8;
+
+class ModelCompliance : public ComplianceColumns {
+public:
+  /// `operator_of` must outlive it; its terms are those of the contact dofs.
+  explicit ModelCompliance(const CondensedOperator &operator_of);
+  /// The coefficients of the terms; columns of other ones are forgotten.
+  void set(const Vector &coefficients);
+
+  Index size() const override { return size_; }
+  void require(const std::vector<Index> &dofs) override;
+  Eigen::Map<const Vector> column(Index dof) const override {
+    return {columns_.col(dof).data(), size_};
+  }
+
+private:
+  const CondensedOperator &of_;
+  Index size_;
+  Vector coefficients_;
+  Matrix columns_;
+  std::vector<bool> known_;
+};
+
+} // namespace rbvi
