@@ -11,7 +11,7 @@
 #include "scene.hpp"
 
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
-#include "rbvi/contact/pair/elastic_pair.hpp"
+#include "rbvi/contact/elastic_pair/elastic_pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"

@@ -9,11 +9,14 @@ namespace rbvi {
 
 namespace {
 
+/// Bit c of component c.
 PetscInt fixed_components(const Dofs &dofs, std::size_t node, const std::vector<int> &components) {
-  return static_cast<PetscInt>(std::count_if(components.begin(), components.end(), [&](int c) {
-    return dofs.free[node * static_cast<std::size_t>(dofs.components) +
-                     static_cast<std::size_t>(c)] < 0;
-  }));
+  PetscInt fixed = 0;
+  for (const int c : components)
+    if (dofs.free[node * static_cast<std::size_t>(dofs.components) + static_cast<std::size_t>(c)] <
+        0)
+      fixed |= PetscInt(1) << c;
+  return fixed;
 }
 
 void check_curve(const std::vector<CurveNode> &nodes, PetscInt vertices, const std::string &name) {
@@ -30,7 +33,7 @@ void check_curve(const std::vector<CurveNode> &nodes, PetscInt vertices, const s
 } // namespace
 
 std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary,
-                                    const std::vector<int> &components, bool may_be_fixed) {
+                                    const std::vector<int> &components, FixedNodes allowed) {
   const std::vector<bool> &on_curve = mesh.boundary.at(boundary);
   std::vector<PetscInt> numbers, fixed;
   std::vector<double> coordinates;
@@ -44,15 +47,18 @@ std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const st
   fixed = gather_all(mesh.comm, fixed, MPIU_INT);
   coordinates = gather_all(mesh.comm, coordinates, MPI_DOUBLE);
   std::vector<CurveNode> nodes;
-  const auto all = static_cast<PetscInt>(components.size());
+  PetscInt all = 0;
+  for (const int c : components)
+    all |= PetscInt(1) << c;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (fixed[i] > 0 && !(may_be_fixed && fixed[i] == all))
+    if (fixed[i] != 0 && allowed != FixedNodes::any &&
+        !(allowed == FixedNodes::whole && fixed[i] == all))
       throw bad_input("the displacement is fixed on the contact curve '" + boundary + "'" +
-                      (fixed[i] < all ? " in some of its directions" : "") +
+                      (fixed[i] != all ? " in some of its directions" : "") +
                       ": contact cannot move it");
     nodes.push_back({numbers[i],
                      {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]},
-                     fixed[i] > 0});
+                     fixed[i]});
   }
   const auto key = [&](const CurveNode &node) {
     return std::pair(node.natural >= mesh.total_vertices, node.point[0]);

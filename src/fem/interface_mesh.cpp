@@ -131,7 +131,10 @@ void add_edges(int first, int nodes, int degree, std::vector<int> &entities) {
 Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
                   const std::function<Point(const Point &)> &snap) {
   std::vector<int> components = entities.components;
-  const bool may_be_fixed = components.empty(); // functions at fixed nodes are modified
+  const FixedNodes allowed = entities.partly_fixed ? FixedNodes::any
+                             : components.empty()
+                                 ? FixedNodes::whole // functions at fixed nodes are modified
+                                 : FixedNodes::none;
   if (components.empty()) {
     components.resize(static_cast<std::size_t>(dofs.components));
     std::iota(components.begin(), components.end(), 0);
@@ -139,7 +142,7 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
   Found found;
   found.mesh.per_entity = mesh.degree + 1;
   for (const std::string &name : entities.parts) {
-    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components, may_be_fixed);
+    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components, allowed);
     add_edges(static_cast<int>(found.natural.size()), static_cast<int>(nodes.size()), mesh.degree,
               found.mesh.entities);
     found.mesh.parts.push_back(static_cast<int>(nodes.size()));
@@ -149,7 +152,8 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
       found.mesh.points.push_back(middle && entities.snapped && snap ? snap(node.point)
                                                                      : node.point);
       for (int c = 0; c < dofs.components; ++c)
-        found.free.push_back(!node.fixed && std::ranges::find(components, c) != components.end());
+        found.free.push_back((node.fixed >> c & 1) == 0 &&
+                             std::ranges::find(components, c) != components.end());
     }
   }
   return found;

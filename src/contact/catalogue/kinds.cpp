@@ -1,6 +1,7 @@
 #include "rbvi/contact/catalogue/kinds.hpp"
 
 #include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/contact/large_pair/large_pair.hpp"
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/pair/pair.hpp"
@@ -13,9 +14,9 @@
 namespace rbvi {
 
 const std::vector<ContactKind> &contact_kinds() {
-  static const std::vector<ContactKind> kinds{obstacle_kind(),      two_bodies_kind(),
-                                              rigid_support_kind(), nitsche_support_kind(),
-                                              half_plane_kind(),    rigid_surface_kind()};
+  static const std::vector<ContactKind> kinds{
+      obstacle_kind(),   two_bodies_kind(),    rigid_support_kind(),  nitsche_support_kind(),
+      half_plane_kind(), rigid_surface_kind(), deformed_bodies_kind()};
   return kinds;
 }
 

@@ -1,6 +1,8 @@
-#include "rbvi/contact/pair/elastic_pair.hpp"
+#include "rbvi/contact/elastic_pair/elastic_pair.hpp"
 
+#include "rbvi/contact/large_pair/large_pair.hpp"
 #include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 
@@ -25,6 +27,10 @@ PairDiscretisation pair_discretisation(const SceneOptions &options) {
 
 std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<SceneOption> &own) {
   std::vector<SceneOption> options = pair_options();
+  options.push_back({"kinematics",
+                     "small",
+                     "contact of the undeformed bodies along e_y, or (large) where they now are",
+                     {"small", "large"}});
   options.push_back({"degree", std::to_string(degree), "of the displacement", {"1", "2"}});
   options.push_back({"young", "15", "Young's modulus", {}, young_range});
   options.push_back({"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range});
@@ -36,7 +42,15 @@ void set_elastic_pair(const SceneOptions &options, Scene &scene) {
   scene.dim = 2;
   scene.components = 2;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
-  scene.contacts = {two_bodies({"slave", "master", pair_discretisation(options)})};
+  const PairDiscretisation discretisation = pair_discretisation(options);
+  if (options.at("kinematics") == "small") {
+    scene.contacts = {two_bodies({"slave", "master", discretisation})};
+  } else {
+    if (discretisation.quadrature == PairQuadrature::direct)
+      throw bad_input("-integration direct is for small deformations: leave it out with "
+                      "-kinematics large");
+    scene.contacts = {deformed_bodies({"slave", "master", discretisation.multiplier})};
+  }
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = everywhere(material);
   scene.a = {exact_term(elasticity("", material, scene.degree))};

@@ -6,7 +6,7 @@
 
 namespace rbvi {
 
-/// The options multiplier, integration, degree (by default the one given), young and poisson_ratio,
+/// The options multiplier, integration, kinematics, degree (by default the one given), young and poisson_ratio,
 /// then the scene's own.
 std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<SceneOption> &own);
 
