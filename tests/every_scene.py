@@ -45,6 +45,8 @@ def two_disks_condensed():
     yield Formulation("two_disks_condensed", CASES / "two_disks/case.yaml", [],
                       ["-train", "grid:21"], ["0.83", "1", "1.17"],
                       ["-multiplier_reduction", "condensed"])
+    yield Formulation("two_disks_large", CASES / "two_disks/large.yaml", [], [],
+                      ["0.83", "1", "1.17"])
 
 
 def rigid_disks():
@@ -59,6 +61,10 @@ def rigid_disks():
     for kind in ("collocated", "cones", "joint"):
         yield Formulation(f"disk_{kind}", case, [], ["-train", "grid:31"], mu,
                           ["-multiplier_reduction", kind])
+    large, few_of_large = CASES / "rigid_disk/large.yaml", ["-train", "random:20:1"]
+    for law in ("none", "coulomb"):
+        yield Formulation(f"disk_large_{law}", large, ["-friction", law], few_of_large,
+                          ["0.8,0.05,0", "1,0.1,0.08", "1.2,0.18,-0.05"])
     yield Formulation("disk_lumped", case, ["-friction", "none", "-lumped", "yes"], few, mu)
     yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)
     yield Formulation("disk_stiffness", case,

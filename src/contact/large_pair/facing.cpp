@@ -20,7 +20,7 @@ Point minus(const Point &a, const Point &b) {
 }
 
 double norm(const Point &x) {
-  return std::hypot(x[0], x[1]);
+  return std::sqrt(x[0] * x[0] + x[1] * x[1]);
 }
 
 /// A quarter turn to the left of a tangent, of length 1.

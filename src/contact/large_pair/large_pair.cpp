@@ -103,7 +103,7 @@ std::array<std::pair<Index, double>, 2> LargePairInterface::multipliers(const Fa
 double LargePairInterface::length(const FullMu &mu, Index slave_edge) const {
   const Point a = scene_.map(mu, slave_[static_cast<std::size_t>(slave_edge)]),
               b = scene_.map(mu, slave_[static_cast<std::size_t>(slave_edge) + 1]);
-  return std::hypot(b[0] - a[0], b[1] - a[1]);
+  return std::sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]));
 }
 
 void LargePairInterface::add(Index row, Index node, const Point &values, double factor,
