@@ -68,7 +68,7 @@ void stabilise(Problem &problem, const std::vector<Mu> &training, ReducedBases &
   const Matrix modes = mode_coordinates(riesz, bases.pod.basis);
   std::vector<Matrix> supremizers; // this rank's share
   take_turns(problem.comm(), training.size(), [&](std::size_t p) {
-    supremizers.push_back(supremizers_at(problem, riesz, dual, {training[p]}).front());
+    supremizers.push_back(supremizers_at(problem, riesz, dual, {{training[p]}}).front());
   });
   bases.pga = projected_greedy(problem.comm(), riesz, modes, std::move(supremizers), {});
   const Handle<Mat> fields = representer_fields(riesz, bases.pga.representers);

@@ -44,7 +44,7 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
 }
 
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                                const std::vector<Mu> &set, bool b_is_scaled) {
+                                const std::vector<ContactPoint> &set, bool b_is_scaled) {
   constexpr Index count = 5;
   Matrix values = Matrix::Zero(count, static_cast<Index>(set.size()));
   const Matrix modes = check.coordinates.leftCols(check.modes);
@@ -52,7 +52,7 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
   take_turns(comm, set.size(), [&](std::size_t p) {
     Operators op;
-    problem.assemble_contact(set[p], op);
+    problem.assemble_contact(set[p].mu, op, set[p].state);
     const InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
     const double size = op.b.norm();
     if (!b_is_scaled || !per_b) {
@@ -68,22 +68,22 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
   return result;
 }
 
-Mu weakest_form(Problem &problem, const std::vector<Mu> &set) {
+ContactPoint weakest_form(Problem &problem, const std::vector<ContactPoint> &set) {
   constexpr double tie = 1e-10;
   double least = std::numeric_limits<double>::infinity();
-  Mu weakest;
+  ContactPoint weakest;
   Operators op;
-  for (const Mu &mu : set) {
-    problem.assemble_contact(mu, op);
+  for (const ContactPoint &at : set) {
+    problem.assemble_contact(at.mu, op, at.state);
     if (op.b.norm() >= (1 - tie) * least) continue;
     least = op.b.norm();
-    weakest = mu;
+    weakest = at;
   }
   return weakest;
 }
 
 BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                       const std::vector<Mu> &set) {
+                       const std::vector<ContactPoint> &set) {
   BoundCheck result{.smallest = std::numeric_limits<double>::infinity()};
   take_turns(comm, set.size(), [&](std::size_t p) {
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
@@ -98,7 +98,8 @@ BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &ch
 }
 
 std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
-                                          const StabilityCheck &check, const std::vector<Mu> &set,
+                                          const StabilityCheck &check,
+                                          const std::vector<ContactPoint> &set,
                                           const std::vector<int> &counts) {
   // Columns: what the worst is the largest of. Smallest values enter with their sign changed.
   enum { sigma, condition, minus_classic, minus_bound, minus_ratio, minus_beta, columns };
@@ -130,7 +131,7 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
 }
 
 int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                       const std::vector<Mu> &set, double fraction) {
+                       const std::vector<ContactPoint> &set, double fraction) {
   const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
   int fewest = 0; // enough for every mu so far; all + 1: nothing is
   take_turns(comm, set.size(), [&](std::size_t p) {

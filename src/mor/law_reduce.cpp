@@ -37,9 +37,9 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
     throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
                     "collocated, cones or joint");
   if (reduction == MultiplierReduction::condensed) return;
-  if (follows_state(scene))
-    throw bad_input("contact that follows the displacement keeps its law at every node: use "
-                    "-multiplier_reduction condensed");
+  if (follows_state(scene) && keeps_law(reduction))
+    throw bad_input("contact that follows the displacement is reduced by -multiplier_reduction "
+                    "condensed, or without friction by cone");
   if (!keeps_law(reduction)) return;
   if (scene.contacts.size() > 1)
     throw bad_input("several contact interfaces have laws of their own: use -multiplier_reduction "
@@ -92,9 +92,10 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
                               bounds_at(scene, problem.contact(), training), choice, options.cone);
   }
   if (!will_run(stages, stage::pga)) return bases;
-  if (affine.b_size() == 1) training.resize(1);
+  std::vector<ContactPoint> points = contact_points(samples);
+  if (affine.b_size() == 1) points.resize(1);
   const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
-  add_supremizers(problem, training, reference, options,
+  add_supremizers(problem, points, reference, options,
                   multiplier_functions(nodal, bases.multipliers.basis), bases, stages);
   return bases;
 }

@@ -57,11 +57,11 @@ std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
 
 /// Contact dofs that b couples with the dual basis at some training mu. Collective.
 std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
-                                const std::vector<Mu> &training) {
+                                const std::vector<ContactPoint> &training) {
   std::vector<PetscInt> coupled(static_cast<std::size_t>(problem.trace().size), 0);
   Operators op;
   take_turns(problem.comm(), training.size(), [&](std::size_t p) {
-    problem.assemble_contact(training[p], op);
+    problem.assemble_contact(training[p].mu, op, training[p].state);
     for (Index i = 0; i < dual.rows(); ++i) {
       if ((dual.row(i).array() == 0).all()) continue;
       for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
@@ -88,19 +88,19 @@ const std::vector<std::string> &product_names() {
 }
 
 std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
-                                   const std::vector<Mu> &set) {
+                                   const std::vector<ContactPoint> &set) {
   std::vector<Matrix> result;
   Operators op;
-  for (const Mu &mu : set) {
-    problem.assemble_contact(mu, op);
+  for (const ContactPoint &at : set) {
+    problem.assemble_contact(at.mu, op, at.state);
     result.push_back(supremizer_coordinates(riesz, op.b, x));
   }
   return result;
 }
 
-void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
-                     const ReduceOptions &options, const Matrix &dual_functions,
-                     ReducedBases &bases, StageTable &stages) {
+void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training,
+                     const Mu &reference, const ReduceOptions &options,
+                     const Matrix &dual_functions, ReducedBases &bases, StageTable &stages) {
   const bool energy = options.product == SupremizerProduct::energy;
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
@@ -185,7 +185,7 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
     return build_dual_basis(problem, reference, multipliers, options.cone);
   });
   if (!will_run(stages, stage::pga)) return bases;
-  std::vector<Mu> training = parameters_of(samples);
+  std::vector<ContactPoint> training = contact_points(samples);
   if (b_is_scaled) training.resize(1);
   add_supremizers(problem, training, reference, options, bases.cone.all(), bases, stages);
   return bases;

@@ -141,7 +141,10 @@ StageRow sweep_of_supremizers_row(const Scene &scene, const ReduceOptions &optio
   if (made == nullptr && separable) return {name, "only if B does more than scale", part};
   if (separable && made->affine.b_size() == 1)
     return {name, "B only scales: one set and one SVD serve all mu", skipped};
-  return {name, "B depends on mu: part of PGA", part};
+  return {name,
+          follows_state(scene) ? "B depends on mu and the step of the iteration: part of PGA"
+                               : "B depends on mu: part of PGA",
+          part};
 }
 
 /// Functions of the multipliers of a further reduction.

@@ -6,6 +6,13 @@
 
 namespace rbvi {
 
+std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
+  std::vector<ContactPoint> points;
+  for (const Mu &mu : set)
+    points.push_back({mu, {}});
+  return points;
+}
+
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
     : scene_(std::make_unique<const Scene>(with_imposed_loads(std::move(scene)))),
       mesh_(make_mesh(comm, *scene_, options)),
@@ -20,9 +27,9 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
   imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
 }
 
-void Problem::assemble_contact(const Mu &mu, Operators &operators) {
+void Problem::assemble_contact(const Mu &mu, Operators &operators, const ContactState &state) {
   operators.mu = expand(scene_->parameters, mu);
-  rbvi::assemble(contact_, operators.mu, {}, operators);
+  rbvi::assemble(contact_, operators.mu, state, operators);
   operators.laws = laws_at(contact_, operators.mu);
 }
 

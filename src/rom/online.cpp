@@ -1,5 +1,7 @@
 #include "rbvi/rom/online.hpp"
 
+#include "rbvi/law/nonlinear/anderson.hpp"
+
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
@@ -108,9 +110,9 @@ void OnlineSolver::enrich() {
   b_ = (b_ * enrichment_).eval();
 }
 
-void OnlineSolver::evaluate_contact(ReducedSolution &solution) {
+void OnlineSolver::evaluate_contact(const Vector &state, ReducedSolution &solution) {
   ContactOperators &op = solution.contact;
-  assemble(contact_, solution.mu, {}, op);
+  assemble(contact_, solution.mu, {state}, op);
   const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
   const Matrix traces = op.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
   b_.noalias() = basis * traces;
@@ -211,13 +213,60 @@ void OnlineSolver::check(ReducedSolution &solution) {
                     .str());
 }
 
-ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
+void OnlineSolver::solve_pair(const Vector &state, ReducedSolution &solution) {
   const auto theta = [&](const AffineTerms &terms, const auto &form) {
-    return affine_coefficients(terms, form, scene_, all_parameters);
+    return affine_coefficients(terms, form, scene_, solution.mu);
   };
   const auto of_contact = [&](const AffineTerms &terms, Part part) {
-    return contact_coefficients(terms, part, contact_, scene_, all_parameters);
+    return contact_coefficients(terms, part, contact_, scene_, solution.mu);
   };
+  if (model_.evaluates_contact())
+    evaluate_contact(state, solution);
+  else
+    solution.theta_b = of_contact(model_.b, Part::b);
+  update_operators(theta(model_.a, scene_.a), solution.theta_b);
+  f_ = Vector::Zero(model_.primal_size());
+  if (model_.f.size() > 0) f_.noalias() = model_.f.reduced * theta(model_.f, scene_.f);
+  if (model_.online_enriched) f_ = (enrichment_.transpose() * f_).eval();
+  if (model_.g.size() > 0) g_.noalias() = model_.g.reduced * of_contact(model_.g, Part::g);
+  solve_dual(solution);
+  check(solution);
+  if (model_.online_enriched) solution.u = (enrichment_ * solution.u).eval();
+}
+
+/// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm.
+void OnlineSolver::solve_following(ReducedSolution &solution) {
+  constexpr int most_steps = 60;
+  constexpr double tolerance = 1e-9;
+  Vector state = undeformed(contact_, scene_, solution.mu), last_x;
+  Anderson anderson(3);
+  std::vector<Vector> images;
+  int iterations = 0;
+  for (int k = 0; k < most_steps; ++k) {
+    solve_pair(state, solution);
+    iterations += solution.iterations;
+    images.push_back(model_.contact_trace * solution.u);
+    const Vector change = images.back() - state;
+    const bool settled = change.norm() <= tolerance * images.back().norm() && last_x.size() > 0 &&
+                         (solution.x - last_x).norm() <= tolerance * solution.x.norm();
+    if (settled) {
+      solution.iterations = iterations;
+      assemble(contact_, solution.mu, {images.back()}, solution.contact);
+      return;
+    }
+    last_x = solution.x;
+    const Vector shares = anderson.combine(change);
+    if (std::ssize(images) > shares.size()) images.erase(images.begin());
+    state.setZero();
+    for (Index j = 0; j < shares.size(); ++j)
+      state += shares[j] * images[static_cast<std::size_t>(j)];
+  }
+  throw failure("the reduced condition that follows the displacement does not settle in " +
+                std::to_string(most_steps) +
+                " steps: reduce again with -multiplier_reduction condensed");
+}
+
+ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
   ReducedSolution solution;
   solution.mu = all_parameters;
   if (nitsche_) {
@@ -239,18 +288,10 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
     solution.iterations = answer.iterations;
     return solution;
   }
-  if (model_.evaluates_contact())
-    evaluate_contact(solution);
+  if (follows_state(contact_))
+    solve_following(solution);
   else
-    solution.theta_b = of_contact(model_.b, Part::b);
-  update_operators(theta(model_.a, scene_.a), solution.theta_b);
-  f_ = Vector::Zero(model_.primal_size());
-  if (model_.f.size() > 0) f_.noalias() = model_.f.reduced * theta(model_.f, scene_.f);
-  if (model_.online_enriched) f_ = (enrichment_.transpose() * f_).eval();
-  if (model_.g.size() > 0) g_.noalias() = model_.g.reduced * of_contact(model_.g, Part::g);
-  solve_dual(solution);
-  check(solution);
-  if (model_.online_enriched) solution.u = (enrichment_ * solution.u).eval();
+    solve_pair({}, solution);
   return solution;
 }
 

@@ -10,13 +10,14 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 4;
+constexpr int sample_schema = 5;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::normal_force,
                                     &Outputs::tangential_force,
                                     &Outputs::reaction,
+                                    &Outputs::horizontal_reaction,
                                     &Outputs::contact_measure,
                                     &Outputs::contact_half_width,
                                     &Outputs::stick_half_width,
@@ -32,6 +33,7 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::law_error_tangential,
                                     &Outputs::law_error_tau_over_n,
                                     &Outputs::iterations,
+                                    &Outputs::contraction,
                                     &Outputs::seconds};
 
 void check_settings(const std::filesystem::path &path, const Settings &mine,
@@ -77,7 +79,8 @@ Settings settings_in(const H5Reader &file) {
 }
 
 Sample sample_in(const H5Reader &file) {
-  Sample sample{Mu(file.doubles("mu")), file.vector("u"), file.vector("lambda"), {}};
+  Sample sample{
+      Mu(file.doubles("mu")), file.vector("u"), file.vector("lambda"), {}, file.matrix("states")};
   const std::vector<double> outputs = file.doubles("outputs");
   if (outputs.size() != stored_outputs.size()) throw bad_input("another number of outputs");
   for (std::size_t i = 0; i < stored_outputs.size(); ++i)
@@ -101,6 +104,7 @@ void write_sample(const std::filesystem::path &path, const Sample &sample,
   file.write("mu", sample.mu);
   file.write("u", sample.u);
   file.write("lambda", sample.lambda);
+  file.write("states", sample.states);
   file.write("outputs", outputs);
   file.write("settings/names", names);
   file.write("settings/values", values);

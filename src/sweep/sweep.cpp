@@ -37,12 +37,9 @@ fs::path failure_file(const fs::path &sample) {
 void solve_sample(HighFidelity &solver, const Groups &groups, const ParameterSpace &space,
                   const Mu &mu, const fs::path &file, const Settings &settings) {
   std::string reason;
-  Sample sample{mu, {}, {}, {}};
+  Sample sample;
   try {
-    HfSolution solution = solver.solve(mu);
-    sample.u = std::move(solution.u);
-    sample.lambda = std::move(solution.lambda);
-    sample.outputs = solution.outputs;
+    sample = make_sample(mu, solver.solve(mu));
   } catch (const Error &error) {
     if (error.status() == Status::bad_input) throw;
     reason = error.what();
@@ -242,11 +239,30 @@ double median_seconds(const std::vector<Sample> &samples, const std::vector<Mu> 
 
 } // namespace
 
+Sample make_sample(const Mu &mu, HfSolution solution) {
+  Sample sample{mu, std::move(solution.u), std::move(solution.lambda), solution.outputs, {}};
+  if (!solution.states.empty())
+    sample.states.resize(solution.states.front().size(), std::ssize(solution.states));
+  for (std::size_t k = 0; k < solution.states.size(); ++k)
+    sample.states.col(static_cast<Index>(k)) = solution.states[k];
+  return sample;
+}
+
 std::vector<Mu> parameters_of(const std::vector<Sample> &samples) {
   std::vector<Mu> set;
   for (const Sample &sample : samples)
     set.push_back(sample.mu);
   return set;
+}
+
+std::vector<ContactPoint> contact_points(const std::vector<Sample> &samples) {
+  std::vector<ContactPoint> points;
+  for (const Sample &sample : samples) {
+    if (sample.states.size() == 0) points.push_back({sample.mu, {}});
+    for (const auto &state : sample.states.colwise())
+      points.push_back({sample.mu, {state}});
+  }
+  return points;
 }
 
 Settings sample_settings(const Problem &problem, const HfOptions &options) {

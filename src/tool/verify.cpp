@@ -357,7 +357,13 @@ void command_verify(const ToolOptions &given) {
   const int rank = rank_of(world);
   const std::string none = no_constants(model);
   if (options.stability && none.empty())
-    check_stability(world, problem, model, training, truths.mu, out);
+    check_stability(world, problem, model,
+                    follows_state(problem.scene())
+                        ? contact_points(run_sweep(world, groups, work.group_problem(), options.hf,
+                                                   training, options.out / "samples")
+                                             .samples)
+                        : at_rest(training),
+                    contact_points(answers), out);
   else if (options.stability && rank == 0)
     std::printf("Inf-sup constants: none, %s\n", none.c_str());
   if (rank == 0) {

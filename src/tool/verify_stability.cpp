@@ -24,10 +24,27 @@ double largest(const std::vector<double> &values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-void report_constants(const fs::path &path, const ParameterSpace &space, const std::vector<Mu> &set,
-                      const std::vector<InfSup> &constants) {
+/// What the points of a set are.
+const char *kind_of(const std::vector<ContactPoint> &set) {
+  return set.front().state.displacement.size() > 0 ? "pairs of mu and step" : "mu";
+}
+
+/// The number of each point among those of its mu; none of scenes without states.
+std::vector<double> steps_of(const std::vector<ContactPoint> &set) {
+  std::vector<double> steps;
+  for (std::size_t k = 0; k < set.size() && set[k].state.displacement.size() > 0; ++k)
+    steps.push_back(k > 0 && set[k].mu == set[k - 1].mu ? steps.back() + 1 : 0);
+  return steps;
+}
+
+void report_constants(const fs::path &path, const ParameterSpace &space,
+                      const std::vector<ContactPoint> &set, const std::vector<InfSup> &constants) {
   Table table;
-  table.add(space, set);
+  std::vector<Mu> mu;
+  for (const ContactPoint &at : set)
+    mu.push_back(at.mu);
+  table.add(space, mu);
+  if (const std::vector<double> steps = steps_of(set); !steps.empty()) table.add("step", steps);
   table.add("beta_hf", column(constants, &InfSup::hf));
   table.add("beta_dec", column(constants, &InfSup::dec));
   table.add("beta_on", column(constants, &InfSup::on));
@@ -37,9 +54,9 @@ void report_constants(const fs::path &path, const ParameterSpace &space, const s
   double ratio = std::numeric_limits<double>::infinity();
   for (const InfSup &c : constants)
     ratio = std::min(ratio, c.hf / c.c_hf);
-  std::printf("Inf-sup constants over the span, smallest over %zu validation mu\n"
+  std::printf("Inf-sup constants over the span, smallest over %zu validation %s\n"
               "  beta_HF %.3e, beta_on %.3e, beta_off %.3e, beta_dec %.1e\n",
-              constants.size(), smallest(column(constants, &InfSup::hf)),
+              constants.size(), kind_of(set), smallest(column(constants, &InfSup::hf)),
               smallest(column(constants, &InfSup::on)), smallest(column(constants, &InfSup::off)),
               smallest(column(constants, &InfSup::dec)));
   std::printf("  c_HF at most %.3e, beta_HF / c_HF at least %.3e\n",
@@ -82,8 +99,8 @@ std::vector<int> spread(int last, int count) {
   return {values.begin(), values.end()};
 }
 
-std::vector<Mu> subset(const std::vector<Mu> &set, int count) {
-  std::vector<Mu> result;
+std::vector<ContactPoint> subset(const std::vector<ContactPoint> &set, int count) {
+  std::vector<ContactPoint> result;
   for (const int p : spread(static_cast<int>(set.size()) - 1, count - 1))
     result.push_back(set[static_cast<std::size_t>(p)]);
   return result;
@@ -103,16 +120,17 @@ std::string no_constants(const ReducedModel &model) {
 }
 
 void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
-                     const std::vector<Mu> &training, const std::vector<Mu> &validation,
-                     const fs::path &out) {
+                     const std::vector<ContactPoint> &training,
+                     const std::vector<ContactPoint> &validation, const fs::path &out) {
   const bool scaled = model.b.size() == 1;
   const StabilityCheck check = make_stability_check(problem, model);
   const std::vector<InfSup> constants = infsup_over(world, problem, check, validation, scaled);
-  std::vector<Mu> all = training;
+  std::vector<ContactPoint> all = training;
   all.insert(all.end(), validation.begin(), validation.end());
   const BoundCheck bound = check_bound(world, problem, check, all);
   // Where b is only scaled every mu has the same ratios.
-  const std::vector<Mu> different = scaled ? std::vector<Mu>{weakest_form(problem, all)} : all;
+  const std::vector<ContactPoint> different =
+      scaled ? std::vector<ContactPoint>{weakest_form(problem, all)} : all;
   const int steps = std::min(model.supremizers, most_steps);
   const std::vector<StabilityRow> rows =
       stability_along(world, problem, check, subset(different, most_steps_at_mu / (1 + steps)),
@@ -124,8 +142,8 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
     write_stability(out / "stability.csv", rows);
     report_steps(rows);
     std::printf("  beta_off over its bound sqrt(1 - sigma^2) beta_on: at least %.6f, %d exceptions "
-                "among %zu training and validation mu\n",
-                bound.smallest, bound.exceptions, all.size());
+                "among %zu training and validation %s\n",
+                bound.smallest, bound.exceptions, all.size(), kind_of(all));
     if (fewest >= 0)
       std::printf("  fewest supremizers with beta_off >= 0.9 beta_on at all of them: %d of %d\n",
                   fewest, model.supremizers);

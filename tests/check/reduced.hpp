@@ -10,10 +10,8 @@ namespace rbvi::testing_reduced {
 inline std::vector<Sample> solve_all(Problem &problem, const std::vector<Mu> &set) {
   HighFidelity solver(problem, {});
   std::vector<Sample> samples;
-  for (const Mu &mu : set) {
-    const HfSolution s = solver.solve(mu);
-    samples.push_back({mu, s.u, s.lambda, s.outputs});
-  }
+  for (const Mu &mu : set)
+    samples.push_back(make_sample(mu, solver.solve(mu)));
   return samples;
 }
 

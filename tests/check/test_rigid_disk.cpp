@@ -197,7 +197,7 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   const std::vector<Mu> set{{0.73}, {1.01}, {1.28}};
   const StabilityCheck check = make_stability_check(r.problem, r.model);
   const std::vector<InfSup> found =
-      infsup_over(PETSC_COMM_WORLD, r.problem, check, set, r.model.b.size() == 1);
+      infsup_over(PETSC_COMM_WORLD, r.problem, check, at_rest(set), r.model.b.size() == 1);
   ReplicatedSolver solver(r.problem.v_product(), r.problem.trace(), "v_");
   // Generators of a greedy cone nearly depend on each other: orthonormal functions of their span.
   const Matrix w = Matrix(r.problem.w_product());
@@ -246,12 +246,13 @@ TEST(SupportStability, TheToleranceIsThatOfTheHighFidelityPair) {
     const std::vector<Mu> set = r.mus();
     const StabilityCheck check = make_stability_check(r.problem, r.model);
     double smallest = 1;
-    for (const InfSup &at : infsup_over(world, r.problem, check, set, false))
+    for (const InfSup &at : infsup_over(world, r.problem, check, at_rest(set), false))
       smallest = std::min(smallest, at.hf / at.c_hf);
     ASSERT_EQ(r.model.histories.at("pga/tolerance").size(), 1U);
     EXPECT_NEAR(r.model.histories.at("pga/tolerance").front(), smallest, 1e-9 * smallest);
     EXPECT_LE(r.model.histories.at("pga/sigma").back(), smallest);
-    const auto rows = stability_along(world, r.problem, check, set, {0, r.model.supremizers});
+    const auto rows =
+        stability_along(world, r.problem, check, at_rest(set), {0, r.model.supremizers});
     EXPECT_GE(rows.front().condition, 1) << "without supremizers the condition says nothing";
     EXPECT_LT(rows.back().condition, 1);
     EXPECT_GT(rows.back().classic, 0);
@@ -271,7 +272,7 @@ TEST(SupportStability, ConstantsAreProportionalToTheRadius) {
   const PairConstants other = high_fidelity_pair(problem, space, op);
   EXPECT_NEAR(other.beta, 0.8 * one.beta, 1e-9 * one.beta);
   EXPECT_NEAR(other.c, 0.8 * one.c, 1e-9 * one.c);
-  EXPECT_EQ(weakest_form(problem, {{0.9}, {0.75}, {1.3}}), Mu{0.75});
+  EXPECT_EQ(weakest_form(problem, at_rest({{0.9}, {0.75}, {1.3}})).mu, Mu{0.75});
 }
 
 /// In the norms of the mapped half-disk, V(R) = R^2 (mass + stiffness / R^2) and W(R) = R W, as the
@@ -305,7 +306,7 @@ TEST(MultiplierReductions, CollocatedWithoutFriction) {
   EXPECT_EQ(r.model.law->basis.tangential.size(), 0);
   EXPECT_TRUE(r.model.law->basis.nodes.empty());
   const StabilityCheck check = make_stability_check(r.problem, r.model);
-  for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, r.mus(), true))
+  for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, at_rest(r.mus()), true))
     EXPECT_GE(c.off, c.hf * (1 - 1e-9)) << "the greedy's tolerance is that of (2.23)";
 
   options.multipliers.exact = true;

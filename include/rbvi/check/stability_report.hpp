@@ -1,4 +1,5 @@
-// The inf-sup constants of a finished model, over sets of parameters.
+// The inf-sup constants of a finished model, over sets of parameters and, where contact follows the
+// displacement, of the states of its iterations.
 #pragma once
 
 #include "rbvi/mor/stability/stability.hpp"
@@ -22,11 +23,11 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
 /// All constants at each mu, shared among the ranks, on every rank. Collective on `comm`;
 /// `b_is_scaled`: those of the high-fidelity pair are computed once and scaled.
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                                const std::vector<Mu> &set, bool b_is_scaled);
+                                const std::vector<ContactPoint> &set, bool b_is_scaled);
 
 /// The mu of a set with the smallest |b(mu)|, the first among equals: where b is only
 /// scaled it has the smallest constants of all. Not collective.
-Mu weakest_form(Problem &problem, const std::vector<Mu> &set);
+ContactPoint weakest_form(Problem &problem, const std::vector<ContactPoint> &set);
 
 /// What the model's space guarantees over a set: beta_off >= sqrt(1 - sigma^2) beta_on.
 struct BoundCheck {
@@ -36,7 +37,7 @@ struct BoundCheck {
 
 /// The bound at every mu of the set, shared among the ranks. Collective on `comm`.
 BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                       const std::vector<Mu> &set);
+                       const std::vector<ContactPoint> &set);
 
 /// What the first supremizers achieve, the worst over a set.
 struct StabilityRow {
@@ -52,12 +53,13 @@ struct StabilityRow {
 
 /// One row for each number of supremizers in `counts` (increasing). Collective on `comm`.
 std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
-                                          const StabilityCheck &check, const std::vector<Mu> &set,
+                                          const StabilityCheck &check,
+                                          const std::vector<ContactPoint> &set,
                                           const std::vector<int> &counts);
 
 /// The fewest supremizers with beta_off >= fraction * beta_on at every mu of the set; -1 if all are
 /// not enough. beta_off grows with every supremizer. Collective on `comm`.
 int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
-                       const std::vector<Mu> &set, double fraction);
+                       const std::vector<ContactPoint> &set, double fraction);
 
 } // namespace rbvi

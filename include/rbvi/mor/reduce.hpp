@@ -112,9 +112,9 @@ void add_starts(ReducedModel &model, const Problem &problem);
 
 /// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
 /// functions that span the dual space, dual dofs x any number. Collective.
-void add_supremizers(Problem &problem, const std::vector<Mu> &training, const Mu &reference,
-                     const ReduceOptions &options, const Matrix &dual, ReducedBases &bases,
-                     StageTable &stages);
+void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training,
+                     const Mu &reference, const ReduceOptions &options, const Matrix &dual,
+                     ReducedBases &bases, StageTable &stages);
 
 /// The middle of the box. Free parameters.
 Mu box_centre(const ParameterSpace &space);
@@ -136,6 +136,6 @@ void describe_mesh(const Problem &problem, ReducedModel &model);
 
 /// T(mu) X in coordinates for every mu of the set (n_c x columns of X each). Not collective.
 std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, const Matrix &x,
-                                   const std::vector<Mu> &set);
+                                   const std::vector<ContactPoint> &set);
 
 } // namespace rbvi

@@ -32,6 +32,15 @@ struct Operators : ContactOperators {
   NodeLaws laws;             ///< of the multipliers
 };
 
+/// Where contact operators are evaluated.
+struct ContactPoint {
+  Mu mu;
+  ContactState state{}; ///< where contact follows it
+};
+
+/// Without states.
+std::vector<ContactPoint> at_rest(const std::vector<Mu> &set);
+
 /// Which rows of B, G and the weights a solver wants on a rank.
 enum class ContactRows {
   all,
@@ -69,7 +78,7 @@ public:
   const Operators &assemble(const Mu &mu, ContactRows rows = ContactRows::all);
   /// Not collective: the contact operators alone, all rows of B, G, weights and the nodal
   /// constraint.
-  void assemble_contact(const Mu &mu, Operators &operators);
+  void assemble_contact(const Mu &mu, Operators &operators, const ContactState &state = {});
   /// Whose the multipliers are. Collective at the first call.
   const DualLayout &dual_layout();
 

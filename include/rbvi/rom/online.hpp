@@ -59,7 +59,11 @@ public:
 
 private:
   ReducedSolution solve_at(const FullMu &all_parameters);
-  void evaluate_contact(ReducedSolution &solution);
+  void evaluate_contact(const Vector &state, ReducedSolution &solution);
+  /// The pair at mu; contact, where it follows the displacement, at a state.
+  void solve_pair(const Vector &state, ReducedSolution &solution);
+  /// Kacanov's iteration with the pair, accelerated.
+  void solve_following(ReducedSolution &solution);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
   void enrich();
   void solve_dual(ReducedSolution &solution);

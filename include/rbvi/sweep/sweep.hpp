@@ -22,10 +22,18 @@ struct Sample {
   Vector u;      ///< all dofs, natural order
   Vector lambda; ///< dual dofs
   Outputs outputs;
+  /// Where contact follows the displacement: contact dofs x steps, HfSolution::states; else empty.
+  Matrix states{};
 };
+
+/// What a solve at mu leaves.
+Sample make_sample(const Mu &mu, HfSolution solution);
 
 /// Their parameters.
 std::vector<Mu> parameters_of(const std::vector<Sample> &samples);
+
+/// Where their contact was evaluated: at each mu, or at each state (mu, k) of the iterations.
+std::vector<ContactPoint> contact_points(const std::vector<Sample> &samples);
 
 /// Everything that a sample depends on beside mu: name -> value.
 using Settings = std::map<std::string, std::string>;

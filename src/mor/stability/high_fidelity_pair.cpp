@@ -61,12 +61,12 @@ PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space
 }
 
 double infsup_tolerance(MPI_Comm comm, Problem &problem, const RieszSpace &space,
-                        const std::vector<Mu> &set) {
+                        const std::vector<ContactPoint> &set) {
   double smallest = largest_tolerance;
   const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
   Operators op;
   take_turns(comm, set.size(), [&](std::size_t p) {
-    problem.assemble_contact(set[p], op);
+    problem.assemble_contact(set[p].mu, op, set[p].state);
     const PairConstants pair = high_fidelity_pair(problem, space, op, sparse);
     if (!(pair.beta > round_off * pair.c))
       throw failure("beta_HF is " + short_number(pair.beta) +

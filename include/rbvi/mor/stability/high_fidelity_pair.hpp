@@ -35,6 +35,6 @@ PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space
 /// every mu of the set. Collective on `comm`, among whose ranks the mu are shared. Throws failure
 /// where beta_HF is zero to round-off.
 double infsup_tolerance(MPI_Comm comm, Problem &problem, const RieszSpace &space,
-                        const std::vector<Mu> &set);
+                        const std::vector<ContactPoint> &set);
 
 } // namespace rbvi
