@@ -9,7 +9,7 @@ packages=(g++ cmake make pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-b
 # Root in a container and more ranks than cores are both refused by Open MPI unless it is told.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=none
-export OMPI_MCA_mpi_yield_when_idle=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMPI_MCA_btl_vader_single_copy_mechanism=none
 # One BLAS thread per rank; nproc would count those from then on.
 cores=$(env -u OMP_NUM_THREADS nproc)
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1

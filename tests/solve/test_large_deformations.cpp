@@ -151,7 +151,7 @@ TEST(LargeDeformations, SmallOnesAgreeWithTheNormalOfTheRigidDisk) {
     const HfSolution large = solve(disk("none"), {1, d, 0});
     const HfSolution small =
         solve(disk("none", {{"kinematics", "small"}, {"normal", "rigid"}}), {1, d, 0});
-    EXPECT_NEAR(*large.outputs.energy, *small.outputs.energy, 2e-4 * *large.outputs.energy);
+    EXPECT_NEAR(*large.outputs.energy, *small.outputs.energy, 1e-4 * *large.outputs.energy);
   }
 }
 

@@ -10,16 +10,16 @@ namespace {
 
 using namespace rbvi;
 
-struct Worst {
+struct Extremes {
   double kkt = 0, u = 0, lambda = 0;
   int iterations = 0;
 };
 
-Worst query(const ReducedModel &model) {
+Extremes query(const ReducedModel &model) {
   constexpr std::size_t cold_every = 50;
   const std::vector<Mu> queries = parse_set(model.parameters, "random:100000:99");
   OnlineSolver warm(model);
-  Worst worst;
+  Extremes worst;
   for (std::size_t k = 0; k < queries.size(); ++k) {
     const ReducedSolution answer = warm.solve(queries[k]);
     worst.kkt = std::max(worst.kkt, answer.kkt_residual);
@@ -43,7 +43,7 @@ int main(int argc, char **argv) {
     return 2;
   }
   try {
-    const Worst worst = query(read_model(argv[1], false));
+    const Extremes worst = query(read_model(argv[1], false));
     std::printf("largest over 100000 queries: KKT residual %.1e, active-set updates %d; warm "
                 "against cold: u %.1e, lambda %.1e\n",
                 worst.kkt, worst.iterations, worst.u, worst.lambda);

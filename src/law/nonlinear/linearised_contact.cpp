@@ -178,10 +178,9 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
   const CurvatureLoad curvature(contact_.curvature(state_ + back_, start.x));
   const std::vector<Index> &dofs = curvature.dofs();
   contact_.compliance.require(dofs);
-  Matrix all(free_.size(), std::ssize(dofs)); // C on these dofs
+  Matrix local(std::ssize(dofs), std::ssize(dofs)); // C on these dofs
   for (std::size_t k = 0; k < dofs.size(); ++k)
-    all.col(static_cast<Index>(k)) = contact_.compliance.column(dofs[k]);
-  const Matrix local = all(dofs, Eigen::all);
+    local.col(static_cast<Index>(k)) = contact_.compliance.column(dofs[k])(dofs);
   std::vector<Index> active = start.active;
   for (int set = 0; set < most_sets; ++set) {
     std::vector<Index> fresh;
@@ -203,7 +202,9 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
     });
     const Vector z = curvature(d);
     const Vector x = x0 - factor.solve(near.transpose() * z);
-    const Vector u = free_ - of_active * x - all * z;
+    Vector u = free_ - of_active * x;
+    for (std::size_t k = 0; k < dofs.size(); ++k)
+      u -= z[static_cast<Index>(k)] * contact_.compliance.column(dofs[k]);
     const std::vector<Index> wrong = violated(active, x, u);
     if (!wrong.empty()) {
       active = pivoting::exchanged(active, wrong);

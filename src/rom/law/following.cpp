@@ -52,7 +52,10 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
     load = stiffness_.half_response(load_at(all_parameters));
     problem.free = model_.contact_trace * stiffness_.transposed_half_response(load);
   }
-  const NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters));
+  NonlinearOptions options;
+  const bool newton = problem.curvature && !problem.laws.has_tangents();
+  if (newton) options.tolerance = 1e-8; // the change after it is of second order
+  const NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
   if (!found.converged) throw failure(found.reason);
   if (!(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
