@@ -166,6 +166,11 @@ Curvature curvature(const Contact &contact, const FullMu &mu, const ContactState
   return {stacked(s, false), stacked(e, false)};
 }
 
+const ContactInterface *nodal_interface(const Contact &contact) {
+  const ContactInterface &only = *contact.interfaces.front();
+  return contact.interfaces.size() == 1 && only.is_nodal() ? &only : nullptr;
+}
+
 Vector undeformed(const Contact &contact, const Scene &scene, const FullMu &mu) {
   Vector state = Vector::Zero(contact.interfaces.front()->mesh().columns);
   for (const auto &interface : contact.interfaces) {

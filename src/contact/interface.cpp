@@ -48,6 +48,14 @@ Curvature ContactInterface::curvature(const FullMu &, const ContactState &, cons
   throw failure("this kind of contact has no curvature");
 }
 
+SparseMatrix ContactInterface::averages() const {
+  throw failure("scene " + scene_.name + ": this contact is not one of nodes");
+}
+
+NodalEvaluation ContactInterface::nodal_at(const FullMu &) const {
+  throw failure("scene " + scene_.name + ": this contact is not one of nodes");
+}
+
 void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point> &mapped,
                                        const ContactState &state, const WantedNodes &wanted,
                                        ContactOperators &operators) const {

@@ -55,6 +55,10 @@ MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compli
       Curvature rows = curvature(contact, op.mu, {state}, x);
       return {std::move(rows.s), std::move(rows.e)};
     };
+  if (const ContactInterface *nodal = nodal_interface(contact)) {
+    if (!compliance.nodal) compliance.nodal.emplace(nodal->averages());
+    nonlinear.nodal.emplace(NodalContact{nodal->nodal_at(op.mu), *compliance.nodal});
+  }
   steps = solve_nonlinear(nonlinear, start, options);
   if (!steps.converged) throw failure(steps.reason);
   assemble(contact, op.mu, {steps.state}, op);

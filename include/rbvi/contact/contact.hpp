@@ -37,6 +37,8 @@ bool has_curvature(const Contact &contact);
 /// That of all interfaces; those that follow no state have none.
 Curvature curvature(const Contact &contact, const FullMu &mu, const ContactState &state,
                     const Vector &lambda);
+/// The interface whose nodes are all of them, if it is nodal; else null.
+const ContactInterface *nodal_interface(const Contact &contact);
 /// The state in which the bodies are where the map puts them: minus the motion of the scene, at the
 /// columns of B.
 Vector undeformed(const Contact &contact, const Scene &scene, const FullMu &mu);

@@ -14,6 +14,7 @@
 #include "rbvi/core/scene.hpp"
 #include "rbvi/io/vtu.hpp"
 #include "rbvi/law/node_laws.hpp"
+#include "rbvi/law/nonlinear/nodal.hpp"
 
 #include <array>
 #include <memory>
@@ -127,6 +128,12 @@ public:
   /// Of multipliers at a state. Throws failure where there is none.
   virtual Curvature curvature(const FullMu &mu, const ContactState &state,
                               const Vector &lambda) const;
+  /// Whether it has one normal at each point of a curve: what law/nonlinear/nodal.hpp needs.
+  virtual bool is_nodal() const { return false; }
+  /// That header's A; and the condition at a mu, without B. Only where it is nodal. The interface
+  /// must outlive what is returned.
+  virtual SparseMatrix averages() const;
+  virtual NodalEvaluation nodal_at(const FullMu &mu) const;
   /// Of |lambda_tau| at every node. Throws failure, naming the value, for a negative one.
   virtual FrictionBound bound(const FullMu &mu) const;
   /// The constraint at a point of the reference boundary or region; `mapped`: where h(mu) takes it;

@@ -53,8 +53,10 @@ public:
     return {columns_.col(slot_[static_cast<std::size_t>(contact_dof)]).data(), columns_.rows()};
   }
 
-private:
+  /// For contact that is nodal (contact/interface.hpp).
+  std::optional<NodalCompliance> nodal{};
 
+private:
   Matrix columns_; ///< n_c x room
   Index count_ = 0;
   std::vector<Index> slot_; ///< per contact dof: its column, -1 if it has none yet

@@ -26,6 +26,9 @@ public:
   bool has_curvature() const override { return !surface_.body_normal; }
   Curvature curvature(const FullMu &mu, const ContactState &state,
                       const Vector &lambda) const override;
+  bool is_nodal() const override { return !surface_.body_normal && mesh_.imposed_by.empty(); }
+  SparseMatrix averages() const override;
+  NodalEvaluation nodal_at(const FullMu &mu) const override;
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &displacement) const override {
     const SurfacePoint at = surface_.surface(mu, moved(mu, x, displacement));
@@ -41,6 +44,14 @@ protected:
   }
 
 private:
+  struct AtRest {
+    double length = 0;         ///< of the edge, mapped
+    std::vector<Point> points; ///< of quadrature
+    std::vector<Point> motion; ///< there
+  };
+  AtRest at_rest(const FullMu &mu, Index edge) const;
+  void add_edge(const FullMu &mu, Index edge, const AtRest &rest, const Vector &state,
+                const Vector &x, NodalCondition &condition) const;
   Point moved(const FullMu &mu, const Point &x, const Point &displacement) const;
   Point displacement_at(const Cell &edge, const TracePoint &at) const;
   Point body_normal(const FullMu &mu, const Cell &edge, const TracePoint &at, const Point &x) const;
@@ -137,6 +148,109 @@ Curvature SurfaceInterface::curvature(const FullMu &mu, const ContactState &stat
   result.s.conservativeResize(row, mesh_.columns);
   result.e.conservativeResize(row, mesh_.columns);
   return result;
+}
+
+/// On the reference curve.
+SparseMatrix SurfaceInterface::averages() const {
+  std::vector<Eigen::Triplet<double>> entries;
+  Vector weights = Vector::Zero(dual_.nodes());
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::vector<Index> columns = columns_of(e);
+    const std::span<const Index> rows = rows_of(e);
+    Cell edge = reference_entity(e);
+    edge.mapped = edge.reference;
+    for (const TracePoint &at : points())
+      for (std::size_t a = 0; a < 2; ++a) {
+        if (rows[a] < 0) continue;
+        const double eta = at.weight * length_of(edge) * at.eta[a];
+        weights[rows[a]] += eta;
+        for (std::size_t k = 0; k < columns.size(); ++k)
+          if (columns[k] >= 0)
+            entries.emplace_back(2 * rows[a] + static_cast<Index>(k % 2), columns[k],
+                                 eta * at.phi[k / 2]);
+      }
+  }
+  SparseMatrix result(2 * dual_.nodes(), mesh_.columns);
+  result.setFromTriplets(entries.begin(), entries.end());
+  for (Index row = 0; row < result.rows(); ++row)
+    result.row(row) /= weights[row / 2];
+  return result;
+}
+
+SurfaceInterface::AtRest SurfaceInterface::at_rest(const FullMu &mu, Index e) const {
+  Cell edge = reference_entity(e);
+  for (std::size_t i = 0; i < 2; ++i)
+    edge.mapped[i] = scene_.map(mu, edge.reference[i]);
+  AtRest rest{length_of(edge), {}, {}};
+  for (const TracePoint &at : points()) {
+    const Point x = point_on(edge, at);
+    rest.points.push_back(moved(mu, x, {}));
+    rest.motion.push_back(scene_.motion ? scene_.motion(mu, x) : Point{});
+  }
+  return rest;
+}
+
+void SurfaceInterface::add_edge(const FullMu &mu, Index e, const AtRest &rest, const Vector &state,
+                                const Vector &x, NodalCondition &condition) const {
+  const std::span<const Index> dual = rows_of(e);
+  if (dual[0] < 0) return;
+  const int *nodes = mesh_.nodes_of(e);
+  const bool friction = dual_.components == 2;
+  std::array<double, 6> u{}, load{};
+  const auto dof = [&](int k) {
+    return mesh_.dofs[static_cast<std::size_t>(2 * nodes[k / 2] + k % 2)];
+  };
+  const int dofs = 2 * mesh_.per_entity;
+  for (int k = 0; k < dofs; ++k)
+    if (const int column = dof(k); column >= 0) u[static_cast<std::size_t>(k)] = state[column];
+  for (std::size_t i = 0; i < points().size(); ++i) {
+    const TracePoint &at = points()[i];
+    Point displacement{};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dofs); ++k)
+      displacement[k % 2] += at.phi[k / 2] * u[k];
+    const Point y{rest.points[i][0] + displacement[0], rest.points[i][1] + displacement[1], 0};
+    const SurfacePoint below = surface_.surface(mu, y);
+    const double n_x = -below.normal[0], n_y = -below.normal[1];
+    const double slip =
+        n_x * (displacement[1] + rest.motion[i][1]) - n_y * (displacement[0] + rest.motion[i][0]);
+    double pressure = 0, shear = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+      const double eta = at.weight * rest.length * at.eta[a];
+      condition.w[dual[a]] += eta * below.distance;
+      condition.normal(0, dual[a]) += eta * n_x;
+      condition.normal(1, dual[a]) += eta * n_y;
+      pressure += at.eta[a] * x[dual[a]];
+      if (!friction) continue;
+      condition.w[dual[2 + a]] -= eta * slip;
+      shear += at.eta[a] * x[dual[2 + a]];
+    }
+    if (pressure == 0 && shear == 0) continue;
+    const double weight = at.weight * rest.length;
+    for (std::size_t a = 0; a < 2; ++a)
+      condition.rotation[dual[a]] += weight * at.eta[a] * pressure * below.curvature;
+    const std::array<double, 2> traction{weight * (pressure * n_x - shear * n_y),
+                                         weight * (pressure * n_y + shear * n_x)};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dofs); ++k)
+      load[k] += at.phi[k / 2] * traction[k % 2];
+  }
+  for (int k = 0; k < dofs; ++k)
+    if (const int column = dof(k); column >= 0)
+      condition.load[column] += load[static_cast<std::size_t>(k)];
+}
+
+NodalEvaluation SurfaceInterface::nodal_at(const FullMu &mu) const {
+  return [this, mu, rest = std::vector<AtRest>(static_cast<std::size_t>(mesh_.count()))](
+             const Vector &state, const Vector &x, NodalCondition &condition) mutable {
+    condition.w.setZero(dual_.size());
+    condition.load.setZero(mesh_.columns);
+    condition.normal.setZero(2, dual_.nodes());
+    condition.rotation.setZero(dual_.nodes());
+    for (Index e = 0; e < mesh_.count(); ++e) {
+      AtRest &edge = rest[static_cast<std::size_t>(e)];
+      if (edge.points.empty()) edge = at_rest(mu, e);
+      add_edge(mu, e, edge, state, x, condition);
+    }
+  };
 }
 
 Record record_of(const RigidSurface &surface) {

@@ -2,8 +2,8 @@
 
 #include "../index.hpp"
 #include "../pivoting.hpp"
+#include "fixed_point.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/law/nonlinear/anderson.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -51,24 +51,6 @@ private:
   std::vector<Index> dofs_, position_;
   SparseMatrix s_, e_;
 };
-
-/// The solution of d = right - image(d), by Anderson's acceleration with all iterates: GMRES.
-template <class Image> Vector fixed_point(const Vector &right, double tolerance, Image &&image) {
-  constexpr int most = 60;
-  Anderson accelerated(most);
-  std::vector<Vector> images;
-  Vector d = right;
-  for (int k = 0; k < most; ++k) {
-    images.push_back(right - image(d));
-    const Vector residual = images.back() - d;
-    if (residual.norm() <= tolerance * right.norm()) break;
-    const Vector shares = accelerated.combine(residual);
-    d.setZero();
-    for (Index j = 0; j < shares.size(); ++j)
-      d += shares[j] * images[at(j)];
-  }
-  return images.back();
-}
 
 } // namespace
 

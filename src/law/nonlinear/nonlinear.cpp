@@ -1,7 +1,7 @@
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 
 #include "../index.hpp"
-#include "linearised_contact.hpp"
+#include "nodal_steps.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/law/nonlinear/anderson.hpp"
@@ -13,7 +13,7 @@
 namespace rbvi {
 
 const std::vector<std::string> &nonlinear_method_names() {
-  static const std::vector<std::string> names{"auto", "kacanov", "newton", "anderson"};
+  static const std::vector<std::string> names{"auto", "kacanov", "newton", "anderson", "nodal"};
   return names;
 }
 
@@ -26,9 +26,21 @@ public:
   Iteration(const NonlinearContact &contact, const NonlinearOptions &options)
       : contact_(contact), options_(options), method_(options.method) {
     const bool newton = contact.curvature && !contact.laws.has_tangents();
-    if (method_ == NonlinearMethod::automatic)
-      method_ = newton ? NonlinearMethod::newton : NonlinearMethod::kacanov;
+    const NonlinearMethod whole = newton ? NonlinearMethod::newton : NonlinearMethod::kacanov;
+    if (method_ == NonlinearMethod::automatic) method_ = NonlinearMethod::nodal;
     if (method_ == NonlinearMethod::newton && !newton) method_ = NonlinearMethod::kacanov;
+    if (method_ == NonlinearMethod::nodal && contact.nodal)
+      nodal_.emplace(contact);
+    else if (method_ == NonlinearMethod::nodal)
+      method_ = whole;
+    fallback_ = whole;
+  }
+  /// False where it goes on as before.
+  bool fall_back() {
+    if (!nodal_) return false;
+    nodal_.reset();
+    method_ = fallback_;
+    return true;
   }
 
   /// Steps from `iterate`, whose u is the first state, until the changes are at most `tolerance`.
@@ -43,10 +55,12 @@ private:
 
   const NonlinearContact &contact_;
   const NonlinearOptions &options_;
-  NonlinearMethod method_;
+  NonlinearMethod method_, fallback_;
+  std::optional<NodalSteps> nodal_;
 };
 
 Iterate Iteration::step(const Vector &state, const Iterate &last, double change, double part) {
+  if (nodal_ && last.x.size() > 0 && part == 1) return nodal_->step(state, last, change);
   LinearisedContact linearised(contact_, state, part);
   if (method_ == NonlinearMethod::newton && last.x.size() > 0 && !last.active.empty()) {
     // As exact as the next change, which is of second order, makes worth while.
@@ -137,14 +151,24 @@ bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &opti
 
 /// The laws at the solution, with the condition there.
 void finish(const NonlinearContact &contact, Iterate found, NonlinearResult &result) {
-  Linearised here;
-  contact.linearise(found.u, here);
-  const Vector w = here.g - here.b * found.u;
+  Vector w;
+  if (contact.nodal) {
+    NodalCondition here;
+    contact.nodal->evaluate(found.u, found.x, here);
+    w = std::move(here.w);
+    found.reaction = std::move(here.load);
+  } else {
+    Linearised here;
+    contact.linearise(found.u, here);
+    w = here.g - here.b * found.u;
+    found.reaction = here.b.transpose() * found.x;
+  }
   result.start = found.x - w.cwiseQuotient(found.diagonal);
   const double size = found.x.cwiseAbs().maxCoeff();
   const double violation = (found.x - admissible(contact.laws, result.start)).cwiseAbs().maxCoeff();
   result.residual = size > 0 ? violation / size : violation;
   result.x = std::move(found.x);
+  result.reaction = std::move(found.reaction);
   result.state = std::move(found.u);
   result.active = std::move(found.active);
 }
@@ -157,9 +181,10 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
   Iteration iteration(contact, options);
   Iterate iterate;
   iterate.u = start.state;
-  if (contact.laws.has_tangents())
+  if (contact.laws.has_tangents()) {
     iterate.start = start.x;
-  else if (start.x.size() > 0) {
+    if (contact.nodal && start.x.size() > 0) iterate.x = admissible(contact.laws, start.x);
+  } else if (start.x.size() > 0) {
     iterate.x = start.x.cwiseMax(0.0);
     for (Index row = 0; row < start.x.size(); ++row)
       if (start.x[row] > 0) iterate.active.push_back(row);
@@ -172,7 +197,13 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
       result.reason = error.what();
     }
   };
+  const Iterate begin = iterate;
   attempt([&] { return iteration.run(iterate, 1, options.tolerance, result); });
+  if (!result.converged && iteration.fall_back()) {
+    iterate = begin;
+    result.iterates.clear();
+    attempt([&] { return iteration.run(iterate, 1, options.tolerance, result); });
+  }
   if (!result.converged && options.load_steps > 0) {
     from_rest = result.reason;
     attempt([&] { return in_load_steps(contact, options, iteration, iterate, result); });

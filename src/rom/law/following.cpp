@@ -26,7 +26,8 @@ NonlinearStart LawSolver::following_start(const FullMu &all_parameters) const {
 
 LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   LawAnswer answer;
-  compliance_->set(term_coefficients(all_parameters, {}));
+  if (compliance_->set(term_coefficients(all_parameters, {})) && nodal_compliance_)
+    nodal_compliance_->forget();
   stiffness_.set(all_parameters);
   Vector load; // half response to it
   NonlinearContact problem{[&](const Vector &state, Linearised &linearised) {
@@ -48,6 +49,9 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
                                  nodal_is_identity_ ? x : Vector(nodal_.transpose() * x));
       return {std::move(rows.s), std::move(rows.e)};
     };
+  if (nodal_compliance_)
+    problem.nodal.emplace(
+        NodalContact{nodal_interface(contact_)->nodal_at(all_parameters), *nodal_compliance_});
   if (model_.f.size() > 0) {
     load = stiffness_.half_response(load_at(all_parameters));
     problem.free = model_.contact_trace * stiffness_.transposed_half_response(load);
@@ -60,9 +64,10 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   if (!(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: reduce again with more training parameters");
-  // The last linearisation was at the solution: answer.contact is that of it.
-  const Vector reaction = answer.contact.b.transpose() *
-                          (nodal_is_identity_ ? found.x : Vector(nodal_.transpose() * found.x));
+  assemble_nodal(contact_, all_parameters, {found.state},
+                 nodal_is_identity_ ? found.x : Vector(nodal_.transpose() * found.x),
+                 answer.contact);
+  const Vector &reaction = found.reaction;
   answer.energy = 0.5 * (reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = -stiffness_.response(model_.contact_trace.transpose() * reaction);
   if (load.size() > 0) answer.u += stiffness_.transposed_half_response(load);

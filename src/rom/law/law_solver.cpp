@@ -32,6 +32,8 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
     throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
   compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
   nodal_is_identity_ = model.dual_basis.isIdentity(0);
+  const ContactInterface *nodal = nodal_interface(contact);
+  if (nodal != nullptr && nodal_is_identity_) nodal_compliance_.emplace(nodal->averages());
   w_product_ = nodal_ * contact.w_product * nodal_.transpose();
 }
 

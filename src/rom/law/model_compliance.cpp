@@ -9,10 +9,11 @@ ModelCompliance::ModelCompliance(const CondensedOperator &operator_of)
       size_(std::lround(std::sqrt(static_cast<double>(operator_of.terms.rows())))),
       columns_(size_, size_), known_(static_cast<std::size_t>(size_)) {}
 
-void ModelCompliance::set(const Vector &coefficients) {
-  if (coefficients_.size() == coefficients.size() && coefficients_ == coefficients) return;
+bool ModelCompliance::set(const Vector &coefficients) {
+  if (coefficients_.size() == coefficients.size() && coefficients_ == coefficients) return false;
   coefficients_ = coefficients;
   known_.assign(known_.size(), false);
+  return true;
 }
 
 void ModelCompliance::require(const std::vector<Index> &dofs) {

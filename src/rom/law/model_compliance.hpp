@@ -14,7 +14,8 @@ public:
   /// `operator_of` must outlive it; its terms are those of the contact dofs.
   explicit ModelCompliance(const CondensedOperator &operator_of);
   /// The coefficients of the terms; columns of other ones are forgotten.
-  void set(const Vector &coefficients);
+  /// True if they are others than before.
+  bool set(const Vector &coefficients);
 
   Index size() const override { return size_; }
   void require(const std::vector<Index> &dofs) override;

@@ -11,20 +11,11 @@
 #pragma once
 
 #include "rbvi/law/friction/friction.hpp"
+#include "rbvi/law/nonlinear/nodal.hpp"
 
 #include <functional>
 
 namespace rbvi {
-
-/// C, column by column. Columns that are not required need not exist.
-class ComplianceColumns {
-public:
-  virtual ~ComplianceColumns() = default;
-  virtual Index size() const = 0; ///< contact dofs
-  /// Makes these columns exist.
-  virtual void require(const std::vector<Index> &dofs) = 0;
-  virtual Eigen::Map<const Vector> column(Index dof) const = 0;
-};
 
 /// B(s) u <= g(s) in the normal rows; in the others B u - g is the slip.
 struct Linearised {
@@ -37,6 +28,12 @@ struct CurvatureRows {
   SparseMatrix s, e;
 };
 
+/// What steps with the tangent between nodes need.
+struct NodalContact {
+  NodalEvaluation evaluate;
+  NodalCompliance &compliance;
+};
+
 struct NonlinearContact {
   std::function<void(const Vector &state, Linearised &at_state)> linearise;
   /// Empty: there is none.
@@ -46,16 +43,20 @@ struct NonlinearContact {
   Vector undeformed; ///< the state in which nothing has moved
   NodeLaws laws;
   SparseMatrix w_product; ///< Gram matrix of the multipliers
+  /// Only where the rows of x are the normal ones of all nodes, then the tangential ones.
+  std::optional<NodalContact> nodal{};
 };
 
 enum class NonlinearMethod {
-  automatic, ///< newton where there is a curvature and no friction, else kacanov
+  automatic, ///< nodal where contact offers it; else, and where that fails, newton where there is a
+             ///< curvature and no friction, else kacanov
   kacanov,
   newton,
-  anderson ///< Kacanov's iteration, accelerated with three earlier states
+  anderson, ///< Kacanov's iteration, accelerated with three earlier states
+  nodal     ///< with the tangent between nodes: nodal.hpp
 };
 
-/// "auto", "kacanov", "newton", "anderson".
+/// "auto", "kacanov", "newton", "anderson", "nodal".
 const std::vector<std::string> &nonlinear_method_names();
 
 struct NonlinearOptions {
@@ -72,8 +73,9 @@ struct NonlinearStart {
 
 struct NonlinearResult {
   Vector x;
-  Vector start; ///< x - w / H_jj (FrictionResult::start)
-  Vector state; ///< u
+  Vector start;    ///< x - w / H_jj (FrictionResult::start)
+  Vector state;    ///< u
+  Vector reaction; ///< B(u)^T x
   std::vector<Index> active;
   std::vector<Vector> iterates; ///< the states at which the condition was linearised, in order
   int steps = 0;                ///< linearisations

@@ -74,6 +74,7 @@ private:
   Vector last_start_, last_;      ///< of the last query, and where it was
   // Where contact follows the displacement:
   std::unique_ptr<ModelCompliance> compliance_;
+  std::optional<NodalCompliance> nodal_compliance_;
   bool nodal_is_identity_ = false; ///< nodal_
   SparseMatrix w_product_;         ///< of the columns of the dual basis
   Vector last_state_;

@@ -1,0 +1,20 @@
+// The compliance C of an elastic body on its contact dofs, a column when it is required.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+
+#include <vector>
+
+namespace rbvi {
+
+/// C, column by column. Columns that are not required need not exist.
+class ComplianceColumns {
+public:
+  virtual ~ComplianceColumns() = default;
+  virtual Index size() const = 0; ///< contact dofs
+  /// Makes these columns exist.
+  virtual void require(const std::vector<Index> &dofs) = 0;
+  virtual Eigen::Map<const Vector> column(Index dof) const = 0;
+};
+
+} // namespace rbvi

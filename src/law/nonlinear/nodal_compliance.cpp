@@ -1,0 +1,37 @@
+#include "rbvi/law/nonlinear/nodal.hpp"
+
+#include "../index.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+NodalCompliance::NodalCompliance(SparseMatrix average)
+    : average_(std::move(average)), moved_(average_.cols(), average_.rows()),
+      blocks_(average_.rows(), average_.rows()), known_(at(average_.rows() / 2), false) {}
+
+void NodalCompliance::require(const std::vector<Index> &nodes, ComplianceColumns &compliance) {
+  std::vector<Index> fresh, dofs;
+  for (const Index node : nodes) {
+    if (known_[at(node)]) continue;
+    fresh.push_back(node);
+    for (Index row = 2 * node; row < 2 * node + 2; ++row)
+      for (SparseMatrix::InnerIterator entry(average_, row); entry; ++entry)
+        dofs.push_back(entry.col());
+  }
+  if (fresh.empty()) return;
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+  compliance.require(dofs);
+  for (const Index node : fresh) {
+    known_[at(node)] = true;
+    for (Index row = 2 * node; row < 2 * node + 2; ++row) {
+      moved_.col(row).setZero();
+      for (SparseMatrix::InnerIterator entry(average_, row); entry; ++entry)
+        moved_.col(row) += entry.value() * compliance.column(entry.col());
+      blocks_.col(row).noalias() = average_ * moved_.col(row);
+    }
+  }
+}
+
+} // namespace rbvi

@@ -1,0 +1,191 @@
+#include "nodal_steps.hpp"
+
+#include "../index.hpp"
+#include "fixed_point.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// v with A^T loads added, A the average.
+void add_loads(const SparseMatrix &average, const Eigen::Matrix2Xd &loads, Vector &v) {
+  for (Index row = 0; row < loads.size(); ++row)
+    if (const double load = loads.data()[row]; load != 0)
+      for (SparseMatrix::InnerIterator entry(average, row); entry; ++entry)
+        v[entry.col()] += load * entry.value();
+}
+
+} // namespace
+
+std::vector<Index> NodalSteps::touching(const Vector &x) const {
+  const NodeLaws &laws = contact_.laws;
+  std::vector<Index> result;
+  for (Index node = 0; node < laws.nodes(); ++node)
+    if (x[laws.normal[at(node)]] != 0 || here_.w[laws.normal[at(node)]] < 0 ||
+        (laws.has_tangent(node) && x[laws.tangent[at(node)]] != 0))
+      result.push_back(node);
+  return result;
+}
+
+double NodalSteps::diagonal(Index node, const Frame &along) const {
+  return along.dot(contact_.nodal->compliance.block(node, node) * along);
+}
+
+/// At the other nodes the mean of the known ones.
+Vector NodalSteps::diagonals(const std::vector<Index> &known) const {
+  const NodeLaws &laws = contact_.laws;
+  double sum = 0;
+  for (const Index node : known)
+    sum += diagonal(node, normal(node));
+  const double mean = known.empty() ? 1 : sum / static_cast<double>(known.size());
+  Vector result = Vector::Constant(laws.rows, mean);
+  for (const Index node : known) {
+    result[laws.normal[at(node)]] = diagonal(node, normal(node));
+    if (laws.has_tangent(node)) result[laws.tangent[at(node)]] = diagonal(node, tangent(node));
+  }
+  return result;
+}
+
+void NodalSteps::set_tangent(std::vector<Index> active) {
+  active_ = std::move(active);
+  const Index n = std::ssize(active_);
+  Matrix h(n, n);
+  p_.resize(n, n);
+  q_.resize(n, n);
+  for (Index b = 0; b < n; ++b) {
+    const Frame load = normal(active_[at(b)]);
+    const Frame tau = tangent(active_[at(b)]).normalized();
+    for (Index a = 0; a < n; ++a) {
+      const Eigen::Matrix2d block =
+          contact_.nodal->compliance.block(active_[at(a)], active_[at(b)]);
+      const Frame under_normal = block * load;
+      const Frame across = tangent(active_[at(a)]).normalized();
+      h(a, b) = normal(active_[at(a)]).dot(under_normal);
+      p_(a, b) = across.dot(under_normal);
+      q_(a, b) = across.dot(block * tau);
+    }
+  }
+  factor_.compute(h);
+  if (n > 0 && factor_.info() != Eigen::Success)
+    throw failure("the compliance between the nodes in contact is not positive definite");
+}
+
+/// With t the tangential displacements, z = rotation t, y the change of x on the active nodes:
+///
+///   w - n . e + H y - P^T z = 0,      t = tau . e - P y + Q z.
+Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
+  constexpr double new_tangent_above = 1e-3;
+  const NodalCompliance &compliance = contact_.nodal->compliance;
+  std::vector<Index> active;
+  for (const Index node : touching(x)) {
+    const Index row = contact_.laws.normal[at(node)];
+    const double gap = here_.w[row] - normal(node).dot(e_.col(node));
+    if (x[row] - gap / diagonal(node, normal(node)) > 0) active.push_back(node);
+  }
+  if (active != active_ || change > new_tangent_above) set_tangent(std::move(active));
+  const Index n = std::ssize(active_);
+  Eigen::Matrix2Xd loads = Eigen::Matrix2Xd::Zero(2, e_.cols()), e = e_(Eigen::all, active_);
+  for (Index node = 0; node < e_.cols(); ++node) { // what leaves contact
+    double &value = x[contact_.laws.normal[at(node)]];
+    if (value == 0 || std::binary_search(active_.begin(), active_.end(), node)) continue;
+    loads.col(node) = -value * normal(node);
+    value = 0;
+    for (Index a = 0; a < n; ++a)
+      e.col(a) -= compliance.block(active_[at(a)], node) * loads.col(node);
+  }
+  Vector gap(n), slip(n), rotation(n);
+  for (Index a = 0; a < n; ++a) {
+    const Index node = active_[at(a)];
+    gap[a] = here_.w[contact_.laws.normal[at(node)]] - normal(node).dot(e.col(a));
+    slip[a] = tangent(node).normalized().dot(e.col(a));
+    rotation[a] = here_.rotation[node];
+  }
+  const Vector right = slip + p_ * factor_.solve(gap);
+  const double tolerance = std::clamp(0.1 * change, 1e-8, 1e-2);
+  const Vector t = fixed_point(right, tolerance, [&](const Vector &moved) -> Vector {
+    const Vector z = rotation.cwiseProduct(moved);
+    return p_ * factor_.solve(p_.transpose() * z) - q_ * z;
+  });
+  const Vector z = rotation.cwiseProduct(t);
+  const Vector y = factor_.solve(p_.transpose() * z - gap);
+  for (Index a = 0; a < n; ++a) {
+    const Index node = active_[at(a)];
+    x[contact_.laws.normal[at(node)]] += y[a];
+    loads.col(node) = y[a] * normal(node) - z[a] * tangent(node).normalized();
+  }
+  return loads;
+}
+
+/// The laws with H between the nodes and what is left of w beside H x.
+Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
+  const NodeLaws &laws = contact_.laws;
+  NodalCompliance &compliance = contact_.nodal->compliance;
+  const auto node_of = [&](Index row) { return row < laws.nodes() ? row : row - laws.nodes(); };
+  const auto frame = [&](Index row) {
+    return row < laws.nodes() ? normal(row) : tangent(row - laws.nodes());
+  };
+  const auto columns = [&](const std::vector<Index> &which) {
+    std::vector<Index> nodes;
+    for (const Index row : which)
+      nodes.push_back(node_of(row));
+    compliance.require(nodes, contact_.compliance);
+    Matrix result(laws.rows, std::ssize(which));
+    for (std::size_t k = 0; k < which.size(); ++k)
+      for (Index a = 0; a < laws.nodes(); ++a) {
+        const Frame moved = compliance.block(a, nodes[k]) * frame(which[k]);
+        result(a, static_cast<Index>(k)) = normal(a).dot(moved);
+        result(laws.nodes() + a, static_cast<Index>(k)) = tangent(a).dot(moved);
+      }
+    return result;
+  };
+  Vector q = here_.w;
+  for (Index a = 0; a < laws.nodes(); ++a) {
+    q[a] -= normal(a).dot(e_.col(a));
+    q[laws.nodes() + a] -= tangent(a).dot(e_.col(a));
+  }
+  std::vector<Index> loaded;
+  for (Index row = 0; row < laws.rows; ++row)
+    if (last.x[row] != 0) loaded.push_back(row);
+  q -= columns(loaded) * last.x(loaded);
+  FrictionResult found = solve_friction(columns, q, laws, last.start);
+  if (!found.converged) throw failure(found.reason);
+  Eigen::Matrix2Xd loads(2, laws.nodes());
+  for (Index a = 0; a < laws.nodes(); ++a)
+    loads.col(a) = (found.x[a] - last.x[a]) * normal(a) +
+                   (found.x[laws.nodes() + a] - last.x[laws.nodes() + a]) * tangent(a);
+  next.x = std::move(found.x);
+  next.start = std::move(found.start);
+  next.active = std::move(found.active);
+  return loads;
+}
+
+Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change) {
+  NodalCompliance &compliance = contact_.nodal->compliance;
+  contact_.nodal->evaluate(state, last.x, here_);
+  const std::vector<Index> nodes = touching(last.x);
+  compliance.require(nodes, contact_.compliance);
+  Iterate next;
+  next.u = contact_.free;
+  for (Index dof = 0; dof < here_.load.size(); ++dof)
+    if (here_.load[dof] != 0) next.u -= here_.load[dof] * contact_.compliance.column(dof);
+  e_ = (compliance.average() * (next.u - state)).reshaped(2, contact_.laws.nodes());
+  Eigen::Matrix2Xd loads;
+  if (contact_.laws.has_tangents()) {
+    loads = kacanov(last, next);
+  } else {
+    next.x = last.x;
+    loads = newton(next.x, change);
+    next.active = active_;
+  }
+  for (Index node = 0; node < loads.cols(); ++node)
+    if (!loads.col(node).isZero(0)) next.u -= compliance.moved(node) * loads.col(node);
+  next.reaction = here_.load;
+  add_loads(compliance.average(), loads, next.reaction);
+  next.diagonal = diagonals(nodes);
+  return next;
+}
+
+} // namespace rbvi

@@ -1,0 +1,42 @@
+// Steps with the tangent between nodes (rbvi/law/nonlinear/nodal.hpp): Newton's where there is no
+// friction, the turning of the normals included; Kacanov's with friction. What they converge to is
+// exact, since the residuals are; the contraction is that of the tangent's error.
+#pragma once
+
+#include "linearised_contact.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace rbvi {
+
+class NodalSteps {
+public:
+  /// `contact.nodal` is there; it must outlive this.
+  explicit NodalSteps(const NonlinearContact &contact) : contact_(contact) {}
+  /// From `state` with the multipliers last.x, not empty. `change`: relative, of the last step.
+  Iterate step(const Vector &state, const Iterate &last, double change);
+
+private:
+  using Frame = Eigen::Vector2d;
+  Frame normal(Index node) const { return {here_.normal(0, node), here_.normal(1, node)}; }
+  Frame tangent(Index node) const { return {-here_.normal(1, node), here_.normal(0, node)}; }
+  /// Nodes that carry or that overlap.
+  std::vector<Index> touching(const Vector &x) const;
+  double diagonal(Index node, const Frame &along) const;
+  Vector diagonals(const std::vector<Index> &known) const;
+  void set_tangent(std::vector<Index> active);
+  /// The loads, two components a node, that a Newton step adds; changes x.
+  Eigen::Matrix2Xd newton(Vector &x, double change);
+  Eigen::Matrix2Xd kacanov(const Iterate &last, Iterate &next);
+
+  const NonlinearContact &contact_;
+  NodalCondition here_;
+  Eigen::Matrix2Xd e_; ///< 2 x nodes, A (u_0 - C load - s)
+  // Without friction, between the active nodes: H, its factor; tangential displacements under
+  // normal (p_) and tangential (q_) loads.
+  std::vector<Index> active_;
+  Eigen::LLT<Matrix> factor_;
+  Matrix p_, q_;
+};
+
+} // namespace rbvi
