@@ -193,7 +193,6 @@ SurfaceInterface::AtRest SurfaceInterface::at_rest(const FullMu &mu, Index e) co
 void SurfaceInterface::add_edge(const FullMu &mu, Index e, const AtRest &rest, const Vector &state,
                                 const Vector &x, NodalCondition &condition) const {
   const std::span<const Index> dual = rows_of(e);
-  if (dual[0] < 0) return;
   const int *nodes = mesh_.nodes_of(e);
   const bool friction = dual_.components == 2;
   std::array<double, 6> u{}, load{};
@@ -240,12 +239,15 @@ void SurfaceInterface::add_edge(const FullMu &mu, Index e, const AtRest &rest, c
 
 NodalEvaluation SurfaceInterface::nodal_at(const FullMu &mu) const {
   return [this, mu, rest = std::vector<AtRest>(static_cast<std::size_t>(mesh_.count()))](
-             const Vector &state, const Vector &x, NodalCondition &condition) mutable {
+             const Vector &state, const Vector &x, const std::vector<bool> &near,
+             NodalCondition &condition) mutable {
     condition.w.setZero(dual_.size());
     condition.load.setZero(mesh_.columns);
     condition.normal.setZero(2, dual_.nodes());
     condition.rotation.setZero(dual_.nodes());
     for (Index e = 0; e < mesh_.count(); ++e) {
+      const std::span<const Index> dual = rows_of(e);
+      if (dual[0] < 0 || !(is_wanted(near, dual[0]) || is_wanted(near, dual[1]))) continue;
       AtRest &edge = rest[static_cast<std::size_t>(e)];
       if (edge.points.empty()) edge = at_rest(mu, e);
       add_edge(mu, e, edge, state, x, condition);

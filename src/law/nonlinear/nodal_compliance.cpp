@@ -8,7 +8,17 @@ namespace rbvi {
 
 NodalCompliance::NodalCompliance(SparseMatrix average)
     : average_(std::move(average)), moved_(average_.cols(), average_.rows()),
-      blocks_(average_.rows(), average_.rows()), known_(at(average_.rows() / 2), false) {}
+      blocks_(average_.rows(), average_.rows()), known_(at(average_.rows() / 2), false) {
+  const SparseMatrix pattern = average_.cwiseAbs(), met = pattern * pattern.transpose();
+  neighbours_.resize(known_.size());
+  for (Index row = 0; row < met.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(met, row); entry; ++entry)
+      neighbours_[at(row / 2)].push_back(entry.col() / 2);
+  for (std::vector<Index> &nodes : neighbours_) {
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  }
+}
 
 void NodalCompliance::require(const std::vector<Index> &nodes, ComplianceColumns &compliance) {
   std::vector<Index> fresh, dofs;

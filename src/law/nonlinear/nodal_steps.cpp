@@ -1,6 +1,7 @@
 #include "nodal_steps.hpp"
 
 #include "../index.hpp"
+#include "../pivoting.hpp"
 #include "fixed_point.hpp"
 #include "rbvi/core/error.hpp"
 
@@ -18,14 +19,24 @@ void add_loads(const SparseMatrix &average, const Eigen::Matrix2Xd &loads, Vecto
         v[entry.col()] += load * entry.value();
 }
 
+std::vector<Index> carrying(const NodeLaws &laws, const Vector &x) {
+  std::vector<Index> result;
+  for (Index node = 0; node < laws.nodes(); ++node)
+    if (x[laws.normal[at(node)]] != 0 || (laws.has_tangent(node) && x[laws.tangent[at(node)]] != 0))
+      result.push_back(node);
+  return result;
+}
+
 } // namespace
 
 std::vector<Index> NodalSteps::touching(const Vector &x) const {
   const NodeLaws &laws = contact_.laws;
   std::vector<Index> result;
   for (Index node = 0; node < laws.nodes(); ++node)
-    if (x[laws.normal[at(node)]] != 0 || here_.w[laws.normal[at(node)]] < 0 ||
-        (laws.has_tangent(node) && x[laws.tangent[at(node)]] != 0))
+    if (!near_.empty() && !near_[at(node)])
+      continue;
+    else if (x[laws.normal[at(node)]] != 0 || here_.w[laws.normal[at(node)]] < 0 ||
+             (laws.has_tangent(node) && x[laws.tangent[at(node)]] != 0))
       result.push_back(node);
   return result;
 }
@@ -76,16 +87,8 @@ void NodalSteps::set_tangent(std::vector<Index> active) {
 /// With t the tangential displacements, z = rotation t, y the change of x on the active nodes:
 ///
 ///   w - n . e + H y - P^T z = 0,      t = tau . e - P y + Q z.
-Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
-  constexpr double new_tangent_above = 1e-3;
+Eigen::Matrix2Xd NodalSteps::newton_on_active(double tolerance, Vector &x) const {
   const NodalCompliance &compliance = contact_.nodal->compliance;
-  std::vector<Index> active;
-  for (const Index node : touching(x)) {
-    const Index row = contact_.laws.normal[at(node)];
-    const double gap = here_.w[row] - normal(node).dot(e_.col(node));
-    if (x[row] - gap / diagonal(node, normal(node)) > 0) active.push_back(node);
-  }
-  if (active != active_ || change > new_tangent_above) set_tangent(std::move(active));
   const Index n = std::ssize(active_);
   Eigen::Matrix2Xd loads = Eigen::Matrix2Xd::Zero(2, e_.cols()), e = e_(Eigen::all, active_);
   for (Index node = 0; node < e_.cols(); ++node) { // what leaves contact
@@ -104,7 +107,6 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
     rotation[a] = here_.rotation[node];
   }
   const Vector right = slip + p_ * factor_.solve(gap);
-  const double tolerance = std::clamp(0.1 * change, 1e-8, 1e-2);
   const Vector t = fixed_point(right, tolerance, [&](const Vector &moved) -> Vector {
     const Vector z = rotation.cwiseProduct(moved);
     return p_ * factor_.solve(p_.transpose() * z) - q_ * z;
@@ -117,6 +119,49 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
     loads.col(node) = y[a] * normal(node) - z[a] * tangent(node).normalized();
   }
   return loads;
+}
+
+/// Active nodes that pull, and others near that overlap under `loads`.
+std::vector<Index> NodalSteps::violated(const Vector &x, const Eigen::Matrix2Xd &loads) const {
+  constexpr double round_off = 1e-12;
+  const NodalCompliance &compliance = contact_.nodal->compliance;
+  const double largest_x = x.maxCoeff(), largest_w = here_.w.cwiseAbs().maxCoeff();
+  std::vector<Index> result;
+  for (Index node = 0; node < loads.cols(); ++node) {
+    if (!near_.empty() && !near_[at(node)]) continue;
+    const Index row = contact_.laws.normal[at(node)];
+    if (std::binary_search(active_.begin(), active_.end(), node)) {
+      if (x[row] < -round_off * largest_x) result.push_back(node);
+      continue;
+    }
+    Frame moved = e_.col(node);
+    for (Index other = 0; other < loads.cols(); ++other)
+      if (loads(0, other) != 0 || loads(1, other) != 0)
+        moved -= compliance.block(node, other) * loads.col(other);
+    if (here_.w[row] - normal(node).dot(moved) < -round_off * largest_w) result.push_back(node);
+  }
+  return result;
+}
+
+Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
+  constexpr double new_tangent_above = 1e-3;
+  constexpr int most_sets = 10;
+  std::vector<Index> active;
+  for (const Index node : touching(x)) {
+    const Index row = contact_.laws.normal[at(node)];
+    const double gap = here_.w[row] - normal(node).dot(e_.col(node));
+    if (x[row] - gap / diagonal(node, normal(node)) > 0) active.push_back(node);
+  }
+  const Vector start = x;
+  for (int set = 1;; ++set) {
+    if (active != active_ || change > new_tangent_above) set_tangent(active);
+    x = start;
+    Eigen::Matrix2Xd loads = newton_on_active(std::clamp(0.1 * change, 1e-8, 1e-2), x);
+    const std::vector<Index> wrong = violated(x, loads);
+    if (wrong.empty() || set == most_sets) return loads;
+    active = pivoting::exchanged(active, wrong);
+    contact_.nodal->compliance.require(active, contact_.compliance);
+  }
 }
 
 /// The laws with H between the nodes and what is left of w beside H x.
@@ -132,9 +177,10 @@ Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
     for (const Index row : which)
       nodes.push_back(node_of(row));
     compliance.require(nodes, contact_.compliance);
-    Matrix result(laws.rows, std::ssize(which));
+    Matrix result = Matrix::Zero(laws.rows, std::ssize(which));
     for (std::size_t k = 0; k < which.size(); ++k)
       for (Index a = 0; a < laws.nodes(); ++a) {
+        if (!near_.empty() && !near_[at(a)]) continue;
         const Frame moved = compliance.block(a, nodes[k]) * frame(which[k]);
         result(a, static_cast<Index>(k)) = normal(a).dot(moved);
         result(laws.nodes() + a, static_cast<Index>(k)) = tangent(a).dot(moved);
@@ -164,13 +210,16 @@ Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
 
 Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change) {
   NodalCompliance &compliance = contact_.nodal->compliance;
-  contact_.nodal->evaluate(state, last.x, here_);
+  if (rows_.empty()) see(carrying(contact_.laws, last.x));
+  contact_.nodal->evaluate(state, last.x, near_, here_);
   const std::vector<Index> nodes = touching(last.x);
   compliance.require(nodes, contact_.compliance);
   Iterate next;
-  next.u = contact_.free;
+  next.u = state;
+  for (const auto &[first, count] : rows_)
+    next.u.segment(first, count) = contact_.free.segment(first, count);
   for (Index dof = 0; dof < here_.load.size(); ++dof)
-    if (here_.load[dof] != 0) next.u -= here_.load[dof] * contact_.compliance.column(dof);
+    if (here_.load[dof] != 0) subtract(here_.load[dof], contact_.compliance.column(dof), next.u);
   e_ = (compliance.average() * (next.u - state)).reshaped(2, contact_.laws.nodes());
   Eigen::Matrix2Xd loads;
   if (contact_.laws.has_tangents()) {
@@ -181,11 +230,58 @@ Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change
     next.active = active_;
   }
   for (Index node = 0; node < loads.cols(); ++node)
-    if (!loads.col(node).isZero(0)) next.u -= compliance.moved(node) * loads.col(node);
+    for (Index c = 0; c < 2; ++c)
+      if (loads(c, node) != 0) subtract(loads(c, node), compliance.moved(node).col(c), next.u);
   next.reaction = here_.load;
   add_loads(compliance.average(), loads, next.reaction);
   next.diagonal = diagonals(nodes);
+  see(next.active);
   return next;
+}
+
+void NodalSteps::see(const std::vector<Index> &nodes) {
+  constexpr int layers = 4;
+  if (near_.empty() && !rows_.empty()) return;
+  const NodalCompliance &compliance = contact_.nodal->compliance;
+  std::vector<Index> front = nodes;
+  for (int layer = 0; layer <= layers && !near_.empty(); ++layer) {
+    std::vector<Index> next;
+    for (const Index node : front)
+      if (layer == 0 || !near_[at(node)]) {
+        near_[at(node)] = true;
+        const std::vector<Index> &beside = compliance.neighbours(node);
+        next.insert(next.end(), beside.begin(), beside.end());
+      }
+    front = std::move(next);
+  }
+  std::vector<bool> wanted(at(contact_.free.size()), near_.empty());
+  for (Index row = 0; row < compliance.average().rows() && !near_.empty(); ++row)
+    if (near_[at(row / 2)])
+      for (SparseMatrix::InnerIterator entry(compliance.average(), row); entry; ++entry)
+        wanted[at(entry.col())] = true;
+  rows_.clear();
+  for (Index dof = 0; dof < std::ssize(wanted); ++dof)
+    if (wanted[at(dof)]) {
+      if (rows_.empty() || rows_.back().first + rows_.back().second != dof)
+        rows_.emplace_back(dof, 0);
+      ++rows_.back().second;
+    }
+}
+
+bool NodalSteps::complete(Iterate &iterate) {
+  const std::vector<bool> seen = std::exchange(near_, {});
+  if (!seen.empty()) {
+    rows_ = {{0, contact_.free.size()}};
+    Vector u = contact_.free;
+    for (Index dof = 0; dof < u.size(); ++dof)
+      if (iterate.reaction[dof] != 0)
+        subtract(iterate.reaction[dof], contact_.compliance.column(dof), u);
+    iterate.u = std::move(u);
+  }
+  contact_.nodal->evaluate(iterate.u, iterate.x, near_, here_);
+  const std::vector<Index> nodes = touching(iterate.x);
+  return seen.empty() ||
+         std::ranges::all_of(nodes, [&](Index node) { return bool(seen[at(node)]); });
 }
 
 } // namespace rbvi

@@ -12,9 +12,15 @@ namespace rbvi {
 class NodalSteps {
 public:
   /// `contact.nodal` is there; it must outlive this.
-  explicit NodalSteps(const NonlinearContact &contact) : contact_(contact) {}
+  /// `whole`: states are wanted on all contact dofs, not only near contact.
+  NodalSteps(const NonlinearContact &contact, bool whole)
+      : contact_(contact), near_(whole ? 0 : static_cast<std::size_t>(contact.laws.nodes())) {}
   /// From `state` with the multipliers last.x, not empty. `change`: relative, of the last step.
   Iterate step(const Vector &state, const Iterate &last, double change);
+  /// Sets u on all contact dofs and evaluates the condition there. False where that makes nodes
+  /// overlap which no step has seen; the next ones see all.
+  bool complete(Iterate &iterate);
+  const NodalCondition &condition() const { return here_; }
 
 private:
   using Frame = Eigen::Vector2d;
@@ -22,14 +28,25 @@ private:
   Frame tangent(Index node) const { return {-here_.normal(1, node), here_.normal(0, node)}; }
   /// Nodes that carry or that overlap.
   std::vector<Index> touching(const Vector &x) const;
+  /// These nodes, and some beside them, are near.
+  void see(const std::vector<Index> &nodes);
+  /// u less the factor times a column of C, on rows_.
+  template <class Column> void subtract(double factor, const Column &column, Vector &u) const {
+    for (const auto &[first, count] : rows_)
+      u.segment(first, count) -= factor * column.segment(first, count);
+  }
   double diagonal(Index node, const Frame &along) const;
   Vector diagonals(const std::vector<Index> &known) const;
   void set_tangent(std::vector<Index> active);
   /// The loads, two components a node, that a Newton step adds; changes x.
+  Eigen::Matrix2Xd newton_on_active(double tolerance, Vector &x) const;
+  std::vector<Index> violated(const Vector &x, const Eigen::Matrix2Xd &loads) const;
   Eigen::Matrix2Xd newton(Vector &x, double change);
   Eigen::Matrix2Xd kacanov(const Iterate &last, Iterate &next);
 
   const NonlinearContact &contact_;
+  std::vector<bool> near_;                    ///< per node; empty: all
+  std::vector<std::pair<Index, Index>> rows_; ///< the contact dofs beside them: first, count
   NodalCondition here_;
   Eigen::Matrix2Xd e_; ///< 2 x nodes, A (u_0 - C load - s)
   // Without friction, between the active nodes: H, its factor; tangential displacements under

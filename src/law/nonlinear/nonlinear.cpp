@@ -30,11 +30,13 @@ public:
     if (method_ == NonlinearMethod::automatic) method_ = NonlinearMethod::nodal;
     if (method_ == NonlinearMethod::newton && !newton) method_ = NonlinearMethod::kacanov;
     if (method_ == NonlinearMethod::nodal && contact.nodal)
-      nodal_.emplace(contact);
+      nodal_.emplace(contact, !options.economical);
     else if (method_ == NonlinearMethod::nodal)
       method_ = whole;
     fallback_ = whole;
   }
+  /// At the solution, where the last step was one between nodes.
+  const NodalCondition *condition() const { return nodal_ ? &nodal_->condition() : nullptr; }
   /// False where it goes on as before.
   bool fall_back() {
     if (!nodal_) return false;
@@ -92,6 +94,7 @@ void Iteration::measure(const Iterate &next, const Vector &state, const Vector &
 }
 
 bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearResult &result) {
+  const bool smooth = !contact_.laws.has_tangents(); // its contraction can be told from the last
   Vector state = iterate.u, reaction = iterate.reaction;
   Anderson anderson(3);
   std::vector<Iterate> images;
@@ -106,7 +109,9 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
     const double change = std::max(result.change_u, result.change_x);
     if (!std::isfinite(iterate.u.norm())) break;
     result.rate = k == 0 ? 0 : change / last;
-    if (change <= tolerance) return true;
+    const bool predicts = options_.economical && nodal_ && smooth && k > 1;
+    const double left = predicts ? change * std::min(result.rate, 1.0) : change;
+    if (left <= tolerance && (!nodal_ || part < 1 || nodal_->complete(iterate))) return true;
     since_best = change < best ? 0 : since_best + 1;
     best = std::min(best, change);
     if (since_best >= patience) break;
@@ -150,13 +155,13 @@ bool in_load_steps(const NonlinearContact &contact, const NonlinearOptions &opti
 }
 
 /// The laws at the solution, with the condition there.
-void finish(const NonlinearContact &contact, Iterate found, NonlinearResult &result) {
+/// `nodal`: it, if it is known.
+void finish(const NonlinearContact &contact, const NodalCondition *nodal, Iterate found,
+            NonlinearResult &result) {
   Vector w;
-  if (contact.nodal) {
-    NodalCondition here;
-    contact.nodal->evaluate(found.u, found.x, here);
-    w = std::move(here.w);
-    found.reaction = std::move(here.load);
+  if (nodal != nullptr) {
+    w = nodal->w;
+    found.reaction = nodal->load;
   } else {
     Linearised here;
     contact.linearise(found.u, here);
@@ -215,7 +220,7 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
                      " load steps, as without them it failed (" + from_rest + ")";
   result.reason += ", last change " + short_number(std::max(result.change_u, result.change_x)) +
                    ", contraction " + short_number(result.rate);
-  finish(contact, std::move(iterate), result);
+  finish(contact, iteration.condition(), std::move(iterate), result);
   return result;
 }
 

@@ -57,8 +57,9 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
     problem.free = model_.contact_trace * stiffness_.transposed_half_response(load);
   }
   NonlinearOptions options;
-  const bool newton = problem.curvature && !problem.laws.has_tangents();
-  if (newton) options.tolerance = 1e-8; // the change after it is of second order
+  options.economical = true;
+  if (!problem.nodal && problem.curvature && !problem.laws.has_tangents())
+    options.tolerance = 1e-8; // the change after it is of second order
   const NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
   if (!found.converged) throw failure(found.reason);
   if (!(found.residual <= largest_residual))

@@ -28,9 +28,12 @@ struct NodalCondition {
   Vector rotation; ///< per node, int eta x k: k times a tangential displacement turns the normal
 };
 
-/// Evaluates it; `x` may be longer than what is not zero.
+/// Evaluates it at the nodes of `near` (empty: all of them), which have to include those that
+/// carry: nothing else is told of the others, and the state is not asked for beside their
+/// functions.
 using NodalEvaluation =
-    std::function<void(const Vector &state, const Vector &x, NodalCondition &condition)>;
+    std::function<void(const Vector &state, const Vector &x, const std::vector<bool> &near,
+                       NodalCondition &condition)>;
 
 /// A C A^T and C A^T, the columns of a node when it is required; for problems of one C.
 class NodalCompliance {
@@ -43,6 +46,10 @@ public:
   void require(const std::vector<Index> &nodes, ComplianceColumns &compliance);
 
   const SparseMatrix &average() const { return average_; }
+  /// The nodes whose functions meet that of a node.
+  const std::vector<Index> &neighbours(Index node) const {
+    return neighbours_[static_cast<std::size_t>(node)];
+  }
   /// C A_a^T, contact dofs x 2, of a node that was required.
   auto moved(Index node) const { return moved_.middleCols<2>(2 * node); }
   /// G_ab, b one that was required.
@@ -54,6 +61,7 @@ public:
 
 private:
   SparseMatrix average_;
+  std::vector<std::vector<Index>> neighbours_;
   Matrix moved_, blocks_;
   std::vector<bool> known_;
 };

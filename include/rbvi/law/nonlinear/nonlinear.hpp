@@ -64,6 +64,9 @@ struct NonlinearOptions {
   double tolerance = 1e-10; ///< of (A.8), both
   int max_steps = 60;
   int load_steps = 8; ///< where the first attempt fails
+  /// nodal: iterates near contact alone, and no step that would only confirm the last one: the
+  /// tolerance is of what the next is expected to change.
+  bool economical = false;
 };
 
 struct NonlinearStart {
