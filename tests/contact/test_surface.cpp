@@ -107,6 +107,45 @@ TEST(RigidSurface, ItsCurvatureIsTheDerivativeOfTheReaction) {
   }
 }
 
+// Without B: w = g - B s and B^T lambda, all of them or those of some nodes; A times an alike
+// displacement is that displacement.
+TEST(RigidSurface, ItsNodalFormIsThatOfTheOperators) {
+  for (const int degree : {1, 2})
+    for (const bool friction : {false, true}) {
+      Random random(degree);
+      Surfaces of(degree, friction);
+      of.make();
+      ASSERT_TRUE(of.interface->is_nodal());
+      const Vector state = 0.05 * random.vector(of.curve.columns);
+      Vector lambda = random.vector(of.interface->dual().size());
+      const Index nodes = of.interface->dual().nodes();
+      const NodalEvaluation evaluate = of.interface->nodal_at(skew);
+      const ContactOperators op = of.at(skew, state);
+      NodalCondition all, some;
+      evaluate(state, lambda, {}, all);
+      EXPECT_LT((all.w - (op.g - op.b * state)).norm(), 1e-14);
+      EXPECT_LT((all.load - op.b.transpose() * lambda).norm(), 1e-14);
+      Vector alike = Vector::Zero(of.curve.columns);
+      for (Index k = 0; k < alike.size(); ++k)
+        alike[k] = k % 2 == 0 ? 0.3 : -0.7;
+      const Vector averaged = of.interface->averages() * alike;
+      EXPECT_LT((averaged - alike.head(averaged.size())).norm(), 1e-14);
+      EXPECT_LT((all.normal.transpose() * Vector{{0.3, -0.7}} - (op.b * alike).head(nodes)).norm(),
+                1e-14);
+
+      std::vector<bool> near(static_cast<std::size_t>(nodes));
+      near[2] = near[3] = true;
+      for (Index row = 0; row < lambda.size(); ++row)
+        if (row % nodes != 2) lambda[row] = 0;
+      evaluate(state, lambda, near, some);
+      EXPECT_LT((some.load - op.b.transpose() * lambda).norm(), 1e-14);
+      for (const Index node : {2, 3}) {
+        EXPECT_NEAR(some.w[node], all.w[node], 1e-15);
+        EXPECT_LT((some.normal.col(node) - all.normal.col(node)).norm(), 1e-15);
+      }
+    }
+}
+
 TEST(RigidSurface, APlaneIsASupportWhereverTheBodyIs) {
   Random random(3);
   Surfaces of(2);

@@ -70,6 +70,21 @@ struct Beads {
     }
     l.b.makeCompressed();
   }
+  /// The same without B: at a bead its own displacement, which nothing averages.
+  void evaluate(const Vector &state, const Vector &x, NodalCondition &condition) const {
+    const Index n = count();
+    Linearised l;
+    linearise(state, l);
+    condition.w = l.g - l.b * state;
+    condition.load = l.b.transpose() * x;
+    condition.normal.resize(2, n);
+    condition.rotation.resize(n);
+    for (Index i = 0; i < n; ++i) {
+      const Eigen::Vector2d y = at.col(i) + state.segment<2>(2 * i);
+      condition.normal.col(i) = -side * y.normalized();
+      condition.rotation[i] = side * x[i] / y.norm();
+    }
+  }
   CurvatureRows curvature(const Vector &state, const Vector &x) const {
     const Index n = count();
     CurvatureRows rows{SparseMatrix(n, 2 * n), SparseMatrix(n, 2 * n)};
@@ -109,12 +124,21 @@ Beads pushed_row(Index n, double skew) {
   return beads;
 }
 
-NonlinearResult solve(const Beads &beads, NonlinearMethod method, double tolerance = 1e-12) {
+/// `average`: what the method `nodal` takes for the displacement of a bead, in parts of it.
+NonlinearResult solve(const Beads &beads, NonlinearMethod method, double tolerance = 1e-12,
+                      double average = 1, bool economical = false) {
   DenseColumns columns(beads.compliance);
   NonlinearOptions options;
   options.method = method;
   options.tolerance = tolerance;
-  return solve_nonlinear(beads.problem(columns), {Vector::Zero(2 * beads.count()), {}}, options);
+  options.economical = economical;
+  NonlinearContact problem = beads.problem(columns);
+  const Index dofs = 2 * beads.count();
+  NodalCompliance compliance((average * Matrix::Identity(dofs, dofs)).sparseView());
+  const auto evaluate = [&](const Vector &state, const Vector &x, const std::vector<bool> &,
+                            NodalCondition &condition) { beads.evaluate(state, x, condition); };
+  if (method == NonlinearMethod::nodal) problem.nodal.emplace(NodalContact{evaluate, compliance});
+  return solve_nonlinear(problem, {Vector::Zero(dofs), {}}, options);
 }
 
 // A bead on an isotropic spring comes to the point of the disk next to where it would be without
@@ -125,8 +149,8 @@ TEST(Nonlinear, ASingleBeadFindsTheNextPoint) {
   bead.compliance = 0.5 * Matrix::Identity(2, 2);
   bead.free = Vector{{0.2, -0.8}};
   const Eigen::Vector2d wanted = bead.at + bead.free;
-  for (const NonlinearMethod method :
-       {NonlinearMethod::kacanov, NonlinearMethod::newton, NonlinearMethod::anderson}) {
+  for (const NonlinearMethod method : {NonlinearMethod::kacanov, NonlinearMethod::newton,
+                                       NonlinearMethod::anderson, NonlinearMethod::nodal}) {
     const NonlinearResult found = solve(bead, method);
     ASSERT_TRUE(found.converged) << found.reason;
     EXPECT_LT((bead.at + found.state - wanted.normalized()).norm(), 1e-11);
@@ -153,6 +177,29 @@ TEST(Nonlinear, AllMethodsFindTheSame) {
     EXPECT_GT(kacanov.rate, 0.01);
     EXPECT_LT(kacanov.rate, 0.9);
   }
+}
+
+// Where nothing is averaged, steps with the tangent between nodes are Newton's; where it is wrong
+// by a tenth they contract by that, to the same solution.
+TEST(Nonlinear, AWrongTangentBetweenNodesCostsStepsAlone) {
+  for (const double skew : {0.0, 0.2})
+    for (const bool friction : {false, true}) {
+      Beads beads = pushed_row(21, skew);
+      beads.friction = friction;
+      beads.bound = {0.3, 0, false};
+      const NonlinearResult expected = solve(beads, NonlinearMethod::automatic);
+      const NonlinearResult right = solve(beads, NonlinearMethod::nodal),
+                            economical = solve(beads, NonlinearMethod::nodal, 1e-12, 1, true),
+                            wrong = solve(beads, NonlinearMethod::nodal, 1e-12, 0.95);
+      for (const NonlinearResult *found : {&right, &economical, &wrong}) {
+        ASSERT_TRUE(found->converged) << found->reason;
+        EXPECT_LT((found->x - expected.x).norm(), 1e-10 * expected.x.norm());
+        EXPECT_LT((found->state - expected.state).norm(), 1e-10 * expected.state.norm());
+        EXPECT_LT((found->reaction - expected.reaction).norm(), 1e-10 * expected.reaction.norm());
+      }
+      EXPECT_LE(right.steps, expected.steps + 1);
+      EXPECT_GE(wrong.steps, right.steps + (friction ? 0 : 1));
+    }
 }
 
 // No admissible bead beside the solution has less energy; to first order it has more.

@@ -113,11 +113,15 @@ double Projection::abscissa_of(Index master_vertex, Index &from) const {
   return static_cast<double>(from) + s;
 }
 
-/// Newton's method for (y - y(t)) x nu(t) = 0.
+/// Newton's method for (y - y(t)) x nu(t) = 0, from where the point is between the cuts.
 Facing Projection::facing(Index slave_edge, double s, Index master_edge) const {
+  constexpr double round_off = 1e-13, settled = 1e-8; // what is left is the square of the last step
   const Point y = slave_.at(slave_edge, s);
-  double t = 0.5;
+  const double begin = cuts_[static_cast<std::size_t>(master_edge)],
+               end = cuts_[static_cast<std::size_t>(master_edge) + 1];
+  double t = std::clamp((static_cast<double>(slave_edge) + s - begin) / (end - begin), 0.0, 1.0);
   Facing result{slave_edge, master_edge, s, 0, 0, {}, 0, 0};
+  double last = 1;
   for (int k = 0; k < 30; ++k) {
     const Point away = minus(y, master_.at(master_edge, t));
     const Point field = master_.sum(master_edge, master_.values(t), normals_);
@@ -125,8 +129,11 @@ Facing Projection::facing(Index slave_edge, double s, Index master_edge) const {
     const Point tangent = master_.tangent(master_edge, t);
     const double length = norm(field), stretch = norm(tangent);
     const double step = cross(away, field) / (cross(tangent, field) - cross(away, turn));
-    t += std::clamp(step, -0.5, 0.5);
-    if (std::abs(step) > 1e-13) continue;
+    if (std::abs(step) > round_off && std::abs(last) > settled) {
+      t += std::clamp(step, -0.5, 0.5);
+      last = step;
+      continue;
+    }
     result.t = t;
     result.normal = {field[0] / length, field[1] / length, 0};
     result.stretch = stretch;

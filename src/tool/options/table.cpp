@@ -164,13 +164,18 @@ std::vector<Option> of_solvers() {
 
 std::vector<Option> of_iterations() {
   return {
-      choice("nonlinear_method",
-             choices(nonlinear_method_names(),
-                     {"newton where there is a curvature and no friction, else kacanov",
-                      "each linearised problem at the solution of the last (A.7)",
-                      "with the curvature of the condition: quadratic; without friction",
-                      "kacanov accelerated with three earlier states (Anderson)"}),
-             AT(hf.nonlinear.method), "iteration of contact that follows the displacement"),
+      choice(
+          "nonlinear_method",
+          choices(
+              nonlinear_method_names(),
+              {"nodal where the surface is rigid with its own normal; else, and where that fails, "
+               "newton without friction, kacanov with it",
+               "each linearised problem at the solution of the last (A.7)",
+               "with the curvature of the condition: quadratic; without friction",
+               "kacanov accelerated with three earlier states (Anderson)",
+               "exact residuals, a tangent from averages at the nodes: Newton's "
+               "without friction, else Kacanov's"}),
+          AT(hf.nonlinear.method), "iteration of contact that follows the displacement"),
       number("nonlinear_tolerance", {1e-13, 0.1}, AT(hf.nonlinear.tolerance),
              "relative change of u and of the multipliers (A.8)"),
       number("nonlinear_max_steps", {1, 100000}, AT(hf.nonlinear.max_steps), "most steps"),
