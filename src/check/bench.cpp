@@ -4,11 +4,13 @@
 #include "rbvi/check/interpolation.hpp"
 #include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/local_fit.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace rbvi {
 
@@ -170,6 +172,67 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
   std::vector<BenchRow> rows;
   for (std::size_t k = 0; k < names.size(); ++k)
     rows.push_back(timed_row("active_set: " + names[k], "this part alone", seconds[k]));
+  return rows;
+}
+
+namespace {
+
+/// The start from the nearest of the first `count` truths; none: from rest.
+NonlinearStart nearest_start(const Problem &problem, const FullMu &at_mu,
+                             const std::vector<Sample> &truths, std::size_t count) {
+  NonlinearStart start{undeformed(problem.contact(), problem.scene(), at_mu), {}};
+  const ParameterSpace &space = problem.scene().parameters;
+  const Vector here = parts_of_box(space, at_mu);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count; ++k) {
+    const double distance = (parts_of_box(space, expand(space, truths[k].mu)) - here).norm();
+    if (distance >= least) continue;
+    least = distance;
+    start = {truths[k].states.rightCols(1), truths[k].lambda};
+  }
+  return start;
+}
+
+} // namespace
+
+std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sample> &truths) {
+  const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
+  Compliance kept;
+  std::vector<double> linear;
+  const auto seconds = [&](NonlinearMethod method, bool warm, bool timed) {
+    NonlinearOptions options;
+    options.method = method;
+    std::vector<double> result;
+    for (std::size_t k = warm ? 1 : 0; k < truths.size(); ++k) {
+      Operators op = problem.assemble(truths[k].mu);
+      RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+      RBVI_CALL(KSPSetUp(ksp.get()));
+      const NonlinearStart start = nearest_start(problem, op.mu, truths, warm ? k : 0);
+      Handle<Vec> u;
+      RBVI_CALL(VecDuplicate(op.f, u.put()));
+      const double begin = MPI_Wtime();
+      solve_linear(ksp.get(), op.f, u.get());
+      const double middle = MPI_Wtime();
+      NonlinearResult steps;
+      solve_following(ksp.get(), problem, kept, op, start, options, steps);
+      linear.push_back(middle - begin);
+      result.push_back(std::max(0.0, MPI_Wtime() - middle - linear.back()));
+    }
+    if (!timed) linear.clear();
+    return result;
+  };
+  (void)seconds(NonlinearMethod::kacanov, false, false); // asks for the compliance
+  std::vector<BenchRow> rows;
+  const auto add = [&](const std::string &name, NonlinearMethod method, bool warm) {
+    rows.push_back(timed_row("iteration: " + name, "this part alone, the compliance at hand",
+                             seconds(method, warm, true)));
+  };
+  add("cold", NonlinearMethod::automatic, false);
+  add("warm", NonlinearMethod::automatic, true);
+  for (const auto method :
+       {NonlinearMethod::kacanov, NonlinearMethod::newton, NonlinearMethod::anderson})
+    add(nonlinear_method_names()[static_cast<std::size_t>(method)] + ", cold", method, false);
+  rows.push_back(timed_row("one linear solve", "this part alone", linear));
   return rows;
 }
 

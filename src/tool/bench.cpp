@@ -111,9 +111,11 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
     rows.push_back(bench_solver(problem, hf, truths, few, true));
     return rows;
   }
-  for (BenchRow &part : bench_parts(problem, truths))
+  const bool follows = follows_state(problem.contact());
+  for (BenchRow &part : follows ? bench_iterations(problem, truths) : bench_parts(problem, truths))
     rows.push_back(std::move(part));
   rows.push_back(bench_solver(problem, hf, truths, truths.size(), true));
+  if (follows) return rows;
   hf.method = HfMethod::uzawa;
   hf.uzawa_accelerated = true;
   rows.push_back(bench_solver(problem, hf, truths, few, true));

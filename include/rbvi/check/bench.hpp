@@ -40,6 +40,9 @@ BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vec
 /// The parts of an active_set solve that starts from the active set of the truth: assembly,
 /// factorisation, two linear solves, columns and LCP.
 std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &truths);
+/// Where contact follows the displacement: the iterations on a compliance that is there, from rest
+/// and from the nearest of the truths before, and one linear solve.
+std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sample> &truths);
 
 /// The method `vi` against active_set, both on a problem with vertex quadrature.
 BenchRow bench_vi(Problem &lumped, const std::vector<Mu> &set);

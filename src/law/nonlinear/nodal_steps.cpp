@@ -60,8 +60,21 @@ Vector NodalSteps::diagonals(const std::vector<Index> &known) const {
   return result;
 }
 
-void NodalSteps::set_tangent(std::vector<Index> active) {
-  active_ = std::move(active);
+/// Whether the normals of these nodes have turned by so little since `before` that a tangent made
+/// there contracts as well.
+bool NodalSteps::are_as_before(const std::vector<Index> &nodes,
+                               const Eigen::Matrix2Xd &before) const {
+  constexpr double turned = 3e-3;
+  return before.cols() > 0 && std::ranges::all_of(nodes, [&](Index node) {
+           return (here_.normal.col(node) - before.col(node)).norm() <=
+                  turned * before.col(node).norm();
+         });
+}
+
+void NodalSteps::set_tangent(const std::vector<Index> &active) {
+  if (active == active_ && are_as_before(active, tangent_at_)) return;
+  active_ = active;
+  tangent_at_ = here_.normal;
   const Index n = std::ssize(active_);
   Matrix h(n, n);
   p_.resize(n, n);
@@ -144,7 +157,6 @@ std::vector<Index> NodalSteps::violated(const Vector &x, const Eigen::Matrix2Xd 
 }
 
 Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
-  constexpr double new_tangent_above = 1e-3;
   constexpr int most_sets = 10;
   std::vector<Index> active;
   for (const Index node : touching(x)) {
@@ -154,7 +166,7 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
   }
   const Vector start = x;
   for (int set = 1;; ++set) {
-    if (active != active_ || change > new_tangent_above) set_tangent(active);
+    set_tangent(active);
     x = start;
     Eigen::Matrix2Xd loads = newton_on_active(std::clamp(0.1 * change, 1e-8, 1e-2), x);
     const std::vector<Index> wrong = violated(x, loads);
@@ -164,29 +176,39 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
   }
 }
 
+/// Columns of H at the nodes that are near, of all multipliers; kept as long as the normals.
+Matrix NodalSteps::columns(const std::vector<Index> &which) {
+  const Index nodes = contact_.laws.nodes();
+  NodalCompliance &compliance = contact_.nodal->compliance;
+  std::vector<Index> fresh, of_fresh;
+  for (const Index row : which)
+    if (!known_[at(row)]) {
+      fresh.push_back(row);
+      of_fresh.push_back(row % nodes);
+    }
+  compliance.require(of_fresh, contact_.compliance);
+  for (const Index row : fresh) {
+    known_[at(row)] = true;
+    const Frame load = row < nodes ? normal(row) : tangent(row - nodes);
+    for (Index a = 0; a < nodes; ++a) {
+      if (!near_.empty() && !near_[at(a)]) continue;
+      const Frame moved = compliance.block(a, row % nodes) * load;
+      h_(a, row) = normal(a).dot(moved);
+      h_(nodes + a, row) = tangent(a).dot(moved);
+    }
+  }
+  return h_(Eigen::all, which);
+}
+
 /// The laws with H between the nodes and what is left of w beside H x.
 Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
   const NodeLaws &laws = contact_.laws;
-  NodalCompliance &compliance = contact_.nodal->compliance;
-  const auto node_of = [&](Index row) { return row < laws.nodes() ? row : row - laws.nodes(); };
-  const auto frame = [&](Index row) {
-    return row < laws.nodes() ? normal(row) : tangent(row - laws.nodes());
-  };
-  const auto columns = [&](const std::vector<Index> &which) {
-    std::vector<Index> nodes;
-    for (const Index row : which)
-      nodes.push_back(node_of(row));
-    compliance.require(nodes, contact_.compliance);
-    Matrix result = Matrix::Zero(laws.rows, std::ssize(which));
-    for (std::size_t k = 0; k < which.size(); ++k)
-      for (Index a = 0; a < laws.nodes(); ++a) {
-        if (!near_.empty() && !near_[at(a)]) continue;
-        const Frame moved = compliance.block(a, nodes[k]) * frame(which[k]);
-        result(a, static_cast<Index>(k)) = normal(a).dot(moved);
-        result(laws.nodes() + a, static_cast<Index>(k)) = tangent(a).dot(moved);
-      }
-    return result;
-  };
+  if (!are_as_before(touching(last.x), tangent_at_)) {
+    h_.setZero(laws.rows, laws.rows);
+    known_.assign(at(laws.rows), false);
+    tangent_at_ = here_.normal;
+  }
+  const auto columns = [this](const std::vector<Index> &which) { return this->columns(which); };
   Vector q = here_.w;
   for (Index a = 0; a < laws.nodes(); ++a) {
     q[a] -= normal(a).dot(e_.col(a));
@@ -235,7 +257,7 @@ Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change
   next.reaction = here_.load;
   add_loads(compliance.average(), loads, next.reaction);
   next.diagonal = diagonals(nodes);
-  see(next.active);
+  if (next.active != last.active) see(next.active);
   return next;
 }
 
@@ -244,6 +266,7 @@ void NodalSteps::see(const std::vector<Index> &nodes) {
   if (near_.empty() && !rows_.empty()) return;
   const NodalCompliance &compliance = contact_.nodal->compliance;
   std::vector<Index> front = nodes;
+  const std::vector<bool> before = rows_.empty() ? std::vector<bool>{true} : near_;
   for (int layer = 0; layer <= layers && !near_.empty(); ++layer) {
     std::vector<Index> next;
     for (const Index node : front)
@@ -254,6 +277,8 @@ void NodalSteps::see(const std::vector<Index> &nodes) {
       }
     front = std::move(next);
   }
+  if (near_ == before) return;
+  if (contact_.laws.has_tangents()) tangent_at_.resize(2, 0); // H is wanted at further nodes
   std::vector<bool> wanted(at(contact_.free.size()), near_.empty());
   for (Index row = 0; row < compliance.average().rows() && !near_.empty(); ++row)
     if (near_[at(row / 2)])
@@ -271,6 +296,7 @@ void NodalSteps::see(const std::vector<Index> &nodes) {
 bool NodalSteps::complete(Iterate &iterate) {
   const std::vector<bool> seen = std::exchange(near_, {});
   if (!seen.empty()) {
+    if (contact_.laws.has_tangents()) tangent_at_.resize(2, 0);
     rows_ = {{0, contact_.free.size()}};
     Vector u = contact_.free;
     for (Index dof = 0; dof < u.size(); ++dof)

@@ -37,7 +37,9 @@ private:
   }
   double diagonal(Index node, const Frame &along) const;
   Vector diagonals(const std::vector<Index> &known) const;
-  void set_tangent(std::vector<Index> active);
+  bool are_as_before(const std::vector<Index> &nodes, const Eigen::Matrix2Xd &before) const;
+  Matrix columns(const std::vector<Index> &which);
+  void set_tangent(const std::vector<Index> &active);
   /// The loads, two components a node, that a Newton step adds; changes x.
   Eigen::Matrix2Xd newton_on_active(double tolerance, Vector &x) const;
   std::vector<Index> violated(const Vector &x, const Eigen::Matrix2Xd &loads) const;
@@ -48,7 +50,11 @@ private:
   std::vector<bool> near_;                    ///< per node; empty: all
   std::vector<std::pair<Index, Index>> rows_; ///< the contact dofs beside them: first, count
   NodalCondition here_;
-  Eigen::Matrix2Xd e_; ///< 2 x nodes, A (u_0 - C load - s)
+  Eigen::Matrix2Xd e_;          ///< 2 x nodes, A (u_0 - C load - s)
+  Eigen::Matrix2Xd tangent_at_; ///< the normals when the tangent was made; empty: there is none
+  // With friction: H, the columns that are known.
+  Matrix h_;
+  std::vector<bool> known_;
   // Without friction, between the active nodes: H, its factor; tangential displacements under
   // normal (p_) and tangential (q_) loads.
   std::vector<Index> active_;
