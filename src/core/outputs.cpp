@@ -32,6 +32,8 @@ const std::vector<OutputColumn> &output_columns() {
       {"contact_nodes", &Outputs::contact_nodes, check,
        "nodes (-multiplier p0: pairs of edges) with pressure"},
       {"stick_nodes", &Outputs::stick_nodes, check, "those of them below the bound of friction"},
+      {"ends_in_contact", &Outputs::ends_in_contact, check,
+       "large deformations: ends of the contact boundary with pressure"},
       {"kkt_residual", &Outputs::kkt_residual, check,
        "residual of the problem that was solved, relative"},
       {"quadrature_residual", &Outputs::quadrature_residual, check,
@@ -83,6 +85,9 @@ std::string resolution_warning(const Outputs &outputs) {
   // with fewer by up to 1.5 times the share of one node, whose stress is undecided where the slip
   // turns.
   constexpr double fewest_in_contact = 9, fewest_that_stick = 5;
+  if (outputs.ends_in_contact.value_or(0) > 0)
+    return "contact reaches the end of its boundary, beside which the body would touch too: a "
+           "smaller indentation or offset";
   const double contact = outputs.contact_nodes.value_or(0);
   const bool narrow = contact > 0 && contact < fewest_in_contact;
   const bool slips = contact > 0 && outputs.stick_nodes &&

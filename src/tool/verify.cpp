@@ -213,19 +213,27 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
 }
 
 /// What the terms leave of each operator, along their number, over the training and the validation
-/// set (Niakh 2022, figure 3.6). Collective.
+/// set (Niakh 2022, figure 3.6); where contact follows the displacement also what those of b over
+/// all states would. Collective.
 void write_separation(const fs::path &path, Problem &problem, const ReducedModel &model,
-                      const std::vector<Mu> &validation) {
-  const std::vector<SeparationErrors> separated = separation_errors(problem, model, validation);
+                      const std::vector<ContactPoint> &training,
+                      const std::vector<ContactPoint> &states, const std::vector<Mu> &validation) {
+  constexpr double of_states = 1e-6;
+  std::vector<SeparationErrors> separated = separation_errors(problem, model, validation);
+  const bool follows = follows_state(problem.contact());
+  if (follows)
+    separated.push_back(state_separation_errors(problem.contact(), problem.scene().parameters,
+                                                training, states, of_states));
   collectively(problem.comm(), [&] {
     if (rank_of(problem.comm()) != 0) return;
     std::ostringstream text;
     text << std::setprecision(4) << "operator,terms,training_error,validation_error\n";
     std::string line;
-    for (const auto &[name, training, errors] : separated) {
+    for (const auto &[name, at_training, errors] : separated) {
       for (std::size_t j = 0; j < errors.size(); ++j)
-        text << name << ',' << j << ',' << training[j] << ',' << errors[j] << '\n';
-      line += (line.empty() ? "" : ", ") + name + ' ' + short_number(errors.back());
+        text << name << ',' << j << ',' << at_training[j] << ',' << errors[j] << '\n';
+      if (!follows || name != separated.back().name)
+        line += (line.empty() ? "" : ", ") + name + ' ' + short_number(errors.back());
     }
     write_atomically(path, text.str());
     for (const auto &[name, terms] : {std::pair{"a", &model.a}, {"f", &model.f}})
@@ -233,7 +241,13 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
         line += (line.empty() ? "" : ", ") + std::string(name) + ": " +
                 counted(terms->exact, "exact term");
     std::printf("Interpolation over %zu validation mu, largest error: %s\n", validation.size(),
-                line.c_str());
+                line.empty() ? "none" : line.c_str());
+    if (follows)
+      std::printf("B over (mu, step), were it interpolated: %td terms leave %s of %zu training and "
+                  "%s of %zu validation states\n",
+                  std::ssize(separated.back().training) - 1,
+                  short_number(separated.back().training.back()).c_str(), training.size(),
+                  short_number(separated.back().validation.back()).c_str(), states.size());
   });
 }
 
@@ -353,17 +367,17 @@ void command_verify(const ToolOptions &given) {
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
-  write_separation(out / "eim.csv", problem, model, truths.mu);
+  const std::vector<ContactPoint> points =
+      follows_state(problem.scene())
+          ? contact_points(run_sweep(world, groups, work.group_problem(), options.hf, training,
+                                     options.out / "samples")
+                               .samples)
+          : at_rest(training);
+  write_separation(out / "eim.csv", problem, model, points, contact_points(answers), truths.mu);
   const int rank = rank_of(world);
   const std::string none = no_constants(model);
   if (options.stability && none.empty())
-    check_stability(world, problem, model,
-                    follows_state(problem.scene())
-                        ? contact_points(run_sweep(world, groups, work.group_problem(), options.hf,
-                                                   training, options.out / "samples")
-                                             .samples)
-                        : at_rest(training),
-                    contact_points(answers), out);
+    check_stability(world, problem, model, points, contact_points(answers), out);
   else if (options.stability && rank == 0)
     std::printf("Inf-sup constants: none, %s\n", none.c_str());
   if (rank == 0) {

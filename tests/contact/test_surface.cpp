@@ -223,6 +223,8 @@ TEST(RigidSurface, ReactionsAreTheWorkOfItsForces) {
   };
   EXPECT_NEAR(*out.reaction, along(0, 1), 1e-14);
   EXPECT_NEAR(*out.horizontal_reaction, along(1, 0), 1e-14);
+  EXPECT_EQ(*out.ends_in_contact, 2);
+  EXPECT_NE(resolution_warning(out).find("end of its boundary"), std::string::npos);
 }
 
 TEST(RigidSurface, AFileNamesIt) {

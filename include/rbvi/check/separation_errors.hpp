@@ -24,4 +24,12 @@ struct SeparationErrors {
 std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedModel &model,
                                                 const std::vector<Mu> &validation);
 
+/// What empirical interpolation of B over (mu, state) would leave, where contact follows the
+/// displacement: how many terms `tolerance` takes on the training states, and what they leave on
+/// the others. A comparison: models assemble B at every state. Serial; neither set is empty.
+SeparationErrors state_separation_errors(const Contact &contact, const ParameterSpace &space,
+                                         const std::vector<ContactPoint> &training,
+                                         const std::vector<ContactPoint> &validation,
+                                         double tolerance);
+
 } // namespace rbvi

@@ -23,6 +23,8 @@ struct Outputs {
   /// Nodes (or macro-edges of a pair) with pressure, and those of them below the bound of friction:
   /// how well the mesh resolves the two zones.
   std::optional<double> contact_nodes, stick_nodes;
+  /// Large deformations: ends of the contact boundary that carry pressure.
+  std::optional<double> ends_in_contact;
   std::optional<double> min_u;
   /// Residual of the problem that was solved, relative: stationarity, feasibility, complementarity;
   /// of a reduced answer that of the reduced problem, by Nitsche's method that of its equation.
@@ -69,8 +71,8 @@ using ErrorOfOutput = std::map<std::string, double>;
 /// "name value" lines for one answer, with "(error ...)" where one was measured.
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors = {});
 
-/// What is not accurate in this answer because so few nodes are in contact, or stick, and how far
-/// it may be off; empty: there are enough, or none.
+/// What is not accurate in this answer because contact reaches the end of its boundary, or because
+/// so few nodes are in contact, or stick, and how far it may be off; empty: nothing.
 std::string resolution_warning(const Outputs &outputs);
 
 /// The warnings of several answers.
