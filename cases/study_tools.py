@@ -38,6 +38,19 @@ class Study:
             sys.exit(f"study: {program} {' '.join(map(str, arguments))}\n{done.stderr}")
         return done.stdout
 
+    def solve(self, name, options, vtu=False):
+        """Outputs of one high-fidelity solve, kept in OUT/solves; or why there are none, as text."""
+        folder = self.out / "solves"
+        folder.mkdir(exist_ok=True)
+        path = folder / f"{name}.csv"
+        if not path.is_file():
+            files = ["-csv", path, *(["-vtu", path.with_suffix(".vtu")] if vtu else [])]
+            try:
+                self.call("solve", "-case", self.case, *options, *self.options, *files)
+            except SystemExit as stopped:
+                return str(stopped).strip().splitlines()[-1].removeprefix("rbvi: ")
+        return rows_of(path)[0]
+
     def run(self, variant, name, options, stability=False):
         """A run directory, made and verified unless it is there; a variant shares its samples."""
         run = self.out / variant / name.replace(", ", "_").replace(" ", "_")

@@ -65,6 +65,10 @@ def rigid_disks():
     for law in ("none", "coulomb"):
         yield Formulation(f"disk_large_{law}", large, ["-friction", law], few_of_large,
                           ["0.8,0.05,0", "1,0.1,0.08", "1.2,0.18,-0.05"])
+    for law in ("none", "coulomb"):
+        yield Formulation(f"nitsche_large_{law}", CASES / "rigid_disk/large_nitsche.yaml",
+                          ["-friction", law, "-arc_edges", "100"], few_of_large,
+                          ["0.8,0.05", "1,0.1", "1.2,0.18"])
     yield Formulation("disk_lumped", case, ["-friction", "none", "-lumped", "yes"], few, mu)
     yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)
     yield Formulation("disk_stiffness", case,

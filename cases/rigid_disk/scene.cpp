@@ -11,7 +11,7 @@
 // finer curve by default.
 //
 // Large deformations (Niakh 2022, appendix A): the condition is that of the deformed body on a
-// wider arc, within 45 degrees; the elasticity stays linear.
+// wider arc, within 45 degrees; the elasticity stays linear. By either method.
 #include "scene.hpp"
 
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
@@ -225,9 +225,6 @@ const auto indentation_check = plain<Check>("rigid_disk/indentation", 1, check_i
 
 /// Contact that follows the displacement.
 ContactRecipe following_contact(const SceneOptions &options, const Friction &friction) {
-  if (asks_for_nitsche(options))
-    throw bad_input("-kinematics large is for contact by multipliers: leave out -formulation "
-                    "nitsche");
   if (options.at("gap") != "closest")
     throw bad_input("-kinematics large measures the gap to the next point: leave out -gap " +
                     options.at("gap"));
@@ -240,7 +237,7 @@ ContactRecipe following_contact(const SceneOptions &options, const Friction &fri
   if (normal == "body") surface.body_normal = radial_normals();
   surface.friction = friction;
   surface.lumped = options.at("lumped") == "yes";
-  return rigid_surface(surface);
+  return surface_contact(std::move(surface), options);
 }
 
 /// Contact on the undeformed body.
@@ -313,7 +310,7 @@ SceneEntry rigid_disk() {
       {"arc_edges",
        "0",
        "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316, with "
-       "-kinematics large 200",
+       "-kinematics large 200 by multipliers",
        {},
        {0, 10000},
        true},

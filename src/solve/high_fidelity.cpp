@@ -139,8 +139,9 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   HfSolution solution;
   solution.u = whole_displacement(problem_, mu, found.u.get());
   solution.lambda = nitsche_multiplier(fields, curve.friction());
-  nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells), found.pressures, fields,
+  nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells, found.layer), found.pressures, fields,
                   nitsche_law(curve, op.mu), solution.outputs);
+  if (curve.facing.follows_state) solution.outputs.ends_in_contact = ends_in_contact(fields);
   solution.kkt.stationarity = found.residual;
   solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
   solution.outputs.kkt_residual = found.residual;

@@ -85,12 +85,17 @@ NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
                              const NitscheOptions &chosen)
     : solver(of), problem(whole), curve(*whole.nitsche()), options(chosen),
       rows(global_rows(whole.trace(), whole.dofs().first_free)) {
-  if (options.nonpenetration) frames.emplace(whole);
+  if (!options.nonpenetration) return;
+  if (curve.facing.follows_state)
+    throw bad_input("-nitsche_bounds nonpenetration is for contact at rest: leave it out, or use "
+                    "-kinematics small");
+  frames.emplace(whole);
 }
 
 void NitscheSystem::set(const Operators &op) {
   if (!snes) make_snes(op);
-  faces = nitsche_faces(curve, op.mu, curve.cells);
+  mu = op.mu;
+  faces = nitsche_faces(curve, mu, curve.cells);
   law = nitsche_law(curve, op.mu);
   if (frames) {
     frames->set(bounds_along(*problem.contact().interfaces.front(), op.mu));
@@ -106,10 +111,11 @@ void NitscheSystem::set(const Operators &op) {
     RBVI_CALL(VecCopy(op.f, f.get()));
     RBVI_CALL(MatCopy(op.a, a_gamma.get(), SAME_NONZERO_PATTERN));
   }
-  add_blocks(faces, nitsche_consistency(faces, curve.friction()), rows, a_gamma.get());
+  add_blocks(faces, nitsche_consistency(faces, curve.whole_stress()), rows, a_gamma.get());
 }
 
 void NitscheSystem::residual(Vec u, Vec r) {
+  turn_to(u);
   if (law.moves() && options.single_loop) set_bounds(u);
   const Vector terms = nitsche_residual(faces, on_layer(u), bounds);
   RBVI_CALL(MatMult(a_gamma.get(), u, r));
@@ -147,6 +153,7 @@ void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bo
   Handle<Vec> turned;
   if (frames) turned = frames->turned(start.u);
   Vec from = frames ? turned.get() : start.u;
+  turn_to(from);
   RBVI_CALL(MatMult(a_gamma.get(), from, au.get()));
   RBVI_CALL(VecAXPY(au.get(), -1, f.get()));
   const Vector terms = nitsche_linearised(faces, on_layer(from), start.pressures, bounds);
@@ -208,7 +215,8 @@ void NitscheSystem::search(SNESLineSearch line) {
   RBVI_CALL(VecAXPY(au.get(), -1, f.get()));
   RBVI_CALL(MatMult(a_gamma.get(), y, ay.get()));
   const NitscheLine along = nitsche_line(faces, on_layer(u), -on_layer(y), bounds);
-  const double linear = -dot(au.get(), y), quadratic = dot(ay.get(), y);
+  const double linear = -dot(au.get(), y),
+               quadratic = dot(ay.get(), y) + nitsche_turning(faces, along.start, on_layer(y));
   const bool descends = linear + along.slope(0) < 0;
   const bool searches = descends && !options.full_steps;
   const double t = searches ? line_minimum(linear, quadratic, along) : 1;
@@ -335,7 +343,7 @@ void NitscheSystem::set_callbacks() {
         return 0;
       },
       this, nullptr));
-  if (!options.single_loop)
+  if (!options.single_loop && !curve.facing.follows_state)
     RBVI_CALL(SNESSetObjective(
         snes.get(),
         [](SNES, Vec u, PetscReal *value, void *context) {

@@ -27,10 +27,11 @@ struct NitscheSystem {
   double small_residual = 0; ///< its norm, below which it is accurate, too: -nitsche_snes_atol
   double linear_tolerance = 1e-2;
 
-  // At mu; with local frames in their unknowns.
+  // At mu; with local frames in their unknowns. Where contact follows u, faces are at its last one.
   Handle<Vec> f, upper; ///< upper: where the normal displacement is bounded
   std::vector<NitscheFace> faces;
   NitscheLaw law;
+  FullMu mu;
   Vector bounds; ///< of friction
 
   // While SNES works.
@@ -44,6 +45,7 @@ struct NitscheSystem {
   std::exception_ptr failed;
 
   Vector on_layer(Vec u) const { return restrict_to(problem.trace(), u); }
+  void turn_to(Vec u) { rbvi::turn_to(curve, mu, on_layer(u), faces); }
   void set_bounds(Vec u) { bounds = nitsche_bounds(nitsche_pressures(faces, on_layer(u)), law); }
 
   /// Collective, as are all below.

@@ -14,19 +14,25 @@ from pathlib import Path
 FEW = {"membrane_obstacle": ["-train", "grid:3,2,2", "-valid", "random:2:1"],
        "two_disks": ["-train", "grid:5", "-valid", "random:1:1"],
        "rigid_disk": ["-train", "grid:5", "-valid", "random:2:1"],
-       "rigid_disk/nitsche_study": ["-arc_edges", "40", "-train", "grid:5", "-valid", "random:3:1"]}
-TABLES = {"membrane_obstacle": 8, "two_disks": 4, "rigid_disk": 4, "rigid_disk/nitsche_study": 7}
+       "rigid_disk/nitsche_study": ["-arc_edges", "40", "-train", "grid:5", "-valid", "random:3:1"],
+       "rigid_disk/large_study": ["-arc_edges", "60", "-train", "random:20:1",
+                                  "-valid", "random:3:1"]}
+TABLES = {"membrane_obstacle": 8, "two_disks": 4, "rigid_disk": 4, "rigid_disk/nitsche_study": 7,
+          "rigid_disk/large_study": 5}
 FIGURES = {"membrane_obstacle": ("bases", "floors", "pga", "infsup", "modes", "pairs", "pressure"),
            "two_disks": ("solution", "bases", "pga", "infsup"),
            "rigid_disk": ("laws", "bases", "pga", "eim", "nodes", "gcns", "tangential"),
            "rigid_disk/nitsche_study": ("deformed", "normal", "tangential", "pod", "eim", "errors",
-                                        "mixed")}
+                                        "mixed"),
+           "rigid_disk/large_study": ("deformed", "forces", "pressures", "steps", "infsup",
+                                      "errors")}
 RUNS = {  # more accurate, less accurate
     "membrane_obstacle": [(f"{disc_map}/hybrid.offline", f"{disc_map}/mcpg.offline")
                           for disc_map in ("similarity", "graded")],
     "two_disks": [("intersection/hybrid_1e-3_energy", "intersection/mcpg_1e-2")],
     "rigid_disk": [("radius/default", "radius/collocated_mended_no")],
-    "rigid_disk/nitsche_study": [("mixed/default", "none/default"), ("none/default", "pair/10_5")]}
+    "rigid_disk/nitsche_study": [("mixed/default", "none/default"), ("none/default", "pair/10_5")],
+    "rigid_disk/large_study": [("none/default", "none/published")]}
 
 
 def largest_error(run):

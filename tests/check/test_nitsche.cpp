@@ -140,6 +140,26 @@ TEST(NitscheReduced, RoughlyInterpolatedOperatorsAnswerTheWholeBox) {
   }
 }
 
+/// Contact that follows the displacement: the axes of the points turn with the reduced answer.
+TEST_P(NitscheLaws, OfTheDeformedBodyTheWholeCurveGivesTheSnapshotsBackAndFewPointsNearly) {
+  Scene scene = make_scene("rigid_disk", {{"formulation", "nitsche"},
+                                          {"friction", GetParam()},
+                                          {"kinematics", "large"},
+                                          {"arc_edges", "40"}});
+  scene.parameters = free_only(scene.parameters, "indentation,offset");
+  ReducedAlone r(scene, "grid:5,3");
+  expect_snapshots_back(r, CurveRule::full, 1e-8);
+  EXPECT_EQ(r.model.nitsche->states.cols(), 15);
+  const auto unseen = solve_all(r.problem, parse_set(scene.parameters, "random:5:3"));
+  for (const int modes : {3, 8}) {
+    r.reduce(with(CurveRule::empirical, modes));
+    const ModelErrors e = r.errors_at(unseen);
+    EXPECT_EQ(e.failed, 0) << modes;
+    EXPECT_LE(e.u.maxCoeff(), 2 * e.u_floor.maxCoeff()) << modes;
+  }
+  EXPECT_THROW(r.reduce(with(CurveRule::interpolated)), Error);
+}
+
 /// a_gamma - a is of one term where the map is a similarity, of the three products of two Lame
 /// constants (over lambda + 2 shear) with Poisson's ratio.
 TEST(NitscheReduced, ConsistencyIsASumOfFewTerms) {

@@ -181,7 +181,9 @@ TEST(LargePair, BetweenCirclesTheGapIsTheDistanceAtFourthOrder) {
       error = std::max(error, std::abs(gap - op.nodal_gap[i]));
     }
     EXPECT_GT(op.nodal_gap.size(), edges / 4);
-    if (last > 0) { EXPECT_LT(error, last / 8); }
+    if (last > 0) {
+      EXPECT_LT(error, last / 8);
+    }
     last = error;
   }
   EXPECT_LT(last, 1e-6);

@@ -1,7 +1,7 @@
 // Nitsche's terms at a point against differences of their energies and the laws they stand for, and
 // what a point sees of a displacement against fields whose stress is known.
 #include "../element/cells.hpp"
-#include "rbvi/contact/nitsche/nitsche.hpp"
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "support_scenes.hpp"
@@ -79,8 +79,8 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
     const auto a = static_cast<std::size_t>(ends[0]), b = static_cast<std::size_t>(ends[1]);
     double length = 0;
     for (std::size_t q = 0; q < 4; ++q) {
-      const NitschePoint point = nitsche_points(scene, scene.support, mu, cell, edge,
-                                                {material.lambda, material.shear})[q];
+      const NitschePoint point = nitsche_points(scene, facing_support(scene, scene.support), mu,
+                                                cell, edge, {material.lambda, material.shear})[q];
       constexpr double at[] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                0.93056815579702629};
       const Point x = between(cell.reference[a], cell.reference[b], at[q]);
@@ -92,8 +92,8 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
       EXPECT_NEAR(point.sigma_tau.dot(u), tau.dot(stress * n), 1e-12 * stress.norm());
       EXPECT_NEAR(point.n.dot(u), n.dot(value), 1e-13);
       EXPECT_NEAR(point.tau.dot(u), tau.dot(value), 1e-13);
-      EXPECT_NEAR(point.gap, scene.support.gap(mu, x) - dot(motion, normal), 1e-14);
-      EXPECT_NEAR(point.slip, dot(motion, turned(normal)), 1e-14);
+      EXPECT_NEAR(point.facing.gap, scene.support.gap(mu, x) - dot(motion, normal), 1e-14);
+      EXPECT_NEAR(point.facing.slip, dot(motion, turned(normal)), 1e-14);
       length += point.weight;
     }
     EXPECT_NEAR(
@@ -107,7 +107,8 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
 TEST(NitschePoints, AnInvertedCellIsAFailure) {
   const SupportScene scene = hertz(2);
   const Vertices inverted{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {}}};
-  EXPECT_THROW(nitsche_points(scene, scene.support, {1.0}, {2, inverted, inverted}, 0, {1, 1}),
+  EXPECT_THROW(nitsche_points(scene, facing_support(scene, scene.support), {1.0},
+                              {2, inverted, inverted}, 0, {1, 1}),
                Error);
 }
 

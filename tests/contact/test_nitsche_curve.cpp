@@ -1,7 +1,7 @@
 // Nitsche's terms along a curve: against differences of their energies, and the fields and outputs
 // of states that are known.
 #include "../element/cells.hpp"
-#include "rbvi/contact/nitsche/nitsche_curve.hpp"
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "support_scenes.hpp"
 
@@ -67,7 +67,7 @@ SupportScene half_disk(int degree) {
 
 /// gamma0 = 0.3.
 NitscheCurve curve_of(const SupportScene &scene, const Strip &s) {
-  return {scene, scene.support, 0.3, s.cells};
+  return {scene, scene.support.friction, facing_support(scene, scene.support), 0.3, s.cells};
 }
 
 struct Example {
@@ -259,7 +259,7 @@ TEST(NitscheLines, AFullStepThatIsTheMinimumIsTaken) {
   std::vector<NitscheFace> faces = e.faces;
   for (NitscheFace &face : faces)
     for (NitschePoint &point : face.points)
-      point.gap = 1;
+      point.facing.gap = 1;
   EXPECT_EQ(line_minimum(-2, 2, nitsche_line(faces, apart, apart, {})), 1);
 }
 
@@ -276,7 +276,7 @@ TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
   const auto value = [](const FullMu &mu) { return mu[0]; };
   const Scene scene;
   const auto law_of = [&](const Friction &friction, const FullMu &mu) {
-    return nitsche_law({scene, {"support", {}, {}, friction}, 1, {}}, mu);
+    return nitsche_law({scene, friction, facing_support(scene, {}), 1, {}}, mu);
   };
   const NitscheLaw none = law_of({FrictionLaw::none, value}, {-1});
   EXPECT_EQ(none.law, FrictionLaw::none);

@@ -88,6 +88,7 @@ TEST(NitscheOutputs, AStraightCurveWithFriction) {
   EXPECT_NEAR(*o.tangential_force, 0.25 * (0.1 + 0.6 + 0.3), 1e-15);
   EXPECT_NEAR(*o.stick_half_width, 0.125, 1e-15);
   EXPECT_NEAR(*o.reaction, *o.normal_force, 1e-15) << "friction is horizontal";
+  EXPECT_NEAR(*o.horizontal_reaction, 0.25 * (0.1 - 0.6 + 0.3), 1e-15);
 }
 
 /// Without contact Tresca's bound acts all the same, but nothing is said to stick.

@@ -61,30 +61,16 @@ OTHER = {  # computed with other software, without discretisation error
 }
 
 
-def solve(study, name, options, vtu=False):
-    """Outputs of one high-fidelity solve, kept in OUT/solves; or why there are none, as text."""
-    folder = study.out / "solves"
-    folder.mkdir(exist_ok=True)
-    path = folder / f"{name}.csv"
-    if not path.is_file():
-        files = ["-csv", path, *(["-vtu", path.with_suffix(".vtu")] if vtu else [])]
-        try:
-            study.call("solve", "-case", study.case, *options, *study.options, *files)
-        except SystemExit as stopped:
-            return str(stopped).strip().splitlines()[-1].removeprefix("rbvi: ")
-    return rows_of(path)[0]
-
-
 def solve_all(study):
     """By what they are for. Those of the first kind are timed: one at a time."""
     answers = {}
     for law in LAWS:
         for radius in RADII:
-            answers["cold", law, radius] = solve(study, f"{law}_{radius}",
-                                                 [*VARIANTS[law], "-mu", radius], True)
+            answers["cold", law, radius] = study.solve(f"{law}_{radius}",
+                                                       [*VARIANTS[law], "-mu", radius], True)
     for radius in RADII:
-        answers["mixed", radius] = solve(study, f"mixed_{radius}",
-                                         [*VARIANTS["mixed"], "-mu", radius])
+        answers["mixed", radius] = study.solve(f"mixed_{radius}",
+                                               [*VARIANTS["mixed"], "-mu", radius])
     jobs = {("gamma0", factor, radius): (f"gamma0_{factor}_{radius}", [
         *VARIANTS["none"], "-mu", radius, "-nitsche_gamma0", str(float(factor) * GAMMA0)])
             for factor in FACTORS for radius in RADII}
@@ -95,7 +81,7 @@ def solve_all(study):
                     jobs["law", law, start, h, radius] = (f"{law}_{start}_{h}_{radius}", [
                         *VARIANTS[law], "-gap_from", start, "-arc_edges", EDGES[h], "-mu", radius])
     with ThreadPoolExecutor(2) as pool:
-        started = {key: pool.submit(solve, study, *job) for key, job in jobs.items()}
+        started = {key: pool.submit(study.solve, *job) for key, job in jobs.items()}
         answers.update({key: future.result() for key, future in started.items()})
     return answers
 

@@ -19,7 +19,8 @@ std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vecto
 /// those mu where both are set. `reduced`: of the first of the mu of `truth`, or of all. The range
 /// is that of the true values, at least a hundredth of their largest magnitude; a value that errors
 /// are compared with is taken to have at least that size too, so that nothing is relative to a
-/// number near 0.
+/// number near 0. For horizontal_reaction, which symmetry makes vanish, it is a hundredth of the
+/// largest normal_force.
 std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
                                        const std::vector<Outputs> &truth);
 

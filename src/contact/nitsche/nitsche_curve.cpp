@@ -43,6 +43,11 @@ void add_square(FaceBlock &block, double factor, const Row &row) {
   if (factor != 0) block.noalias() += factor * row * row.transpose();
 }
 
+/// Of tau tau^T: what the normal of a point in contact turns by.
+double turning(const NitschePoint &point, double pressure) {
+  return pressure < 0 ? point.weight * point.turning : 0;
+}
+
 /// The terms tested with every dof of the layer: those at `pressures`, and what they change to
 /// first order with the pressures `moved`.
 Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Matrix &pressures,
@@ -85,20 +90,31 @@ CurveCellAtMu curve_cell_at(const NitscheCurve &curve, const FullMu &mu, const C
 }
 
 std::vector<NitscheFace> nitsche_faces(const NitscheCurve &curve, const FullMu &mu,
-                                       const std::vector<CurveCell> &cells) {
+                                       const std::vector<CurveCell> &cells, const Vector &state) {
   std::vector<NitscheFace> faces;
   faces.reserve(cells.size());
   for (const CurveCell &beside : cells) {
     const CurveCellAtMu at = curve_cell_at(curve, mu, beside);
     faces.push_back(
-        {nitsche_points(curve.scene, curve.support, mu, at.cell, beside.edge, at.material),
-         at.gamma, beside.dofs});
+        {nitsche_points(curve.scene, curve.facing, mu, at.cell, beside.edge, at.material), at.gamma,
+         beside.dofs});
   }
+  if (state.size() > 0) turn_to(curve, mu, state, faces);
   return faces;
 }
 
+void turn_to(const NitscheCurve &curve, const FullMu &mu, const Vector &state,
+             std::vector<NitscheFace> &faces) {
+  if (!curve.facing.follows_state) return;
+  for (NitscheFace &face : faces) {
+    const Row here = local(face.dofs, state);
+    for (NitschePoint &point : face.points)
+      turn_to(curve.facing, mu, here, point);
+  }
+}
+
 NitscheLaw nitsche_law(const NitscheCurve &curve, const FullMu &mu) {
-  const Friction &friction = curve.support.friction;
+  const Friction &friction = curve.law;
   if (friction.law == FrictionLaw::none) return {};
   const FrictionBound bound = friction_bound(friction, mu); // of one law
   return {friction.law, bound.coefficient + bound.threshold, bound.only_in_contact};
@@ -121,7 +137,7 @@ Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u)
   Index number = 0;
   for (const NitscheFace &face : faces)
     for (const NitschePoint &point : face.points)
-      result.row(number++) += face.gamma * Eigen::RowVector2d(point.gap, -point.slip);
+      result.row(number++) += face.gamma * Eigen::RowVector2d(point.facing.gap, -point.facing.slip);
   return result;
 }
 
@@ -133,7 +149,8 @@ Vector nitsche_bounds(const Matrix &pressures, const NitscheLaw &law) {
   });
 }
 
-std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces, bool friction) {
+std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces,
+                                           bool whole_stress) {
   std::vector<FaceBlock> blocks;
   blocks.reserve(faces.size());
   for (const NitscheFace &face : faces) {
@@ -141,7 +158,7 @@ std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces
     for (const NitschePoint &point : face.points) {
       const double factor = point.weight * consistency_term(0, face.gamma).curvature;
       add_square(block, factor, point.sigma_n);
-      if (friction) add_square(block, factor, point.sigma_tau);
+      if (whole_stress) add_square(block, factor, point.sigma_tau);
     }
     blocks.push_back(block);
   }
@@ -182,12 +199,24 @@ std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
         FaceBlock &block = blocks[static_cast<std::size_t>(i) / face.points.size()];
         add_square(block, point.weight * contact_term(pressures(i, 0), face.gamma).curvature,
                    normal_row(point, face.gamma));
+        add_square(block, turning(point, pressures(i, 0)), point.tau);
         if (bound >= 0)
           add_square(block,
                      point.weight * friction_term(pressures(i, 1), bound, face.gamma).curvature,
                      tangential_row(point, face.gamma));
       });
   return blocks;
+}
+
+double nitsche_turning(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+                       const Vector &d) {
+  double sum = 0;
+  at_all_points(faces, {},
+                [&](const NitscheFace &face, const NitschePoint &point, Index i, double) {
+                  const double factor = turning(point, pressures(i, 0));
+                  if (factor != 0) sum += factor * std::pow(point.tau.dot(local(face.dofs, d)), 2);
+                });
+  return sum;
 }
 
 NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
@@ -253,13 +282,14 @@ CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Ve
                          at.cell.reference[static_cast<std::size_t>(ends[1])][0];
     const Row here = local(cells[k].dofs, u);
     for (const double s : {0.0, 1.0}) {
-      const NitschePoint point =
-          nitsche_point(curve.scene, curve.support, mu, at.cell, cells[k].edge, at.material, s);
+      NitschePoint point =
+          nitsche_point(curve.scene, curve.facing, mu, at.cell, cells[k].edge, at.material, s);
+      if (curve.facing.follows_state) turn_to(curve.facing, mu, here, point);
       const Index vertex = static_cast<Index>(k) + ((s == 1) == forward ? 1 : 0);
       fields.sigma_n[vertex] += point.sigma_n.dot(here);
       fields.sigma_tau[vertex] += point.sigma_tau.dot(here);
-      excess[vertex] = point.n.dot(here) - point.gap;
-      slip[vertex] = point.tau.dot(here) + point.slip;
+      excess[vertex] = point.n.dot(here) - point.facing.gap;
+      slip[vertex] = point.tau.dot(here) + point.facing.slip;
       gamma[vertex] += at.gamma;
       ++edges[vertex];
     }

@@ -10,17 +10,18 @@ namespace {
 
 /// Force on the body, and lengths of contact and of stick.
 struct Sums {
-  double normal = 0, tangential = 0, vertical = 0, contact = 0, stick = 0;
+  double normal = 0, tangential = 0, contact = 0, stick = 0;
+  std::array<double, 2> force{}; ///< its components
   /// Contact pressure averaged over each edge. It balances the other forces there, whereas sigma_n
   /// overshoots beside a kink.
   Vector edge_pressures;
 };
 
-/// The y component of a unit vector, from the functionals of the displacement along it: shape
-/// functions sum to one.
-double vertical(const NitschePoint::Row &row) {
+/// A component of a unit vector, from the functionals of the displacement along it: shape functions
+/// sum to one.
+double component(const NitschePoint::Row &row, Index c) {
   double sum = 0;
-  for (Index i = 1; i < row.size(); i += 2)
+  for (Index i = c; i < row.size(); i += 2)
     sum += row[i];
   return sum;
 }
@@ -38,7 +39,9 @@ Sums integrate(const std::vector<NitscheFace> &faces, const Matrix &pressures,
       const double held = std::clamp(shear, -bound, bound);
       force += point.weight * pressure;
       sums.tangential += point.weight * std::abs(held);
-      sums.vertical += point.weight * (held * vertical(point.tau) - pressure * vertical(point.n));
+      for (Index c = 0; c < 2; ++c)
+        sums.force[static_cast<std::size_t>(c)] +=
+            point.weight * (held * component(point.tau, c) - pressure * component(point.n, c));
       if (pressure > 0) sums.contact += point.weight;
       if (pressure > 0 && std::abs(shear) < bound) sums.stick += point.weight;
       length += point.weight;
@@ -56,11 +59,16 @@ double ratio(double value, double scale) {
 
 } // namespace
 
+double ends_in_contact(const CurveFields &fields) {
+  return (fields.p_n[0] < 0 ? 1.0 : 0.0) + (fields.p_n[fields.p_n.size() - 1] < 0 ? 1.0 : 0.0);
+}
+
 void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
                      const CurveFields &fields, const NitscheLaw &law, Outputs &outputs) {
   const Sums sums = integrate(faces, pressures, nitsche_bounds(pressures, law));
   outputs.normal_force = sums.normal;
-  outputs.reaction = sums.vertical;
+  outputs.reaction = sums.force[1];
+  outputs.horizontal_reaction = sums.force[0];
   outputs.contact_measure = sums.contact;
   outputs.contact_half_width = sums.contact / 2;
   outputs.peak_pressure = std::max(0.0, -fields.sigma_n.minCoeff());

@@ -51,8 +51,9 @@ std::vector<Index> curve_vertices(const InterfaceMesh &mesh) {
 
 class NitscheInterface : public ContactInterface {
 public:
-  NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, Support support, double gamma0)
-      : ContactInterface(scene, std::move(interface_mesh)), curve_{scene, std::move(support),
+  NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, const Friction &law,
+                   NitscheFacing facing, double gamma0)
+      : ContactInterface(scene, std::move(interface_mesh)), curve_{scene, law, std::move(facing),
                                                                    gamma0, curve_cells(mesh_)} {
     dual_.vertices = curve_vertices(mesh_);
     for (const Index node : dual_.vertices)
@@ -70,12 +71,10 @@ public:
           scene_.map(mu, mesh_.points[static_cast<std::size_t>(node)]);
     set_constraints(mu, mapped, {}, {}, operators);
   }
-  FrictionBound bound(const FullMu &mu) const override {
-    return friction_bound(curve_.support.friction, mu);
-  }
+  FrictionBound bound(const FullMu &mu) const override { return friction_bound(curve_.law, mu); }
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
-                                const Point &) const override {
-    const SupportPoint at = support_point(scene_, curve_.support, mu, x);
+                                const Point &displacement) const override {
+    const SupportPoint at = curve_.facing.at(mu, x, displacement);
     return {at.normal, at.gap};
   }
   /// They come from the pressures along the curve: nitsche_outputs.
@@ -89,26 +88,62 @@ private:
   NitscheCurve curve_;
 };
 
-} // namespace
-
-ContactRecipe nitsche_support(Support support, double gamma0) {
+/// `faced`: a Support or RigidSurface; `facing` makes of it what a curve faces.
+template <class Faced, class MakeFacing>
+ContactRecipe nitsche_contact(const std::string &name, Faced faced, double gamma0,
+                              MakeFacing facing) {
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::cells_beside, {support.boundary}};
+  recipe.entities = {InterfaceEntities::Kind::cells_beside, {faced.boundary}};
   recipe.formulation = Formulation::nitsche;
-  recipe.friction = support.friction.law;
+  recipe.friction = faced.friction.law;
   recipe.separable = false;
-  recipe.make = [support, gamma0](const Scene &scene, InterfaceMesh mesh) {
-    return std::make_unique<NitscheInterface>(scene, std::move(mesh), support, gamma0);
+  recipe.make = [faced, gamma0, facing](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<NitscheInterface>(scene, std::move(mesh), faced.friction,
+                                              facing(scene, faced), gamma0);
   };
-  recipe.record = record_of(support);
-  recipe.record.name = "nitsche_support";
+  recipe.record = record_of(faced);
+  recipe.record.name = name;
   recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
+}
+
+} // namespace
+
+NitscheFacing facing_support(const Scene &scene, Support support) {
+  return {[&scene, support = std::move(support)](const FullMu &mu, const Point &x, const Point &) {
+            return support_point(scene, support, mu, x);
+          },
+          false};
+}
+
+NitscheFacing facing_surface(const Scene &scene, RigidSurface surface) {
+  return {[&scene, surface = std::move(surface)](const FullMu &mu, const Point &x,
+                                                 const Point &displacement) {
+            return surface_point(scene, surface, mu, x, displacement);
+          },
+          true};
+}
+
+ContactRecipe nitsche_support(Support support, double gamma0) {
+  return nitsche_contact("nitsche_support", std::move(support), gamma0, facing_support);
+}
+
+ContactRecipe nitsche_surface(RigidSurface surface, double gamma0) {
+  if (surface.body_normal || surface.lumped)
+    throw bad_input("Nitsche's method takes the normal of the rigid surface, and Gauss points: "
+                    "leave out the normal of the body, and vertex quadrature");
+  return nitsche_contact("nitsche_surface", std::move(surface), gamma0, facing_surface);
 }
 
 ContactKind nitsche_support_kind() {
   return {"nitsche_support", 1, [](const Record &record) {
             return nitsche_support(support_in(record), number(record, "gamma0"));
+          }};
+}
+
+ContactKind nitsche_surface_kind() {
+  return {"nitsche_surface", 1, [](const Record &record) {
+            return nitsche_surface(surface_in(record), number(record, "gamma0"));
           }};
 }
 
@@ -132,6 +167,12 @@ ContactRecipe support_contact(Support support, const SceneOptions &options) {
   const double gamma0 = number_in(options, "nitsche_gamma0");
   return asks_for_nitsche(options) ? nitsche_support(std::move(support), gamma0)
                                    : rigid_support(std::move(support));
+}
+
+ContactRecipe surface_contact(RigidSurface surface, const SceneOptions &options) {
+  const double gamma0 = number_in(options, "nitsche_gamma0");
+  return asks_for_nitsche(options) ? nitsche_surface(std::move(surface), gamma0)
+                                   : rigid_surface(std::move(surface));
 }
 
 } // namespace rbvi

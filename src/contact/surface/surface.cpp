@@ -9,6 +9,27 @@ namespace rbvi {
 
 namespace {
 
+/// Where the point is now.
+Point moved(const Scene &scene, const RigidSurface &surface, const FullMu &mu, const Point &x,
+            const Point &displacement) {
+  Point y = surface.at_rest ? surface.at_rest(mu, x) : scene.map(mu, x);
+  const Point motion = scene.motion ? scene.motion(mu, x) : Point{};
+  for (std::size_t c = 0; c < 2; ++c)
+    y[c] += motion[c] + displacement[c];
+  return y;
+}
+
+/// The condition along n, linearised.
+SupportPoint facing(const Scene &scene, const FullMu &mu, const Point &x, const SurfacePoint &at,
+                    const Point &n, const Point &state) {
+  const double towards = -(n[0] * at.normal[0] + n[1] * at.normal[1]);
+  SupportPoint point{n, towards * at.distance + n[0] * state[0] + n[1] * state[1], 0, at.curvature};
+  if (!scene.motion) return point;
+  const Point motion = scene.motion(mu, x);
+  point.slip = motion[1] * n[0] - motion[0] * n[1];
+  return point;
+}
+
 /// Derivatives of the displacement's functions on an edge by s: vertices, middle.
 std::array<double, 3> slopes(int degree, double s) {
   if (degree == 1) return {-1, 1, 0};
@@ -31,8 +52,8 @@ public:
   NodalEvaluation nodal_at(const FullMu &mu) const override;
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &displacement) const override {
-    const SurfacePoint at = surface_.surface(mu, moved(mu, x, displacement));
-    return constraint(at, {-at.normal[0], -at.normal[1], 0}, displacement);
+    const SupportPoint at = surface_point(scene_, surface_, mu, x, displacement);
+    return {at.normal, at.gap};
   }
 
 protected:
@@ -52,25 +73,11 @@ private:
   AtRest at_rest(const FullMu &mu, Index edge) const;
   void add_edge(const FullMu &mu, Index edge, const AtRest &rest, const Vector &state,
                 const Vector &x, NodalCondition &condition) const;
-  Point moved(const FullMu &mu, const Point &x, const Point &displacement) const;
   Point displacement_at(const Cell &edge, const TracePoint &at) const;
   Point body_normal(const FullMu &mu, const Cell &edge, const TracePoint &at, const Point &x) const;
-  static PointConstraint constraint(const SurfacePoint &at, const Point &n, const Point &state) {
-    const double facing = -(n[0] * at.normal[0] + n[1] * at.normal[1]);
-    return {n, facing * at.distance + n[0] * state[0] + n[1] * state[1]};
-  }
 
   RigidSurface surface_;
 };
-
-/// Where the point is now.
-Point SurfaceInterface::moved(const FullMu &mu, const Point &x, const Point &displacement) const {
-  Point y = surface_.at_rest ? surface_.at_rest(mu, x) : scene_.map(mu, x);
-  const Point motion = scene_.motion ? scene_.motion(mu, x) : Point{};
-  for (std::size_t c = 0; c < 2; ++c)
-    y[c] += motion[c] + displacement[c];
-  return y;
-}
 
 Point SurfaceInterface::displacement_at(const Cell &edge, const TracePoint &at) const {
   Point result{};
@@ -101,15 +108,9 @@ Point SurfaceInterface::body_normal(const FullMu &mu, const Cell &edge, const Tr
 SupportPoint SurfaceInterface::support_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
                                           const Point &x) const {
   const Point displacement = displacement_at(edge, at);
-  const SurfacePoint below = surface_.surface(mu, moved(mu, x, displacement));
-  const Point n = surface_.body_normal ? body_normal(mu, edge, at, x)
-                                       : Point{-below.normal[0], -below.normal[1], 0};
-  const PointConstraint condition = constraint(below, n, displacement);
-  SupportPoint point{n, condition.gap, 0};
-  if (!scene_.motion) return point;
-  const Point motion = scene_.motion(mu, x);
-  point.slip = motion[1] * n[0] - motion[0] * n[1];
-  return point;
+  if (!surface_.body_normal) return surface_point(scene_, surface_, mu, x, displacement);
+  const SurfacePoint below = surface_.surface(mu, moved(scene_, surface_, mu, x, displacement));
+  return facing(scene_, mu, x, below, body_normal(mu, edge, at, x), displacement);
 }
 
 Curvature SurfaceInterface::curvature(const FullMu &mu, const ContactState &state,
@@ -132,7 +133,8 @@ Curvature SurfaceInterface::curvature(const FullMu &mu, const ContactState &stat
     const std::vector<Index> columns = columns_of(e);
     for (const TracePoint &at : points()) {
       const Point x = point_on(edge, at);
-      const SurfacePoint below = surface_.surface(mu, moved(mu, x, displacement_at(edge, at)));
+      const SurfacePoint below =
+          surface_.surface(mu, moved(scene_, surface_, mu, x, displacement_at(edge, at)));
       const double weight = at.weight * length_of(edge) * below.curvature *
                             (at.eta[0] * pressure(0) + at.eta[1] * pressure(1)) / 2;
       const Point tau{below.normal[1], -below.normal[0], 0};
@@ -184,7 +186,7 @@ SurfaceInterface::AtRest SurfaceInterface::at_rest(const FullMu &mu, Index e) co
   AtRest rest{length_of(edge), {}, {}};
   for (const TracePoint &at : points()) {
     const Point x = point_on(edge, at);
-    rest.points.push_back(moved(mu, x, {}));
+    rest.points.push_back(moved(scene_, surface_, mu, x, {}));
     rest.motion.push_back(scene_.motion ? scene_.motion(mu, x) : Point{});
   }
   return rest;
@@ -255,6 +257,14 @@ NodalEvaluation SurfaceInterface::nodal_at(const FullMu &mu) const {
   };
 }
 
+} // namespace
+
+SupportPoint surface_point(const Scene &scene, const RigidSurface &surface, const FullMu &mu,
+                           const Point &x, const Point &displacement) {
+  const SurfacePoint below = surface.surface(mu, moved(scene, surface, mu, x, displacement));
+  return facing(scene, mu, x, below, {-below.normal[0], -below.normal[1], 0}, displacement);
+}
+
 Record record_of(const RigidSurface &surface) {
   Record record{"rigid_surface",
                 1,
@@ -276,8 +286,6 @@ RigidSurface surface_in(const Record &record) {
   surface.lumped = number(record, "lumped") != 0;
   return surface;
 }
-
-} // namespace
 
 ContactRecipe rigid_surface(RigidSurface surface) {
   ContactRecipe recipe;

@@ -28,7 +28,8 @@ public:
   AllPoints(const ReducedModel &model, const NitscheCurve &curve,
             const std::vector<Sample> &samples)
       : model_(model), solver_(model_, curve), scene_(curve.scene), samples_(samples),
-        of_curve_(4 * static_cast<Index>(curve.cells.size())), symmetric_(is_symmetric(curve.scene)) {
+        of_curve_(4 * static_cast<Index>(curve.cells.size())),
+        symmetric_(is_symmetric(curve.scene)) {
     const std::vector<CurveCell> &cells = curve.cells;
     const auto count = static_cast<Index>(samples.size());
     answers_.resize(model.primal_size(), count);
@@ -194,9 +195,9 @@ Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) 
   const Index points = 4 * static_cast<Index>(curve.cells.size());
   Matrix result(curve.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    const auto faces =
-        nitsche_faces(curve, expand(curve.scene.parameters, samples[p].mu), curve.cells);
     const Vector u = samples[p].u(problem.places().natural_dofs);
+    const auto faces =
+        nitsche_faces(curve, expand(curve.scene.parameters, samples[p].mu), curve.cells, u);
     result.col(static_cast<Index>(p)) = nitsche_pressures(faces, u).reshaped().head(result.rows());
   }
   return result;
@@ -208,6 +209,9 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model) {
   const NitscheCurve &curve = *problem.nitsche();
+  if (curve.facing.follows_state && options.rule == CurveRule::interpolated)
+    throw bad_input("-nitsche_quadrature interpolated is for contact at rest: leave it out, or use "
+                    "-kinematics small");
   CurveReport report;
   model.nitsche = NitscheModel{};
   NitscheModel &nitsche = *model.nitsche;
@@ -218,6 +222,7 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
               nitsche.starts_mu.col(static_cast<Index>(p)).begin());
   nitsche.rule = CurveRule::full;
   nitsche.starts = pressures_of(problem, samples);
+  if (curve.facing.follows_state) nitsche.states = coefficients;
   if (options.rule == CurveRule::empirical) {
     AllPoints all(model, curve, samples);
     const Matrix pressures = nitsche.starts;

@@ -155,7 +155,7 @@ LayerTerms interpolate_consistency(const NitscheCurve &curve, const std::vector<
   std::vector<Vector> values;
   for (const Sample &sample : samples) {
     const auto faces = nitsche_faces(curve, expand(curve.scene.parameters, sample.mu), curve.cells);
-    values.push_back(pattern.values(curve.cells, nitsche_consistency(faces, curve.friction())));
+    values.push_back(pattern.values(curve.cells, nitsche_consistency(faces, curve.whole_stress())));
   }
   return interpolated(side_by_side(values), pattern.keys(), true, exact,
                       [&](const Vector &column) { return pattern.projected(column, trace); })

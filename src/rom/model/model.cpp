@@ -197,6 +197,8 @@ void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
           "nitsche/starts does not fit");
   require_shape(nitsche.starts_mu, model.parameters.size(), nitsche.starts.cols(),
                 "nitsche/starts_mu");
+  if (nitsche.states.size() > 0)
+    require_shape(nitsche.states, n, nitsche.starts.cols(), "nitsche/states");
 }
 
 /// The terms of the first `size` of n columns.
@@ -211,6 +213,7 @@ LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
 NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
   NitscheModel result = nitsche;
   if (nitsche.rule == CurveRule::interpolated) result.starts = nitsche.starts.topRows(size);
+  if (nitsche.states.size() > 0) result.states = nitsche.states.topRows(size);
   for (LayerTerms NitscheModel::*terms :
        {&NitscheModel::consistency, &NitscheModel::contact_matrix, &NitscheModel::contact_vector,
         &NitscheModel::friction_matrix, &NitscheModel::friction_vector})

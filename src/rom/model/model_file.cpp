@@ -249,6 +249,7 @@ void write_nitsche(H5Writer &file, const std::optional<NitscheModel> &nitsche) {
   file.write("nitsche/factors", nitsche->factors);
   file.write("nitsche/starts", nitsche->starts);
   file.write("nitsche/starts_mu", nitsche->starts_mu);
+  file.write("nitsche/states", nitsche->states);
   for (const auto &[name, member] : layer_terms) {
     const LayerTerms &terms = (*nitsche).*member;
     const std::string group = name;
@@ -269,6 +270,7 @@ std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
   nitsche.factors = file.vector("nitsche/factors");
   nitsche.starts = file.matrix("nitsche/starts");
   nitsche.starts_mu = file.matrix("nitsche/starts_mu");
+  nitsche.states = file.matrix("nitsche/states");
   for (const auto &[name, member] : layer_terms) {
     LayerTerms &terms = nitsche.*member;
     const std::string group = name;

@@ -61,29 +61,31 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_paramet
     result.f = model_.f.reduced * affine_coefficients(model_.f, scene.f, scene, all_parameters);
   const std::vector<NitscheFace> faces =
       nitsche_faces(curve_, all_parameters, selected(curve_.cells, consistency_.cells()));
-  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, curve_.friction()));
+  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, curve_.whole_stress()));
   result.a_gamma = result.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
   return result;
 }
 
-Vector ReducedNitsche::predicted(const FullMu &all_parameters) const {
-  const NitscheModel &nitsche = *model_.nitsche;
-  if (nitsche.starts.cols() == 0) return {};
+Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_parameters) const {
+  if (of_samples.cols() == 0) return {};
   const ParameterSpace &space = curve_.scene.parameters;
-  return local_fit(nitsche.starts, parts_of_box(space, nitsche.starts_mu),
+  return local_fit(of_samples, parts_of_box(space, model_.nitsche->starts_mu),
                    parts_of_box(space, all_parameters));
 }
 
 NitscheAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
+  const NitscheModel &nitsche = *model_.nitsche;
   system.law = nitsche_law(curve_, all_parameters);
   system.quadratic = quadratic_at(all_parameters);
   NitscheAnswer answer;
   if (interpolated_) {
-    answer.iterations = interpolated_->solve(all_parameters, predicted(all_parameters), system);
+    answer.iterations =
+        interpolated_->solve(all_parameters, predicted(nitsche.starts, all_parameters), system);
   } else {
     system.set_points(curve_, all_parameters);
-    system.predict(predicted(all_parameters));
+    system.predict(predicted(nitsche.starts, all_parameters),
+                   predicted(nitsche.states, all_parameters));
     answer.iterations = system.settle();
   }
   answer.u = system.u;
@@ -130,10 +132,11 @@ Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vect
 void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
                              Outputs &outputs) const {
   const Vector layer = model_.contact_trace * over_whole_curve(all_parameters, u, outputs);
-  const std::vector<NitscheFace> faces = nitsche_faces(curve_, all_parameters, curve_.cells);
-  nitsche_outputs(faces, nitsche_pressures(faces, layer),
-                  nitsche_fields(curve_, all_parameters, layer),
+  const std::vector<NitscheFace> faces = nitsche_faces(curve_, all_parameters, curve_.cells, layer);
+  const CurveFields fields = nitsche_fields(curve_, all_parameters, layer);
+  nitsche_outputs(faces, nitsche_pressures(faces, layer), fields,
                   nitsche_law(curve_, all_parameters), outputs);
+  if (curve_.facing.follows_state) outputs.ends_in_contact = ends_in_contact(fields);
 }
 
 } // namespace rbvi

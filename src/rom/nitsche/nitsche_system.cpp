@@ -49,6 +49,9 @@ void ReducedNitsche::System::set_points(const NitscheCurve &curve, const FullMu 
   offsets.resize(functionals.cols());
   weights.resize(points);
   gamma.resize(points);
+  turning = Vector::Zero(points);
+  if (curve.facing.follows_state) return set_at_rest(curve, all_parameters);
+  at_rest.facing = nullptr;
   Index next = 0;
   for (const Part &part : parts) {
     const CurveCell &beside = curve.cells[static_cast<std::size_t>(part.cell)];
@@ -58,13 +61,13 @@ void ReducedNitsche::System::set_points(const NitscheCurve &curve, const FullMu 
     for (Index k = 0; k < count; ++k) {
       const auto [q, factor] = part.points[static_cast<std::size_t>(k)];
       const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
-      const NitschePoint point = nitsche_point(curve.scene, curve.support, all_parameters, at.cell,
+      const NitschePoint point = nitsche_point(curve.scene, curve.facing, all_parameters, at.cell,
                                                beside.edge, at.material, rule.s);
       local.col(k) = point.sigma_n - at.gamma * point.n;
-      offsets[next + k] = at.gamma * point.gap;
+      offsets[next + k] = at.gamma * point.facing.gap;
       if (friction) {
         local.col(count + k) = point.sigma_tau - at.gamma * point.tau;
-        offsets[points + next + k] = -at.gamma * point.slip;
+        offsets[points + next + k] = -at.gamma * point.facing.slip;
       }
       weights[next + k] = factor * rule.weight * point.weight;
       gamma[next + k] = at.gamma;
@@ -76,7 +79,59 @@ void ReducedNitsche::System::set_points(const NitscheCurve &curve, const FullMu 
   }
 }
 
+/// Both axes of every point, and the displacement along them.
+void ReducedNitsche::System::set_at_rest(const NitscheCurve &curve, const FullMu &all_parameters) {
+  at_rest = {&curve.facing, all_parameters, {}, {}, Matrix(u.size(), 4 * points)};
+  along_tau.resize(u.size(), points);
+  Index next = 0;
+  for (const Part &part : parts) {
+    const CurveCell &beside = curve.cells[static_cast<std::size_t>(part.cell)];
+    const CurveCellAtMu at = curve_cell_at(curve, all_parameters, beside);
+    Eigen::Matrix<double, 12, 4> local;
+    for (const auto &[q, factor] : part.points) {
+      const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
+      const NitschePoint point = nitsche_point(curve.scene, curve.facing, all_parameters, at.cell,
+                                               beside.edge, at.material, rule.s);
+      local << point.sigma_n - at.gamma * point.n, point.sigma_tau - at.gamma * point.tau, point.n,
+          point.tau;
+      for (Index k = 0; k < 4; ++k)
+        at_rest.functionals.col(k * points + next).noalias() = part.basis * local.col(k);
+      at_rest.x.push_back(point.x);
+      at_rest.normal.push_back(point.facing.normal);
+      weights[next] = factor * rule.weight * point.weight;
+      gamma[next++] = at.gamma;
+    }
+  }
+}
+
+/// The axes of every point to those of a state.
+void ReducedNitsche::System::turn_to(const Vector &coefficients) {
+  if (at_rest.facing == nullptr) return;
+  const bool friction = law.law != FrictionLaw::none;
+  const auto columns = [&](Index k) { return at_rest.functionals.middleCols(k * points, points); };
+  const Vector along_n = columns(2).transpose() * coefficients,
+               across = columns(3).transpose() * coefficients;
+  for (Index i = 0; i < points; ++i) {
+    const Point &n = at_rest.normal[static_cast<std::size_t>(i)];
+    const SupportPoint now = at_rest.facing->at(
+        at_rest.mu, at_rest.x[static_cast<std::size_t>(i)],
+        {along_n[i] * n[0] - across[i] * n[1], along_n[i] * n[1] + across[i] * n[0], 0});
+    const double c = now.normal[0] * n[0] + now.normal[1] * n[1],
+                 s = now.normal[1] * n[0] - now.normal[0] * n[1];
+    functionals.col(i) = c * columns(0).col(i) + s * columns(1).col(i);
+    offsets[i] = gamma[i] * now.gap;
+    along_tau.col(i) = c * columns(3).col(i) - s * columns(2).col(i);
+    const double stress =
+        functionals.col(i).dot(coefficients) + gamma[i] * (c * along_n[i] + s * across[i]);
+    turning[i] = weights[i] * now.curvature * std::min(stress, 0.0);
+    if (!friction) continue;
+    functionals.col(points + i) = c * columns(1).col(i) - s * columns(0).col(i);
+    offsets[points + i] = -gamma[i] * now.slip;
+  }
+}
+
 void ReducedNitsche::System::set(const Vector &coefficients) {
+  turn_to(coefficients);
   u = coefficients;
   const Vector p = functionals.transpose() * u + offsets;
   pressures = Matrix::Zero(points, 2);
@@ -109,11 +164,20 @@ Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
   for (Index i = 0; i < d.size(); ++i)
     if (d[i] != 0) active.push_back(i);
   const Matrix part = functionals(Eigen::all, active);
-  return quadratic.a_gamma + (part * d(active).asDiagonal()) * part.transpose();
+  Matrix result = quadratic.a_gamma + (part * d(active).asDiagonal()) * part.transpose();
+  if (at_rest.facing != nullptr)
+    result.noalias() += (along_tau * turning_at(at).asDiagonal()) * along_tau.transpose();
+  return result;
 }
 
-/// One linear solve, contact and stick being those of the pressures `start`.
-void ReducedNitsche::System::predict(const Vector &start) {
+/// What the normals turn by at these pressures, at each point.
+Vector ReducedNitsche::System::turning_at(const Matrix &at) const {
+  return (at.col(0).array() < 0).select(turning, 0.0);
+}
+
+/// One linear solve, contact and stick being those of the pressures `start`, and the axes those of
+/// the coefficients `state` where contact follows them.
+void ReducedNitsche::System::predict(const Vector &start, const Vector &state) {
   if (start.size() != functionals.cols()) { // from u = 0
     set(Vector::Zero(u.size()));
     bounds = nitsche_bounds(pressures, law);
@@ -122,11 +186,15 @@ void ReducedNitsche::System::predict(const Vector &start) {
   Matrix at = Matrix::Zero(points, 2);
   at.reshaped().head(start.size()) = start;
   bounds = nitsche_bounds(at, law);
+  turn_to(state);
   const Vector d = weighted(&PointTerm::curvature, at);
   const Vector forces = weighted(&PointTerm::slope, at) + d.cwiseProduct(offsets - start);
   const Eigen::LLT<Matrix> factor(tangent_at(at));
   if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
-  set(factor.solve(quadratic.f - functionals * forces));
+  Vector right = quadratic.f - functionals * forces;
+  if (at_rest.facing != nullptr)
+    right += along_tau * turning_at(at).cwiseProduct(along_tau.transpose() * state);
+  set(factor.solve(right));
   bounds = nitsche_bounds(pressures, law);
 }
 
@@ -143,8 +211,11 @@ int ReducedNitsche::System::minimise() {
     const Vector d = -factor.solve(r);
     NitscheLine line{weights, gamma, pressures, Matrix::Zero(points, 2), bounds};
     line.change.reshaped().head(functionals.cols()) = functionals.transpose() * d;
+    double of_turning = 0;
+    if (at_rest.facing != nullptr)
+      of_turning = turning_at(pressures).dot((along_tau.transpose() * d).cwiseAbs2());
     const double t = line_minimum((quadratic.a_gamma * u - quadratic.f).dot(d),
-                                  d.dot(quadratic.a_gamma * d), line);
+                                  d.dot(quadratic.a_gamma * d) + of_turning, line);
     set(u + t * d);
   }
   throw failure("the reduced problem did not converge: its residual is " + short_number(relative) +
@@ -190,19 +261,17 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
 int ReducedNitsche::System::settle() {
   if (!law.moves()) return minimise();
   int steps = 0;
+  if (law.law == FrictionLaw::coulomb) {
+    if (const std::optional<int> more = follow_bound()) return *more;
+    steps = most_full_steps;
+  }
   for (int loop = 0; loop < most_loops; ++loop) {
     const Vector before = u;
-    if (law.law == FrictionLaw::coulomb) {
-      if (const std::optional<int> more = follow_bound()) return steps + *more;
-      steps += most_full_steps;
-    }
     bounds = nitsche_bounds(pressures, law);
     steps += minimise();
     bounds = nitsche_bounds(pressures, law);
-    if ((u - before).norm() <= bound_accuracy * u.norm()) {
-      (void)residual();
-      return steps;
-    }
+    (void)residual();
+    if ((u - before).norm() <= bound_accuracy * u.norm() && relative <= round_off) return steps;
   }
   throw failure("the bound of friction did not settle in " + std::to_string(most_loops) +
                 " loops: is the friction coefficient large?");

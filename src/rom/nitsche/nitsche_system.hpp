@@ -22,15 +22,26 @@ struct ReducedNitsche::System {
   std::vector<Part> parts;
   Index points = 0;
 
+  /// Of contact that follows the displacement: the points at rest.
+  struct AtRest {
+    const NitscheFacing *facing = nullptr; ///< null: contact at rest
+    FullMu mu;
+    std::vector<Point> x, normal;
+    Matrix functionals; ///< n x 4 points: of P_n and P_tau without the gap, of u_n, of u_tau
+  };
+
   // At mu.
   Quadratic quadratic;
   NitscheLaw law;
-  Matrix functionals; ///< n x 2 points: of P_n, then of P_tau
+  Matrix functionals; ///< n x 2 points: of P_n, then (with friction) of P_tau
   Vector offsets;     ///< 2 points
   Vector weights, gamma;
+  AtRest at_rest;
 
-  // The last iterate.
+  // The last iterate. Where contact follows it, functionals and offsets are of its axes.
   Vector u;
+  Matrix along_tau; ///< n x points: of u_tau
+  Vector turning;   ///< NitschePoint::turning with the weights
   Matrix pressures; ///< points x 2
   Vector bounds;
   double relative = 0; ///< residual
@@ -40,12 +51,15 @@ struct ReducedNitsche::System {
   System(const ReducedModel &model, const std::vector<CurveCell> &cells,
          const ChosenPoints &chosen);
   void set_points(const NitscheCurve &curve, const FullMu &all_parameters);
+  void set_at_rest(const NitscheCurve &curve, const FullMu &all_parameters);
   void set(const Vector &coefficients);
+  void turn_to(const Vector &coefficients);
   /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.
   Vector weighted(double PointTerm::*part, const Matrix &at) const;
   Vector residual();
   Matrix tangent_at(const Matrix &at) const;
-  void predict(const Vector &start);
+  Vector turning_at(const Matrix &at) const;
+  void predict(const Vector &start, const Vector &state);
   int minimise();
   std::optional<int> follow_bound();
   int settle();

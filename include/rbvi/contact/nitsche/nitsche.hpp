@@ -13,6 +13,7 @@
 #include "rbvi/core/dense.hpp"
 
 #include <array>
+#include <functional>
 
 namespace rbvi {
 
@@ -34,26 +35,40 @@ PointTerm friction_term(double p, double bound, double gamma);
 /// Coulomb's bound, `coefficient` |[p]_-| (4.51).
 double coulomb_bound(double p, double coefficient);
 
+/// What the points of a curve face. A support at rest ignores the displacement there; where it
+/// counts (large deformations), normal, gap and slip are those of the state, and the stress is the
+/// one on the edge at rest, sigma n_0, in the axes of the state.
+struct NitscheFacing {
+  std::function<SupportPoint(const FullMu &mu, const Point &x, const Point &displacement)> at;
+  bool follows_state = false;
+};
+
 /// What a point of the curve sees of the displacement of the cell beside it: functionals of its
 /// dofs, node * 2 + component, the first 2 * nodes_per_cell entries.
 struct NitschePoint {
   using Row = Eigen::Matrix<double, 12, 1>;
   double weight = 0;              ///< of the integral over the mapped edge
   Row sigma_n, sigma_tau, n, tau; ///< stress and displacement
-  double gap = 0;                 ///< less the motion's share
-  double slip = 0;                ///< of the motion
+  Point x{};                      ///< reference
+  SupportPoint facing{};          ///< at the state
+  double turning = 0;             ///< sigma_n < 0 times the curvature of what is faced, there
 };
 
 /// What point s of [0, 1] on edge `edge` (Lagrange order) of a triangle sees, of degree
-/// scene.degree; weight: the length of the mapped edge. Normal and gap are the support's at the
-/// reference point, in u_n, sigma_n and the gap alike; edges are straight.
-NitschePoint nitsche_point(const Scene &scene, const Support &support, const FullMu &mu,
+/// scene.degree, at rest; weight: the length of the mapped edge. At rest the normal is the one
+/// faced at the reference point, in u_n, sigma_n and the gap alike; edges are straight.
+NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, const FullMu &mu,
                            const Cell &cell, int edge, const Lame &material, double s);
 
 /// The Gauss points of the edge, with their weights. Throws failure, naming mu, for an inverted
 /// cell.
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Support &support,
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const NitscheFacing &facing,
                                            const FullMu &mu, const Cell &cell, int edge,
                                            const Lame &material);
+
+/// Turns the axes of a point to those of a displacement of the cell's dofs, for a facing that
+/// follows it.
+void turn_to(const NitscheFacing &facing, const FullMu &mu, const NitschePoint::Row &u,
+             NitschePoint &point);
 
 } // namespace rbvi

@@ -3,6 +3,12 @@
 // domain, and every rank holds all of it. The energy is a quadratic one, a_gamma(u, u) / 2 - f(u)
 // with a_gamma = a + consistency (4.18), (4.40), and the integrals of contact and friction over the
 // pressures P_n, P_tau, which are affine in u.
+//
+// Where contact follows the displacement (large deformations) the axes n, tau of each point are
+// those of the state: the residual is that in the axes at u itself, and the tangent adds what n
+// turns by, sigma_n kappa tau tau^T in contact, kappa the curvature of what is faced (from afar
+// sigma_n is far smaller than P_n). What is left out, mostly of the tangential stress, is small:
+// the steps converge linearly, but fast. There is no energy then.
 #pragma once
 
 #include "rbvi/contact/nitsche/nitsche.hpp"
@@ -24,10 +30,14 @@ struct CurveCell {
 /// the reference domain. `scene` has a material and outlives it.
 struct NitscheCurve {
   const Scene &scene;
-  Support support;
+  Friction law;
+  NitscheFacing facing;
   double gamma0;
   std::vector<CurveCell> cells; ///< along the curve, by increasing x
-  bool friction() const { return support.friction.law != FrictionLaw::none; }
+  bool friction() const { return law.law != FrictionLaw::none; }
+  /// Whether the consistency term has sigma_tau beside sigma_n. Where the axes turn it does without
+  /// friction too: the whole stress does not depend on them.
+  bool whole_stress() const { return friction() || facing.follows_state; }
 };
 
 /// What it sees at one mu. Rows of NitschePoint are for these dofs.
@@ -47,10 +57,15 @@ struct CurveCellAtMu {
 };
 CurveCellAtMu curve_cell_at(const NitscheCurve &curve, const FullMu &mu, const CurveCell &cell);
 
-/// The faces of some cells of the curve, in their order. Throws failure, naming mu, for an inverted
-/// cell.
+/// The faces of some cells of the curve, in their order. `state`: u of the layer, where contact
+/// follows it; empty: at rest. Throws failure, naming mu, for an inverted cell.
 std::vector<NitscheFace> nitsche_faces(const NitscheCurve &curve, const FullMu &mu,
-                                       const std::vector<CurveCell> &cells);
+                                       const std::vector<CurveCell> &cells,
+                                       const Vector &state = {});
+
+/// Turns their axes to another state; nothing where contact does not follow it.
+void turn_to(const NitscheCurve &curve, const FullMu &mu, const Vector &state,
+             std::vector<NitscheFace> &faces);
 
 /// Friction::law with its threshold or coefficient at one mu.
 struct NitscheLaw {
@@ -74,8 +89,9 @@ Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vec
 /// without friction.
 Vector nitsche_bounds(const Matrix &pressures, const NitscheLaw &law);
 
-/// a_gamma - a, a block for each face: (4.18), with friction (4.40).
-std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces, bool friction);
+/// a_gamma - a, a block for each face: (4.18), with the whole stress (4.40).
+std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces,
+                                           bool whole_stress);
 
 /// Integrals of contact in J^Nitsche (4.15) and of friction of these bounds (4.36); without
 /// friction `bounds` is empty.
@@ -86,9 +102,13 @@ Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds);
 
 /// Their Hessian at given pressures, a block for each face, the bounds being fixed: b_gamma^n
-/// (4.24a), b_gamma^tau (4.43a), (4.55a).
+/// (4.24a), b_gamma^tau (4.43a), (4.55a); and what their axes turn by.
 std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
                                        const Matrix &pressures, const Vector &bounds);
+
+/// d^T (what the axes turn by in that Hessian) d.
+double nitsche_turning(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+                       const Vector &d);
 
 /// The gradient at u of the terms linearised about given pressures: those who are in contact, and
 /// who stick, there.
@@ -120,6 +140,9 @@ CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Ve
 /// -sigma_n, then with friction -sigma_tau at the vertices: what stands for the multipliers of the
 /// mixed method.
 Vector nitsche_multiplier(const CurveFields &fields, bool friction);
+
+/// How many of the curve's two ends are in contact.
+double ends_in_contact(const CurveFields &fields);
 
 /// Fills forces, half-widths, pressures, penetration and the errors of the laws; see
 /// support_outputs. centre_pressure is that of -[P_n]_- averaged over each edge.

@@ -35,11 +35,12 @@ ContactKind rigid_support_kind();
 Record record_of(const Support &support);
 Support support_in(const Record &record);
 
-/// direction . w <= gap at a point of the reference boundary, and the slip of the motion there.
+/// normal . w <= gap at a point of the reference boundary, and the slip of the motion there.
 struct SupportPoint {
   Point normal;
-  double gap;  ///< less the motion's share
-  double slip; ///< of the motion
+  double gap;           ///< less the motion's share
+  double slip;          ///< of the motion
+  double curvature = 0; ///< of a surface that the displacement meets elsewhere: SurfacePoint
 };
 SupportPoint support_point(const Scene &scene, const Support &support, const FullMu &mu,
                            const Point &x);

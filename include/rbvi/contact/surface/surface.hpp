@@ -32,6 +32,15 @@ struct RigidSurface {
 
 ContactRecipe rigid_surface(RigidSurface surface);
 
+/// What the point x of the reference boundary faces; the state there is `displacement`. With the
+/// surface's own normal.
+SupportPoint surface_point(const Scene &scene, const RigidSurface &surface, const FullMu &mu,
+                           const Point &x, const Point &displacement);
+
+/// What files store of a surface, and the surface of a record.
+Record record_of(const RigidSurface &surface);
+RigidSurface surface_in(const Record &record);
+
 /// "rigid_surface" in files.
 ContactKind rigid_surface_kind();
 

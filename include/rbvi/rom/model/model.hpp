@@ -174,6 +174,7 @@ struct NitscheModel {
   /// Interpolated: their n coefficients.
   Matrix starts;
   Matrix starts_mu; ///< free parameters x P: where they are
+  Matrix states;    ///< n x P: contact that follows the displacement: their coefficients
 };
 
 /// A contact interface of the model.
@@ -229,7 +230,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 11;
+inline constexpr int model_schema = 12;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

@@ -8,7 +8,8 @@
 // steps, halved until the residual falls, and where they do not settle, bounds frozen in an outer
 // loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
 // printed, from neighbouring samples; where it does not converge, the derivative of its vectors,
-// with halved steps.
+// with halved steps. Where contact follows the displacement (large deformations) the axes of the
+// points turn to those of every iterate.
 #pragma once
 
 #include "rbvi/rom/nitsche/layer_terms.hpp"
@@ -57,7 +58,8 @@ private:
     Vector f;
   };
   Quadratic quadratic_at(const FullMu &all_parameters) const;
-  Vector predicted(const FullMu &all_parameters) const;
+  /// `of_samples`: NitscheModel::starts or states.
+  Vector predicted(const Matrix &of_samples, const FullMu &all_parameters) const;
   /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
   Vector over_whole_curve(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
 
