@@ -122,7 +122,9 @@ double quantile(std::vector<double> values, double fraction) {
 
 BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vector<Sample> &truths,
                       std::size_t count, bool cold) {
-  HighFidelity solver(problem, options);
+  HfOptions of_all = options;
+  of_all.samples = cold ? 1 : static_cast<int>(count);
+  HighFidelity solver(problem, of_all);
   Errors errors(problem);
   std::vector<Mu> set = parameters_of(truths);
   set.resize(std::min(count, set.size()));

@@ -14,7 +14,8 @@ std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
 }
 
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
-    : scene_(std::make_unique<const Scene>(with_imposed_loads(std::move(scene)))),
+    : given_(std::move(scene)), mesh_options_(options),
+      scene_(std::make_unique<const Scene>(with_imposed_loads(given_))),
       mesh_(make_mesh(comm, *scene_, options)),
       dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
       places_(place_interfaces(mesh_, dofs_, *scene_)),
@@ -25,6 +26,13 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
   if (!imposes_values(*scene_)) return;
   check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
   imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
+}
+
+std::unique_ptr<Problem> Problem::coarser() const {
+  if (mesh_options_.refine == 0) return nullptr;
+  MeshOptions options = mesh_options_;
+  --options.refine;
+  return std::make_unique<Problem>(comm(), given_, options, contact_gather_);
 }
 
 void Problem::assemble_contact(const Mu &mu, Operators &operators, const ContactState &state) {

@@ -19,6 +19,15 @@ Matrix responses(KSP ksp, const Trace &trace, Mat a, const Matrix &loads) {
 
 } // namespace
 
+Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda) {
+  Handle<Vec> rhs;
+  RBVI_CALL(VecDuplicate(op.f, rhs.put()));
+  RBVI_CALL(VecCopy(op.f, rhs.get()));
+  const Vector reaction = -(op.b.transpose() * lambda);
+  add_extension(trace, reaction, rhs.get());
+  return rhs;
+}
+
 Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                          const std::vector<Index> &which) {
   Matrix columns(op.b.rows(), static_cast<Index>(which.size()));

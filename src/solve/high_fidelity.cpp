@@ -5,6 +5,8 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/solve/contact_cost.hpp"
+#include "rbvi/solve/eliminated.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
@@ -71,6 +73,11 @@ std::vector<Index> in_contact(const NodeLaws &laws, const Vector &lambda) {
   return nodes;
 }
 
+const std::vector<std::string> &hf_contact_names() {
+  static const std::vector<std::string> names{"auto", "condensed", "eliminated"};
+  return names;
+}
+
 const std::vector<std::string> &hf_method_names() {
   static const std::vector<std::string> names{"active_set", "uzawa", "vi"};
   return names;
@@ -84,6 +91,13 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
   if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
   if (problem.nitsche()) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
+    return;
+  }
+  if (options.contact == HfContact::eliminated && follows_state(problem.contact()))
+    throw bad_input("-hf_contact eliminated is for small deformations: leave it out, or use "
+                    "-kinematics small");
+  if (eliminates(problem, options)) {
+    grids_ = std::make_unique<GridSequence>(problem);
     return;
   }
   part_fits_ = options.method == HfMethod::active_set && ScaledPart::fits(problem.scene());
@@ -153,11 +167,17 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   return solution;
 }
 
-MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, HfSolution &solution) {
+MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op) {
   if (part_) part_->set(op);
-  MethodResult result = part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
-                              : solve_active_set(ksp_.get(), problem_.trace(), op,
-                                                 nearest_start(mu, op), compliance_.get());
+  return part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
+               : solve_active_set(ksp_.get(), problem_.trace(), op, nearest_start(mu, op),
+                                  compliance_.get());
+}
+
+MethodResult HighFidelity::run_active_set(const Mu &mu, const Operators &op, HfSolution &solution) {
+  MethodResult result =
+      grids_ ? grids_->solve(mu, op, solved_.empty() ? Vector() : nearest(mu)->start.lambda)
+             : run_condensed(mu, op);
   if (!result.converged) return result;
   solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
   solution.outputs = measure(problem_, op, op.weights, result, solution);
@@ -214,7 +234,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   HfSolution solution;
   const bool follows = follows_state(problem_.contact());
   const MethodResult result = follows     ? run_following(mu, op, solution)
-                              : condensed ? run_condensed(mu, op, solution)
+                              : condensed ? run_active_set(mu, op, solution)
                                           : run_over_ranks(op, solution);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");

@@ -3,7 +3,7 @@
 #include "nitsche_system.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "vectors.hpp"
+#include "rbvi/solve/linear/vectors.hpp"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // Nitsche's terms in local frames.
 #pragma once
 
-#include "local_frames.hpp"
 #include "rbvi/contact/nitsche/nitsche_curve.hpp"
+#include "rbvi/solve/linear/local_frames.hpp"
 
 namespace rbvi {
 

@@ -3,8 +3,8 @@
 #include "nitsche_frames.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/whole.hpp"
-#include "vectors.hpp"
+#include "rbvi/solve/linear/vectors.hpp"
+#include "rbvi/solve/linear/whole.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // One system of Nitsche's method at a time, and the PETSc objects that outlive it.
 #pragma once
 
-#include "local_frames.hpp"
+#include "rbvi/solve/linear/local_frames.hpp"
 #include "rbvi/solve/nitsche.hpp"
 
 #include <exception>

@@ -1,6 +1,6 @@
 #include "rbvi/core/error.hpp"
+#include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
-#include "vectors.hpp"
 
 #include <cmath>
 

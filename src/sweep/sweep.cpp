@@ -211,7 +211,9 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
                         ? "samples"
                         : "samples (about), " + std::to_string(groups.count()) + " groups",
                     total, rank == 0);
-  HighFidelity solver(problem, options);
+  HfOptions of_all = options;
+  of_all.samples = static_cast<int>(set.size()) / groups.count();
+  HighFidelity solver(problem, of_all);
   collectively(world, [&] {
     const double start = MPI_Wtime();
     for (int k = begin; k < end; ++k) {

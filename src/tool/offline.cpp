@@ -6,6 +6,7 @@
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/self_check.hpp"
+#include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/options/run_directory.hpp"
@@ -19,6 +20,17 @@
 namespace rbvi {
 
 namespace {
+
+/// How the linear systems of contact will be solved, which takes the mesh to tell.
+void print_contact_plan(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+                        std::size_t samples) {
+  if (options.hf.method != HfMethod::active_set || by_nitsche(options.scene)) return;
+  const Workspace work(world, groups, options);
+  HfOptions hf = options.hf;
+  hf.samples = static_cast<int>(samples) / groups.count();
+  if (rank_of(world) == 0)
+    std::printf("Contact is %s\n", contact_cost_text(work.group_problem(), hf).c_str());
+}
 
 /// Where the model has samples, and where it was to have them.
 void name_training(const Sweep &sweep, ReducedModel &model) {
@@ -42,7 +54,7 @@ void command_offline(const ToolOptions &options) {
   StageTable before = preparation_stages(options, training.size(), groups.count());
   StageTable after = closing_stages();
   if (rank == 0) print_stages({before, reduction_stages(options.scene, options.reduce), after});
-  if (options.plan) return;
+  if (options.plan) return print_contact_plan(world, groups, options, training.size());
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   check_outputs(world, options,
                 {{"the reduced model", options.out / "model.h5"},
@@ -81,9 +93,9 @@ void command_offline(const ToolOptions &options) {
     std::cout << "Self-check: ";
     print_self_check(std::cout, model.self_check, model.parameters);
     warn_of_resolution(sweep.samples, std::cout);
-    print_written(std::cout, {options.out / "model.h5", fields_file(options.out / "model.h5"),
-                              options.out / "samples.csv",
-                              case_of_run(options.out), options.out / "samples"});
+    print_written(std::cout,
+                  {options.out / "model.h5", fields_file(options.out / "model.h5"),
+                   options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});
   }
   report_failures(options, sweep.report, training.size(), "training",
                   "the model is made from the others, and answers next to a failed one with a "

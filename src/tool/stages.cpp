@@ -1,7 +1,7 @@
 #include "rbvi/tool/stages.hpp"
 
 #include "rbvi/core/text.hpp"
-#include "rbvi/solve/scaled_part.hpp"
+#include "rbvi/solve/linear/scaled_part.hpp"
 
 #include <cstdio>
 

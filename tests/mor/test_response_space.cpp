@@ -3,7 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/condensed.hpp"
 #include "rbvi/mor/separation/response_space.hpp"
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include <gtest/gtest.h>
 

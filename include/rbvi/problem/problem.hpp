@@ -59,6 +59,9 @@ public:
   /// boundaries that impose different displacements where they meet.
   Problem(MPI_Comm comm, Scene scene, const MeshOptions &options,
           Index contact_gather = default_contact_gather);
+  /// The same on the mesh with one refinement less; null where there is none. Collective.
+  std::unique_ptr<Problem> coarser() const;
+  int refinements() const { return mesh_options_.refine; }
 
   MPI_Comm comm() const { return mesh_.comm; }
   /// With the loads of the imposed values in f.
@@ -98,6 +101,8 @@ private:
   bool is_split(std::size_t interface) const;
   void assemble_split(ContactRows rows);
 
+  Scene given_; ///< without the loads of imposed values
+  MeshOptions mesh_options_;
   std::unique_ptr<const Scene> scene_; ///< the interfaces refer to it
   Mesh mesh_;
   Dofs dofs_;

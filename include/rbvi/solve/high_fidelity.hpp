@@ -29,13 +29,22 @@ namespace rbvi {
 
 enum class HfMethod { active_set, uzawa, vi };
 
+/// How active_set solves the systems of its sets.
+enum class HfContact {
+  automatic, ///< by the estimate of solve/contact_cost.hpp
+  condensed, ///< on the multipliers: columns of B A^-1 B^T
+  eliminated ///< on the displacement, without the dofs of the active constraints
+};
+
 struct HfOptions {
   HfMethod method = HfMethod::active_set;
+  HfContact contact = HfContact::automatic;
+  int samples = 1;               ///< that are to be solved: what can be kept for them is shared
   double uzawa_tolerance = 1e-6; ///< relative change of lambda in W (3.19)
   int uzawa_max_iterations = 20000;
   bool uzawa_accelerated = false; ///< Nesterov's extrapolation, restarted when it overshoots
   double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
-  NonlinearOptions nonlinear; ///< where contact follows the displacement
+  NonlinearOptions nonlinear;     ///< where contact follows the displacement
   NitscheOptions nitsche;
 };
 
@@ -58,7 +67,7 @@ struct HfSolution {
   KktResidual kkt;
   Outputs outputs;
   int iterations = 0;
-  int columns = 0;    ///< active_set: columns of the condensed operator
+  int columns = 0; ///< active_set: columns of the condensed operator
   /// Where contact follows the displacement: the states at the contact dofs at which its condition
   /// was linearised, that of the solution last.
   std::vector<Vector> states;
@@ -67,6 +76,7 @@ struct HfSolution {
 
 struct MethodResult;
 class Compliance;
+class GridSequence;
 class ScaledPart;
 
 /// Where an active-set method starts.
@@ -81,7 +91,8 @@ struct Start {
 class HighFidelity {
 public:
   /// Collective. KSP options under -hf_, SNES options under -vi_. Throws bad_input for `vi` with
-  /// two bodies, and on a support with friction or without vertex quadrature.
+  /// two bodies, and on a support with friction or without vertex quadrature; for elimination where
+  /// contact follows the displacement.
   HighFidelity(Problem &problem, const HfOptions &options);
   ~HighFidelity();
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
@@ -101,7 +112,8 @@ private:
   const Solved *nearest(const Mu &mu) const;
   Start nearest_start(const Mu &mu, const Operators &op);
   MethodResult run_following(const Mu &mu, const Operators &op, HfSolution &solution);
-  MethodResult run_condensed(const Mu &mu, const Operators &op, HfSolution &solution);
+  MethodResult run_active_set(const Mu &mu, const Operators &op, HfSolution &solution);
+  MethodResult run_condensed(const Mu &mu, const Operators &op);
   MethodResult run_over_ranks(const Operators &op, HfSolution &solution);
   Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);
@@ -110,6 +122,7 @@ private:
   HfOptions options_;
   Handle<KSP> ksp_;
   std::unique_ptr<NitscheSolver> nitsche_;
+  std::unique_ptr<GridSequence> grids_;    ///< active sets by elimination
   std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
   bool part_fits_ = false;
   std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on

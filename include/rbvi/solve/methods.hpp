@@ -3,12 +3,15 @@
 
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
-#include "rbvi/solve/scaled_part.hpp"
+#include "rbvi/solve/linear/linear.hpp"
+#include "rbvi/solve/linear/scaled_part.hpp"
 
 namespace rbvi {
 
 /// "active_set", "uzawa", "vi".
 const std::vector<std::string> &hf_method_names();
+/// "auto", "condensed", "eliminated".
+const std::vector<std::string> &hf_contact_names();
 
 /// What a method returns: the free displacement, the multiplier, and how it ended.
 struct MethodResult {
@@ -21,13 +24,6 @@ struct MethodResult {
   bool converged = false;
   std::string reason;
 };
-
-/// KSP that factorises once per operator: preonly with Cholesky by CHOLMOD on one rank, by MUMPS on
-/// several; options under `prefix` override. Collective.
-Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix);
-
-/// x = A^-1 rhs, throwing failure when KSP does not converge. Collective.
-void solve_linear(KSP ksp, Vec rhs, Vec x);
 
 /// F - B^T lambda. Collective.
 Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda);

@@ -13,7 +13,7 @@ class Workspace {
 public:
   /// Collective on `world`. Makes the group's problem and checks the options of its solvers.
   Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options);
-  Problem &group_problem() { return *group_; }
+  Problem &group_problem() const { return *group_; }
   /// Made at the first call. Collective on the world.
   Problem &world_problem();
 

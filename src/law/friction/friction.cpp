@@ -2,6 +2,7 @@
 
 #include "../pivoting.hpp"
 #include "friction_convex.hpp"
+#include "order.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -26,96 +27,12 @@ void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
   if (!start.allFinite()) throw failure("friction: the first guess is not finite");
 }
 
-/// The order of entries that Laws has: x_n of all nodes, then x_tau of all nodes; those of nodes
-/// with a sign alone are zero, and never asked for.
-class Order {
-public:
-  explicit Order(const NodeLaws &laws) : rows_(laws.rows) {
-    for (const Index row : laws.normal)
-      of_.push_back(row);
-    for (Index i = 0; i < laws.nodes() && laws.has_tangents(); ++i)
-      for (int k = 0; k < laws.tangents; ++k)
-        of_.push_back(laws.has_tangent(i) ? laws.tangent[at(i)] + k : -1);
-    same_ = std::ssize(of_) == rows_;
-    for (std::size_t j = 0; j < of_.size(); ++j)
-      same_ = same_ && of_[j] == static_cast<Index>(j);
-  }
-  bool same() const { return same_; }
-  Matrix inwards(const Matrix &values) const {
-    Matrix result = Matrix::Zero(std::ssize(of_), values.cols());
-    for (std::size_t j = 0; j < of_.size(); ++j)
-      if (of_[j] >= 0) result.row(static_cast<Index>(j)) = values.row(of_[j]);
-    return result;
-  }
-  Vector outwards(const Vector &values) const {
-    Vector result = Vector::Zero(values.size() > 0 ? rows_ : 0);
-    for (std::size_t j = 0; j < of_.size() && values.size() > 0; ++j)
-      if (of_[j] >= 0) result[of_[j]] = values[static_cast<Index>(j)];
-    return result;
-  }
-  ColumnSource inwards(const ColumnSource &columns) const {
-    return [this, &columns](std::vector<Index> which) {
-      for (Index &j : which)
-        j = of_[at(j)];
-      return inwards(columns(which));
-    };
-  }
-
-private:
-  Index rows_;
-  std::vector<Index> of_; ///< entry of the system, -1: none
-  bool same_;
-};
-
-Laws laws_of(const NodeLaws &of) {
-  const Index nodes = of.nodes();
-  Laws laws{.nodes = nodes,
-            .dim = of.has_tangents() ? 1 + of.tangents : 1,
-            .coefficient = Vector(nodes),
-            .threshold = Vector(nodes),
-            .only_in_contact = std::vector<char>(at(nodes))};
-  for (Index i = 0; i < nodes; ++i) {
-    const FrictionBound bound = of.has_tangent(i) ? of.bound[at(i)] : FrictionBound{};
-    laws.coefficient[i] = bound.coefficient;
-    laws.threshold[i] = bound.threshold;
-    laws.only_in_contact[at(i)] = bound.only_in_contact;
-  }
-  return laws;
-}
-
-/// Fills in the list of nodes in contact and the states of all nodes.
-void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets) {
-  result.active.clear();
-  result.states.assign(at(laws.nodes), NodeState::open);
-  for (Index i = 0; i < laws.nodes; ++i) {
-    if (!(result.x[i] > 0)) continue;
-    result.active.push_back(i);
-    result.states[at(i)] =
-        sets.tangent_at(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
-  }
-}
-
 /// The largest violation, relative to the terms of its row, of the normal laws.
 double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
   double worst = 0;
   for (Index i = 0; i < x.size(); ++i)
     if (x[i] > 0 || w[i] < 0) worst = std::max(worst, std::abs(w[i]) / terms[i]);
   return worst;
-}
-
-/// FrictionResult::start. The tangential entries of a node share the mean of their H_jj: with rho
-/// of their own x_tau - rho w_tau would turn. Unknown H_jj are taken for the mean of the known
-/// ones.
-Vector smooth_start(const LazyColumns &h, const Laws &laws, const Point &point) {
-  const auto diagonal = [&](Index j) { return h.has(j) ? h.diagonal(j) : 0; };
-  Vector result = Vector::NullaryExpr(point.x.size(), diagonal);
-  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i)
-    result.segment(laws.tangent(i), 2).setConstant(result.segment(laws.tangent(i), 2).mean());
-  const Index known = (result.array() > 0).count();
-  const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
-  for (Index j = 0; j < result.size(); ++j)
-    result[j] = point.x[j] - point.w[j] / (result[j] > 0 ? result[j] : mean);
-  return result;
 }
 
 FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
@@ -146,7 +63,7 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
   x.head(nodes) = normal.x;
   Point point = evaluate(h, q, std::move(x));
   result.residual = normal_residual(normal.x, point.w, point.terms);
-  result.start = smooth_start(h, laws, point);
+  result.start = smooth_start(diagonal_of(h, q.size()), laws, point);
   result.x = std::move(point.x);
   result.w = std::move(point.w);
   describe(result, laws, ActiveSets(nodes, laws.dim));
@@ -166,7 +83,7 @@ public:
       best_.x = laws_.feasible(start);
       result_.residual = std::numeric_limits<double>::infinity();
       Point point;
-      outcome = newton_from(laws_, predicted_sets(h_, laws_, start), point);
+      outcome = newton_from(laws_, sets_from(start), point);
     } else {
       prepare(laws_, Vector::Zero(q_.size()));
       Point point = evaluate(h_, q_, Vector::Zero(q_.size()));
@@ -179,6 +96,16 @@ public:
 private:
   enum class Outcome { converged, cycles, indefinite, limit };
 
+  /// The sets that a start tells, with the columns of their support.
+  ActiveSets sets_from(const Vector &start) {
+    ActiveSets sets = predicted_sets(laws_, start);
+    h_.require(sets.support(laws_));
+    set_curvature(diagonal(), laws_, start, sets);
+    return sets;
+  }
+
+  Vector diagonal() const { return diagonal_of(h_, q_.size()); }
+
   /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
   void prepare(const Laws &laws, const Vector &x) {
     ActiveSets sets = contact_sets(laws, x);
@@ -189,7 +116,7 @@ private:
 
   Outcome newton(const Laws &laws, Point &point) {
     const ActiveSets sets = contact_sets(laws, point.x);
-    Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
+    Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
     return newton_from(laws, std::move(verdict.next), point);
   }
@@ -206,7 +133,7 @@ private:
       const Solved solved = newton_step(h_, q_, laws, sets, point);
       if (solved == Solved::indefinite) return Outcome::indefinite;
       if (solved == Solved::singular) return Outcome::cycles;
-      Verdict verdict = judge(h_, laws, point, sets, options_.tolerance);
+      Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
       keep(laws, point, sets, verdict);
       if (settled(verdict, policy.least())) return Outcome::converged;
       if (policy.is_lost(verdict.residual)) return Outcome::cycles;
@@ -277,9 +204,9 @@ private:
     best_.x = laws_.feasible(std::move(best_.x));
     if (!result.converged) {
       best_ = evaluate(h_, q_, std::move(best_.x));
-      result.residual = judge(h_, laws_, best_, best_sets_, options_.tolerance).residual;
+      result.residual = judge(diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
     }
-    result.start = smooth_start(h_, laws_, best_);
+    result.start = smooth_start(diagonal(), laws_, best_);
     result.x = std::move(best_.x);
     result.w = std::move(best_.w);
     describe(result, laws_, best_sets_);

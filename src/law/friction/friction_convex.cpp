@@ -44,7 +44,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
               Point &point) {
   ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
-    Verdict verdict = judge(h, frozen, point, sets, tolerance);
+    Verdict verdict = judge(diagonal_of(h, q.size()), frozen, point, sets, tolerance);
     if (verdict.residual <= tolerance || steps <= 0) return true;
     --steps;
     sets = std::move(verdict.next);

@@ -8,51 +8,22 @@ namespace rbvi::friction {
 
 namespace {
 
-/// An unknown of the linear system, and its row: a combination of at most two entries.
-struct Unknown {
-  Index node;
-  Index first, second;  ///< entries of x
-  double a = 1, b = 0;  ///< their factors
-  double slope = 0;     ///< x_tau grows by this times e with the normal unknown
-  double curvature = 0; ///< on the diagonal
-  double unit = 1;      ///< scales the diagonal of H to one
-};
-
-double tangential_diagonal(const LazyColumns &h, const Laws &laws, Index i) {
-  double sum = 0;
-  for (int k = 0; k < laws.dim - 1; ++k)
-    sum += h.diagonal(laws.tangent(i) + k);
-  return sum / (laws.dim - 1);
+double tangential_diagonal(const Vector &diagonal, const Laws &laws, Index i) {
+  return diagonal.segment(laws.tangent(i), laws.dim - 1).sum() / (laws.dim - 1);
 }
 
-std::vector<Unknown> unknowns(const LazyColumns &h, const Laws &laws, const ActiveSets &sets) {
-  std::vector<Unknown> result;
-  for (Index i = 0; i < laws.nodes; ++i) {
-    const Index t = laws.tangent(i);
-    const bool slips = sets.tangent_at(i) == Tangent::slip;
-    if (sets.is_active(i)) {
-      result.push_back({.node = i, .first = i, .second = i, .unit = 1 / std::sqrt(h.diagonal(i))});
-      if (slips) result.back().slope = laws.coefficient[i];
-    }
-    if (sets.tangent_at(i) == Tangent::none) continue;
-    const double unit = 1 / std::sqrt(tangential_diagonal(h, laws, i));
-    for (Index k = 0; k < laws.dim - 1 && !slips; ++k)
-      result.push_back({.node = i, .first = t + k, .second = t + k, .unit = unit});
-    if (slips && laws.dim == 3 && sets.curvature[i] >= 0)
-      result.push_back({.node = i,
-                        .first = t,
-                        .second = t + 1,
-                        .a = -sets.direction(1, i),
-                        .b = sets.direction(0, i),
-                        .curvature = sets.curvature[i],
-                        .unit = unit});
-  }
-  return result;
+/// What scales the diagonal of H to one for each unknown.
+Vector units(const Vector &diagonal, const Laws &laws, const std::vector<Unknown> &list) {
+  return Vector::NullaryExpr(std::ssize(list), [&](Index k) {
+    const Unknown &u = list[at(k)];
+    return 1 / std::sqrt(u.first < laws.nodes ? diagonal[u.first]
+                                              : tangential_diagonal(diagonal, laws, u.node));
+  });
 }
 
 /// The scaled matrix of the linear system, in the order of the unknowns.
 Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
-                const std::vector<Unknown> &list) {
+                const std::vector<Unknown> &list, const Vector &unit) {
   const Index count = static_cast<Index>(list.size());
   Matrix matrix(count, count);
   Vector column;
@@ -65,20 +36,11 @@ Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
         column += u.slope * sets.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
     for (Index r = 0; r < count; ++r) {
       const Unknown &row = list[at(r)];
-      matrix(r, k) = u.unit * row.unit * (row.a * column[row.first] + row.b * column[row.second]);
+      matrix(r, k) = unit[k] * unit[r] * (row.a * column[row.first] + row.b * column[row.second]);
     }
-    matrix(k, k) += u.curvature * u.unit * u.unit;
+    matrix(k, k) += u.curvature * unit[k] * unit[k];
   }
   return matrix;
-}
-
-/// The part of x that no unknown changes: the thresholds of the nodes that slip.
-Vector fixed_part(const Laws &laws, const ActiveSets &sets) {
-  Vector x = Vector::Zero(laws.nodes * laws.dim);
-  for (Index i = 0; i < laws.nodes; ++i)
-    if (sets.tangent_at(i) == Tangent::slip)
-      x.segment(laws.tangent(i), laws.dim - 1) = laws.threshold[i] * sets.direction.col(i);
-  return x;
 }
 
 /// With one step of refinement. Empty if the matrix is singular or, where it is symmetric, not
@@ -94,33 +56,12 @@ Vector solve(const Matrix &matrix, const Vector &right, bool symmetric) {
   return cholesky.info() == Eigen::Success ? refined(cholesky) : Vector();
 }
 
-/// x of the unknowns, slipping nodes on their circle.
-Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
-              const Vector &u, Vector x) {
-  for (Index k = 0; k < u.size(); ++k) {
-    const Unknown &unknown = list[at(k)];
-    const double value = unknown.unit * u[k];
-    x[unknown.first] += unknown.a * value;
-    if (unknown.b != 0) x[unknown.second] += unknown.b * value;
-    if (unknown.slope > 0)
-      x.segment(laws.tangent(unknown.node), laws.dim - 1) +=
-          unknown.slope * value * sets.direction.col(unknown.node);
-  }
-  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i) {
-    auto tangential = x.segment(laws.tangent(i), 2);
-    const double bound = laws.bound(i, x[i]);
-    if (sets.tangent_at(i) == Tangent::slip && bound > 0 && tangential.norm() > 0)
-      tangential *= bound / tangential.norm();
-  }
-  return x;
-}
-
 /// The verdict on a point, node by node.
 class Judge {
 public:
-  Judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
+  Judge(const Vector &diagonal, const Laws &laws, const Point &point, const ActiveSets &sets,
         double tolerance)
-      : h_(h), laws_(laws), point_(point), sets_(sets),
+      : diagonal_(diagonal), laws_(laws), point_(point), sets_(sets),
         tolerance_(tolerance), verdict_{.next = ActiveSets(laws.nodes, laws.dim)} {
     for (Index j = 0; j < point.x.size(); ++j)
       if (point.x[j] != 0) largest_ = std::max(largest_, std::abs(point.x[j]) * root(j));
@@ -136,7 +77,7 @@ public:
   }
 
 private:
-  double root(Index j) const { return std::sqrt(h_.diagonal(j)); }
+  double root(Index j) const { return std::sqrt(diagonal_[j]); }
   void violated(double size, double scale) {
     if (size > 0) verdict_.residual = std::max(verdict_.residual, size / scale);
   }
@@ -149,7 +90,7 @@ private:
     violated(x > 0 ? std::abs(w) : -w, terms);
     char &next = verdict_.next.active[at(i)];
     const double counted = std::abs(w) <= tolerance_ * terms ? 0 : w;
-    if (!h_.has(i)) {
+    if (diagonal_[i] == 0) {
       next = counted < 0;
       return;
     }
@@ -160,7 +101,7 @@ private:
   void tangential(Index i) {
     Tangent &next = verdict_.next.tangent[at(i)];
     const double bound = laws_.bound(i, point_.x[i]);
-    const bool known = h_.has(laws_.tangent(i));
+    const bool known = diagonal_[laws_.tangent(i)] != 0;
     if (known) measure(i, bound);
     if (!laws_.at_node(i).carries_traction(verdict_.next.is_active(i))) return;
     verdict_.next.direction.col(i) = sets_.direction.col(i);
@@ -183,7 +124,7 @@ private:
     const auto x = point_.x.segment(t, count), w = point_.w.segment(t, count);
     const double size = x.norm(), terms = point_.terms.segment(t, count).norm();
     if (size == 0 && bound == 0) return;
-    violated((size - bound) * std::sqrt(tangential_diagonal(h_, laws_, i)), largest_);
+    violated((size - bound) * std::sqrt(tangential_diagonal(diagonal_, laws_, i)), largest_);
     if (size < bound * (1 - 1e-14)) {
       violated(w.norm(), terms);
       return;
@@ -194,7 +135,7 @@ private:
   }
   void predict(Index i, double bound) {
     const Index t = laws_.tangent(i), count = laws_.dim - 1;
-    const double diagonal = tangential_diagonal(h_, laws_, i);
+    const double diagonal = tangential_diagonal(diagonal_, laws_, i);
     const auto w = point_.w.segment(t, count);
     Vector y = point_.x.segment(t, count);
     if (w.norm() > tolerance_ * point_.terms.segment(t, count).norm()) y -= w / diagonal;
@@ -210,7 +151,7 @@ private:
     verdict_.next.curvature[i] = std::max(0.0, size - bound) * diagonal / bound;
   }
 
-  const LazyColumns &h_;
+  const Vector &diagonal_;
   const Laws &laws_;
   const Point &point_;
   const ActiveSets &sets_;
@@ -274,38 +215,97 @@ ActiveSets contact_sets(const Laws &laws, const Vector &x) {
   return result;
 }
 
-ActiveSets predicted_sets(LazyColumns &h, const Laws &laws, const Vector &y) {
+ActiveSets predicted_sets(const Laws &laws, const Vector &y) {
   constexpr double round_off = 1e-10; // x itself is on its bound where it slips
   ActiveSets result(laws.nodes, laws.dim);
-  Vector size(laws.nodes);
   for (Index i = 0; i < laws.nodes; ++i) {
     result.active[at(i)] = y[i] > 0;
     if (!laws.at_node(i).carries_traction(y[i] > 0)) continue;
     const auto tangential = y.segment(laws.tangent(i), laws.dim - 1);
-    size[i] = tangential.norm();
-    const bool slips = size[i] > 0 && size[i] >= (1 - round_off) * laws.bound(i, y[i]);
+    const double size = tangential.norm();
+    const bool slips = size > 0 && size >= (1 - round_off) * laws.bound(i, y[i]);
     result.tangent[at(i)] = slips ? Tangent::slip : Tangent::stick;
-    if (slips) result.direction.col(i) = tangential / size[i];
+    if (slips) result.direction.col(i) = tangential / size;
   }
-  h.require(result.support(laws));
-  for (Index i = 0; i < laws.nodes; ++i)
-    if (const double bound = laws.bound(i, y[i]);
-        result.tangent_at(i) == Tangent::slip && bound > 0)
-      result.curvature[i] =
-          std::max(0.0, size[i] - bound) * tangential_diagonal(h, laws, i) / bound;
   return result;
 }
 
-Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
+void set_curvature(const Vector &diagonal, const Laws &laws, const Vector &y, ActiveSets &sets) {
+  for (Index i = 0; i < laws.nodes; ++i)
+    if (const double bound = laws.bound(i, y[i]);
+        sets.tangent_at(i) == Tangent::slip && bound > 0) {
+      const double size = y.segment(laws.tangent(i), laws.dim - 1).norm();
+      sets.curvature[i] =
+          std::max(0.0, size - bound) * tangential_diagonal(diagonal, laws, i) / bound;
+    }
+}
+
+Vector diagonal_of(const LazyColumns &h, Index size) {
+  return Vector::NullaryExpr(size, [&](Index j) { return h.has(j) ? h.diagonal(j) : 0; });
+}
+
+std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets) {
+  std::vector<Unknown> result;
+  for (Index i = 0; i < laws.nodes; ++i) {
+    const Index t = laws.tangent(i);
+    const bool slips = sets.tangent_at(i) == Tangent::slip;
+    if (sets.is_active(i)) {
+      result.push_back({.node = i, .first = i, .second = i});
+      if (slips) result.back().slope = laws.coefficient[i];
+    }
+    if (sets.tangent_at(i) == Tangent::none) continue;
+    for (Index k = 0; k < laws.dim - 1 && !slips; ++k)
+      result.push_back({.node = i, .first = t + k, .second = t + k});
+    if (slips && laws.dim == 3 && sets.curvature[i] >= 0)
+      result.push_back({.node = i,
+                        .first = t,
+                        .second = t + 1,
+                        .a = -sets.direction(1, i),
+                        .b = sets.direction(0, i),
+                        .curvature = sets.curvature[i]});
+  }
+  return result;
+}
+
+Vector fixed_part(const Laws &laws, const ActiveSets &sets) {
+  Vector x = Vector::Zero(laws.nodes * laws.dim);
+  for (Index i = 0; i < laws.nodes; ++i)
+    if (sets.tangent_at(i) == Tangent::slip)
+      x.segment(laws.tangent(i), laws.dim - 1) = laws.threshold[i] * sets.direction.col(i);
+  return x;
+}
+
+Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
+              const Vector &u, Vector x) {
+  for (Index k = 0; k < u.size(); ++k) {
+    const Unknown &unknown = list[at(k)];
+    const double value = u[k];
+    x[unknown.first] += unknown.a * value;
+    if (unknown.b != 0) x[unknown.second] += unknown.b * value;
+    if (unknown.slope > 0)
+      x.segment(laws.tangent(unknown.node), laws.dim - 1) +=
+          unknown.slope * value * sets.direction.col(unknown.node);
+  }
+  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i) {
+    auto tangential = x.segment(laws.tangent(i), 2);
+    const double bound = laws.bound(i, x[i]);
+    if (sets.tangent_at(i) == Tangent::slip && bound > 0 && tangential.norm() > 0)
+      tangential *= bound / tangential.norm();
+  }
+  return x;
+}
+
+Verdict judge(const Vector &diagonal, const Laws &laws, const Point &point, const ActiveSets &sets,
               double tolerance) {
-  return Judge(h, laws, point, sets, tolerance).all();
+  return Judge(diagonal, laws, point, sets, tolerance).all();
 }
 
 Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
                    Point &point) {
   for (const Index j : sets.support(laws))
     if (!(h.diagonal(j) > 0)) return Solved::indefinite;
-  const std::vector<Unknown> list = unknowns(h, laws, sets);
+  const std::vector<Unknown> list = unknowns(laws, sets);
+  const Vector unit = units(diagonal_of(h, q.size()), laws, list);
   Vector x = fixed_part(laws, sets);
   Vector start = q;
   for (Index j = laws.nodes; j < x.size(); ++j)
@@ -314,12 +314,13 @@ Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, cons
   bool symmetric = true;
   for (Index k = 0; k < right.size(); ++k) {
     const Unknown &u = list[at(k)];
-    right[k] = -u.unit * (u.a * start[u.first] + u.b * start[u.second]);
+    right[k] = -unit[k] * (u.a * start[u.first] + u.b * start[u.second]);
     symmetric = symmetric && u.slope == 0;
   }
   Vector u;
-  if (right.size() > 0) u = solve(assemble(h, laws, sets, list), right, symmetric);
+  if (right.size() > 0) u = solve(assemble(h, laws, sets, list, unit), right, symmetric);
   if (u.size() != right.size()) return symmetric ? Solved::indefinite : Solved::singular;
+  u.array() *= unit.array();
   point = evaluate(h, q, expand(laws, sets, list, u, std::move(x)));
   return Solved::yes;
 }

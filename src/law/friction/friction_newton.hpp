@@ -65,13 +65,33 @@ struct Verdict {
   double residual = 0;  ///< largest relative violation of the laws
 };
 
-/// `sets`: of the step that gave the point (they decide where the difference is below tolerance).
-Verdict judge(const LazyColumns &h, const Laws &laws, const Point &point, const ActiveSets &sets,
+/// `diagonal`: H_jj, or its size; 0: unknown, then so is x_j, but for its being zero. `sets`: of
+/// the step that gave the point (they decide where the difference is below tolerance).
+Verdict judge(const Vector &diagonal, const Laws &laws, const Point &point, const ActiveSets &sets,
               double tolerance);
+/// H_jj of the columns that are there, 0 elsewhere.
+Vector diagonal_of(const LazyColumns &h, Index size);
 /// The sets to judge a point by that no step gave.
 ActiveSets contact_sets(const Laws &laws, const Vector &x);
-/// The sets that y = x - w / H_jj tells; the columns of their support are asked for.
-ActiveSets predicted_sets(LazyColumns &h, const Laws &laws, const Vector &y);
+/// The sets that y = x - w / H_jj tells, but for their curvature.
+ActiveSets predicted_sets(const Laws &laws, const Vector &y);
+/// The curvature of sets that y predicts.
+void set_curvature(const Vector &diagonal, const Laws &laws, const Vector &y, ActiveSets &sets);
+
+/// An unknown of the linear system, and its row: a combination of at most two entries.
+struct Unknown {
+  Index node;
+  Index first, second;  ///< entries of x
+  double a = 1, b = 0;  ///< their factors
+  double slope = 0;     ///< x_tau grows by this times e with the normal unknown
+  double curvature = 0; ///< on the diagonal
+};
+std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets);
+/// The part of x that no unknown changes: the thresholds of the nodes that slip.
+Vector fixed_part(const Laws &laws, const ActiveSets &sets);
+/// x of the unknowns u, beside its fixed part `x`; slipping nodes on their circle.
+Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
+              const Vector &u, Vector x);
 
 /// With friction a singular matrix need not be a fault of H.
 enum class Solved { yes, singular, indefinite };

@@ -6,7 +6,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

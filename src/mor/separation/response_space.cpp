@@ -4,7 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/solve/methods.hpp"
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

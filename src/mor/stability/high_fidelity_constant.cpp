@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
-#include "rbvi/solve/whole.hpp"
+#include "rbvi/solve/linear/whole.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>

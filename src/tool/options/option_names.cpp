@@ -46,6 +46,7 @@ std::string advice(const std::string &name, std::vector<std::string> known) {
 const std::vector<SolverPrefix> &solver_objects() {
   static const std::vector<SolverPrefix> all{
       {"hf_", {"ksp_", "pc_", "mat_"}, "the stiffness A, but for Nitsche's method"},
+      {"hf_krylov_", {"ksp_"}, "-hf_contact eliminated: the systems of its sets"},
       {"v_", {"ksp_", "pc_", "mat_"}, "the V product: Riesz representers"},
       {"vi_", {"snes_", "ksp_", "pc_", "mat_"}, "-hf_method vi"},
       {"nitsche_", {"snes_", "ksp_", "pc_", "mat_"}, "Nitsche's method"},

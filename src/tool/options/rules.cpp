@@ -36,6 +36,9 @@ void check_formulation(const Scene &scene) {
   if (by_nitsche(scene) && is_given("hf_method"))
     throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
                     "-nitsche_snes_type");
+  if (by_nitsche(scene) && is_given("hf_contact"))
+    throw bad_input("-hf_contact is for the mixed formulation: Nitsche's method has no "
+                    "multipliers");
   if (by_nitsche(scene) && is_given("multiplier_reduction"))
     throw bad_input("-multiplier_reduction is for the mixed formulation: Nitsche's method has no "
                     "multipliers");
@@ -65,6 +68,8 @@ void check_rules(const ToolOptions &options) {
   check_mesh_options(options);
   check_formulation(options.scene);
   if (options.hf.method == HfMethod::vi) require_bounds_at_nodes(options.scene);
+  if (options.hf.method != HfMethod::active_set && is_given("hf_contact"))
+    throw bad_input("-hf_contact is for -hf_method active_set");
   if (reduce.enrichment == Enrichment::online && reduce.product == SupremizerProduct::energy)
     throw bad_input("-pga_enrichment online takes supremizers in the V product: leave out "
                     "-pga_product energy");

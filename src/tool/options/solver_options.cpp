@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <algorithm>

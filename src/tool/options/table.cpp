@@ -150,6 +150,13 @@ std::vector<Option> of_solvers() {
                       "SNES with its VI extension; with -lumped yes and without friction, as it "
                       "bounds single nodes"}),
              AT(hf.method), "high-fidelity solver"),
+      choice("hf_contact",
+             choices(hf_contact_names(),
+                     {"what an estimate from the sizes says takes less (-plan prints it)",
+                      "on the multipliers: columns of B A^-1 B^T, kept where A does not change",
+                      "on the displacement, each active constraint eliminating a dof; from "
+                      "coarser meshes where -mesh_refine gives them"}),
+             AT(hf.contact), "how active_set solves the linear systems of its sets"),
       number("contact_gather", {0, 1000000000}, AT(contact_gather),
              "multipliers of an interface up to which each rank evaluates all of it; of larger "
              "ones (not pairs) each evaluates its part"),

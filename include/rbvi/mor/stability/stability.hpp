@@ -13,7 +13,7 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/fem/trace.hpp"
 #include "rbvi/mor/bases/pod.hpp"
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-#include "local_frames.hpp"
+#include "rbvi/solve/linear/local_frames.hpp"
 
 #include "rbvi/element/lagrange.hpp"
 

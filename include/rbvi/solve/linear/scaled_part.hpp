@@ -12,7 +12,7 @@
 // (Woodbury's formula, diagonal in the basis V). Each kappa then costs two small products.
 #pragma once
 
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include "rbvi/problem/problem.hpp"
 

@@ -1,9 +1,9 @@
-#include "rbvi/solve/replicated.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/methods.hpp"
-#include "rbvi/solve/whole.hpp"
+#include "rbvi/solve/linear/linear.hpp"
+#include "rbvi/solve/linear/whole.hpp"
 
 #include <algorithm>
 

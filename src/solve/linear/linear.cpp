@@ -1,6 +1,6 @@
+#include "rbvi/solve/linear/linear.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
 
@@ -28,15 +28,6 @@ void solve_linear(KSP ksp, Vec rhs, Vec x) {
     throw failure(
         std::string("the linear solver stopped with ") + KSPConvergedReasons[reason] +
         ": is the stiffness matrix singular? Try -hf_pc_type lu or a tighter -hf_ksp_rtol");
-}
-
-Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda) {
-  Handle<Vec> rhs;
-  RBVI_CALL(VecDuplicate(op.f, rhs.put()));
-  RBVI_CALL(VecCopy(op.f, rhs.get()));
-  const Vector reaction = -(op.b.transpose() * lambda);
-  add_extension(trace, reaction, rhs.get());
-  return rhs;
 }
 
 } // namespace rbvi

@@ -1,4 +1,4 @@
-#include "rbvi/solve/scaled_part.hpp"
+#include "rbvi/solve/linear/scaled_part.hpp"
 
 #include "rbvi/core/error.hpp"
 

@@ -1,0 +1,73 @@
+// Contact by active sets with the constrained displacements eliminated: no column of B A^-1 B^T is
+// asked for. Each active constraint gives up one displacement dof of its node, its pivot; P are all
+// of them, N the other contact dofs:
+//
+//   C u = c,  C = R^T B    ->    u = Z v + u_0,   Z = [I; -C_P^-1 C_N],   u_0 = C_P^-1 c on P
+//   x = fixed + T y        ->    W^T A Z v = W^T (f - B^T fixed - A u_0),   W as Z, of T^T B
+//
+// C_P is sparse, close to a mass matrix of the active nodes. The equation is solved by conjugate
+// gradients (GMRES where a slip under Coulomb's law makes it unsymmetric), preconditioned by a
+// factorisation of A without the rows and columns of P, for two bodies of A with the slave's dofs
+// in P tied to the master's at single nodes. It stays while the sets change by little.
+//
+// Multipliers and B are on every rank, displacement dofs are distributed.
+#pragma once
+
+#include "rbvi/contact/elimination.hpp"
+#include "rbvi/solve/methods.hpp"
+
+namespace rbvi {
+
+class Eliminated {
+public:
+  /// `problem` must outlive it. Options of the factorisation under -hf_, of the iteration under
+  /// -hf_krylov_. Collective.
+  explicit Eliminated(const Problem &problem);
+
+  /// `start`: as FrictionResult::start, or empty. `accuracy`: of the systems, relative. Throws
+  /// failure, saying what to try, where one cannot be solved. Collective.
+  MethodResult solve(const Operators &op, const Vector &start, double accuracy = 1e-13);
+
+  int factorisations() const { return factorisations_; }
+  int krylov_steps() const { return krylov_steps_; }
+
+private:
+  SetSolution solve_system(const Operators &op, const SetSystem &system, double accuracy);
+  void drop_pivots(Mat a, const std::vector<PetscInt> &rows);
+  void tie_pivots(Mat a, const SparseMatrix &ties, const std::vector<PetscInt> &rows);
+  void precondition(const Operators &op, const Elimination &z, const std::vector<Index> &pivots);
+
+  const Problem &problem_;
+  const Trace &trace_;
+  ContactDofs dofs_;
+  std::vector<PetscInt> rows_; ///< of the contact dofs in A
+  Handle<KSP> factor_;
+  Handle<Mat> reduced_;         ///< what is factorised
+  std::vector<Index> factored_; ///< its pivots
+  bool of_another_a_ = true;    ///< or of none
+  int steps_of_last_ = 0;       ///< Krylov steps of the last system
+  int factorisations_ = 0, krylov_steps_ = 0;
+  Handle<Vec> u_;       ///< of the last system
+  double reaction_ = 0; ///< |B^T x| there
+};
+
+/// Eliminated on a mesh and on those that it was refined from. From the sets of the coarser mesh
+/// the finer one takes a few steps; from none as many as layers of cells between them and the
+/// answer.
+class GridSequence {
+public:
+  /// `problem` must outlive it. Collective.
+  explicit GridSequence(Problem &problem) : problem_(problem), on_this_(problem) {}
+  /// `op`: of the problem at mu. `start`: as above; empty: from the coarser meshes, where there are
+  /// any, first to a lower `accuracy`. Collective.
+  MethodResult solve(const Mu &mu, const Operators &op, const Vector &start,
+                     double accuracy = 1e-13);
+
+private:
+  Problem &problem_;
+  Eliminated on_this_;
+  std::unique_ptr<Problem> coarser_problem_;
+  std::unique_ptr<GridSequence> coarser_; ///< made when first wanted
+};
+
+} // namespace rbvi

@@ -1,0 +1,145 @@
+#include "rbvi/contact/elimination.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// The node of the first boundary, or region, with a free dof that is nearest to the point.
+Index nearest_node(const InterfaceMesh &mesh, const Point &x) {
+  Index nearest = -1;
+  double least = 0;
+  for (Index node = 0; node < mesh.nodes(); ++node) {
+    if (mesh.parts.size() > 1 && node >= mesh.parts.front()) break;
+    const auto first = mesh.dofs.begin() + node * mesh.components;
+    if (std::all_of(first, first + mesh.components, [](int dof) { return dof < 0; })) continue;
+    const Point &p = mesh.points[at(node)];
+    const double distance = std::hypot(p[0] - x[0], p[1] - x[1], p[2] - x[2]);
+    if (nearest >= 0 && distance >= least) continue;
+    nearest = node;
+    least = distance;
+  }
+  return nearest;
+}
+
+} // namespace
+
+ContactDofs contact_dofs(const Contact &contact) {
+  ContactDofs dofs;
+  const auto columns = at(contact.interfaces.front()->mesh().columns);
+  dofs.node.assign(columns, -1);
+  dofs.row_node.assign(at(contact.dual_size()), -1);
+  Index first_node = 0;
+  for (std::size_t k = 0; k < contact.interfaces.size(); ++k) {
+    const InterfaceMesh &mesh = contact.interfaces[k]->mesh();
+    const DualSpace &dual = contact.interfaces[k]->dual();
+    for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
+      if (mesh.dofs[i] < 0) continue;
+      const auto node = static_cast<Index>(i) / mesh.components;
+      dofs.node[at(mesh.dofs[i])] = first_node + node;
+    }
+    std::vector<Index> nodes = dual.vertices;
+    for (Index i = std::ssize(nodes); i < dual.nodes(); ++i)
+      nodes.push_back(nearest_node(mesh, dual.points[at(i)]));
+    for (Index row = contact.first_row[k]; row < contact.first_row[k + 1]; ++row)
+      dofs.row_node[at(row)] = first_node + nodes[at(dual_row(contact, row).node)];
+    first_node += mesh.nodes();
+  }
+  return dofs;
+}
+
+std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &system,
+                                 const SparseMatrix &c) {
+  std::vector<Index> pivots(at(c.rows()), -1), row_of(at(c.rows()), -1);
+  for (Index row = 0; row < system.r.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(system.r, row); entry; ++entry)
+      row_of[at(entry.col())] = row;
+  std::vector<char> taken(dofs.node.size(), 0);
+  for (Index k = 0; k < c.rows(); ++k) {
+    const Index node = dofs.row_node[at(row_of[at(k)])];
+    double largest = 0;
+    for (SparseMatrix::InnerIterator entry(c, k); entry; ++entry) {
+      const auto dof = at(entry.col());
+      if (dofs.node[dof] != node || taken[dof] || !(std::abs(entry.value()) > largest)) continue;
+      largest = std::abs(entry.value());
+      pivots[at(k)] = entry.col();
+    }
+    if (pivots[at(k)] < 0)
+      throw failure("an active constraint has no displacement of its own to eliminate: try "
+                    "-hf_contact condensed");
+    taken[at(pivots[at(k)])] = 1;
+  }
+  return pivots;
+}
+
+Elimination::Elimination(const SparseMatrix &c, const std::vector<Index> &pivots)
+    : pivots_(pivots), others_(c), lu_(std::make_unique<Lu>()) {
+  std::vector<Index> position(at(c.cols()), -1);
+  for (std::size_t k = 0; k < pivots.size(); ++k)
+    position[at(pivots[k])] = static_cast<Index>(k);
+  std::vector<Eigen::Triplet<double>> block;
+  others_.prune([&](Index row, Index column, double value) {
+    if (position[at(column)] >= 0)
+      block.emplace_back(static_cast<int>(row), static_cast<int>(position[at(column)]), value);
+    return position[at(column)] < 0;
+  });
+  Eigen::SparseMatrix<double> square(c.rows(), c.rows());
+  square.setFromTriplets(block.begin(), block.end());
+  if (c.rows() == 0) return;
+  lu_->compute(square);
+  if (lu_->info() != Eigen::Success)
+    throw failure("the active constraints depend on each other: try -hf_contact condensed");
+}
+
+Vector Elimination::pivot_values(const Vector &right, const Vector &v) const {
+  if (pivots_.empty()) return {};
+  return lu_->solve(Vector(right - others_ * v));
+}
+
+Vector Elimination::multipliers(const Vector &r) const {
+  if (pivots_.empty()) return {};
+  return lu_->transpose().solve(Vector(r(pivots_)));
+}
+
+Vector Elimination::reduced(const Vector &r) const {
+  Vector result = r;
+  if (pivots_.empty()) return result;
+  result -= others_.transpose() * multipliers(r);
+  result(pivots_).setZero();
+  return result;
+}
+
+SparseMatrix Elimination::ties() const {
+  constexpr double small = 1e-3;
+  constexpr Index at_a_time = 64;
+  const Eigen::SparseMatrix<double> columns = others_;
+  std::vector<Index> seen;
+  for (Index j = 0; j < columns.cols(); ++j)
+    if (columns.outerIndexPtr()[j] < columns.outerIndexPtr()[j + 1]) seen.push_back(j);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t first = 0; first < seen.size(); first += at(at_a_time)) {
+    const Index count = std::min(at_a_time, std::ssize(seen) - static_cast<Index>(first));
+    Matrix block(others_.rows(), count);
+    for (Index k = 0; k < count; ++k)
+      block.col(k) = columns.col(seen[first + at(k)]);
+    const Matrix tied = lu_->solve(block);
+    for (Index k = 0; k < count; ++k)
+      for (Index i = 0; i < tied.rows(); ++i)
+        if (std::abs(tied(i, k)) > small)
+          entries.emplace_back(static_cast<int>(pivots_[at(i)]),
+                               static_cast<int>(seen[first + at(k)]), -tied(i, k));
+  }
+  SparseMatrix result(others_.cols(), others_.cols());
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+} // namespace rbvi

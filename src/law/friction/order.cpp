@@ -1,0 +1,76 @@
+#include "order.hpp"
+
+namespace rbvi::friction {
+
+Order::Order(const NodeLaws &laws) : rows_(laws.rows) {
+  for (const Index row : laws.normal)
+    of_.push_back(row);
+  for (Index i = 0; i < laws.nodes() && laws.has_tangents(); ++i)
+    for (int k = 0; k < laws.tangents; ++k)
+      of_.push_back(laws.has_tangent(i) ? laws.tangent[at(i)] + k : -1);
+  same_ = size() == rows_;
+  for (Index j = 0; j < size(); ++j)
+    same_ = same_ && row(j) == j;
+}
+
+Matrix Order::inwards(const Matrix &values) const {
+  Matrix result = Matrix::Zero(size(), values.cols());
+  for (Index j = 0; j < size(); ++j)
+    if (row(j) >= 0) result.row(j) = values.row(row(j));
+  return result;
+}
+
+Vector Order::outwards(const Vector &values) const {
+  Vector result = Vector::Zero(values.size() > 0 ? rows_ : 0);
+  for (Index j = 0; j < size() && values.size() > 0; ++j)
+    if (row(j) >= 0) result[row(j)] = values[j];
+  return result;
+}
+
+ColumnSource Order::inwards(const ColumnSource &columns) const {
+  return [this, &columns](std::vector<Index> which) {
+    for (Index &j : which)
+      j = row(j);
+    return inwards(columns(which));
+  };
+}
+
+Laws laws_of(const NodeLaws &of) {
+  const Index nodes = of.nodes();
+  Laws laws{.nodes = nodes,
+            .dim = of.has_tangents() ? 1 + of.tangents : 1,
+            .coefficient = Vector(nodes),
+            .threshold = Vector(nodes),
+            .only_in_contact = std::vector<char>(at(nodes))};
+  for (Index i = 0; i < nodes; ++i) {
+    const FrictionBound bound = of.has_tangent(i) ? of.bound[at(i)] : FrictionBound{};
+    laws.coefficient[i] = bound.coefficient;
+    laws.threshold[i] = bound.threshold;
+    laws.only_in_contact[at(i)] = bound.only_in_contact;
+  }
+  return laws;
+}
+
+void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets) {
+  result.active.clear();
+  result.states.assign(at(laws.nodes), NodeState::open);
+  for (Index i = 0; i < laws.nodes; ++i) {
+    if (!(result.x[i] > 0)) continue;
+    result.active.push_back(i);
+    result.states[at(i)] =
+        sets.tangent_at(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
+  }
+}
+
+Vector smooth_start(const Vector &diagonal, const Laws &laws, const Point &point) {
+  Vector result = diagonal;
+  for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i)
+    result.segment(laws.tangent(i), 2).setConstant(result.segment(laws.tangent(i), 2).mean());
+  const Index known = (result.array() > 0).count();
+  const double mean = known > 0 ? result.sum() / static_cast<double>(known) : 1;
+  for (Index j = 0; j < result.size(); ++j)
+    result[j] = point.x[j] - point.w[j] / (result[j] > 0 ? result[j] : mean);
+  return result;
+}
+
+} // namespace rbvi::friction

@@ -1,0 +1,324 @@
+#include "rbvi/solve/eliminated.hpp"
+
+#include "rbvi/contact/transfer.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/linear/vectors.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace rbvi {
+
+namespace {
+
+constexpr int steps_worth_a_factorisation = 40;
+constexpr int most_krylov_steps = 1000;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// values on the pivots, zero on the other contact dofs.
+Vector on_pivots(Index size, const std::vector<Index> &pivots, const Vector &values) {
+  Vector result = Vector::Zero(size);
+  if (!pivots.empty()) result(pivots) = values;
+  return result;
+}
+
+void clear_pivots(const Trace &pivot_trace, Vec v) {
+  LocalValues values(v);
+  for (const PetscInt row : pivot_trace.local_row)
+    values.get()[row] = 0;
+}
+
+/// W^T A Z and its preconditioner, for PETSc.
+struct ReducedSystem {
+  const Trace &trace;
+  Mat a;
+  const Elimination &z, &w;
+  const std::vector<Index> &pivots;
+  Trace pivot_trace;
+  KSP factor;
+  Handle<Vec> scratch;
+
+  /// v + what the constraints without right-hand side say of the pivots, where v is zero.
+  void extend(Vec v) const {
+    if (pivots.empty()) return;
+    const Vector zero = Vector::Zero(std::ssize(pivots));
+    const Vector values = z.pivot_values(zero, restrict_to(trace, v));
+    add_extension(trace, on_pivots(trace.size, pivots, values), v);
+  }
+  /// W^T r, zero at the pivots.
+  void reduce(Vec r) const {
+    if (pivots.empty()) return;
+    const Vector before = restrict_to(trace, r);
+    add_extension(trace, w.reduced(before) - before, r);
+    clear_pivots(pivot_trace, r);
+  }
+};
+
+template <class Call> PetscErrorCode reported(MPI_Comm comm, Call &&call) {
+  try {
+    call();
+  } catch (const std::exception &error) {
+    SETERRQ(comm, PETSC_ERR_LIB, "%s", error.what());
+  }
+  return 0;
+}
+
+PetscErrorCode apply_system(Mat shell, Vec v, Vec result) {
+  ReducedSystem *system = nullptr;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(shell, &system));
+  PetscCall(reported(PETSC_COMM_SELF, [&] {
+    RBVI_CALL(VecCopy(v, system->scratch.get()));
+    system->extend(system->scratch.get());
+    RBVI_CALL(MatMult(system->a, system->scratch.get(), result));
+    system->reduce(result);
+  }));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode apply_preconditioner(PC pc, Vec r, Vec result) {
+  ReducedSystem *system = nullptr;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &system));
+  PetscCall(reported(PETSC_COMM_SELF, [&] {
+    solve_linear(system->factor, r, result);
+    clear_pivots(system->pivot_trace, result);
+  }));
+  PetscFunctionReturn(0);
+}
+
+/// How a reduced system is solved.
+struct Krylov {
+  bool symmetric;
+  double relative, absolute; ///< residual: to that of zero, or itself
+  int most_steps;
+};
+
+/// Solves for `v`, from where it is. Returns the steps; most_steps + 1 if they did not suffice.
+int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
+  const MPI_Comm comm = system.trace.comm;
+  PetscInt local = 0;
+  RBVI_CALL(VecGetLocalSize(v, &local));
+  Handle<Mat> shell;
+  RBVI_CALL(
+      MatCreateShell(comm, local, local, PETSC_DETERMINE, PETSC_DETERMINE, &system, shell.put()));
+  RBVI_CALL(
+      MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply_system)));
+  Handle<KSP> ksp;
+  PC pc = nullptr;
+  RBVI_CALL(KSPCreate(comm, ksp.put()));
+  RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), "hf_krylov_"));
+  RBVI_CALL(KSPSetType(ksp.get(), how.symmetric ? KSPCG : KSPGMRES));
+  if (!how.symmetric) RBVI_CALL(KSPGMRESSetRestart(ksp.get(), 100));
+  RBVI_CALL(KSPSetNormType(ksp.get(), KSP_NORM_UNPRECONDITIONED));
+  if (!how.symmetric) RBVI_CALL(KSPSetPCSide(ksp.get(), PC_RIGHT));
+  RBVI_CALL(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
+  RBVI_CALL(KSPSetTolerances(ksp.get(), how.relative, how.absolute, PETSC_DEFAULT, how.most_steps));
+  RBVI_CALL(KSPSetInitialGuessNonzero(ksp.get(), PETSC_TRUE));
+  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  RBVI_CALL(PCSetType(pc, PCSHELL));
+  RBVI_CALL(PCShellSetContext(pc, &system));
+  RBVI_CALL(PCShellSetApply(pc, apply_preconditioner));
+  RBVI_CALL(KSPSetFromOptions(ksp.get()));
+  RBVI_CALL(KSPSolve(ksp.get(), right, v));
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt steps = 0;
+  RBVI_CALL(KSPGetConvergedReason(ksp.get(), &reason));
+  RBVI_CALL(KSPGetIterationNumber(ksp.get(), &steps));
+  if (reason == KSP_DIVERGED_ITS) return how.most_steps + 1;
+  if (reason < 0)
+    throw failure(std::string("the system of the active set was not solved (") +
+                  KSPConvergedReasons[reason] + ", " + std::to_string(steps) +
+                  " steps): try -hf_contact condensed");
+  return static_cast<int>(steps);
+}
+
+void assemble(Mat matrix) {
+  RBVI_CALL(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  RBVI_CALL(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+}
+
+/// T^T B, or R^T B.
+SparseMatrix rows_of(const SparseMatrix &combination, const SparseMatrix &b) {
+  return SparseMatrix(combination.transpose()) * b;
+}
+
+} // namespace
+
+Eliminated::Eliminated(const Problem &problem)
+    : problem_(problem), trace_(problem.trace()), dofs_(contact_dofs(problem.contact())),
+      factor_(make_direct_solver(problem.comm(), "hf_")) {
+  rows_ = global_rows(trace_, problem.dofs().first_free);
+}
+
+/// A without the rows and columns of the pivots, ones on their diagonal.
+void Eliminated::drop_pivots(Mat a, const std::vector<PetscInt> &rows) {
+  if (!reduced_) {
+    RBVI_CALL(MatDuplicate(a, MAT_COPY_VALUES, reduced_.put()));
+    RBVI_CALL(MatSetOption(reduced_.get(), MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  } else {
+    RBVI_CALL(MatCopy(a, reduced_.get(), SAME_NONZERO_PATTERN));
+  }
+  RBVI_CALL(MatZeroRowsColumns(reduced_.get(), static_cast<PetscInt>(rows.size()), rows.data(), 1,
+                               nullptr, nullptr));
+}
+
+/// The same with the pivots tied to other contact dofs.
+void Eliminated::tie_pivots(Mat a, const SparseMatrix &ties, const std::vector<PetscInt> &rows) {
+  const PetscInt first = problem_.dofs().first_free;
+  PetscInt local = 0;
+  RBVI_CALL(MatGetLocalSize(a, &local, nullptr));
+  Handle<Mat> tied;
+  RBVI_CALL(MatCreateAIJ(trace_.comm, local, local, PETSC_DETERMINE, PETSC_DETERMINE, 64, nullptr,
+                         64, nullptr, tied.put()));
+  RBVI_CALL(MatSetOption(tied.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  for (PetscInt row = first; row < first + local; ++row)
+    RBVI_CALL(MatSetValue(tied.get(), row, row, 1, INSERT_VALUES));
+  for (const PetscInt row : rows)
+    RBVI_CALL(MatSetValue(tied.get(), row, row, 0, INSERT_VALUES));
+  for (std::size_t k = 0; k < trace_.index.size(); ++k)
+    for (SparseMatrix::InnerIterator entry(ties, trace_.index[k]); entry; ++entry)
+      RBVI_CALL(MatSetValue(tied.get(), first + trace_.local_row[k], rows_[at(entry.col())],
+                            entry.value(), INSERT_VALUES));
+  assemble(tied.get());
+  RBVI_CALL(MatPtAP(a, tied.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, reduced_.put()));
+}
+
+/// Factorises A without the pivots, or with them tied.
+void Eliminated::precondition(const Operators &op, const Elimination &z,
+                              const std::vector<Index> &pivots) {
+  const Trace pivot_trace = part_of(trace_, pivots);
+  std::vector<PetscInt> rows;
+  for (const PetscInt row : pivot_trace.local_row)
+    rows.push_back(problem_.dofs().first_free + row);
+  const bool vectors = problem_.scene().components > 1;
+  const SparseMatrix ties = vectors && !pivots.empty() ? z.ties() : SparseMatrix();
+  if (ties.nonZeros() == 0)
+    drop_pivots(op.a, rows);
+  else
+    tie_pivots(op.a, ties, rows);
+  // A pivot that is let go before the next factorisation is preconditioned by its own entry of A.
+  const Handle<Vec> diagonal = like(op.f);
+  RBVI_CALL(MatGetDiagonal(op.a, diagonal.get()));
+  LocalValues of_a(diagonal.get());
+  for (const PetscInt row : pivot_trace.local_row)
+    RBVI_CALL(MatSetValue(reduced_.get(), problem_.dofs().first_free + row,
+                          problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
+  assemble(reduced_.get());
+  RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
+  RBVI_CALL(KSPSetOperators(factor_.get(), reduced_.get(), reduced_.get()));
+  RBVI_CALL(KSPSetUp(factor_.get()));
+  factored_ = pivots;
+  of_another_a_ = false;
+  ++factorisations_;
+}
+
+SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &system,
+                                     double accuracy) {
+  const SparseMatrix c = rows_of(system.r, op.b);
+  const std::vector<Index> pivots = choose_pivots(dofs_, system, c);
+  const Elimination z(c, pivots);
+  std::optional<Elimination> unsymmetric;
+  if (!system.symmetric) unsymmetric.emplace(rows_of(system.t, op.b), pivots);
+  const Elimination &w = unsymmetric ? *unsymmetric : z;
+  if (of_another_a_) precondition(op, z, pivots);
+  ReducedSystem reduced{trace_,        op.a,      z, w, pivots, part_of(trace_, pivots),
+                        factor_.get(), like(op.f)};
+
+  // force = f - B^T fixed;  right = W^T (force - A u_0).
+  const Handle<Vec> force = reaction_rhs(trace_, op, system.fixed), right = like(op.f);
+  Handle<Vec> u_0 = like(op.f);
+  RBVI_CALL(VecZeroEntries(u_0.get()));
+  const Vector constraint = SparseMatrix(system.r.transpose()) * op.g;
+  if (!pivots.empty())
+    add_extension(trace_, on_pivots(trace_.size, pivots, z.pivot_values(constraint)), u_0.get());
+  RBVI_CALL(MatMult(op.a, u_0.get(), right.get()));
+  RBVI_CALL(VecAYPX(right.get(), -1, force.get()));
+  reduced.reduce(right.get());
+
+  clear_pivots(reduced.pivot_trace, u_.get());
+  // Relative to the forces; those of the last sets are the best guess.
+  const double forces = norm(op.f) + reaction_;
+  Krylov how{system.symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
+             steps_worth_a_factorisation};
+  steps_of_last_ = solve_reduced(reduced, how, right.get(), u_.get());
+  if (steps_of_last_ > how.most_steps) {
+    krylov_steps_ += how.most_steps;
+    if (pivots != factored_) precondition(op, z, pivots);
+    how.most_steps = most_krylov_steps;
+    steps_of_last_ = solve_reduced(reduced, how, right.get(), u_.get());
+    if (steps_of_last_ > how.most_steps)
+      throw failure("the system of the active set was not solved in " +
+                    std::to_string(how.most_steps) + " steps: try -hf_contact condensed");
+  }
+  krylov_steps_ += steps_of_last_;
+  reduced.extend(u_.get());
+  RBVI_CALL(VecAXPY(u_.get(), 1, u_0.get()));
+
+  const Handle<Vec> residual = like(op.f);
+  RBVI_CALL(MatMult(op.a, u_.get(), residual.get()));
+  RBVI_CALL(VecAYPX(residual.get(), -1, force.get()));
+  const Vector u = restrict_to(trace_, u_.get());
+  SetSolution found;
+  found.x = system.fixed;
+  if (!pivots.empty()) found.x += system.t * w.multipliers(restrict_to(trace_, residual.get()));
+  reaction_ = (op.b.transpose() * found.x).norm();
+  found.w = op.g - op.b * u;
+  found.terms = op.g.cwiseAbs() + op.b.cwiseAbs() * u.cwiseAbs();
+  return found;
+}
+
+MethodResult Eliminated::solve(const Operators &op, const Vector &start, double accuracy) {
+  const Handle<Vec> a_diagonal = like(op.f);
+  RBVI_CALL(MatGetDiagonal(op.a, a_diagonal.get()));
+  const Vector stiffness = restrict_to(trace_, a_diagonal.get());
+  Vector diagonal = op.b.cwiseProduct(op.b) * stiffness.cwiseInverse();
+  const double mean = diagonal.mean();
+  for (double &value : diagonal)
+    if (!(value > 0)) value = mean;
+
+  if (!constant_stiffness(problem_.scene())) of_another_a_ = true;
+  if (!u_) {
+    u_ = like(op.f);
+    RBVI_CALL(VecZeroEntries(u_.get()));
+  }
+  const SetSolver solver = [&](const SetSystem &system, double of_system) {
+    return solve_system(op, system, of_system);
+  };
+  FrictionResult found = solve_by_sets(solver, diagonal, op.laws, start, {.tolerance = accuracy});
+  MethodResult result;
+  result.u = like(op.f);
+  RBVI_CALL(VecCopy(u_.get(), result.u.get()));
+  result.lambda = std::move(found.x);
+  result.start = std::move(found.start);
+  result.active = std::move(found.active);
+  result.iterations = found.iterations;
+  result.converged = found.converged;
+  result.reason = found.converged ? found.reason + ", " + std::to_string(factorisations_) +
+                                        " factorisations and " + std::to_string(krylov_steps_) +
+                                        " Krylov steps so far"
+                                  : found.reason + ": try -hf_contact condensed, or a start closer "
+                                                   "to the solution";
+  return result;
+}
+
+MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector &start,
+                                 double accuracy) {
+  constexpr double enough_to_start = 1e-8;
+  if (start.size() > 0) return on_this_.solve(op, start, accuracy);
+  if (!coarser_) {
+    coarser_problem_ = problem_.coarser();
+    if (!coarser_problem_) return on_this_.solve(op, {}, accuracy);
+    coarser_ = std::make_unique<GridSequence>(*coarser_problem_);
+  }
+  const Operators &on_coarser = coarser_problem_->assemble(mu);
+  const MethodResult rough = coarser_->solve(mu, on_coarser, {}, enough_to_start);
+  if (!rough.converged) return on_this_.solve(op, {}, accuracy);
+  return on_this_.solve(
+      op, transferred(coarser_problem_->contact(), problem_.contact(), rough.start), accuracy);
+}
+
+} // namespace rbvi

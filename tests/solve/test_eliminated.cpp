@@ -1,0 +1,119 @@
+// Contact by eliminated displacements is contact by condensed multipliers.
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/contact_cost.hpp"
+#include "rbvi/solve/eliminated.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi {
+namespace {
+
+using SceneValues = std::map<std::string, std::string>;
+
+void expect_equal(const HfSolution &found, const HfSolution &expected) {
+  EXPECT_LE((found.u - expected.u).norm(), 1e-10 * expected.u.norm());
+  EXPECT_LE((found.lambda - expected.lambda).norm(), 1e-9 * expected.lambda.norm());
+  EXPECT_EQ(found.active, expected.active);
+  EXPECT_LE(found.kkt.largest(), 1e-10);
+  for (const auto member : {&Outputs::energy, &Outputs::normal_force, &Outputs::contact_measure,
+                            &Outputs::peak_pressure})
+    EXPECT_NEAR(*(found.outputs.*member), *(expected.outputs.*member),
+                1e-10 * (1 + std::abs(*(expected.outputs.*member))));
+}
+
+/// The second parameter from the sets, and with the factors, of the first.
+void expect_agreement(const std::string &name, const SceneValues &values,
+                      const std::vector<Mu> &set, int refine = 0) {
+  SCOPED_TRACE(name + (values.empty() ? "" : " " + values.begin()->second));
+  Problem problem(PETSC_COMM_WORLD, make_scene(name, values), {"", refine});
+  HfOptions condensed, eliminated;
+  condensed.contact = HfContact::condensed;
+  eliminated.contact = HfContact::eliminated;
+  HighFidelity one(problem, condensed), other(problem, eliminated);
+  for (const Mu &mu : set) {
+    const HfSolution expected = one.solve(mu);
+    expect_equal(other.solve(mu), expected);
+  }
+}
+
+TEST(Eliminated, AgreesOnObstacles) {
+  const std::vector<Mu> set{{0.17, -0.03, 0.05}, {0.22, 0.02, 0.01}};
+  for (const std::string lumped : {"yes", "no"})
+    for (const int refine : {0, 1})
+      expect_agreement("membrane_obstacle", {{"lumped", lumped}}, set, refine);
+}
+
+TEST(Eliminated, AgreesOnSupportsUnderEveryLaw) {
+  for (const std::string friction : {"none", "tresca", "coulomb"})
+    expect_agreement("rigid_disk", {{"friction", friction}}, {{0.9}, {1.2}});
+  expect_agreement("rigid_disk", {{"friction", "coulomb"}}, {{0.9}, {1.2}}, 1);
+}
+
+TEST(Eliminated, AgreesOnTwoBodies) {
+  for (const std::string degree : {"1", "2"})
+    for (const std::string multiplier : {"p0", "p1"})
+      expect_agreement("two_disks", {{"degree", degree}, {"multiplier", multiplier}},
+                       {{0.9}, {1.3}});
+  expect_agreement("two_disks", {}, {{1.1}}, 1);
+}
+
+TEST(Eliminated, AgreesOnTwoInterfaces) {
+  expect_agreement("roller", {}, {{0.03, 0.1}, {0.04, -0.05}});
+  expect_agreement("roller", {{"friction", "none"}, {"lumped", "yes"}}, {{0.02, 0.01}});
+}
+
+TEST(Eliminated, TakesFewStepsFromACoarserMesh) {
+  for (const std::string name : {"membrane_obstacle", "two_disks"}) {
+    const Mu mu = name == "two_disks" ? Mu{1} : Mu{0.2, 0, 0};
+    HfOptions options;
+    options.contact = HfContact::eliminated;
+    Problem fine(PETSC_COMM_WORLD, make_scene(name), {"", 1});
+    EXPECT_LE(HighFidelity(fine, options).solve(mu).iterations, 5);
+    Problem coarse(PETSC_COMM_WORLD, make_scene(name), {"", 0});
+    EXPECT_GE(HighFidelity(coarse, options).solve(mu).iterations, 8);
+  }
+}
+
+TEST(Eliminated, KeepsItsFactorsWhileSetsChangeLittle) {
+  Problem problem(PETSC_COMM_WORLD, make_scene("two_disks"), {});
+  Eliminated solver(problem);
+  (void)solver.solve(problem.assemble({1.0}), {});
+  const int cold = solver.factorisations();
+  const MethodResult first = solver.solve(problem.assemble({1.0}), {});
+  const MethodResult next = solver.solve(problem.assemble({1.001}), first.start);
+  EXPECT_TRUE(next.converged);
+  EXPECT_LE(solver.factorisations(), cold + 2);
+  EXPECT_LE(next.iterations, 4);
+}
+
+TEST(ContactCost, ChoosesTheCheaperOne) {
+  const auto chosen = [](const std::string &name, int refine, int samples) {
+    Problem problem(PETSC_COMM_WORLD, make_scene(name), {"", refine});
+    HfOptions options;
+    options.samples = samples;
+    return eliminates(problem, options);
+  };
+  // At the default sizes, and where the columns are kept for a sweep, columns.
+  for (const std::string name : {"membrane_obstacle", "two_disks", "rigid_disk", "roller"})
+    for (const int samples : {1, 20})
+      EXPECT_FALSE(chosen(name, 0, samples)) << name;
+  EXPECT_FALSE(chosen("two_disks", 1, 20));
+  EXPECT_TRUE(chosen("two_disks", 1, 1));
+  EXPECT_TRUE(chosen("membrane_obstacle", 1, 1));
+  EXPECT_TRUE(chosen("membrane_obstacle", 1, 20));
+}
+
+TEST(ContactCost, DoesAsItIsTold) {
+  Problem problem(PETSC_COMM_WORLD, make_scene("two_disks"), {});
+  HfOptions options;
+  options.contact = HfContact::eliminated;
+  EXPECT_TRUE(eliminates(problem, options));
+  options.method = HfMethod::uzawa;
+  EXPECT_FALSE(eliminates(problem, options));
+  Problem large(PETSC_COMM_WORLD, make_scene("rigid_disk", {{"kinematics", "large"}}), {});
+  options.method = HfMethod::active_set;
+  EXPECT_THROW(HighFidelity(large, options), Error);
+}
+
+} // namespace
+} // namespace rbvi
