@@ -71,9 +71,8 @@ void stabilise(Problem &problem, const std::vector<Mu> &training, ReducedBases &
     supremizers.push_back(supremizers_at(problem, riesz, dual, {{training[p]}}).front());
   });
   bases.pga = projected_greedy(problem.comm(), riesz, modes, std::move(supremizers), {});
-  const Handle<Mat> fields = representer_fields(riesz, bases.pga.representers);
-  bases.supremizers =
-      static_cast<int>(append_orthonormalised(bases.pod.basis, fields.get(), 1e-10).size());
+  bases.supremizers = static_cast<int>(
+      append_representers(riesz, bases.pga.representers, bases.pod.basis, 1e-10).size());
 
   Operators op;
   problem.assemble_contact(training.front(), op);

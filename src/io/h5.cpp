@@ -1,28 +1,21 @@
 #include "rbvi/io/h5.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/io/checksum.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "seal.hpp"
 
+#include <array>
 #include <atomic>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <hdf5.h>
-#include <sstream>
 
 namespace rbvi {
 
 namespace {
 
 using Path = std::filesystem::path;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-constexpr std::size_t block_size = 512;
-constexpr std::size_t kind_at = 8, kind_size = 32, schema_at = 40, length_at = 48, payload_at = 56,
-                      header_at = 64, header_end = 72;
-const std::string magic = "rbvi\r\n\x1a\n";
 const std::string hdf5_signature = "\x89HDF\r\n\x1a\n";
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Owns one HDF5 identifier.
 class Id {
@@ -50,78 +43,6 @@ void silence_hdf5() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-void put(std::string &block, std::size_t at, std::uint64_t value) {
-  for (std::size_t i = 0; i < 8; ++i)
-    block[at + i] = static_cast<char>((value >> (8 * i)) & 0xffU);
-}
-
-std::uint64_t get(const std::string &block, std::size_t at) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < 8; ++i)
-    value |= static_cast<std::uint64_t>(static_cast<unsigned char>(block[at + i])) << (8 * i);
-  return value;
-}
-
-std::string kind_field(const std::string &kind) {
-  if (kind.empty() || kind.size() >= kind_size) throw failure("file kind '" + kind + "' too long");
-  return kind + std::string(kind_size - kind.size(), '\0');
-}
-
-std::string seal(const std::string &payload, const std::string &kind, int schema) {
-  std::string block(block_size, '\0');
-  block.replace(0, magic.size(), magic);
-  block.replace(kind_at, kind_size, kind_field(kind));
-  put(block, schema_at, static_cast<std::uint64_t>(schema));
-  put(block, length_at, block_size + payload.size());
-  put(block, payload_at, fnv1a(payload.data(), payload.size()));
-  put(block, header_at, fnv1a(block.data(), header_at));
-  return block + payload;
-}
-
-void verify_seal(const std::string &bytes, const std::string &name, const std::string &kind,
-                 int schema) {
-  const std::string start = bytes.substr(0, magic.size());
-  if (start.empty()) throw DamagedFile(name + " is empty");
-  if (start == hdf5_signature)
-    throw DamagedFile(name + " is an HDF5 file, but not one written by rbvi");
-  if (start != magic.substr(0, start.size())) throw DamagedFile(name + " is not an rbvi file");
-  const auto truncated = [&](const std::string &full) {
-    return DamagedFile(name + " is truncated: " + std::to_string(bytes.size()) + " of " + full +
-                           " bytes",
-                       "; copy or make it again");
-  };
-  if (bytes.size() < block_size) throw truncated("at least " + std::to_string(block_size));
-  const auto damaged =
-      DamagedFile(name + " is damaged (its checksum does not match)", "; copy or make it again");
-  const bool rest_is_zero =
-      bytes.find_first_not_of('\0', header_end) >= std::min(block_size, bytes.size());
-  if (get(bytes, header_at) != fnv1a(bytes.data(), header_at) || !rest_is_zero) throw damaged;
-  const std::uint64_t length = get(bytes, length_at);
-  if (bytes.size() < length) throw truncated(std::to_string(length));
-  if (bytes.size() > length) throw damaged;
-  if (get(bytes, payload_at) != fnv1a(bytes.data() + block_size, bytes.size() - block_size))
-    throw damaged;
-  if (bytes.compare(kind_at, kind_size, kind_field(kind)) != 0)
-    throw DamagedFile(name + " is a " + std::string(bytes.c_str() + kind_at) + " file, not a " +
-                      kind + " file");
-  if (get(bytes, schema_at) != static_cast<std::uint64_t>(schema))
-    throw OtherVersion(name + " has schema version " + std::to_string(get(bytes, schema_at)) +
-                       "; this build reads version " + std::to_string(schema) + ": make it again");
-}
-
-std::string read_whole(const Path &path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw bad_input(path.string() + " does not exist");
-  if (std::filesystem::is_directory(path, ignored))
-    throw DamagedFile(path.string() + " is a directory, not an rbvi file");
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  const bool empty = in && in.peek() == EOF && !in.bad();
-  if (!empty && !(bytes << in.rdbuf()))
-    throw DamagedFile(path.string() + " cannot be read: " + std::strerror(errno));
-  return bytes.str();
-}
-
 Id text_type() {
   Id type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), H5T_VARIABLE);
@@ -135,6 +56,13 @@ std::string unused_name() {
   return "rbvi-" + std::to_string(count++);
 }
 
+/// Without locks, which not every file system has: files of ours are never changed.
+Id disk_access() {
+  Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access.get(), false, true);
+  return access;
+}
+
 Id memory_access() {
   Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false);
@@ -144,22 +72,34 @@ Id memory_access() {
 } // namespace
 
 struct H5Writer::Impl {
+  std::unique_ptr<AtomicFile> disk; ///< null: in memory
   Id file;
 
-  /// An empty `shape` is a scalar.
-  void write(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk, hid_t memory,
-             const void *data) const {
+  void create(const char *name, hid_t access) {
+    const Id properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    H5Pset_userblock(properties.get(), seal_size);
+    file = Id(H5Fcreate(name, H5F_ACC_TRUNC, properties.get(), access), H5Fclose);
+    if (file.get() < 0) throw failure("HDF5 cannot make a file");
+  }
+
+  /// A new data set; an empty `shape` is a scalar.
+  Id make(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk_type) const {
     const Id space(shape.empty()
                        ? H5Screate(H5S_SCALAR)
                        : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                    H5Sclose);
     const Id link(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(link.get(), 1);
-    const Id create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(create.get(), false);
-    const Id set(H5Dcreate2(file.get(), name.c_str(), disk, space.get(), link.get(), create.get(),
-                            H5P_DEFAULT),
-                 H5Dclose);
+    const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(properties.get(), false);
+    return {H5Dcreate2(file.get(), name.c_str(), disk_type, space.get(), link.get(),
+                       properties.get(), H5P_DEFAULT),
+            H5Dclose};
+  }
+
+  void write(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk_type,
+             hid_t memory, const void *data) const {
+    const Id set = make(name, shape, disk_type);
     // HDF5 wants an address even where there is nothing to write.
     const double nothing = 0;
     if (set.get() < 0 || H5Dwrite(set.get(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -170,12 +110,13 @@ struct H5Writer::Impl {
 
 H5Writer::H5Writer() : impl_(std::make_unique<Impl>()) {
   silence_hdf5();
-  const Id create(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-  H5Pset_userblock(create.get(), block_size);
-  const Id access = memory_access();
-  impl_->file =
-      Id(H5Fcreate(unused_name().c_str(), H5F_ACC_TRUNC, create.get(), access.get()), H5Fclose);
-  if (impl_->file.get() < 0) throw failure("HDF5 cannot make a file in memory");
+  impl_->create(unused_name().c_str(), memory_access().get());
+}
+
+H5Writer::H5Writer(const Path &path) : impl_(std::make_unique<Impl>()) {
+  silence_hdf5();
+  impl_->disk = std::make_unique<AtomicFile>(path);
+  impl_->create(impl_->disk->temporary().c_str(), disk_access().get());
 }
 
 H5Writer::~H5Writer() = default;
@@ -186,6 +127,26 @@ void H5Writer::write(const std::string &name, const Matrix &value) {
   const RowMajor rows = value;
   impl_->write(name, {static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())},
                H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rows.data());
+}
+
+void H5Writer::create_rows(const std::string &name, Index rows, Index columns) {
+  const std::vector<hsize_t> shape{static_cast<hsize_t>(rows), static_cast<hsize_t>(columns)};
+  const Id set = impl_->make(name, shape, H5T_IEEE_F64LE);
+  if (set.get() < 0) throw failure("HDF5 cannot make the data set '" + name + "'");
+}
+
+void H5Writer::write_rows(const std::string &name, Index first, const Matrix &value) {
+  const RowMajor rows = value;
+  const std::array<hsize_t, 2> start{static_cast<hsize_t>(first), 0},
+      count{static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())};
+  const Id set(H5Dopen2(impl_->file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+  const Id space(H5Dget_space(set.get()), H5Sclose);
+  const Id memory(H5Screate_simple(2, count.data(), nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                          nullptr) < 0 ||
+      H5Dwrite(set.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, rows.data()) <
+          0)
+    throw failure("HDF5 cannot write the data set '" + name + "' (is the disk full?)");
 }
 
 void H5Writer::write(const std::string &name, const Vector &value) {
@@ -225,16 +186,24 @@ void H5Writer::write(const std::string &name, int value) {
 
 void H5Writer::commit(const Path &path, const std::string &kind, int schema) {
   const hid_t file = impl_->file.get();
-  const ssize_t size =
-      H5Fflush(file, H5F_SCOPE_GLOBAL) < 0 ? -1 : H5Fget_file_image(file, nullptr, 0);
-  if (size < 0) throw failure("HDF5 cannot hand out the image of " + path.string());
-  std::string image(static_cast<std::size_t>(size), '\0');
-  H5Fget_file_image(file, image.data(), image.size());
-  // HDF5 1.10 leaves the user block out of the image; it is not documented whether others do.
-  const std::size_t start = image.find(hdf5_signature);
-  if (start != 0 && start != block_size)
-    throw failure("HDF5 handed out an image without its signature for " + path.string());
-  write_atomically(path, seal(image.substr(start), kind, schema));
+  if (H5Fflush(file, H5F_SCOPE_GLOBAL) < 0)
+    throw failure("HDF5 cannot write " + path.string() + " (is the disk full?)");
+  if (!impl_->disk) {
+    const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+    if (size < 0) throw failure("HDF5 cannot hand out the image of " + path.string());
+    std::string image(static_cast<std::size_t>(size), '\0');
+    H5Fget_file_image(file, image.data(), image.size());
+    // HDF5 1.10 leaves the user block out of the image; it is not documented whether others do.
+    const std::size_t start = image.find(hdf5_signature);
+    if (start != 0 && start != seal_size)
+      throw failure("HDF5 handed out an image without its signature for " + path.string());
+    impl_->disk = std::make_unique<AtomicFile>(path);
+    if (start == 0) impl_->disk->append(std::string(seal_size, '\0'));
+    impl_->disk->append(image);
+  }
+  impl_->file = Id();
+  seal(impl_->disk->temporary(), kind, schema);
+  impl_->disk->commit();
 }
 
 struct H5Reader::Impl {
@@ -311,12 +280,9 @@ std::string take(char *text) {
 H5Reader::H5Reader(const Path &path, const std::string &kind, int schema)
     : impl_(std::make_unique<Impl>()) {
   silence_hdf5();
-  std::string bytes = read_whole(path);
-  verify_seal(bytes, path.string(), kind, schema);
-  const Id access = memory_access();
-  H5Pset_file_image(access.get(), bytes.data(), bytes.size());
+  verify_seal(path, kind, schema);
   impl_->path = path.string();
-  impl_->file = Id(H5Fopen(unused_name().c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  impl_->file = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, disk_access().get()), H5Fclose);
   if (impl_->file.get() < 0)
     throw bad_input(path.string() + ": this version of HDF5 cannot read it");
 }

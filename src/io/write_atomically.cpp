@@ -4,6 +4,7 @@
 #include "rbvi/io/temporary_files.hpp"
 
 #include <cerrno>
+#include <condition_variable>
 #include <cstring>
 #include <fcntl.h>
 #include <mutex>
@@ -16,8 +17,24 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Held from the first byte of a file to its name.
-std::timed_mutex writing;
+/// The files that are being written, from the first byte to the name.
+struct Writing {
+  std::mutex mutex;
+  std::condition_variable changed;
+  int files = 0;
+  bool stopped = false;
+
+  void begin() {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return !stopped; }); // the process ends with it
+    ++files;
+  }
+  void end() {
+    const std::lock_guard lock(mutex);
+    --files;
+    changed.notify_all();
+  }
+} writing;
 
 Error cannot_write(const Path &path) {
   const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
@@ -25,23 +42,20 @@ Error cannot_write(const Path &path) {
                  (full ? "; make room and start the same command again" : ""));
 }
 
-/// An open file descriptor; the name is removed unless `keep` was called.
+/// An open file descriptor.
 class Output {
 public:
-  Output(int descriptor, Path remove) : descriptor_(descriptor), remove_(std::move(remove)) {}
+  explicit Output(int descriptor) : descriptor_(descriptor) {}
   Output(const Output &) = delete;
   Output &operator=(const Output &) = delete;
   ~Output() {
     if (descriptor_ >= 0) ::close(descriptor_);
-    if (!remove_.empty()) ::unlink(remove_.c_str());
   }
   int get() const { return descriptor_; }
   int close() { return ::close(std::exchange(descriptor_, -1)); }
-  void keep() { remove_.clear(); }
 
 private:
   int descriptor_;
-  Path remove_;
 };
 
 bool write_all(int descriptor, const std::string &bytes) {
@@ -54,19 +68,33 @@ bool write_all(int descriptor, const std::string &bytes) {
 }
 
 void write_directly(const Path &path, const std::string &bytes) {
-  Output out(::open(path.c_str(), O_WRONLY | O_CLOEXEC), {});
+  Output out(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
   if (out.get() < 0 || !write_all(out.get(), bytes) || out.close() != 0) throw cannot_write(path);
 }
 
-/// Opens a new file beside `path`; processes that write at the same time get different ones.
-int open_temporary(const Path &path, Path &name) {
+/// Makes a new, empty file beside `path`; processes that write at the same time get different ones.
+Path make_temporary(const Path &path) {
+  Path name;
   int descriptor = -1;
   for (int attempt = 0; descriptor < 0; ++attempt) {
     name = temporary_name(path, attempt);
     descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno != EEXIST) throw cannot_write(path);
   }
-  return descriptor;
+  ::close(descriptor);
+  return name;
+}
+
+/// Where a link leads to. Throws failure for a directory.
+Path target_of(const Path &path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::is_directory(status))
+    throw failure("cannot write " + path.string() + ": it is a directory");
+  if (!std::filesystem::exists(status)) return path;
+  const Path target = std::filesystem::canonical(path, error);
+  if (error) throw failure("cannot write " + path.string() + ": " + error.message());
+  return target;
 }
 
 /// Makes the new name durable. Some file systems cannot: the file itself is complete already.
@@ -81,7 +109,9 @@ void sync_directory(const Path &path) {
 } // namespace
 
 bool stop_writing(std::chrono::milliseconds patience) {
-  return writing.try_lock_for(patience); // the process ends with it
+  std::unique_lock lock(writing.mutex);
+  writing.stopped = true;
+  return writing.changed.wait_for(lock, patience, [] { return writing.files == 0; });
 }
 
 void make_directory(const Path &path) {
@@ -90,25 +120,48 @@ void make_directory(const Path &path) {
   if (error) throw failure("cannot make the directory " + path.string() + ": " + error.message());
 }
 
+AtomicFile::AtomicFile(const Path &path) : target_(target_of(path)) {
+  writing.begin();
+  try {
+    temporary_ = make_temporary(target_);
+  } catch (...) {
+    writing.end();
+    throw;
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (!temporary_.empty()) {
+    ::unlink(temporary_.c_str());
+    writing.end();
+  }
+}
+
+void AtomicFile::commit() {
+  Output out(::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC));
+  if (out.get() < 0 || ::fsync(out.get()) != 0 || out.close() != 0 ||
+      ::rename(temporary_.c_str(), target_.c_str()) != 0)
+    throw cannot_write(target_);
+  sync_directory(target_);
+  temporary_.clear();
+  writing.end();
+}
+
+void AtomicFile::append(const std::string &bytes) const {
+  Output out(::open(temporary_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  if (out.get() < 0 || !write_all(out.get(), bytes) || out.close() != 0)
+    throw cannot_write(target_);
+}
+
 void write_atomically(const Path &path, const std::string &bytes) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status))
-    throw failure("cannot write " + path.string() + ": it is a directory");
-  const bool exists = std::filesystem::exists(status);
-  if (exists && !std::filesystem::is_regular_file(status)) return write_directly(path, bytes);
-  const Path target = exists ? std::filesystem::canonical(path, error) : path;
-  if (error && exists) throw failure("cannot write " + path.string() + ": " + error.message());
-
-  const std::lock_guard<std::timed_mutex> whole(writing);
-  Path temporary;
-  const int descriptor = open_temporary(target, temporary);
-  Output out(descriptor, temporary);
-  if (!write_all(out.get(), bytes) || ::fsync(out.get()) != 0 || out.close() != 0 ||
-      ::rename(temporary.c_str(), target.c_str()) != 0)
-    throw cannot_write(path);
-  out.keep();
-  sync_directory(target);
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status) &&
+      !std::filesystem::is_regular_file(status))
+    return write_directly(path, bytes);
+  AtomicFile file(path);
+  file.append(bytes);
+  file.commit();
 }
 
 } // namespace rbvi

@@ -1,7 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
+#include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
-#include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
@@ -14,10 +14,33 @@ namespace rbvi {
 
 namespace {
 
-/// V^T A V, its lower triangle column by column. Collective.
+/// V^T A V, its lower triangle column by column; a block of columns of A V at a time. Collective.
 Vector project_stiffness(Mat a, Mat basis) {
-  const Matrix full = projected(basis, a, basis);
-  return pack((full + full.transpose()) / 2);
+  constexpr PetscInt width = 64;
+  PetscInt n = 0, stride = 0, local = 0;
+  PetscScalar *values = nullptr;
+  RBVI_CALL(MatGetSize(basis, nullptr, &n));
+  RBVI_CALL(MatGetLocalSize(basis, &local, nullptr));
+  RBVI_CALL(MatDenseGetLDA(basis, &stride));
+  Matrix lower = Matrix::Zero(n, n);
+  for (PetscInt first = 0; first < n; first += width) {
+    const PetscInt count = std::min(width, n - first);
+    Handle<Mat> block, product;
+    RBVI_CALL(MatDenseGetArray(basis, &values));
+    RBVI_CALL(MatCreateDense(PetscObjectComm(reinterpret_cast<PetscObject>(a)), local, PETSC_DECIDE,
+                             PETSC_DETERMINE, count, values + std::ptrdiff_t{first} * stride,
+                             block.put()));
+    RBVI_CALL(MatDenseSetLDA(block.get(), stride));
+    RBVI_CALL(MatAssemblyBegin(block.get(), MAT_FINAL_ASSEMBLY));
+    RBVI_CALL(MatAssemblyEnd(block.get(), MAT_FINAL_ASSEMBLY));
+    RBVI_CALL(MatMatMult(a, block.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
+    RBVI_CALL(MatDenseRestoreArray(basis, &values));
+    lower.block(first, first, n - first, count).noalias() =
+        BorrowedRows(basis).rows().rightCols(n - first).transpose() *
+        BorrowedRows(product.get()).rows();
+  }
+  over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(a)), MPI_SUM, lower);
+  return pack(lower);
 }
 
 /// V^T F. Collective.
@@ -73,45 +96,10 @@ bool uses(const Eim &eim, int snapshot) {
   return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
 }
 
-/// ReducedModel::imposed_by. Collective.
-void describe_imposed(const Problem &problem, ReducedModel &model) {
-  const Dofs &dofs = problem.dofs();
-  const Mesh &mesh = problem.mesh();
-  if (dofs.imposed_by.empty()) return;
-  model.imposed_by.assign(static_cast<std::size_t>(dofs.total), -1);
-  for (std::size_t i = 0; i < dofs.imposed_by.size(); ++i) {
-    const auto components = static_cast<std::size_t>(dofs.components);
-    const auto node = static_cast<std::size_t>(mesh.natural_node[i / components]);
-    model.imposed_by[node * components + i % components] = dofs.imposed_by[i];
-  }
-  MPI_Allreduce(MPI_IN_PLACE, model.imposed_by.data(), static_cast<int>(dofs.total), MPI_INT,
-                MPI_MAX, problem.comm());
-}
-
 } // namespace
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
-  const Mesh &mesh = problem.mesh();
-  model.mesh_fingerprint = mesh.fingerprint;
-  model.mesh_points = Matrix::Zero(mesh.total_nodes, mesh.dim);
-  for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    for (int c = 0; c < mesh.dim && mesh.owned_node[v]; ++c)
-      model.mesh_points(mesh.natural_node[v], c) = mesh.points[v][static_cast<std::size_t>(c)];
-  over_ranks(problem.comm(), MPI_SUM, model.mesh_points);
-
-  const int per_cell = nodes_per_cell(mesh.dim, mesh.degree);
-  std::vector<int> mine;
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    mine.push_back(static_cast<int>(mesh.natural_cell[k]));
-    const auto nodes = nodes_of(mesh, k);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
-      mine.push_back(static_cast<int>(mesh.natural_node[static_cast<std::size_t>(nodes[i])]));
-  }
-  describe_imposed(problem, model);
-  const std::vector<int> all = gather_all(problem.comm(), mine, MPI_INT);
-  model.mesh_cells.resize(static_cast<std::size_t>(mesh.total_cells * per_cell));
-  for (auto record = all.begin(); record != all.end(); record += per_cell + 1)
-    std::copy(record + 1, record + 1 + per_cell, model.mesh_cells.begin() + *record * per_cell);
+  model.mesh_fingerprint = problem.mesh().fingerprint;
   for (std::size_t i = 0; i < problem.places().meshes.size(); ++i) {
     const std::vector<PetscInt> &nodes = problem.places().natural_nodes[i];
     model.interfaces.push_back({problem.places().meshes[i], {nodes.begin(), nodes.end()}});
@@ -213,13 +201,12 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
 /// Adds the operators of the snapshots that the terms are made of. Collective.
 void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
                        const AffineOperators &affine, Mat basis, ReducedModel &model) {
-  const Matrix trace = restrict_to(problem.trace(), basis); // contact dofs x n
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
     if (uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),
                  model.a.reduced.rightCols(affine.a.size()));
-    if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, trace, model);
+    if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, model.contact_trace, model);
     if (uses(affine.g, p))
       accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
     if (uses(affine.f, p))
@@ -236,18 +223,6 @@ void project_exact(const Problem &problem, Mat basis, ReducedModel &model) {
   q = 0;
   for (const Handle<Vec> &term : problem.f_terms().exact)
     model.f.reduced.col(q++) = project_load(problem.comm(), term.get(), basis);
-}
-
-/// The basis functions as fields, in the numbers of the undistributed mesh. Collective.
-void store_fields(const Problem &problem, Mat basis, ReducedModel &model) {
-  model.primal_basis = Matrix::Zero(problem.dofs().total, model.primal_size());
-  const BorrowedRows rows(basis);
-  const auto local = rows.rows();
-  for (Index i = 0; i < local.rows(); ++i)
-    model.primal_basis.row(problem.dofs().natural_owned[static_cast<std::size_t>(i)]) =
-        local.row(i);
-  over_ranks(problem.comm(), MPI_SUM, model.primal_basis);
-  model.contact_trace = model.primal_basis(problem.places().natural_dofs, Eigen::all);
 }
 
 void store_histories(const AffineOperators &affine, const ReducedBases &bases,
@@ -277,10 +252,11 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.imposed_energy = separate_imposed_energy(problem);
   Mat basis = nullptr;
   RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
+  model.contact_trace = restrict_to(problem.trace(), basis);
   project_exact(problem, basis, model);
   project_snapshots(problem, samples, affine, basis, model);
-  store_fields(problem, basis, model);
   RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
+  model.fields_key = key_of_fields(problem, bases.pod.basis);
   store_histories(affine, bases, model.histories);
   return model;
 }

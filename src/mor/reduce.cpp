@@ -55,6 +55,13 @@ std::vector<Matrix> span_of_supremizers(MPI_Comm comm, const RieszSpace &riesz,
   return {Matrix(riesz.factor.transpose())(Eigen::all, touched)};
 }
 
+/// B^T X: all contact dofs x columns of X. Not collective.
+Matrix loads_at(Problem &problem, const ContactPoint &at, const Matrix &dual) {
+  Operators op;
+  problem.assemble_contact(at.mu, op, at.state);
+  return op.b.transpose() * dual;
+}
+
 /// Contact dofs that b couples with the dual basis at some training mu. Collective.
 std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
                                 const std::vector<ContactPoint> &training) {
@@ -110,8 +117,11 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
     const Stage stage(stages, stage::riesz);
     if (energy)
       RBVI_CALL(MatDuplicate(problem.assemble(reference).a, MAT_COPY_VALUES, stiffness.put()));
-    riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(),
-                             coupled_dofs(problem, dual, training));
+    const std::vector<Index> dofs = coupled_dofs(problem, dual, training);
+    riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(), dofs,
+                             training.size() == 1
+                                 ? loads_at(problem, training.front(), dual)(dofs, Eigen::all)
+                                 : Matrix());
   }
   PgaOptions pga = options.pga;
   if (will_run(stages, stage::infsup_tolerance)) {
@@ -127,7 +137,9 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
              : mode_coordinates(riesz, bases.pod.basis);
   std::vector<Matrix> supremizers;
   take_turns(problem.comm(), training.size(), [&](std::size_t p) {
-    supremizers.push_back(supremizers_at(problem, riesz, dual, {training[p]}).front());
+    supremizers.push_back(riesz.loads.size() > 0
+                              ? Matrix(riesz.factor.transpose())
+                              : supremizers_at(problem, riesz, dual, {training[p]}).front());
   });
   if (bases.online_enriched) {
     supremizers =
@@ -137,9 +149,7 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
   bases.pga = projected_greedy(problem.comm(), riesz, modes, std::move(supremizers), pga);
   if (bases.pga.representers.cols() == 0) return;
   bases.supremizers = static_cast<int>(
-      append_orthonormalised(bases.pod.basis,
-                             representer_fields(riesz, bases.pga.representers).get(), 1e-10)
-          .size());
+      append_representers(riesz, bases.pga.representers, bases.pod.basis, 1e-10).size());
 }
 
 Mu box_centre(const ParameterSpace &space) {

@@ -2,6 +2,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
@@ -82,6 +83,7 @@ void command_offline(const ToolOptions &options) {
     for (const StageRow &row : table)
       if (row.seconds) model.stage_seconds[row.stage.text] = *row.seconds;
   timed(after, stage::writing, [&] {
+    write_fields(work.world_problem(), made.bases.pod.basis, model, options.out / "model.h5");
     collectively(world, [&] {
       if (rank != 0) return;
       write_model(model, options.out / "model.h5");

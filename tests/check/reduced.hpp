@@ -3,6 +3,7 @@
 
 #include "rbvi/check/errors.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/reduce.hpp"
 
 namespace rbvi::testing_reduced {
@@ -35,6 +36,7 @@ struct Reduced {
     affine = std::move(made.affine);
     bases = std::move(made.bases);
     model = std::move(made.model);
+    gather_fields(problem, bases.pod.basis, model);
   }
   std::vector<Mu> mus() const {
     std::vector<Mu> set;

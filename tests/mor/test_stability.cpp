@@ -69,7 +69,7 @@ TEST(RieszSpace, lift_solves_and_factor_squares_to_the_traces) {
     columns(membrane.nodes[static_cast<std::size_t>(k)], k) = 1;
   const Matrix exact = membrane.dense.llt().solve(columns);
   EXPECT_LE(
-      (gathered(representer_fields(space, Matrix::Identity(2 * n, 2 * n)).get()) - exact).norm(),
+      (gathered(space.solver->fields(Matrix::Identity(2 * n, 2 * n)).get()) - exact).norm(),
       1e-12 * exact.norm());
   const Matrix traces = columns.transpose() * exact;
   EXPECT_LE((space.factor * space.factor.transpose() - traces).norm(), 1e-12 * traces.norm());
@@ -112,7 +112,7 @@ TEST(ModeCoordinates, modes_inside_the_range_of_the_lift) {
   const Membrane membrane;
   const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
   const LinearBasis modes =
-      membrane.basis(gathered(representer_fields(space, Matrix::Identity(2 * n, 2 * n)).get()) *
+      membrane.basis(gathered(space.solver->fields(Matrix::Identity(2 * n, 2 * n)).get()) *
                      random_matrix(2 * n, 7, 3));
   const Matrix coordinates = mode_coordinates(space, modes);
   EXPECT_TRUE(coordinates.allFinite());
@@ -305,7 +305,7 @@ TEST(RieszSpace, the_contact_dofs_that_b_couples_with_the_multipliers_are_enough
   EXPECT_NEAR(few.on, whole.on, 1e-12 * whole.on);
   EXPECT_NEAR(few.dec, whole.dec, 1e-12 * whole.on);
 
-  const Matrix fields = gathered(representer_fields(part, random_matrix(8, 4, 14)).get());
+  const Matrix fields = gathered(part.solver->fields(random_matrix(8, 4, 14)).get());
   Matrix loads = Matrix::Zero(n * n, 4);
   for (Index k = 0; k < 8; ++k)
     loads.row(membrane.nodes[static_cast<std::size_t>(part.dofs[static_cast<std::size_t>(k)])]) =

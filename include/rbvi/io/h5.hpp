@@ -1,6 +1,7 @@
 // Sealed HDF5 files: a 512-byte user block with magic, length and checksum stands before the HDF5
-// bytes, and is verified before HDF5 sees any of them. A file is built in memory, then written,
-// fsynced and renamed in one step, so that a reader meets the old file, the new one, or none.
+// bytes, and is verified before HDF5 sees any of them. A file is built in memory, or under another
+// name where it is large, then fsynced and renamed in one step, so that a reader meets the old
+// file, the new one, or none.
 // Other HDF5 tools (h5dump, h5py) skip the user block and read the file as it is.
 //
 //   bytes 0-7    "rbvi" CR LF 0x1a LF
@@ -22,15 +23,20 @@
 
 namespace rbvi {
 
-/// Collects named data sets ("group/name"; groups are made as needed) in memory. A name that is
-/// already taken is a failure. The bytes depend on what is written alone (no time stamps).
+/// Collects named data sets ("group/name"; groups are made as needed). A name that is already taken
+/// is a failure. The bytes depend on what is written alone (no time stamps).
 class H5Writer {
 public:
-  H5Writer();
+  H5Writer(); ///< in memory
+  /// On the disk beside `path`, which is what commit() has to be told then.
+  explicit H5Writer(const std::filesystem::path &path);
   ~H5Writer();
   H5Writer(H5Writer &&) noexcept;
   H5Writer &operator=(H5Writer &&) noexcept;
   void write(const std::string &name, const Matrix &value); ///< rows x cols, row-major on disk
+  /// A matrix that comes by rows: its shape first, then some of them at a time.
+  void create_rows(const std::string &name, Index rows, Index columns);
+  void write_rows(const std::string &name, Index first, const Matrix &value);
   void write(const std::string &name, const Vector &value);
   void write(const std::string &name, const std::vector<double> &value);
   void write(const std::string &name, const std::vector<int> &value);

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -16,11 +17,28 @@ namespace {
 
 constexpr double open_below = 1e-10; ///< of the largest multiplier: at or below it a node is open
 
+/// The largest and the smallest singular value of a large triangle, to some percent.
+Vector iterated_values(const Matrix &triangular) {
+  constexpr int steps = 40;
+  const auto upper = triangular.triangularView<Eigen::Upper>();
+  const auto lower = triangular.transpose().triangularView<Eigen::Lower>();
+  Vector large = Vector::Ones(triangular.cols()), small = large;
+  Vector values(2);
+  for (int k = 0; k < steps; ++k) {
+    large = lower * (upper * large.normalized()).eval();
+    small = upper.solve(lower.solve(small.normalized()).eval());
+  }
+  values << std::sqrt(large.norm()), 1 / std::sqrt(small.norm());
+  return values;
+}
+
 /// From the triangular factor of the coordinates, not from the Gram matrix: squares would lose
 /// half of the digits.
 double condition(const Matrix &triangular) {
+  constexpr Index large = 256;
   if (triangular.rows() < triangular.cols()) return std::numeric_limits<double>::infinity();
-  const Vector values = singular_values(triangular);
+  const Vector values =
+      triangular.cols() > large ? iterated_values(triangular) : singular_values(triangular);
   const double ratio = values[0] / values[values.size() - 1];
   return ratio * ratio;
 }
@@ -32,6 +50,20 @@ Matrix triangular_factor(const Matrix &coordinates) {
 }
 
 } // namespace
+
+ProductRoot::ProductRoot(const SparseMatrix &product) {
+  factor_.compute(Eigen::SparseMatrix<double>(product));
+  if (factor_.info() != Eigen::Success)
+    throw failure("the inner product of the multipliers is not positive definite");
+}
+
+Matrix ProductRoot::times(const Matrix &x) const {
+  return factor_.matrixU() * Matrix(factor_.permutationP() * x);
+}
+
+Matrix ProductRoot::solve(const Matrix &y) const {
+  return factor_.permutationPinv() * Matrix(factor_.matrixU().solve(y));
+}
 
 Matrix checked(const Matrix &snapshots, const SparseMatrix &product) {
   if (snapshots.size() == 0) throw failure("no multiplier snapshot to build a cone from");

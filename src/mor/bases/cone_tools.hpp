@@ -4,10 +4,24 @@
 #include "rbvi/law/qp/nonnegative_qp.hpp"
 #include "rbvi/mor/bases/cones.hpp"
 
+#include <Eigen/SparseCholesky>
+
 #include <utility>
 #include <vector>
 
 namespace rbvi {
+
+/// U with |U v| = |v|_W: a sparse Cholesky factor, its rows in an order of its own.
+class ProductRoot {
+public:
+  /// Throws failure if `product` is not positive definite.
+  explicit ProductRoot(const SparseMatrix &product);
+  Matrix times(const Matrix &x) const; ///< U x
+  Matrix solve(const Matrix &y) const; ///< U^-1 y
+
+private:
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
+};
 
 constexpr double tie = 1e-10;
 constexpr double round_off = 1e-12; ///< of the largest snapshot: what is left below it is noise

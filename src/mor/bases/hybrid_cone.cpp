@@ -40,6 +40,21 @@ ContactZones zones_of(const Matrix &snapshots, const SparseMatrix &product, int 
   return zones;
 }
 
+/// Rows and columns of some nodes.
+SparseMatrix block_of(const SparseMatrix &product, const std::vector<Index> &nodes) {
+  std::vector<Index> position(static_cast<std::size_t>(product.rows()), -1);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    position[static_cast<std::size_t>(nodes[k])] = static_cast<Index>(k);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (SparseMatrix::InnerIterator entry(product, nodes[k]); entry; ++entry)
+      if (const Index column = position[static_cast<std::size_t>(entry.col())]; column >= 0)
+        entries.emplace_back(static_cast<int>(k), static_cast<int>(column), entry.value());
+  SparseMatrix block(std::ssize(nodes), std::ssize(nodes));
+  block.setFromTriplets(entries.begin(), entries.end());
+  return block;
+}
+
 /// E: permanent x moving nodes.
 Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
   if (zones.permanent.empty() || zones.moving.empty())
@@ -55,11 +70,11 @@ Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
   return -factor.solve(columns(zones.moving, Eigen::all).transpose());
 }
 
-/// Modes of what the generators leave of the snapshots, and the history of their number. `factor`:
-/// |factor v| = |v|_W; columns of the result are coefficients on the permanent nodes.
-Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
+/// Modes of what the generators leave of the snapshots, and the history of their number. `root`: of
+/// W on the permanent nodes, on which the columns of the result are coefficients.
+Matrix modes_of(const Matrix &remainder, const ProductRoot &root, double largest,
                 const ConeOptions &options, Index generators, ConeHistory &history) {
-  const SmallSvd svd = small_svd(factor * remainder);
+  const SmallSvd svd = small_svd(root.times(remainder));
   const Vector &values = svd.values;
   const Matrix parts = values.asDiagonal() * svd.right.transpose();
   // Equal singular values stay together: which of their vectors come first is round-off.
@@ -84,9 +99,7 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
     else if (modes == bound)
       history.reason = "size reached";
     if (history.reason.empty() || splits(modes)) continue;
-    Matrix columns = svd.left.leftCols(modes);
-    if (modes > 0) factor.triangularView<Eigen::Upper>().solveInPlace(columns);
-    return columns;
+    return modes > 0 ? root.solve(svd.left.leftCols(modes)) : Matrix(remainder.rows(), 0);
   }
 }
 
@@ -94,7 +107,7 @@ Matrix modes_of(const Matrix &remainder, const Matrix &factor, double largest,
 
 Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
                  const ColumnSource &condensed) {
-  const Matrix factor = product_factor(product);
+  const ProductRoot root(product);
   const ContactZones zones = zones_of(snapshots, product, options.ring);
   const auto moving = static_cast<Index>(zones.moving.size());
   if (options.max_size > 0 && options.max_size < moving)
@@ -109,7 +122,7 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
   Cone cone;
   cone.history.size.push_back(0);
   cone.history.error.push_back(1);
-  cone.basis.generators = hats * (factor * hats).colwise().norm().cwiseInverse().asDiagonal();
+  cone.basis.generators = hats * root.times(hats).colwise().norm().cwiseInverse().asDiagonal();
   const auto permanent = static_cast<Index>(zones.permanent.size());
   cone.modes.columns = Matrix::Zero(snapshots.rows(), 0);
   if (permanent == 0) {
@@ -119,14 +132,13 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
   } else {
     const Matrix remainder =
         snapshots(zones.permanent, Eigen::all) - extension * snapshots(zones.moving, Eigen::all);
-    const Matrix block = Matrix(product)(zones.permanent, zones.permanent);
     const Matrix modes =
-        modes_of(remainder, block.llt().matrixU(), (factor * snapshots).colwise().norm().maxCoeff(),
-                 options, moving, cone.history);
+        modes_of(remainder, ProductRoot(block_of(product, zones.permanent)),
+                 root.times(snapshots).colwise().norm().maxCoeff(), options, moving, cone.history);
     cone.modes.columns.setZero(snapshots.rows(), modes.cols());
     cone.modes.columns(zones.permanent, Eigen::all) = modes;
   }
-  cone.history.gram_condition = gram_conditions(factor * cone.all(), cone.history.size[1]);
+  cone.history.gram_condition = gram_conditions(root.times(cone.all()), cone.history.size[1]);
   return cone;
 }
 

@@ -15,19 +15,13 @@ constexpr double dependent = 1e-13; // remainder of a snapshot, relative to its 
 constexpr double equal = 1e-8;      // singular values this close are kept or cut together
 constexpr double sign_tie = 1e-10;
 
-/// Classical Gram-Schmidt, twice, in the product of `basis`. The image product * basis is kept, so
-/// that a new column costs one product and three reductions.
+/// Classical Gram-Schmidt, twice, in the product of `basis`.
 class GramSchmidt {
 public:
   GramSchmidt(BV basis, PetscInt size, PetscInt capacity) : basis_(basis), size_(size) {
     RBVI_CALL(BVGetMatrix(basis_, &product_, nullptr));
     RBVI_CALL(BVResize(basis_, capacity, PETSC_TRUE));
-    RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(basis_)), image_.put()));
-    RBVI_CALL(MatCreateVecs(product_, nullptr, product_column_.put()));
-    RBVI_CALL(BVSetSizesFromVec(image_.get(), product_column_.get(), capacity));
-    RBVI_CALL(BVSetType(image_.get(), BVMAT));
-    activate();
-    if (size_ > 0) RBVI_CALL(BVMatMult(basis_, product_, image_.get()));
+    RBVI_CALL(MatCreateVecs(product_, nullptr, image_.put()));
   }
 
   PetscInt size() const { return size_; }
@@ -35,45 +29,90 @@ public:
   /// Coefficients of `column` in the basis, the new column's last if it is taken; `column` becomes
   /// its remainder.
   Vector add(Vec column, double tolerance) {
-    Vector coefficients = Vector::Zero(size_ + 1);
-    activate();
-    for (int pass = 0; pass < 2 && size_ > 0; ++pass) {
-      Vector step(size_);
-      RBVI_CALL(BVDotVec(image_.get(), column, step.data()));
-      RBVI_CALL(BVMultVec(basis_, -1.0, 1.0, column, step.data()));
-      coefficients.head(size_) += step;
+    Vector coefficients = remove(column, 0);
+    coefficients += remove(column, 0);
+    return keep(column, coefficients, 0, tolerance);
+  }
+
+  /// Whether each column of a block was taken. All of them against the basis first, by products of
+  /// matrices, then one after the other against those taken from their block.
+  std::vector<bool> add_block(BV block, double tolerance) {
+    PetscInt count = 0;
+    RBVI_CALL(BVGetActiveColumns(block, nullptr, &count));
+    const PetscInt known = size_;
+    const Vector removed = remove(block, count);
+    std::vector<bool> taken;
+    for (PetscInt j = 0; j < count; ++j) {
+      constexpr double much = 0.1;
+      Vec column = nullptr;
+      RBVI_CALL(BVGetColumn(block, j, &column));
+      const double before = product_norm(column);
+      Vector coefficients = remove(column, known);
+      // What is left of much is no longer orthogonal to the rest.
+      const bool reduced = size_ > known && product_norm(column) < much * before;
+      coefficients += remove(column, reduced ? 0 : known).tail(coefficients.size());
+      const PetscInt size = size_;
+      keep(column, coefficients, removed[j], tolerance);
+      RBVI_CALL(BVRestoreColumn(block, j, &column));
+      taken.push_back(size_ > size);
     }
-    double square = 0;
-    RBVI_CALL(MatMult(product_, column, product_column_.get()));
-    RBVI_CALL(VecDot(column, product_column_.get(), &square));
-    const double remainder = std::sqrt(std::max(square, 0.0));
-    const double norm = std::hypot(coefficients.norm(), remainder);
-    if (!std::isfinite(square) || !std::isfinite(norm))
-      throw failure("a column to orthonormalise has entries that are not finite");
-    if (remainder <= tolerance * norm) return coefficients.head(size_);
-    coefficients(size_) = remainder;
-    RBVI_CALL(VecScale(column, 1 / remainder));
-    RBVI_CALL(VecScale(product_column_.get(), 1 / remainder));
-    RBVI_CALL(BVInsertVec(basis_, size_, column));
-    RBVI_CALL(BVInsertVec(image_.get(), size_, product_column_.get()));
-    ++size_;
-    return coefficients;
+    return taken;
   }
 
   /// Cuts the storage of the basis down to its columns.
   void finish() { RBVI_CALL(BVResize(basis_, size_, PETSC_TRUE)); }
 
 private:
-  void activate() {
+  /// Makes a column orthogonal to those from `first` on; its coefficients in them.
+  Vector remove(Vec column, PetscInt first) {
+    Vector step(size_ - first);
+    if (step.size() == 0) return step;
+    RBVI_CALL(BVSetActiveColumns(basis_, first, size_));
+    RBVI_CALL(BVDotVec(basis_, column, step.data()));
+    RBVI_CALL(BVMultVec(basis_, -1.0, 1.0, column, step.data()));
+    return step;
+  }
+  /// Makes columns orthogonal to the basis, twice; the norm of what each loses.
+  Vector remove(BV block, PetscInt count) {
+    Matrix coefficients = Matrix::Zero(size_, count);
+    if (size_ == 0) return Vector::Zero(count);
     RBVI_CALL(BVSetActiveColumns(basis_, 0, size_));
-    RBVI_CALL(BVSetActiveColumns(image_.get(), 0, size_));
+    for (int pass = 0; pass < 2; ++pass) {
+      Matrix step(size_, count);
+      Handle<Mat> view;
+      RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, size_, count, step.data(), view.put()));
+      RBVI_CALL(BVDot(block, basis_, view.get()));
+      RBVI_CALL(BVMult(block, -1.0, 1.0, basis_, view.get()));
+      coefficients += step;
+    }
+    return coefficients.colwise().norm();
+  }
+  double product_norm(Vec column) {
+    double square = 0;
+    RBVI_CALL(MatMult(product_, column, image_.get()));
+    RBVI_CALL(VecDot(column, image_.get(), &square));
+    if (!std::isfinite(square))
+      throw failure("a column to orthonormalise has entries that are not finite");
+    return std::sqrt(std::max(square, 0.0));
+  }
+  /// Takes the remainder of a column unless it is small beside the column; `removed`: the norm of
+  /// what was removed beside the coefficients.
+  Vector keep(Vec column, Vector coefficients, double removed, double tolerance) {
+    const double remainder = product_norm(column);
+    const double norm = std::hypot(removed, coefficients.norm(), remainder);
+    if (remainder <= tolerance * norm) return coefficients;
+    coefficients.conservativeResize(coefficients.size() + 1);
+    coefficients.tail(1)[0] = remainder;
+    RBVI_CALL(VecScale(column, 1 / remainder));
+    RBVI_CALL(BVInsertVec(basis_, size_, column));
+    ++size_;
+    return coefficients;
   }
 
   BV basis_;
   PetscInt size_;
   Mat product_ = nullptr;
-  Handle<BV> image_;
-  Handle<Vec> product_column_;
+  Handle<Vec> image_;
 };
 
 void fix_signs(SmallSvd &svd) {
@@ -170,20 +209,50 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
 }
 
 std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance) {
+  constexpr PetscInt width = 48; ///< columns at a time
   PetscInt count = 0;
   RBVI_CALL(MatGetSize(columns, nullptr, &count));
-  GramSchmidt factorisation(basis.columns.get(), basis.size(), basis.size() + count);
+  const BV all = basis.columns.get();
+  const PetscInt known = basis.size();
+  GramSchmidt factorisation(all, known, known + count);
+  Mat product = nullptr;
   Handle<Vec> work;
+  Handle<BV> block;
+  RBVI_CALL(BVGetMatrix(all, &product, nullptr));
   RBVI_CALL(MatCreateVecs(columns, nullptr, work.put()));
+  RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(columns)), block.put()));
+  RBVI_CALL(BVSetSizesFromVec(block.get(), work.get(), std::max(1, std::min(width, count))));
+  RBVI_CALL(BVSetType(block.get(), BVMAT));
+  RBVI_CALL(BVSetMatrix(block.get(), product, PETSC_FALSE));
   std::vector<int> taken;
-  for (PetscInt j = 0; j < count; ++j) {
-    RBVI_CALL(MatGetColumnVector(columns, work.get(), j));
-    const PetscInt before = factorisation.size();
-    factorisation.add(work.get(), tolerance);
-    if (factorisation.size() > before) taken.push_back(static_cast<int>(j));
+  for (PetscInt first = 0; first < count; first += width) {
+    const PetscInt many = std::min(width, count - first);
+    RBVI_CALL(BVSetActiveColumns(block.get(), 0, many));
+    for (PetscInt j = 0; j < many; ++j) {
+      RBVI_CALL(MatGetColumnVector(columns, work.get(), first + j));
+      RBVI_CALL(BVInsertVec(block.get(), j, work.get()));
+    }
+    const std::vector<bool> kept = factorisation.add_block(block.get(), tolerance);
+    for (PetscInt j = 0; j < many; ++j)
+      if (kept[static_cast<std::size_t>(j)]) taken.push_back(static_cast<int>(first + j));
   }
   factorisation.finish();
-  RBVI_CALL(BVSetActiveColumns(basis.columns.get(), 0, basis.size()));
+  RBVI_CALL(BVSetActiveColumns(all, 0, basis.size()));
+  return taken;
+}
+
+std::vector<int> append_fields(ReplicatedSolver &solver, const Matrix &loads, LinearBasis &basis,
+                               double tolerance, Matrix *traces) {
+  constexpr Index at_a_time = 192;
+  std::vector<int> taken;
+  if (traces != nullptr) traces->resize(loads.rows(), loads.cols());
+  for (Index first = 0; first < loads.cols(); first += at_a_time) {
+    const Index count = std::min(at_a_time, loads.cols() - first);
+    const Handle<Mat> fields = solver.fields(loads.middleCols(first, count));
+    if (traces != nullptr) traces->middleCols(first, count) = solver.restrict(fields.get());
+    for (const int k : append_orthonormalised(basis, fields.get(), tolerance))
+      taken.push_back(static_cast<int>(first) + k);
+  }
   return taken;
 }
 

@@ -227,20 +227,21 @@ public:
         modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end();
     if (!appends || !of_.join) {
       const Matrix units = Matrix::Identity(loads.rows(), loads.rows());
-      if (appends) append(solver.fields(units(Eigen::all, of_.dofs)).get());
+      if (appends) append(solver, units(Eigen::all, of_.dofs));
       return blocks_of(loads.transpose() * solver.responses(loads), size_);
     }
-    const Handle<Mat> fields = solver.fields(loads);
-    append(fields.get());
-    return blocks_of(loads.transpose() * restrict_to(problem_.trace(), fields.get()), size_);
+    return blocks_of(loads.transpose() * append(solver, loads), size_);
   }
 
   int factorisations = 0, appended = 0;
 
 private:
-  void append(Mat fields) {
+  /// E^T A^-1 E loads.
+  Matrix append(ReplicatedSolver &solver, const Matrix &loads) {
     const double least = appended == 0 ? 1e-8 : responses_;
-    appended += static_cast<int>(append_orthonormalised(*modes_, fields, least).size());
+    Matrix traces;
+    appended += static_cast<int>(append_fields(solver, loads, *modes_, least, &traces).size());
+    return traces;
   }
 
   Problem &problem_;

@@ -3,8 +3,8 @@
 #include "dense_rows.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/methods.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

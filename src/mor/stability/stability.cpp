@@ -28,31 +28,47 @@ Matrix lower_cholesky(const Matrix &matrix, const char *what) {
 
 } // namespace
 
-RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs) {
+RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs,
+                            const Matrix &loads) {
+  constexpr double dependent = 1e-6;
   RieszSpace space;
   space.dofs = dofs;
   space.trace = dofs.empty() ? trace : part_of(trace, dofs);
   space.solver = std::make_shared<ReplicatedSolver>(product, space.trace, "v_");
-  const Matrix traces =
-      space.solver->responses(Matrix::Identity(space.trace.size, space.trace.size));
+  const Index size = space.trace.size;
+  if (loads.cols() > 0 && 2 * loads.cols() <= size) {
+    const Matrix gram = loads.transpose() * space.solver->responses(loads);
+    const Eigen::LLT<Matrix> cholesky((gram + gram.transpose()) / 2);
+    const Vector pivots = Matrix(cholesky.matrixL()).diagonal();
+    if (cholesky.info() == Eigen::Success && pivots.minCoeff() > dependent * pivots.maxCoeff()) {
+      space.loads = loads;
+      space.factor = cholesky.matrixL();
+      return space;
+    }
+  }
+  const Matrix traces = space.solver->responses(Matrix::Identity(size, size));
   space.factor = lower_cholesky((traces + traces.transpose()) / 2,
                                 "the inverse V product on the contact dofs");
   return space;
 }
 
-Handle<Mat> representer_fields(const RieszSpace &space, const Matrix &representers) {
-  return space.solver->fields(representers);
+std::vector<int> append_representers(const RieszSpace &space, const Matrix &representers,
+                                     LinearBasis &basis, double tolerance) {
+  const bool units = space.loads.size() == 0;
+  return append_fields(*space.solver, units ? representers : Matrix(space.loads * representers),
+                       basis, tolerance);
 }
 
 Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   const PetscInt count = modes.size();
-  const Index contact = space.trace.size;
+  const Index contact = space.factor.rows();
   Matrix coordinates = Matrix::Zero(contact + count, count);
   if (count == 0) return coordinates;
   Mat columns = nullptr;
   RBVI_CALL(BVGetMat(modes.columns.get(), &columns));
   Matrix top = restrict_to(space.trace, columns);
   RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
+  if (space.loads.size() > 0) top = (space.loads.transpose() * top).eval();
   space.factor.triangularView<Eigen::Lower>().solveInPlace(top);
   const Eigen::SelfAdjointEigenSolver<Matrix> rest(Matrix::Identity(count, count) -
                                                    top.transpose() * top);
@@ -64,6 +80,27 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   return coordinates;
 }
 
+namespace {
+
+/// Columns with small angles between none of them, made orthonormal by Cholesky factors of their
+/// Gram matrix, twice. Empty where they are not that.
+Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_product) {
+  constexpr double well = 1e-2;
+  Matrix basis = columns;
+  for (int pass = 0; pass < 2; ++pass) {
+    const SparseMatrix sparse = basis.sparseView();
+    const Eigen::LLT<Matrix> cholesky(
+        Matrix(SparseMatrix(sparse.transpose()) * SparseMatrix(w_product * sparse)));
+    if (cholesky.info() != Eigen::Success) return {};
+    const Vector pivots = Matrix(cholesky.matrixL()).diagonal();
+    if (!(pivots.minCoeff() > well * pivots.maxCoeff())) return {};
+    cholesky.matrixU().solveInPlace<Eigen::OnTheRight>(basis);
+  }
+  return basis;
+}
+
+} // namespace
+
 Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
                               double tolerance) {
   const auto squares = [&](const Matrix &x) -> Vector {
@@ -73,6 +110,7 @@ Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_pr
   Matrix remainders = generators;
   for (Index r = 0; r < remainders.cols(); ++r)
     if (norms(r) > 0) remainders.col(r) /= norms(r);
+  if (Matrix basis = orthonormal_by_cholesky(remainders, w_product); basis.size() > 0) return basis;
   Matrix basis(generators.rows(), generators.cols());
   Index rank = 0;
   for (; rank < generators.cols(); ++rank) {
@@ -112,6 +150,7 @@ Matrix orthonormal_range(const Matrix &vectors) {
 
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
                               const Matrix &x) {
+  if (space.loads.size() > 0) throw failure("supremizers of other multipliers than the loads");
   Matrix forces = b_contact.transpose() * x;
   if (!space.dofs.empty()) forces = forces(space.dofs, Eigen::all).eval();
   return space.factor.transpose().triangularView<Eigen::Upper>() * forces;

@@ -286,6 +286,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   result.contact_trace = model.contact_trace.leftCols(n);
   if (model.nitsche) result.nitsche = leading_curve(*model.nitsche, model.primal_size(), n);
   if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
+  if (n != model.primal_size()) result.fields_key.clear();
   if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
   if (r != model.generators || n != model.primal_size()) result.self_check = {};
   if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};

@@ -1,5 +1,6 @@
 // model.fields.h5: its data sets are listed in LAYOUT.md beside this file.
 #include "model_fields.hpp"
+#include "rbvi/rom/model/fields_file.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/checksum.hpp"
@@ -21,7 +22,7 @@ bool holds_fields(const std::filesystem::path &path, const std::string &key) {
 } // namespace
 
 std::string key_of_fields(const ReducedModel &model) {
-  if (model.primal_basis.size() == 0) return "";
+  if (model.primal_basis.size() == 0) return model.fields_key;
   const auto hash = [](const auto *data, auto size) {
     return std::to_string(fnv1a(data, static_cast<std::size_t>(size) * sizeof(*data)));
   };
@@ -30,17 +31,38 @@ std::string key_of_fields(const ReducedModel &model) {
          hash(model.mesh_cells.data(), std::ssize(model.mesh_cells));
 }
 
+FieldsFile::FieldsFile(const std::filesystem::path &model_path, const std::string &key)
+    : path_(fields_file(model_path)), file_(path_) {
+  file_.write("key", key);
+}
+
+void FieldsFile::write_mesh(const Matrix &points, const std::vector<int> &cells,
+                            const std::vector<int> &imposed_by) {
+  file_.write("points", points);
+  file_.write("cells", cells);
+  file_.write("imposed_by", imposed_by);
+}
+
+void FieldsFile::begin_basis(Index dofs, Index functions) {
+  file_.create_rows("primal_basis", dofs, functions);
+}
+
+void FieldsFile::write_basis(Index first, const Matrix &rows) {
+  file_.write_rows("primal_basis", first, rows);
+}
+
+void FieldsFile::commit() {
+  file_.commit(path_, "fields", model_schema);
+}
+
 void write_fields(const ReducedModel &model, const std::filesystem::path &model_path) {
-  const std::filesystem::path path = fields_file(model_path);
   const std::string key = key_of_fields(model);
-  if (key.empty() || holds_fields(path, key)) return;
-  H5Writer file;
-  file.write("key", key);
-  file.write("primal_basis", model.primal_basis);
-  file.write("points", model.mesh_points);
-  file.write("cells", model.mesh_cells);
-  file.write("imposed_by", model.imposed_by);
-  file.commit(path, "fields", model_schema);
+  if (model.primal_basis.size() == 0 || holds_fields(fields_file(model_path), key)) return;
+  FieldsFile file(model_path, key);
+  file.write_mesh(model.mesh_points, model.mesh_cells, model.imposed_by);
+  file.begin_basis(model.primal_basis.rows(), model.primal_basis.cols());
+  file.write_basis(0, model.primal_basis);
+  file.commit();
 }
 
 void read_fields(const std::filesystem::path &model_path, const std::string &key,

@@ -8,7 +8,7 @@ namespace rbvi {
 /// Tells the fields of one model from those of another; "" for a model without.
 std::string key_of_fields(const ReducedModel &model);
 
-/// Leaves the file as it is where it has these fields.
+/// Writes the fields that a model holds in memory; leaves the file as it is where it has them.
 void write_fields(const ReducedModel &model, const std::filesystem::path &model_path);
 
 /// `key`: of the model; "" is a model without fields. Throws bad_input for a file that is not there

@@ -354,7 +354,8 @@ ReducedModel read_model(const std::filesystem::path &path, bool with_fields) {
   const H5Reader file(path, "model", model_schema);
   try {
     ReducedModel model = read_members(file);
-    if (with_fields) read_fields(path, file.string("fields/key"), model);
+    model.fields_key = file.string("fields/key");
+    if (with_fields) read_fields(path, model.fields_key, model);
     check_model(model);
     (void)scene_of(model);
     return model;

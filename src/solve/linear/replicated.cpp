@@ -44,7 +44,8 @@ std::vector<PetscInt> whole_rows(Mat a, const Trace &trace) {
 }
 
 ReplicatedSolver::ReplicatedSolver(Mat a, const Trace &trace, const char *prefix)
-    : comm_(trace.comm), whole_(whole_matrix(a, trace.comm)), rows_(whole_rows(a, trace)) {
+    : comm_(trace.comm), trace_(trace), whole_(whole_matrix(a, trace.comm)),
+      rows_(whole_rows(a, trace)) {
   RBVI_CALL(MatGetLocalSize(a, &local_rows_, nullptr));
   RBVI_CALL(MatGetOwnershipRange(a, &first_row_, nullptr));
   RBVI_CALL(MatSetOption(whole_.get(), MAT_SPD, PETSC_TRUE));

@@ -2,7 +2,7 @@
 // factor (B.1), never the eigenvalues of a squared Gram matrix alone.
 #pragma once
 
-#include "rbvi/par/petsc.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include <string>
 #include <vector>
@@ -38,5 +38,10 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
 /// against it, twice; a column with a remainder below `tolerance` of its norm is left out. Returns
 /// the positions of the columns taken.
 std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance);
+
+/// Collective. The same of A^-1 E loads, some columns at a time: at most those are held beside the
+/// basis. `traces`, where given: E^T A^-1 E loads.
+std::vector<int> append_fields(ReplicatedSolver &solver, const Matrix &loads, LinearBasis &basis,
+                               double tolerance, Matrix *traces = nullptr);
 
 } // namespace rbvi

@@ -22,20 +22,28 @@
 namespace rbvi {
 
 /// The map between displacement fields and Euclidean coordinates above, for all contact dofs or for
-/// those that b couples with the multipliers at hand. Dense parts replicated.
+/// those that b couples with the multipliers at hand; or, where b depends on mu by a factor alone,
+/// for the loads B^T X of these multipliers, which are fewer: F in place of E. Dense parts
+/// replicated.
 struct RieszSpace {
-  Matrix factor;           ///< L, lower triangular: n_c x n_c
+  Matrix factor;           ///< L, lower triangular: n_c x n_c, or as many as loads
   std::vector<Index> dofs; ///< the n_c contact dofs of the scene that it covers; empty: all
+  Matrix loads;            ///< F: n_c x columns of X; empty: the identity
   Trace trace;             ///< onto these dofs
   std::shared_ptr<ReplicatedSolver> solver;
 };
 
 /// Collective. One factorisation of `product` (KSP prefix -v_), n_c solves shared among the ranks.
-/// `dofs`: contact dofs to cover, empty: all. Throws failure if the factorisation fails.
-RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs = {});
+/// `dofs`: contact dofs to cover, empty: all. `loads`: on them; they are left out, and cost
+/// nothing, where they are not fewer or depend on each other. Throws failure if the factorisation
+/// fails.
+RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs = {},
+                            const Matrix &loads = {});
 
-/// V^-1 E representers as a dense distributed matrix: one solve per column. Collective.
-Handle<Mat> representer_fields(const RieszSpace &space, const Matrix &representers);
+/// Appends V^-1 E representers to a basis as append_orthonormalised(): one solve per column.
+/// Collective.
+std::vector<int> append_representers(const RieszSpace &space, const Matrix &representers,
+                                     LinearBasis &basis, double tolerance);
 
 /// Collective. Coordinates of the basis columns: (n_c + N) x N, orthonormal. Throws failure if the
 /// basis is not orthonormal in the product of `space`.

@@ -216,7 +216,8 @@ struct ReducedModel {
   std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
 
-  // Full order, for reconstruction.
+  // Full order, for reconstruction; may stay in a file of their own, which may be large.
+  std::string fields_key; ///< of that file, where they are not here
   Matrix primal_basis;         ///< dofs x n, fixed dofs included
   Matrix mesh_points;          ///< nodes x dim, reference coordinates
   std::vector<int> mesh_cells; ///< node numbers of each cell, nodes_per_cell of them

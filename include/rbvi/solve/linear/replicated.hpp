@@ -19,11 +19,14 @@ public:
   Matrix responses(const Matrix &loads);
   /// A^-1 E loads as a dense distributed matrix with the row layout of `a`. Collective.
   Handle<Mat> fields(const Matrix &loads);
+  /// E^T of such fields, on every rank. Collective.
+  Matrix restrict(Mat fields) const { return restrict_to(trace_, fields); }
 
 private:
   Matrix solve_columns(const Matrix &loads, Index first, Index count);
 
   MPI_Comm comm_;
+  Trace trace_;
   PetscInt local_rows_ = 0, first_row_ = 0;
   Handle<Mat> whole_; ///< all of A, on this rank
   Handle<KSP> ksp_;

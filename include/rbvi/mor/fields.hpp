@@ -1,0 +1,25 @@
+// The primal basis as fields on the whole mesh, in the numbers of the undistributed mesh: for
+// pictures and errors of the displacement, not for answers. It is as large as the mesh times the
+// basis, so that no rank holds all of it: it goes to its file by blocks of rows.
+#pragma once
+
+#include "rbvi/mor/bases/pod.hpp"
+#include "rbvi/problem/problem.hpp"
+#include "rbvi/rom/model/model.hpp"
+
+#include <filesystem>
+
+namespace rbvi {
+
+/// Tells a basis from others by its values at some vectors, agreed by all ranks. Collective.
+std::string key_of_fields(const Problem &problem, const LinearBasis &basis);
+
+/// Collective. Writes the fields of `model`, whose fields_key is that of the basis, beside the file
+/// of the model. Throws failure.
+void write_fields(const Problem &problem, const LinearBasis &basis, const ReducedModel &model,
+                  const std::filesystem::path &model_path);
+
+/// Collective. The same into the model, on every rank: for meshes that are small.
+void gather_fields(const Problem &problem, const LinearBasis &basis, ReducedModel &model);
+
+} // namespace rbvi

@@ -1,0 +1,25 @@
+// model.fields.h5 while it is made: the basis comes by rows, so that nobody has to hold all of it.
+#pragma once
+
+#include "rbvi/io/h5.hpp"
+#include "rbvi/rom/model/model.hpp"
+
+namespace rbvi {
+
+class FieldsFile {
+public:
+  /// `key`: of the model beside it. Throws failure, like all others.
+  FieldsFile(const std::filesystem::path &model_path, const std::string &key);
+  /// As in ReducedModel.
+  void write_mesh(const Matrix &points, const std::vector<int> &cells,
+                  const std::vector<int> &imposed_by);
+  void begin_basis(Index dofs, Index functions);
+  void write_basis(Index first, const Matrix &rows);
+  void commit();
+
+private:
+  std::filesystem::path path_;
+  H5Writer file_;
+};
+
+} // namespace rbvi

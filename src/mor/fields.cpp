@@ -1,0 +1,214 @@
+#include "rbvi/mor/fields.hpp"
+
+#include "rbvi/element/imposed.hpp"
+#include "rbvi/io/checksum.hpp"
+#include "rbvi/par/gather.hpp"
+#include "rbvi/rom/model/fields_file.hpp"
+#include "separation/dense_rows.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+namespace rbvi {
+
+namespace {
+
+/// Rows of all ranks, by the number of each, on the first rank. `records`: a number and the entries
+/// of its row, one after the other.
+std::vector<double> gathered(MPI_Comm comm, const std::vector<double> &records) {
+  const int count = static_cast<int>(records.size());
+  std::vector<int> counts(static_cast<std::size_t>(ranks_of(comm))), offsets(counts.size(), 0);
+  MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
+  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
+  std::vector<double> all;
+  if (rank_of(comm) == 0) all.resize(static_cast<std::size_t>(offsets.back() + counts.back()));
+  MPI_Gatherv(records.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
+              MPI_DOUBLE, 0, comm);
+  return all;
+}
+
+/// Rows `first` to `first + count - 1` of the basis on the first rank, zero where a displacement is
+/// fixed; empty on the others. Collective.
+Matrix rows_of_basis(const Problem &problem, const BorrowedRows::LocalRows &local, Index first,
+                     Index count) {
+  std::vector<double> records;
+  const std::vector<PetscInt> &numbers = problem.dofs().natural_owned;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] < first || numbers[i] >= first + count) continue;
+    records.push_back(static_cast<double>(numbers[i] - first));
+    const auto row = local.row(static_cast<Index>(i));
+    records.insert(records.end(), row.begin(), row.end());
+  }
+  const std::vector<double> all = gathered(problem.comm(), records);
+  if (rank_of(problem.comm()) != 0) return {};
+  Matrix rows = Matrix::Zero(count, local.cols());
+  for (auto record = all.begin(); record != all.end(); record += local.cols() + 1)
+    rows.row(static_cast<Index>(*record)) =
+        Eigen::Map<const Eigen::RowVectorXd>(&*record + 1, local.cols());
+  return rows;
+}
+
+/// What model.fields.h5 says of the mesh, on the first rank.
+struct WholeMesh {
+  Matrix points;
+  std::vector<int> cells, imposed_by;
+};
+
+Matrix gather_points(const Mesh &mesh) {
+  std::vector<double> records;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (!mesh.owned_node[v]) continue;
+    records.push_back(static_cast<double>(mesh.natural_node[v]));
+    records.insert(records.end(), mesh.points[v].begin(), mesh.points[v].begin() + mesh.dim);
+  }
+  const std::vector<double> all = gathered(mesh.comm, records);
+  if (rank_of(mesh.comm) != 0) return {};
+  Matrix points(mesh.total_nodes, mesh.dim);
+  for (auto record = all.begin(); record != all.end(); record += mesh.dim + 1)
+    points.row(static_cast<Index>(*record)) =
+        Eigen::Map<const Eigen::RowVectorXd>(&*record + 1, mesh.dim);
+  return points;
+}
+
+std::vector<int> gather_cells(const Mesh &mesh) {
+  const int per_cell = nodes_per_cell(mesh.dim, mesh.degree);
+  std::vector<double> records;
+  for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
+    records.push_back(static_cast<double>(mesh.natural_cell[k]));
+    const auto nodes = nodes_of(mesh, k);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
+      records.push_back(static_cast<double>(mesh.natural_node[static_cast<std::size_t>(nodes[i])]));
+  }
+  const std::vector<double> all = gathered(mesh.comm, records);
+  if (rank_of(mesh.comm) != 0) return {};
+  std::vector<int> cells(static_cast<std::size_t>(mesh.total_cells * per_cell));
+  for (auto record = all.begin(); record != all.end(); record += per_cell + 1)
+    std::transform(record + 1, record + 1 + per_cell,
+                   cells.begin() + static_cast<std::ptrdiff_t>(*record) * per_cell,
+                   [](double node) { return static_cast<int>(node); });
+  return cells;
+}
+
+/// ReducedModel::imposed_by.
+std::vector<int> gather_imposed(const Problem &problem) {
+  const Dofs &dofs = problem.dofs();
+  const Mesh &mesh = problem.mesh();
+  if (!imposes_values(problem.scene())) return {};
+  std::vector<double> records;
+  for (std::size_t i = 0; i < dofs.imposed_by.size(); ++i) {
+    const auto components = static_cast<std::size_t>(dofs.components);
+    if (dofs.imposed_by[i] < 0) continue;
+    records.push_back(static_cast<double>(mesh.natural_node[i / components] * dofs.components) +
+                      static_cast<double>(i % components));
+    records.push_back(dofs.imposed_by[i]);
+  }
+  const std::vector<double> all = gathered(problem.comm(), records);
+  if (rank_of(problem.comm()) != 0) return {};
+  std::vector<int> imposed_by(static_cast<std::size_t>(dofs.total), -1);
+  for (auto record = all.begin(); record != all.end(); record += 2)
+    imposed_by[static_cast<std::size_t>(*record)] = static_cast<int>(record[1]);
+  return imposed_by;
+}
+
+WholeMesh gather_mesh(const Problem &problem) {
+  return {gather_points(problem.mesh()), gather_cells(problem.mesh()), gather_imposed(problem)};
+}
+
+/// The columns of a basis, borrowed.
+class BorrowedBasis {
+public:
+  explicit BorrowedBasis(const LinearBasis &basis) : basis_(basis.columns.get()) {
+    RBVI_CALL(BVGetMat(basis_, &columns_));
+    rows_.emplace(columns_);
+  }
+  ~BorrowedBasis() {
+    rows_.reset();
+    (void)BVRestoreMat(basis_, &columns_);
+  }
+  BorrowedBasis(const BorrowedBasis &) = delete;
+  BorrowedBasis &operator=(const BorrowedBasis &) = delete;
+  BorrowedRows::LocalRows rows() const { return rows_->rows(); }
+
+private:
+  BV basis_;
+  Mat columns_ = nullptr;
+  std::optional<BorrowedRows> rows_;
+};
+
+/// Calls visit(first, count, rows) for the rows of the basis, block by block; rows: on the first
+/// rank.
+template <class Visit>
+void visit_rows(const Problem &problem, const LinearBasis &basis, Visit &&visit) {
+  constexpr Index entries_at_a_time = Index{1} << 22;
+  const BorrowedBasis borrowed(basis);
+  const Index total = problem.dofs().total;
+  const Index step = std::max<Index>(1, entries_at_a_time / std::max<Index>(1, basis.size()));
+  for (Index first = 0; first < total; first += step) {
+    const Index count = std::min(step, total - first);
+    visit(first, count, rows_of_basis(problem, borrowed.rows(), first, count));
+  }
+}
+
+} // namespace
+
+std::string key_of_fields(const Problem &problem, const LinearBasis &basis) {
+  const BorrowedBasis borrowed(basis);
+  std::uint64_t own = fnv1a(nullptr, 0);
+  for (Index j = 0; j < borrowed.rows().cols(); ++j)
+    own = fnv1a(borrowed.rows().col(j).data(),
+                static_cast<std::size_t>(borrowed.rows().rows()) * sizeof(double), own);
+  const std::vector<std::uint64_t> all =
+      gather_all(problem.comm(), std::vector<std::uint64_t>{own}, MPI_UINT64_T);
+  return std::to_string(fnv1a(all.data(), all.size() * sizeof(own))) + "-" +
+         problem.mesh().fingerprint;
+}
+
+void write_fields(const Problem &problem, const LinearBasis &basis, const ReducedModel &model,
+                  const std::filesystem::path &model_path) {
+  const MPI_Comm comm = problem.comm();
+  const bool writes = rank_of(comm) == 0;
+  const WholeMesh mesh = gather_mesh(problem);
+  std::unique_ptr<FieldsFile> file;
+  collectively(comm, [&] {
+    if (!writes) return;
+    file = std::make_unique<FieldsFile>(model_path, model.fields_key);
+    file->write_mesh(mesh.points, mesh.cells, mesh.imposed_by);
+    file->begin_basis(problem.dofs().total, basis.size());
+  });
+  visit_rows(problem, basis, [&](Index first, Index, const Matrix &rows) {
+    collectively(comm, [&] {
+      if (writes) file->write_basis(first, rows);
+    });
+  });
+  collectively(comm, [&] {
+    if (writes) file->commit();
+  });
+}
+
+void gather_fields(const Problem &problem, const LinearBasis &basis, ReducedModel &model) {
+  const MPI_Comm comm = problem.comm();
+  WholeMesh mesh = gather_mesh(problem);
+  const auto share = [&](auto &values, MPI_Datatype type) {
+    MPI_Bcast(values.data(), static_cast<int>(values.size()), type, 0, comm);
+  };
+  mesh.points.resize(problem.mesh().total_nodes, problem.mesh().dim);
+  mesh.cells.resize(static_cast<std::size_t>(
+      problem.mesh().total_cells * nodes_per_cell(problem.mesh().dim, problem.mesh().degree)));
+  if (imposes_values(problem.scene()))
+    mesh.imposed_by.resize(static_cast<std::size_t>(problem.dofs().total));
+  share(mesh.points, MPI_DOUBLE);
+  share(mesh.cells, MPI_INT);
+  share(mesh.imposed_by, MPI_INT);
+  model.mesh_points = std::move(mesh.points);
+  model.mesh_cells = std::move(mesh.cells);
+  model.imposed_by = std::move(mesh.imposed_by);
+  model.primal_basis.resize(problem.dofs().total, basis.size());
+  visit_rows(problem, basis, [&](Index first, Index count, Matrix rows) {
+    rows.resize(count, basis.size()); // on the first rank they are there
+    share(rows, MPI_DOUBLE);
+    model.primal_basis.middleRows(first, count) = rows;
+  });
+}
+
+} // namespace rbvi
