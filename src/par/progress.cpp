@@ -32,13 +32,15 @@ Progress::~Progress() {
   if (terminal_ && last_ != start_) std::printf("\n");
 }
 
-void Progress::update(int done, const std::string &detail) {
-  if (!reports_ || done == 0) return;
-  const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < (terminal_ ? between_updates : between_lines) && done < total_) return;
-  last_ = now;
-  const double elapsed = Seconds(now - start_).count();
-  const double left = elapsed / done * (total_ - done);
+bool Progress::due() const {
+  const auto passed = std::chrono::steady_clock::now() - last_;
+  return reports_ && passed >= (terminal_ ? between_updates : between_lines);
+}
+
+void Progress::update(int done, double left, const std::string &detail) {
+  if (!reports_ || done == 0 || (!due() && done < total_)) return;
+  last_ = std::chrono::steady_clock::now();
+  const double elapsed = Seconds(last_ - start_).count();
   std::printf("%s  %d of %d %s, %s%.1f s, %.1f s left%s", terminal_ ? "\r" : "", done, total_,
               what_.c_str(), detail.c_str(), elapsed, left, terminal_ ? "\x1b[K" : "\n");
   std::fflush(stdout);

@@ -8,14 +8,17 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"
+#include "rbvi/par/queue.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "sample_file.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cinttypes>
 #include <cstdio>
 #include <fstream>
 #include <set>
+#include <thread>
 
 namespace rbvi {
 
@@ -198,33 +201,45 @@ void tell_when_interrupted(const std::vector<Mu> &set, const fs::path &directory
   });
 }
 
-/// Each group solves its share of the missing samples.
+/// The line that tells how far all groups are. Returns whether they are at the end.
+bool tell(Progress &progress, const SharedQueue &queue, const Groups &groups) {
+  const QueueState state = queue.state();
+  if (state.done > 0)
+    progress.update(state.done, seconds_left(state, queue.count(), groups.count()),
+                    each(state.seconds / state.done));
+  return state.stopped || state.done == queue.count();
+}
+
+/// All groups together solve the missing samples, each the next ones when it has none. What one
+/// group throws ends all of them, the others after the sample that they are at.
 void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
                    const std::vector<Mu> &set, const std::vector<int> &missing,
                    const fs::path &directory, const Settings &settings) {
-  const auto total = static_cast<int>(missing.size());
-  const int begin = total * groups.mine() / groups.count();
-  const int end = total * (groups.mine() + 1) / groups.count();
   const int rank = rank_of(world);
-  // The first group tells of all: it knows its own share, and takes the others to be as far.
-  Progress progress(groups.count() == 1
-                        ? "samples"
-                        : "samples (about), " + std::to_string(groups.count()) + " groups",
-                    total, rank == 0);
+  SharedQueue queue(world, groups, static_cast<int>(missing.size()));
+  Progress progress(groups.count() == 1 ? "samples"
+                                        : "samples, " + std::to_string(groups.count()) + " groups",
+                    queue.count(), rank == 0);
   HfOptions of_all = options;
   of_all.samples = static_cast<int>(set.size()) / groups.count();
-  HighFidelity solver(problem, of_all);
   collectively(world, [&] {
-    const double start = MPI_Wtime();
-    for (int k = begin; k < end; ++k) {
-      const Mu &mu = set[static_cast<std::size_t>(missing[static_cast<std::size_t>(k)])];
-      collectively(groups.comm(), [&] {
-        solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
-                     settings);
-      });
-      const int done = k + 1 - begin;
-      progress.update(total * done / (end - begin), each((MPI_Wtime() - start) / done));
+    try {
+      HighFidelity solver(problem, of_all);
+      while (const std::optional<int> k = queue.next()) {
+        const Mu &mu = set[static_cast<std::size_t>(missing[static_cast<std::size_t>(*k)])];
+        collectively(groups.comm(), [&] {
+          solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
+                       settings);
+        });
+        queue.finish();
+        if (progress.due()) (void)tell(progress, queue, groups);
+      }
+    } catch (...) {
+      queue.stop();
+      throw;
     }
+    while (rank == 0 && !tell(progress, queue, groups))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
   });
 }
 

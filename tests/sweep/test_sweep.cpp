@@ -1,5 +1,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/temporary_files.hpp"
 #include "rbvi/sweep/sweep.hpp"
 
@@ -123,6 +124,57 @@ TEST_F(SweepTest, SameSamplesForAnyGroups) {
       EXPECT_LE(relative(sample.lambda, alone_solved[i].lambda), 1e-10) << k << " ranks per group";
       EXPECT_NEAR(*sample.outputs.energy, *alone_solved[i].outputs.energy, 1e-10);
     }
+  }
+}
+
+/// On the built-in mesh, in an order without neighbours: starts differ, answers do not.
+TEST_F(SweepTest, SameSamplesOfARandomSetForAnyGroups) {
+  const Scene scene = make_scene("membrane_obstacle");
+  const std::vector<Mu> nine = parse_set(scene.parameters, "random:9:1");
+  Problem problem(PETSC_COMM_SELF, scene, {});
+  HighFidelity solver(problem, {});
+  std::vector<HfSolution> alone_solved;
+  for (const Mu &mu : nine)
+    alone_solved.push_back(solver.solve(mu));
+  for (int k = 1; k <= ranks_in_world(); ++k) {
+    if (ranks_in_world() % k != 0) continue;
+    const Groups groups(PETSC_COMM_WORLD, k);
+    Problem shared(groups.comm(), scene, {});
+    const Sweep result = run_sweep(PETSC_COMM_WORLD, groups, shared, {}, nine,
+                                   directory / ("nine_" + std::to_string(k)));
+    ASSERT_EQ(result.samples.size(), nine.size());
+    for (std::size_t i = 0; i < nine.size(); ++i) {
+      EXPECT_EQ(result.samples[i].mu, nine[i]);
+      EXPECT_LE(relative(result.samples[i].u, alone_solved[i].u), 1e-9) << k;
+      EXPECT_LE(relative(result.samples[i].lambda, alone_solved[i].lambda), 1e-9) << k;
+    }
+  }
+}
+
+/// A set that no group can go on with: one meets bad input, all end with it, and soon.
+TEST_F(SweepTest, BadInputInOneGroupEndsAll) {
+  Scene scene = wide_scene();
+  scene.map = [map = scene.map](const FullMu &mu, const Point &x) {
+    if (mu[0] == 0.17) throw bad_input("the map of this scene stops at 0.17");
+    return map(mu, x);
+  };
+  std::vector<Mu> set;
+  for (int i = 0; i < 200; ++i)
+    set.push_back({0.17 + 0.0002 * i, 0, 0});
+  for (int k = 1; k <= ranks_in_world(); ++k) {
+    if (ranks_in_world() % k != 0) continue;
+    const fs::path where = directory / ("ended_" + std::to_string(k));
+    try {
+      (void)sweep(set, k, scene, {}, where.filename());
+      ADD_FAILURE() << "nothing was thrown";
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), Status::bad_input);
+      EXPECT_TRUE(contains(error.what(), "stops at 0.17")) << error.what();
+    }
+    alone([&] {
+      const auto made = std::distance(fs::directory_iterator(where), fs::directory_iterator());
+      EXPECT_LE(made, 100) << k << ": the others went on";
+    });
   }
 }
 

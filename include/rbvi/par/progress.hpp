@@ -13,8 +13,11 @@ public:
   ~Progress(); ///< ends the line
   Progress(const Progress &) = delete;
   Progress &operator=(const Progress &) = delete;
-  /// `done` of the total are finished; `detail` ("0.1 s each, ") stands before the times.
-  void update(int done, const std::string &detail = "");
+  /// Whether it is time for a line: what it says need not be found out before.
+  bool due() const;
+  /// `done` of the total are finished, the others take `left` seconds; `detail` ("0.1 s each, ")
+  /// stands before the times.
+  void update(int done, double left, const std::string &detail = "");
 
 private:
   std::string what_;
