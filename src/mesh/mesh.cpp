@@ -334,6 +334,18 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   return mesh;
 }
 
+PetscInt count_nodes(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
+  PetscInt nodes = 0;
+  collectively(comm, [&] {
+    if (rank_of(comm) != 0) return;
+    if (options.refine < 0) throw bad_input("the number of mesh refinements is negative");
+    const SerialMesh first = undistributed_mesh(scene, {options.file, 0});
+    nodes = static_cast<PetscInt>(nodes_when_refined(first, options.refine, scene.degree));
+  });
+  MPI_Bcast(&nodes, 1, MPIU_INT, 0, comm);
+  return nodes;
+}
+
 std::array<int, most_nodes> nodes_of(const Mesh &mesh, std::size_t cell) {
   std::array<int, most_nodes> nodes;
   nodes.fill(-1);

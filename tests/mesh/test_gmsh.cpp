@@ -148,6 +148,11 @@ TEST(Gmsh, TetrahedraAreReadRefinedAndDistributed) {
     const int n = 1 << refine;
     EXPECT_EQ(mesh.total_vertices, (n + 1) * (n + 1) * (n + 1));
     EXPECT_EQ(mesh.total_cells, 6 * n * n * n);
+    EXPECT_EQ(count_nodes(PETSC_COMM_WORLD, scene, {file.name(), refine}), mesh.total_nodes);
+    scene.degree = 2;
+    EXPECT_EQ(count_nodes(PETSC_COMM_WORLD, scene, {file.name(), refine}),
+              make_mesh(PETSC_COMM_WORLD, scene, {file.name(), refine}).total_nodes);
+    scene.degree = 1;
     double volume = 0;
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
       std::array<Point, 4> corners{};

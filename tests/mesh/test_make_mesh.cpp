@@ -41,6 +41,19 @@ TEST_P(MakeMesh, TotalsAndFingerprintDoNotDependOnRanks) {
   EXPECT_EQ(alone.cells.size(), at(alone.total_cells));
 }
 
+/// Without making it: of every scene, of either degree.
+TEST(CountNodes, IsThatOfTheMesh) {
+  for (const SceneEntry &entry : scene_catalogue())
+    for (const int refine : {0, 1}) {
+      if (refine == 1 && entry.name == "roller") continue; // its hub is refused when refined
+      Scene scene = make_scene(entry.name);
+      for (scene.degree = 1; scene.degree <= 2; ++scene.degree)
+        EXPECT_EQ(count_nodes(PETSC_COMM_WORLD, scene, {"", refine}),
+                  make_mesh(PETSC_COMM_WORLD, scene, {"", refine}).total_nodes)
+            << entry.name << " refined " << refine << " times, degree " << scene.degree;
+    }
+}
+
 TEST_P(MakeMesh, NaturalNumbersAreTheOrderOfOneProcess) {
   for (std::size_t v = 0; v < alone.points.size(); ++v)
     EXPECT_EQ(alone.natural_node[v], static_cast<PetscInt>(v));

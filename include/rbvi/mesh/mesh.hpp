@@ -128,4 +128,8 @@ SerialMesh annulus(int edges = 48);
 /// check_facts), fewer cells than ranks, refine < 0.
 Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options);
 
+/// Nodes that this mesh would have, from its first level alone, on the first rank. Collective.
+/// Throws bad_input as make_mesh does for that level.
+PetscInt count_nodes(MPI_Comm comm, const Scene &scene, const MeshOptions &options);
+
 } // namespace rbvi

@@ -4,6 +4,8 @@
 
 #include "rbvi/mesh/mesh.hpp"
 
+#include <cstdint>
+
 namespace rbvi {
 
 /// Reads a Gmsh file (2.2, 4.0, 4.1; text or binary) with the regions and boundaries of the
@@ -14,6 +16,10 @@ SerialMesh read_gmsh(const std::string &file, const Scene &scene);
 
 /// Every simplex split by DMPlex into 2^dim; regions and boundaries are inherited.
 SerialMesh refined(const SerialMesh &mesh);
+
+/// Nodes of the mesh once it is refined so many times, found by counting its edges and triangles:
+/// refinement splits each of them in the same way.
+std::int64_t nodes_when_refined(const SerialMesh &mesh, int times, int degree);
 
 /// Moves by Scene::snap the vertices that the scene's contact region shares with the rest, and
 /// those of the boundary that its recipe names as curved; onto its circle those of the rim of its
