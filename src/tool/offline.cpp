@@ -8,6 +8,7 @@
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/self_check.hpp"
 #include "rbvi/solve/contact_cost.hpp"
+#include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/options/run_directory.hpp"
@@ -22,9 +23,10 @@ namespace rbvi {
 
 namespace {
 
-/// How the linear systems of contact will be solved, which takes the mesh to tell.
-void print_contact_plan(MPI_Comm world, const Groups &groups, const ToolOptions &options,
-                        std::size_t samples) {
+/// By whom samples are solved, and how the linear systems of contact: that takes the mesh to tell.
+void print_solve_plan(MPI_Comm world, const Grouping &grouping, const Groups &groups,
+                      const ToolOptions &options, std::size_t samples) {
+  if (rank_of(world) == 0) std::printf("%s\n", grouping.text.c_str());
   if (options.hf.method != HfMethod::active_set || by_nitsche(options.scene)) return;
   const Workspace work(world, groups, options);
   HfOptions hf = options.hf;
@@ -50,12 +52,14 @@ void command_offline(const ToolOptions &options) {
   check_set(options.scene, training);
   check_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
-  const Groups groups(world, options.ranks_per_solve);
+  const Grouping grouping =
+      group_ranks(world, options.scene, options.mesh, training.size(), options.ranks_per_solve);
+  const Groups groups(world, grouping.ranks_per_solve);
   const int rank = rank_of(world);
-  StageTable before = preparation_stages(options, training.size(), groups.count());
+  StageTable before = preparation_stages(options, training.size(), groups);
   StageTable after = closing_stages();
   if (rank == 0) print_stages({before, reduction_stages(options.scene, options.reduce), after});
-  if (options.plan) return print_contact_plan(world, groups, options, training.size());
+  if (options.plan) return print_solve_plan(world, grouping, groups, options, training.size());
   if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
   check_outputs(world, options,
                 {{"the reduced model", options.out / "model.h5"},
@@ -71,8 +75,8 @@ void command_offline(const ToolOptions &options) {
 
   if (will_run(before, stage::distributed_mesh))
     timed(before, stage::distributed_mesh, [&] { work.world_problem(); });
-  before = finished_stages(
-      before, preparation_stages(options, training.size(), groups.count(), &sweep.report));
+  before =
+      finished_stages(before, preparation_stages(options, training.size(), groups, &sweep.report));
   Reduction made = reduce(work.world_problem(), sweep.samples, options.reduce);
   ReducedModel &model = made.model;
   model.settings = kept_settings(options);

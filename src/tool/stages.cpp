@@ -1,6 +1,7 @@
 #include "rbvi/tool/stages.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/linear/scaled_part.hpp"
 
 #include <cstdio>
@@ -14,10 +15,9 @@ std::string mesh_text(const MeshOptions &mesh, const Scene &scene) {
          (mesh.refine > 0 ? ", refined " + counted(mesh.refine, "time") : "");
 }
 
-StageRow snapshot_row(const ToolOptions &options, std::size_t training, int groups,
-                      const SweepReport *sweep) {
+StageRow snapshot_row(std::size_t training, const Groups &groups, const SweepReport *sweep) {
   const std::string shared =
-      " by " + counted(groups, "group") + " of " + counted(options.ranks_per_solve, "rank");
+      " by " + counted(groups.count(), "group") + " of " + counted(ranks_of(groups.comm()), "rank");
   if (sweep == nullptr)
     return {stage::snapshots, std::to_string(training) + " high-fidelity solves" + shared +
                                   ", those that are there reused"};
@@ -44,15 +44,15 @@ std::string factorisation_text(const ToolOptions &options) {
 
 } // namespace
 
-StageTable preparation_stages(const ToolOptions &options, std::size_t training, int groups,
-                              const SweepReport *sweep) {
+StageTable preparation_stages(const ToolOptions &options, std::size_t training,
+                              const Groups &groups, const SweepReport *sweep) {
   StageTable rows{
       {stage::mesh, mesh_text(options.mesh, options.scene)},
       {StageName("factorisations"), factorisation_text(options), StageKind::part},
-      snapshot_row(options, training, groups, sweep),
+      snapshot_row(training, groups, sweep),
       {stage::distributed_mesh, "for the reduction on all ranks"},
   };
-  if (groups == 1)
+  if (groups.count() == 1)
     rows.back() = {stage::distributed_mesh, "the one group holds all ranks", StageKind::skipped};
   return rows;
 }

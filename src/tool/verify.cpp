@@ -13,6 +13,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
+#include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/model_case.hpp"
@@ -346,7 +347,9 @@ void command_verify(const ToolOptions &given) {
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   check_set(options.scene, validation);
   const std::vector<Mu> training = from_columns(model.trained_mu);
-  const Groups groups(world, options.ranks_per_solve);
+  const Grouping grouping =
+      group_ranks(world, options.scene, options.mesh, validation.size(), options.ranks_per_solve);
+  const Groups groups(world, grouping.ranks_per_solve);
   Workspace work(world, groups, options);
   check_mesh(work.group_problem(), model, options);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,

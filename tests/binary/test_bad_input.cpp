@@ -71,6 +71,7 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"offline -case case.yaml -plan maybe -out run", "use yes or no"},
        {"offline -case case.yaml -log_veiw -out run", "the nearest one is -log_view"},
        {"offline -case case.yaml -sweep_ranks_per_solve 3 -out run", "a number that divides the"},
+       {"offline -case case.yaml -sweep_ranks_per_solve all -out run", "a number or auto"},
        {"offline -case case.yaml -sweep_max_failures 10 -out run", "use a number from 0 to 1"},
        {"offline -case case.yaml -train grid:2,2 -out run", "2 counts for 3"},
        {"offline -case case.yaml -radius 0.24,0.16 -out run", "the lower bound comes first"},

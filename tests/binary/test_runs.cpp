@@ -244,13 +244,15 @@ TEST_F(Runs, PlanAndEndAreOneTable) {
       contains(plan.out, "load vector                       skipped: the scene has no load"))
       << plan.out;
   EXPECT_TRUE(contains(plan.out, "8 high-fidelity solves by 2 groups of 1 rank")) << plan.out;
+  EXPECT_TRUE(contains(plan.out, "Solves are by 2 groups of 1 rank: 8 samples of about "))
+      << plan.out;
   EXPECT_FALSE(contains(plan.out, "total"));
   const Finished run = shell(rbvi(2, "offline -case case.yaml -out run"));
   for (const char *stage :
        {"mesh", "snapshots", "interpolation", "POD", "cone", "PGA", "projection"})
     EXPECT_EQ(lines_with(run.out, std::string("  ") + stage + " "), 2) << stage << run.out;
   EXPECT_TRUE(contains(run.out, "skipped: B only scales")) << run.out;
-  EXPECT_TRUE(contains(run.out, "8 of 8 samples")) << run.out;
+  EXPECT_TRUE(contains(run.out, "8 of 8 samples, 2 groups, ")) << run.out;
   const Finished again = shell(rbvi(1, "offline -out run"));
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_TRUE(contains(again.out, "skipped: all 8 were there")) << again.out;

@@ -190,9 +190,26 @@ std::vector<Option> of_iterations() {
              "load steps where the first attempt fails; 0: that is an error")};
 }
 
+Option ranks_per_solve() {
+  Option option = number("sweep_ranks_per_solve", {1, 1000000}, AT(ranks_per_solve),
+                         "ranks that share one solve; divides the ranks; auto: by the sizes of set "
+                         "and mesh and the memory of the nodes (-plan prints it)");
+  option.values += ", auto";
+  option.read = [read_number = option.read](const std::string &value, ToolOptions &options) {
+    if (value == "auto")
+      options.ranks_per_solve = 0;
+    else
+      while_doing("reading -sweep_ranks_per_solve, a number or auto",
+                  [&] { read_number(value, options); });
+  };
+  option.shown = [](const ToolOptions &options) {
+    return options.ranks_per_solve == 0 ? "auto" : std::to_string(options.ranks_per_solve);
+  };
+  return otherwise("auto", option);
+}
+
 std::vector<Option> of_sweeps() {
-  return {number("sweep_ranks_per_solve", {1, 1000000}, AT(ranks_per_solve),
-                 "ranks that share one solve; divides the ranks"),
+  return {ranks_per_solve(),
           number("sweep_max_failures", {0, 1}, AT(max_failures),
                  "share of a set that may fail: where more does, no model is made, nothing "
                  "measured")};

@@ -20,7 +20,7 @@ struct ToolOptions {
   HfOptions hf;
   ReduceOptions reduce;
   int contact_gather = static_cast<int>(default_contact_gather);
-  int ranks_per_solve = 1;
+  int ranks_per_solve = 0;         ///< 0: auto, as group_ranks chooses
   double max_failures = 0.1;       ///< share of a set that may fail
   std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
   std::filesystem::path out;       ///< run directory; "" where none is given

@@ -1,5 +1,5 @@
 // What a scene needs of a mesh file, for -help.
-#include "table.hpp"
+#include "../table.hpp"
 
 #include <cstdio>
 

@@ -1,6 +1,6 @@
 // -help.
-#include "database.hpp"
-#include "table.hpp"
+#include "../database.hpp"
+#include "../table.hpp"
 
 #include "rbvi/core/outputs.hpp"
 

@@ -1,6 +1,6 @@
 // The page cases/OPTIONS.md.
-#include "database.hpp"
-#include "table.hpp"
+#include "../database.hpp"
+#include "../table.hpp"
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"

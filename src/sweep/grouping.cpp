@@ -1,0 +1,118 @@
+#include "rbvi/sweep/grouping.hpp"
+
+#include "rbvi/core/text.hpp"
+#include "rbvi/par/collective.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+// Measured peaks of resident memory on one rank. In two dimensions nested dissection gives the
+// factor of A about 31 n log2 n entries. All that a process holds beyond the 64 MB without a mesh
+// was, in units of 8 n log2 n bytes, for `rbvi solve` 18, 23 and 23 on membrane_obstacle refined
+// once, twice and three times (13e3, 53e3, 213e3 dofs) and 32 on rigid_disk refined twice (91e3);
+// in sweeps 25 on the membrane and 42 on the disk refined twice, its condensed operator included.
+// A condensed operator of thousands of multipliers comes on top: 98 on the membrane refined twice
+// with -hf_contact condensed. In three dimensions the factor alone (CHOLMOD, cubes of tetrahedra
+// with 33e3 to 64e3 dofs) took 120 n^(4/3) bytes for one component, 220 for three.
+constexpr double process_bytes = 64e6;
+constexpr double plane_entries = 42, space_bytes = 220;
+
+// One solve on two ranks against one: not faster below this size, and above by about so much.
+constexpr double parallel_from = 2e5, speedup_of_two = 1.4;
+
+double available_bytes() {
+  std::ifstream file("/proc/meminfo");
+  std::string name, unit;
+  for (double kilobytes = 0; file >> name >> kilobytes;) {
+    if (name == "MemAvailable:") return 1024 * kilobytes;
+    std::getline(file, unit);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// "Solves are by 2 groups of 1 rank: ".
+std::string groups_text(int ranks, int ranks_per_solve) {
+  return "Solves are by " + counted(ranks / ranks_per_solve, "group") + " of " +
+         counted(ranks_per_solve, "rank") + ": ";
+}
+
+std::string memory_text(double bytes) {
+  return bytes < 1e9 ? formatted("%.0f MB", bytes / 1e6) : formatted("%.3g GB", bytes / 1e9);
+}
+
+} // namespace
+
+NodeMemory tightest_node(MPI_Comm comm) {
+  MPI_Comm node = MPI_COMM_NULL;
+  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
+  const int ranks = ranks_of(node);
+  double bytes = available_bytes();
+  MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_MIN, node);
+  MPI_Comm_free(&node);
+  struct {
+    double share;
+    int rank;
+  } tightest{bytes / ranks, rank_of(comm)};
+  MPI_Allreduce(MPI_IN_PLACE, &tightest, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
+  std::array<double, 2> found{static_cast<double>(ranks), bytes};
+  MPI_Bcast(found.data(), 2, MPI_DOUBLE, tightest.rank, comm);
+  return {static_cast<int>(found[0]), found[1]};
+}
+
+double solve_bytes(const SolveSize &size) {
+  const double n = std::max(2.0, size.dofs);
+  return process_bytes + (size.dim == 2 ? 8 * plane_entries * n * std::log2(n)
+                                        : space_bytes * std::pow(n, 4.0 / 3));
+}
+
+double solve_speedup(const SolveSize &size, int ranks) {
+  return size.dofs < parallel_from ? 1 : std::pow(speedup_of_two, std::log2(ranks));
+}
+
+Grouping choose_grouping(int ranks, std::size_t samples, const SolveSize &size,
+                         const NodeMemory &node) {
+  const auto wanted = std::max(1, static_cast<int>(samples));
+  const double bytes = solve_bytes(size);
+  int best = 0, too_many = 0;
+  double least = 0;
+  for (int s = 1; s <= ranks; ++s) {
+    const int groups = ranks / s;
+    if (ranks % s != 0 || groups > wanted) continue;
+    if (bytes * node.ranks / s > node.bytes) {
+      too_many = too_many == 0 ? groups : too_many;
+      continue;
+    }
+    const double time = (wanted + groups - 1) / groups / solve_speedup(size, s);
+    if (best != 0 && time >= least) continue;
+    best = s;
+    least = time;
+  }
+  const std::string facts = counted(wanted, "sample") + " of about " +
+                            formatted("%.0f", size.dofs) + " dofs and " + memory_text(bytes) +
+                            ", " + memory_text(node.bytes) + " for the " +
+                            counted(node.ranks, "rank") + " of a node";
+  if (best == 0) return {ranks, groups_text(ranks, ranks) + facts + ", where not even one may fit"};
+  return {best, groups_text(ranks, best) + facts +
+                    (too_many == 0 ? ""
+                                   : ", where " + counted(too_many, "solve") +
+                                         " side by side would not fit")};
+}
+
+Grouping group_ranks(MPI_Comm world, const Scene &scene, const MeshOptions &mesh,
+                     std::size_t samples, int forced) {
+  const int ranks = ranks_of(world);
+  if (forced != 0) return {forced, groups_text(ranks, forced) + "as -sweep_ranks_per_solve says"};
+  if (ranks == 1) return {1, groups_text(1, 1) + "there is no other"};
+  const double nodes = static_cast<double>(count_nodes(world, scene, mesh));
+  return choose_grouping(ranks, samples, {nodes * scene.components, scene.dim},
+                         tightest_node(world));
+}
+
+} // namespace rbvi
