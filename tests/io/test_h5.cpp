@@ -110,6 +110,35 @@ TEST_F(SealedFile, SeveralAreOpenAtOnceAndMove) {
   EXPECT_EQ(b.number("x"), 1.0);
 }
 
+TEST_F(SealedFile, OnTheDiskIsTheSameAsInMemory) {
+  const Matrix matrix = Matrix::Random(7, 3);
+  H5Writer disk(path);
+  disk.write("x", 0.1);
+  disk.create_rows("deep/m", 7, 3);
+  for (const auto &[first, count] : {std::pair<Index, Index>{4, 3}, {0, 3}, {3, 1}})
+    disk.write_rows("deep/m", first, matrix.middleRows(first, count));
+  EXPECT_FALSE(std::filesystem::exists(path));
+  disk.commit(path, "sample", 3);
+  const H5Reader reader(path, "sample", 3);
+  EXPECT_EQ(reader.matrix("deep/m"), matrix);
+  EXPECT_EQ(reader.number("x"), 0.1);
+  EXPECT_EQ(files(), 1U);
+}
+
+TEST_F(SealedFile, OneThatIsNotCommittedLeavesNothing) {
+  commit_small(path);
+  const std::string before = slurp(path);
+  {
+    H5Writer disk(path);
+    disk.create_rows("m", 1000, 10);
+    disk.write_rows("m", 0, Matrix::Ones(500, 10));
+    EXPECT_THROW(disk.write_rows("m", 900, Matrix::Ones(200, 10)), Error);
+    EXPECT_THROW(disk.create_rows("m", 2, 2), Error);
+  }
+  EXPECT_EQ(slurp(path), before);
+  EXPECT_EQ(files(), 1U);
+}
+
 TEST_F(SealedFile, BytesDependOnContentAlone) {
   commit_small(path);
   commit_small(directory / "b.h5");

@@ -209,5 +209,32 @@ TEST(AppendOrthonormalised, nearly_dependent_column_stays_orthogonal) {
   EXPECT_LE(gram_error(dense, gathered(result.basis.columns.get())), 1e-13);
 }
 
+/// More columns than are taken at a time, some of which depend on others of their block, or of one
+/// before.
+TEST(AppendOrthonormalised, takes_many_columns_block_by_block) {
+  constexpr PetscInt m = 14;
+  const Handle<Mat> product = distributed_product(m);
+  const Matrix dense = dense_product(m);
+  const Snapshots snapshots(product.get(), random_matrix(m * m, 6, 31));
+  Pod result = pod(snapshots.raw, product.get(), {.tolerance = 0});
+  Matrix extra = random_matrix(m * m, 110, 32);
+  extra.col(20) = extra.col(3) + extra.col(19);
+  extra.col(70) = extra.col(5) - 3 * extra.col(60);
+  extra.col(100) = extra.col(99) + 1e-9 * extra.col(100);
+  std::vector<PetscInt> nodes(m * m);
+  for (PetscInt k = 0; k < m * m; ++k)
+    nodes[static_cast<std::size_t>(k)] = k;
+  const Handle<Mat> columns = extension(make_trace(product.get(), nodes), extra, product.get());
+  std::vector<int> expected;
+  for (int k = 0; k < 110; ++k)
+    if (k != 20 && k != 70) expected.push_back(k);
+  EXPECT_EQ(append_orthonormalised(result.basis, columns.get(), 1e-11), expected);
+  EXPECT_EQ(result.basis.size(), 6 + 108);
+  const Matrix after = gathered(result.basis.columns.get());
+  EXPECT_LE(gram_error(dense, after), 1e-12);
+  EXPECT_LE(v_norm(dense, extra - after * (after.transpose() * dense * extra)),
+            1e-11 * v_norm(dense, extra));
+}
+
 } // namespace
 } // namespace rbvi

@@ -68,12 +68,49 @@ TEST(RieszSpace, lift_solves_and_factor_squares_to_the_traces) {
   for (Index k = 0; k < 2 * n; ++k)
     columns(membrane.nodes[static_cast<std::size_t>(k)], k) = 1;
   const Matrix exact = membrane.dense.llt().solve(columns);
-  EXPECT_LE(
-      (gathered(space.solver->fields(Matrix::Identity(2 * n, 2 * n)).get()) - exact).norm(),
-      1e-12 * exact.norm());
+  EXPECT_LE((gathered(space.solver->fields(Matrix::Identity(2 * n, 2 * n)).get()) - exact).norm(),
+            1e-12 * exact.norm());
   const Matrix traces = columns.transpose() * exact;
   EXPECT_LE((space.factor * space.factor.transpose() - traces).norm(), 1e-12 * traces.norm());
   EXPECT_TRUE(space.factor.isLowerTriangular());
+}
+
+/// Where b only scales, the loads of the multipliers at hand take the place of all contact dofs.
+TEST(RieszSpace, of_few_loads_has_the_same_products) {
+  const Membrane membrane;
+  const Matrix x = random_matrix(duals, 4, 21);
+  const Matrix loads = membrane.b_contact.transpose() * x;
+  const RieszSpace all = make_riesz_space(membrane.product.get(), membrane.trace),
+                   few = make_riesz_space(membrane.product.get(), membrane.trace, {}, loads);
+  ASSERT_EQ(few.factor.rows(), 4);
+  const Matrix t = few.factor.transpose(),
+               exact = supremizer_coordinates(all, membrane.b_contact, x);
+  EXPECT_LE((t.transpose() * t - exact.transpose() * exact).norm(), 1e-12 * exact.squaredNorm());
+  const LinearBasis modes = membrane.basis(random_matrix(n * n, 9, 22));
+  const Matrix of_few = mode_coordinates(few, modes), of_all = mode_coordinates(all, modes);
+  ASSERT_EQ(of_few.rows(), 4 + 9);
+  EXPECT_LE((of_few.transpose() * of_few - Matrix::Identity(9, 9)).norm(), 1e-12);
+  const Matrix products = of_all.topRows(2 * n).transpose() * exact;
+  EXPECT_LE((of_few.topRows(4).transpose() * t - products).norm(), 1e-12 * products.norm());
+  // The greedy takes the same supremizers, up to a rotation.
+  LinearBasis one = membrane.basis(random_matrix(n * n, 9, 22)),
+              other = membrane.basis(random_matrix(n * n, 9, 22));
+  const PgaOptions options{.stability = 1 - 1e-9};
+  const Pga of_loads = projected_greedy(membrane.trace.comm, few, of_few, {t}, options),
+            of_dofs = projected_greedy(membrane.trace.comm, all, of_all, {exact}, options);
+  append_representers(few, of_loads.representers, one, 1e-10);
+  append_representers(all, of_dofs.representers, other, 1e-10);
+  ASSERT_EQ(one.size(), other.size());
+  const Matrix a = gathered(one.columns.get()), b = gathered(other.columns.get());
+  EXPECT_LE((b - a * (a.transpose() * membrane.dense * b)).norm(), 1e-8 * b.norm());
+}
+
+TEST(RieszSpace, leaves_loads_out_that_depend_on_each_other) {
+  const Membrane membrane;
+  Matrix loads = random_matrix(2 * n, 4, 23);
+  loads.col(2) = loads.col(0) - loads.col(1);
+  EXPECT_EQ(make_riesz_space(membrane.product.get(), membrane.trace, {}, loads).factor.rows(),
+            2 * n);
 }
 
 TEST(RieszSpace, refuses_a_product_that_is_not_definite) {
