@@ -35,9 +35,11 @@ Stage::Stage(StageTable &table, StageName stage) : start_(MPI_Wtime()) {
   RBVI_CALL(PetscLogStageGetId(stage.text, &log));
   if (log < 0) RBVI_CALL(PetscLogStageRegister(stage.text, &log));
   RBVI_CALL(PetscLogStagePush(log));
+  if (costs_are_measured()) meter_.emplace();
 }
 
 Stage::~Stage() {
+  if (meter_) row_->cost = row_->cost.value_or(StageCost()) + meter_->so_far();
   (void)PetscLogStagePop();
   row_->seconds = row_->seconds.value_or(0) + MPI_Wtime() - start_;
 }
@@ -50,6 +52,7 @@ StageTable finished_stages(const StageTable &ran, StageTable told) {
     throw failure("the stages that are told are not those that were declared");
   for (std::size_t i = 0; i < told.size(); ++i) {
     told[i].seconds = ran[i].seconds;
+    told[i].cost = ran[i].cost;
     if (runs(told[i]) && !told[i].seconds)
       throw failure(std::string("the stage '") + told[i].stage.text +
                     "' was declared to run, but did not");

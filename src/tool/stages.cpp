@@ -66,7 +66,7 @@ void print_stages(const std::vector<StageTable> &tables) {
   std::printf("%-24s %9s  %s\n", "Stage", "seconds", "what");
   std::optional<double> total;
   for (const StageTable &rows : tables)
-    for (const auto &[stage, what, kind, seconds] : rows) {
+    for (const auto &[stage, what, kind, seconds, cost] : rows) {
       const bool skipped = kind == StageKind::skipped || kind == StageKind::nothing_to_do;
       std::printf("  %-22s %9s  %s%s\n", stage.text,
                   seconds ? formatted("%.3f", *seconds).c_str() : "", skipped ? "skipped: " : "",

@@ -2,6 +2,8 @@
 // and a stage of PETSc's -log_view.
 #pragma once
 
+#include "rbvi/par/stage_cost.hpp"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +28,7 @@ struct StageRow {
   std::string what; ///< what is done, or why not
   StageKind kind = StageKind::runs;
   std::optional<double> seconds = {}; ///< wall seconds of all its runs
+  std::optional<StageCost> cost = {}; ///< of all its runs, where costs_are_measured()
 };
 
 /// The declaration of what will run, in the order of print.
@@ -46,6 +49,7 @@ public:
 private:
   StageRow *row_;
   double start_;
+  std::optional<CostMeter> meter_;
 };
 
 /// What `run` returns, timed as a stage.
@@ -54,8 +58,8 @@ template <class Run> auto timed(StageTable &table, StageName stage, Run &&run) {
   return run();
 }
 
-/// What was done, `told`, with the seconds of the same rows of the plan, `ran`. Throws failure
-/// if the rows differ or one that is told as run has not run.
+/// What was done, `told`, with the seconds and costs of the same rows of the plan, `ran`. Throws
+/// failure if the rows differ or one that is told as run has not run.
 StageTable finished_stages(const StageTable &ran, StageTable told);
 
 } // namespace rbvi
