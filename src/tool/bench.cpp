@@ -175,6 +175,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
 } // namespace
 
 void command_bench(const ToolOptions &given) {
+  if (!given.growth.empty()) return command_growth(given);
   const MPI_Comm world = PETSC_COMM_WORLD;
   const int rank = rank_of(world), ranks = ranks_of(world);
   const ReducedModel model = model_of_run(world, given.out);

@@ -11,8 +11,8 @@
 #include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
+#include "rbvi/tool/offline_run.hpp"
 #include "rbvi/tool/options/run_directory.hpp"
-#include "rbvi/tool/stages.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
@@ -46,39 +46,31 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
 
 } // namespace
 
-void command_offline(const ToolOptions &options) {
-  const MPI_Comm world = PETSC_COMM_WORLD;
-  const std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
+std::vector<Mu> checked_training(const ToolOptions &options) {
+  std::vector<Mu> training = parse_set(options.scene.parameters, options.train);
   check_set(options.scene, training);
   check_reduction(options.scene, options.reduce);
   check_eigen_options(options, EigenUse::supremizers);
-  const Grouping grouping =
-      group_ranks(world, options.scene, options.mesh, training.size(), options.ranks_per_solve);
-  const Groups groups(world, grouping.ranks_per_solve);
-  const int rank = rank_of(world);
+  return training;
+}
+
+OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &options,
+                       const std::vector<Mu> &training) {
   StageTable before = preparation_stages(options, training.size(), groups);
   StageTable after = closing_stages();
-  if (rank == 0) print_stages({before, reduction_stages(options.scene, options.reduce), after});
-  if (options.plan) return print_solve_plan(world, grouping, groups, options, training.size());
-  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
-  check_outputs(world, options,
-                {{"the reduced model", options.out / "model.h5"},
-                 {"its fields", fields_file(options.out / "model.h5")},
-                 {"the table", options.out / "samples.csv"}});
-
   Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
-  const Sweep sweep = timed(before, stage::snapshots, [&] {
+  Sweep sweep = timed(before, stage::snapshots, [&] {
     return run_sweep(world, groups, work.group_problem(), options.hf, training,
                      options.out / "samples", [&] { begin_run(world, options); });
   });
   check_failures(options, sweep.report, training.size(), "training");
-
   if (will_run(before, stage::distributed_mesh))
     timed(before, stage::distributed_mesh, [&] { work.world_problem(); });
   before =
       finished_stages(before, preparation_stages(options, training.size(), groups, &sweep.report));
-  Reduction made = reduce(work.world_problem(), sweep.samples, options.reduce);
-  ReducedModel &model = made.model;
+  Problem &problem = work.world_problem();
+  Reduction made = reduce(problem, sweep.samples, options.reduce);
+  ReducedModel model = std::move(made.model);
   model.settings = kept_settings(options);
   model.settings["samples"] = std::to_string(sweep.samples.size());
   if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
@@ -89,21 +81,47 @@ void command_offline(const ToolOptions &options) {
   timed(after, stage::writing, [&] {
     write_fields(work.world_problem(), made.bases.pod.basis, model, options.out / "model.h5");
     collectively(world, [&] {
-      if (rank != 0) return;
+      if (rank_of(world) != 0) return;
       write_model(model, options.out / "model.h5");
       write_sample_table(options.out / "samples.csv", options.scene.parameters, sweep.samples);
     });
   });
+  return {std::move(sweep),
+          std::move(model),
+          {before, made.stages, finished_stages(after, closing_stages())},
+          static_cast<int>(problem.mesh().total_nodes),
+          static_cast<int>(problem.dofs().total),
+          static_cast<int>(problem.dual_size())};
+}
+
+void command_offline(const ToolOptions &options) {
+  const MPI_Comm world = PETSC_COMM_WORLD;
+  const std::vector<Mu> training = checked_training(options);
+  const Grouping grouping =
+      group_ranks(world, options.scene, options.mesh, training.size(), options.ranks_per_solve);
+  const Groups groups(world, grouping.ranks_per_solve);
+  const int rank = rank_of(world);
+  if (rank == 0)
+    print_stages({preparation_stages(options, training.size(), groups),
+                  reduction_stages(options.scene, options.reduce), closing_stages()});
+  if (options.plan) return print_solve_plan(world, grouping, groups, options, training.size());
+  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
+  check_outputs(world, options,
+                {{"the reduced model", options.out / "model.h5"},
+                 {"its fields", fields_file(options.out / "model.h5")},
+                 {"the table", options.out / "samples.csv"}});
+
+  const OfflineRun run = run_offline(world, groups, options, training);
   if (rank == 0) {
-    print_stages({before, made.stages, finished_stages(after, closing_stages())});
+    print_stages(run.stages);
     std::cout << "Self-check: ";
-    print_self_check(std::cout, model.self_check, model.parameters);
-    warn_of_resolution(sweep.samples, std::cout);
+    print_self_check(std::cout, run.model.self_check, run.model.parameters);
+    warn_of_resolution(run.sweep.samples, std::cout);
     print_written(std::cout,
                   {options.out / "model.h5", fields_file(options.out / "model.h5"),
                    options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});
   }
-  report_failures(options, sweep.report, training.size(), "training",
+  report_failures(options, run.sweep.report, training.size(), "training",
                   "the model is made from the others, and answers next to a failed one with a "
                   "warning");
 }

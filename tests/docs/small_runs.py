@@ -36,6 +36,7 @@ RUNS = {
                              "-nitsche_eim_validation", "random:2:2"],
 }
 MEASURED = ("two_disks", "nitsche_empirical")  # by rbvi bench, which takes longest
+GROWN = "disk_none"  # by rbvi bench -bench_growth
 
 
 def call(*command):
@@ -53,6 +54,8 @@ def make(binaries, out, options):
     call(*ask, out / "online_after.csv")
     if out.name in MEASURED:
         call(rbvi, "bench", "-out", out, *few)
+    if out.name == GROWN:
+        call(rbvi, "bench", "-out", out, "-bench_growth", "0", "-train", "grid:2")
     table = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
     mu = ",".join(table[1].split(",")[:table[0].split(",").index("energy")])
     call(rbvi, "solve", "-case", out / "case.yaml", "-mu", mu, "-csv", out / "solve.csv")

@@ -15,8 +15,11 @@ void command_solve(const ToolOptions &options);
 /// into the model file. Collective on the world.
 void command_verify(const ToolOptions &options);
 
-/// Run time against error. Collective on the world.
+/// Run time against error, or (ToolOptions::growth) command_growth. Collective on the world.
 void command_bench(const ToolOptions &options);
+
+/// What offline takes on several meshes, by several ranks per solve. Collective on the world.
+void command_growth(const ToolOptions &options);
 
 void command_list();
 void command_inspect(const std::string &file);

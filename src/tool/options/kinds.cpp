@@ -39,6 +39,16 @@ int integer_of(const std::string &name, const std::string &value, const Range &r
   return static_cast<int>(number);
 }
 
+std::vector<int> rising_of(const std::string &name, const std::string &value, const Range &range) {
+  std::vector<int> numbers;
+  for (const std::string &part : split(value, ',')) {
+    numbers.push_back(integer_of(name, part, range));
+    if (numbers.size() > 1 && numbers.back() <= numbers[numbers.size() - 2])
+      throw bad_input("option -" + name + " is '" + value + "': give rising numbers");
+  }
+  return numbers;
+}
+
 bool flag_of(const std::string &name, const std::string &value) {
   PetscBool flag = PETSC_TRUE;
   if (!value.empty() && PetscOptionsStringToBool(value.c_str(), &flag) != 0)

@@ -13,6 +13,8 @@ namespace rbvi {
 
 double number_of(const std::string &name, const std::string &value, const Range &range);
 int integer_of(const std::string &name, const std::string &value, const Range &range);
+/// "0,1,2"
+std::vector<int> rising_of(const std::string &name, const std::string &value, const Range &range);
 bool flag_of(const std::string &name, const std::string &value);
 /// Position of the value among the choices.
 int choice_of(const std::string &name, const std::string &value, const std::vector<Choice> &all);
@@ -65,6 +67,16 @@ Option number(const std::string &name, const Range &range, Place place, const st
       place(options) = number_of(name, value, range);
   };
   return placed(std::move(option), place);
+}
+
+/// Integers, each larger than the one before it; none where it is not given.
+template <class Place>
+Option rising(const std::string &name, const Range &range, Place place, const std::string &help) {
+  Option option{name, OptionKind::text, help, "rising integers 0,1,...: each " + in_words(range)};
+  option.read = [=](const std::string &value, ToolOptions &options) {
+    place(options) = rising_of(name, value, range);
+  };
+  return option;
 }
 
 template <class Place> Option flag(const std::string &name, Place place, const std::string &help) {

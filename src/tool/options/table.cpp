@@ -20,7 +20,7 @@ namespace {
 /// Largest relative error that a reduced model may be asked for: above, it says nothing.
 constexpr double rough = 0.5;
 
-const Range relative_error{0, rough}, size{0, 100000}, positive{0, 1e300};
+const Range relative_error{0, rough}, size{0, 100000}, positive{0, 1e300}, refinements{0, 6};
 
 bool always(const ToolOptions & /*options*/) {
   return true;
@@ -132,12 +132,16 @@ std::vector<Option> of_runs() {
       of_command(text("csv", OptionKind::text, "file", AT(csv), "file for the table of outputs")),
       flag("verify_stability", AT(stability),
            "verify: inf-sup constants and bounds too, not errors alone"),
+      of_command(rising("bench_growth", refinements, AT(growth),
+                        "bench: in place of run time against error what offline takes, stage by "
+                        "stage, on the meshes of these -mesh_refine, by every number of ranks per "
+                        "solve that divides the ranks, or by that of the command line")),
       of_command(flag("plan", AT(plan), "print which stages will run, and stop"))};
 }
 
 std::vector<Option> of_meshes() {
   return {kept(always, mesh_file(), "mesh_file"),
-          kept(always, number("mesh_refine", {0, 6}, AT(mesh.refine), "uniform refinements"))};
+          kept(always, number("mesh_refine", refinements, AT(mesh.refine), "uniform refinements"))};
 }
 
 std::vector<Option> of_solvers() {

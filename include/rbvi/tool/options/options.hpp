@@ -29,7 +29,8 @@ struct ToolOptions {
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
   bool plan = false;
-  bool stability = true; ///< verify: inf-sup constants and bounds too
+  bool stability = true;   ///< verify: inf-sup constants and bounds too
+  std::vector<int> growth; ///< bench: refinements whose cost is measured; empty: time against error
 };
 
 /// "-name": a dash and a letter, as PETSc sees it.

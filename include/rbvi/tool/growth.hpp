@@ -1,0 +1,44 @@
+// How the cost of a reduced model grows with the mesh: the offline pipeline, run on several meshes
+// and with several numbers of ranks per solve, and what each of its stages took.
+#pragma once
+
+#include "rbvi/par/stage_cost.hpp"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rbvi {
+
+/// One run of the pipeline.
+struct GrowthRun {
+  std::string scene;
+  int refine = 0, ranks = 1, ranks_per_solve = 1;
+  int nodes = 0, dofs = 0;
+  int multipliers = 0;
+  int samples = 0, failed = 0;
+  int modes = 0;             ///< N + S
+  double contact_nodes = 0;  ///< most of a sample
+  double sample_seconds = 0; ///< of one solve, median
+  double iterations = 0;     ///< of one solve, median
+  double resident = 0;       ///< bytes of a rank before the run, largest
+  double model_bytes = 0, fields_bytes = 0;
+  std::vector<std::pair<std::string, RankCosts>> stages; ///< those that ran, in order
+};
+
+/// All stages together.
+RankCosts total_cost(const GrowthRun &run);
+
+/// The exponent p of y = c x^p by least squares of the logarithms. Nothing where fewer than two
+/// points are positive.
+std::optional<double> growth_exponent(const std::vector<double> &x, const std::vector<double> &y);
+
+/// A row for each run and stage, and for all of its stages together.
+std::string growth_csv(const std::vector<GrowthRun> &runs);
+
+/// For each number of ranks per solve a table: each stage over the meshes, and its exponents in
+/// dofs. Memory grows from what the process held before the first run.
+std::string growth_page(const std::vector<GrowthRun> &runs);
+
+} // namespace rbvi
