@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <set>
 
 namespace rbvi {
@@ -187,19 +188,23 @@ RankCosts total_cost(const GrowthRun &run) {
 }
 
 std::optional<double> growth_exponent(const std::vector<double> &x, const std::vector<double> &y) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  std::vector<double> log_x, log_y;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!(x[i] > 0) || !(y[i] > 0)) continue;
-    const double lx = std::log(x[i]), ly = std::log(y[i]);
-    n += 1;
-    sx += lx;
-    sy += ly;
-    sxx += lx * lx;
-    sxy += lx * ly;
+    log_x.push_back(std::log(x[i]));
+    log_y.push_back(std::log(y[i]));
   }
-  const double spread = n * sxx - sx * sx;
-  if (n < 2 || !(spread > 0)) return {};
-  return (n * sxy - sx * sy) / spread;
+  if (std::set<double>(log_x.begin(), log_x.end()).size() < 2) return {};
+  const auto mean = [](const std::vector<double> &values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  const double mean_x = mean(log_x), mean_y = mean(log_y);
+  double xx = 0, xy = 0;
+  for (std::size_t i = 0; i < log_x.size(); ++i) {
+    xx += (log_x[i] - mean_x) * (log_x[i] - mean_x);
+    xy += (log_x[i] - mean_x) * (log_y[i] - mean_y);
+  }
+  return xy / xx;
 }
 
 std::string growth_csv(const std::vector<GrowthRun> &runs) {

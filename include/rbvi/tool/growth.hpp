@@ -31,7 +31,7 @@ struct GrowthRun {
 RankCosts total_cost(const GrowthRun &run);
 
 /// The exponent p of y = c x^p by least squares of the logarithms. Nothing where fewer than two
-/// points are positive.
+/// different x have positive values.
 std::optional<double> growth_exponent(const std::vector<double> &x, const std::vector<double> &y);
 
 /// A row for each run and stage, and for all of its stages together.
