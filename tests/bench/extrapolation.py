@@ -72,8 +72,9 @@ def extrapolated_memory(rows):
             "ranks that share the stage (of one solve: mesh, snapshots; else all). c1: bytes per dof "
             "that are shared, with the fill of a factor, whose log n is left out. c2: bytes per dof "
             "that one rank holds whatever their number, 8 for one field; all samples on each rank are "
-            "8 times their number. c3: bytes per pair of multipliers; where m grows like sqrt(n), as "
-            "on a curve, m^2 is in c2. Constants >= 0 by least squares relative to the measured "
+            "8 times their number. c3: bytes per pair of multipliers, and whatever else grows like "
+            "m^2 where m grows like n, modes of all dofs if there are more of them on finer meshes; "
+            "where m grows like sqrt(n), as on a curve, m^2 is in c2. Constants >= 0 by least squares relative to the measured "
             "values, over all meshes and ranks.\n\n" +
             table(["scene", "stage", "c0 (MB)", "c1", "c2", "c3", "misfit", "fixed and shared",
                    "c2 n", "c3 m^2"], lines))

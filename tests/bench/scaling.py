@@ -94,6 +94,12 @@ def growth(rows):
                           over(found, "factorisations"), number(exponent(found, factor)),
                           over(found, "used_mb"), number(memory),
                           "met" if worst <= MOST_GROWTH else "NOT MET"])
+    sizes = [[scene, *(over(sorted(pick(rows, scene=scene, stage="total", ranks=1),
+                                   key=lambda r: r["dofs"]), name)
+                       for name in ("dofs", "multipliers", "contact_nodes", "modes", "iterations",
+                                    "model_mb", "fields_mb"))] for scene in names(rows, "scene")]
+    text += table(["scene", "dofs", "multipliers", "in contact", "modes", "iterations of a solve",
+                   "model.h5 (MB)", "its fields (MB)"], sizes) + "\n"
     return text + table(["scene", "stage", "dofs", "seconds", "p", "p without factorisations",
                          "factorisations", "p of their seconds", "MB", "p of MB",
                          f"<= {MOST_GROWTH}"], lines)
