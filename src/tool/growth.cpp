@@ -106,11 +106,9 @@ GrowthRun measure(MPI_Comm world, const ToolOptions &options, const std::vector<
   return run;
 }
 
-/// Every number that divides the ranks, or the one that the command line asks for.
+/// Every number that divides the ranks, or the one that the options ask for.
 std::vector<int> groupings(const ToolOptions &options, int ranks) {
-  const auto &given = options.command_line;
-  if (std::find(given.begin(), given.end(), "sweep_ranks_per_solve") != given.end())
-    return {options.ranks_per_solve};
+  if (options.ranks_per_solve != 0) return {options.ranks_per_solve};
   std::vector<int> divisors;
   for (int number = 1; number <= ranks; ++number)
     if (ranks % number == 0) divisors.push_back(number);
