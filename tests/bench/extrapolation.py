@@ -56,7 +56,7 @@ def memory_lines(rows):
     for scene in names(rows, "scene"):
         for stage in names(rows, "stage"):
             found = pick(rows, scene=scene, stage=stage)
-            if stage == "total" or len(found) < 6 or column(found, "used_mb").max() < 5:
+            if stage == "total" or len(found) < 6 or len(names(found, "dofs")) < 2 or column(found, "used_mb").max() < 5:
                 continue
             c, misfit, m = memory_model(found)
             yield scene, stage, c, misfit, c * np.array([1, DOFS / RANKS, DOFS, m**2])
@@ -138,7 +138,7 @@ def message_model(rows, scene, stage):
     """What a rank sends on RANKS ranks at DOFS dofs: messages, of them to all, bytes, reductions."""
     here = [row for row in pick(rows, scene=scene, stage=stage)
             if row["ranks"] > 1 and row["ranks"] == row["ranks_per_solve"]]
-    if stage == "total" or len(here) < 4:
+    if stage == "total" or len(here) < 4 or len(names(here, "dofs")) < 2:
         return None
     n, p = column(here, "dofs"), column(here, "ranks")
     messages, _ = fit([1 - 1 / np.sqrt(p), p - 1], column(here, "messages_max"))
@@ -228,6 +228,9 @@ def page(rows, cores, source):
 def main(path, command, commit, cores, machine):
     cores = int(cores)
     rows = read_measured(path, cores)
+    if len(names(rows, "refine")) < 2:
+        print("# Not extrapolated\n\nThat takes two meshes and more.")
+        return
     print(page(rows, cores, made_by(rows, command, commit, cores, machine)).rstrip())
 
 
