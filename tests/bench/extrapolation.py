@@ -56,7 +56,9 @@ def memory_lines(rows):
     for scene in names(rows, "scene"):
         for stage in names(rows, "stage"):
             found = pick(rows, scene=scene, stage=stage)
-            if stage == "total" or len(found) < 6 or len(names(found, "dofs")) < 2 or column(found, "used_mb").max() < 5:
+            if stage == "total" or len(found) < 6 or len(names(found, "dofs")) < 2:
+                continue
+            if column(found, "used_mb").max() < 5:
                 continue
             c, misfit, m = memory_model(found)
             yield scene, stage, c, misfit, c * np.array([1, DOFS / RANKS, DOFS, m**2])
@@ -74,7 +76,8 @@ def extrapolated_memory(rows):
             "that one rank holds whatever their number, 8 for one field; all samples on each rank are "
             "8 times their number. c3: bytes per pair of multipliers, and whatever else grows like "
             "m^2 where m grows like n, modes of all dofs if there are more of them on finer meshes; "
-            "where m grows like sqrt(n), as on a curve, m^2 is in c2. Constants >= 0 by least squares relative to the measured "
+            "where m grows like sqrt(n), as on a curve, m^2 is in c2. Constants >= 0 by least squares "
+            "relative to the measured "
             "values, over all meshes and ranks.\n\n" +
             table(["scene", "stage", "c0 (MB)", "c1", "c2", "c3", "misfit", "fixed and shared",
                    "c2 n", "c3 m^2"], lines))
