@@ -209,7 +209,7 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
                           problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
-  RBVI_CALL(KSPSetOperators(factor_.get(), reduced_.get(), reduced_.get()));
+  set_operator(factor_.get(), reduced_.get());
   RBVI_CALL(KSPSetUp(factor_.get()));
   factored_ = pivots;
   of_another_a_ = false;

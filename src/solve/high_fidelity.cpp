@@ -230,7 +230,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
     solution.outputs.seconds = MPI_Wtime() - start;
     return solution;
   }
-  RBVI_CALL(KSPSetOperators(ksp_.get(), op.a, op.a));
+  set_operator(ksp_.get(), op.a);
   HfSolution solution;
   const bool follows = follows_state(problem_.contact());
   const MethodResult result = follows     ? run_following(mu, op, solution)

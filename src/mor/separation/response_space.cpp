@@ -213,7 +213,7 @@ ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &lo
   return append_fields(
       problem,
       [&](const Operators &op) {
-        RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+        set_operator(ksp.get(), op.a);
         Handle<Vec> u;
         RBVI_CALL(VecDuplicate(op.f, u.put()));
         PetscInt rows = 0;

@@ -2,6 +2,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 
+#include <string_view>
+
 namespace rbvi {
 
 Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix) {
@@ -18,6 +20,24 @@ Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix) {
   RBVI_CALL(KSPSetTolerances(ksp.get(), 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPSetFromOptions(ksp.get()));
   return ksp;
+}
+
+void set_operator(KSP ksp, Mat a) {
+  constexpr int extra_room = 80; // per cent of its estimate; 20 by default
+  PC pc = nullptr;
+  PetscBool factorises = PETSC_FALSE;
+  MatSolverType type = nullptr;
+  RBVI_CALL(KSPSetOperators(ksp, a, a));
+  RBVI_CALL(KSPGetPC(ksp, &pc));
+  RBVI_CALL(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &factorises, PCCHOLESKY,
+                                      PCLU, nullptr));
+  if (factorises == PETSC_FALSE) return;
+  RBVI_CALL(PCFactorGetMatSolverType(pc, &type));
+  if (type == nullptr || std::string_view(type) != MATSOLVERMUMPS) return;
+  Mat factor = nullptr;
+  RBVI_CALL(PCFactorSetUpMatSolverType(pc));
+  RBVI_CALL(PCFactorGetMatrix(pc, &factor));
+  RBVI_CALL(MatMumpsSetIcntl(factor, 14, extra_room)); // an option for it comes later, and wins
 }
 
 void solve_linear(KSP ksp, Vec rhs, Vec x) {

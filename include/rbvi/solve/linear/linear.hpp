@@ -9,6 +9,10 @@ namespace rbvi {
 /// several; options under `prefix` override. Collective.
 Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix);
 
+/// The matrix that such a solver has next, symmetric positive definite. MUMPS gets more room than it
+/// takes by itself: what it needs depends on how its ranks happen to share the work. Collective.
+void set_operator(KSP ksp, Mat a);
+
 /// x = A^-1 rhs, throwing failure when KSP does not converge. Collective.
 void solve_linear(KSP ksp, Vec rhs, Vec x);
 
