@@ -20,7 +20,7 @@ constexpr Index contact = 24;
 RieszSpace make_space(unsigned seed) {
   Matrix factor = random_matrix(contact, contact, seed).triangularView<Eigen::Lower>();
   factor.diagonal().array() = factor.diagonal().array().abs() + 2;
-  return {factor, {}, {}, nullptr};
+  return {factor, {}, {}, {}, nullptr};
 }
 
 Matrix orthonormal(Index rows, Index columns, unsigned seed) {

@@ -74,6 +74,20 @@ TEST(Eliminated, TakesFewStepsFromACoarserMesh) {
   }
 }
 
+/// Above some size by multigrid: the answer is that of a factorisation.
+TEST(Eliminated, AgreesByMultigrid) {
+  Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 2});
+  HfOptions options;
+  options.contact = HfContact::eliminated;
+  const Mu mu{0.18, 0.025, -0.025};
+  const HfSolution by_multigrid = HighFidelity(problem, options).solve(mu);
+  EXPECT_LE(by_multigrid.iterations, 5);
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-hf_pc_type", "cholesky"));
+  const HfSolution by_factors = HighFidelity(problem, options).solve(mu);
+  RBVI_CALL(PetscOptionsClearValue(nullptr, "-hf_pc_type"));
+  expect_equal(by_multigrid, by_factors);
+}
+
 TEST(Eliminated, KeepsItsFactorsWhileSetsChangeLittle) {
   Problem problem(PETSC_COMM_WORLD, make_scene("two_disks"), {});
   Eliminated solver(problem);

@@ -8,7 +8,8 @@
 // C_P is sparse, close to a mass matrix of the active nodes. The equation is solved by conjugate
 // gradients (GMRES where a slip under Coulomb's law makes it unsymmetric), preconditioned by a
 // factorisation of A without the rows and columns of P, for two bodies of A with the slave's dofs
-// in P tied to the master's at single nodes. It stays while the sets change by little.
+// in P tied to the master's at single nodes, or by algebraic multigrid for it where u is a scalar
+// and there are many dofs. It stays while the sets change by little.
 //
 // Multipliers and B are on every rank, displacement dofs are distributed.
 #pragma once
@@ -41,6 +42,7 @@ private:
   const Trace &trace_;
   ContactDofs dofs_;
   std::vector<PetscInt> rows_; ///< of the contact dofs in A
+  bool multigrid_;             ///< in place of a factorisation
   Handle<KSP> factor_;
   Handle<Mat> reduced_;         ///< what is factorised
   std::vector<Index> factored_; ///< its pivots

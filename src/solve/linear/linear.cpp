@@ -22,6 +22,18 @@ Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix) {
   return ksp;
 }
 
+Handle<KSP> make_multigrid(MPI_Comm comm, const char *prefix) {
+  Handle<KSP> ksp;
+  PC pc = nullptr;
+  RBVI_CALL(KSPCreate(comm, ksp.put()));
+  RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), prefix));
+  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY));
+  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
+  RBVI_CALL(PCSetType(pc, PCGAMG));
+  RBVI_CALL(KSPSetFromOptions(ksp.get()));
+  return ksp;
+}
+
 void set_operator(KSP ksp, Mat a) {
   constexpr int extra_room = 80; // per cent of its estimate; 20 by default
   PC pc = nullptr;
@@ -34,7 +46,10 @@ void set_operator(KSP ksp, Mat a) {
   if (factorises == PETSC_FALSE) return;
   RBVI_CALL(PCFactorGetMatSolverType(pc, &type));
   if (type == nullptr || std::string_view(type) != MATSOLVERMUMPS) return;
+  const char *prefix = nullptr;
   Mat factor = nullptr;
+  RBVI_CALL(KSPGetOptionsPrefix(ksp, &prefix));
+  RBVI_CALL(MatSetOptionsPrefixFactor(a, prefix)); // as PCSetUp does, which comes later
   RBVI_CALL(PCFactorSetUpMatSolverType(pc));
   RBVI_CALL(PCFactorGetMatrix(pc, &factor));
   RBVI_CALL(MatMumpsSetIcntl(factor, 14, extra_room)); // an option for it comes later, and wins

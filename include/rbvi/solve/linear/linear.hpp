@@ -9,7 +9,11 @@ namespace rbvi {
 /// several; options under `prefix` override. Collective.
 Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix);
 
-/// The matrix that such a solver has next, symmetric positive definite. MUMPS gets more room than it
+/// KSP that applies one cycle of algebraic multigrid (GAMG), for a method around it; options under
+/// `prefix`. Collective.
+Handle<KSP> make_multigrid(MPI_Comm comm, const char *prefix);
+
+/// The matrix that a solver of the first kind has next, symmetric positive definite. MUMPS gets more room than it
 /// takes by itself: what it needs depends on how its ranks happen to share the work. Collective.
 void set_operator(KSP ksp, Mat a);
 
