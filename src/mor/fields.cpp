@@ -49,12 +49,6 @@ Matrix rows_of_basis(const Problem &problem, const BorrowedRows::LocalRows &loca
   return rows;
 }
 
-/// What model.fields.h5 says of the mesh, on the first rank.
-struct WholeMesh {
-  Matrix points;
-  std::vector<int> cells, imposed_by;
-};
-
 Matrix gather_points(const Mesh &mesh) {
   std::vector<double> records;
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
@@ -111,10 +105,6 @@ std::vector<int> gather_imposed(const Problem &problem) {
   return imposed_by;
 }
 
-WholeMesh gather_mesh(const Problem &problem) {
-  return {gather_points(problem.mesh()), gather_cells(problem.mesh()), gather_imposed(problem)};
-}
-
 /// The columns of a basis, borrowed.
 class BorrowedBasis {
 public:
@@ -152,6 +142,12 @@ void visit_rows(const Problem &problem, const LinearBasis &basis, Visit &&visit)
 
 } // namespace
 
+void gather_mesh(const Problem &problem, ReducedModel &model) {
+  model.mesh_points = gather_points(problem.mesh());
+  model.mesh_cells = gather_cells(problem.mesh());
+  model.imposed_by = gather_imposed(problem);
+}
+
 std::string key_of_fields(const Problem &problem, const LinearBasis &basis) {
   const BorrowedBasis borrowed(basis);
   std::uint64_t own = fnv1a(nullptr, 0);
@@ -168,12 +164,13 @@ void write_fields(const Problem &problem, const LinearBasis &basis, const Reduce
                   const std::filesystem::path &model_path) {
   const MPI_Comm comm = problem.comm();
   const bool writes = rank_of(comm) == 0;
-  const WholeMesh mesh = gather_mesh(problem);
+  ReducedModel mesh;
+  gather_mesh(problem, mesh);
   std::unique_ptr<FieldsFile> file;
   collectively(comm, [&] {
     if (!writes) return;
     file = std::make_unique<FieldsFile>(model_path, model.fields_key);
-    file->write_mesh(mesh.points, mesh.cells, mesh.imposed_by);
+    file->write_mesh(mesh.mesh_points, mesh.mesh_cells, mesh.imposed_by);
     file->begin_basis(problem.dofs().total, basis.size());
   });
   visit_rows(problem, basis, [&](Index first, Index, const Matrix &rows) {
@@ -188,24 +185,22 @@ void write_fields(const Problem &problem, const LinearBasis &basis, const Reduce
 
 void gather_fields(const Problem &problem, const LinearBasis &basis, ReducedModel &model) {
   const MPI_Comm comm = problem.comm();
-  WholeMesh mesh = gather_mesh(problem);
+  gather_mesh(problem, model);
   const auto share = [&](auto &values, MPI_Datatype type) {
     MPI_Bcast(values.data(), static_cast<int>(values.size()), type, 0, comm);
   };
-  mesh.points.resize(problem.mesh().total_nodes, problem.mesh().dim);
-  mesh.cells.resize(static_cast<std::size_t>(
-      problem.mesh().total_cells * nodes_per_cell(problem.mesh().dim, problem.mesh().degree)));
+  const Mesh &mesh = problem.mesh();
+  model.mesh_points.resize(mesh.total_nodes, mesh.dim); // on the first rank they are there
+  model.mesh_cells.resize(
+      static_cast<std::size_t>(mesh.total_cells * nodes_per_cell(mesh.dim, mesh.degree)));
   if (imposes_values(problem.scene()))
-    mesh.imposed_by.resize(static_cast<std::size_t>(problem.dofs().total));
-  share(mesh.points, MPI_DOUBLE);
-  share(mesh.cells, MPI_INT);
-  share(mesh.imposed_by, MPI_INT);
-  model.mesh_points = std::move(mesh.points);
-  model.mesh_cells = std::move(mesh.cells);
-  model.imposed_by = std::move(mesh.imposed_by);
+    model.imposed_by.resize(static_cast<std::size_t>(problem.dofs().total));
+  share(model.mesh_points, MPI_DOUBLE);
+  share(model.mesh_cells, MPI_INT);
+  share(model.imposed_by, MPI_INT);
   model.primal_basis.resize(problem.dofs().total, basis.size());
   visit_rows(problem, basis, [&](Index first, Index count, Matrix rows) {
-    rows.resize(count, basis.size()); // on the first rank they are there
+    rows.resize(count, basis.size());
     share(rows, MPI_DOUBLE);
     model.primal_basis.middleRows(first, count) = rows;
   });

@@ -16,6 +16,7 @@ constexpr double krylov_steps = 60;       ///< of the few sets from a neighbour 
 constexpr double steps_of_a_set = 20;     ///< where sets are far from the factors
 constexpr double first_uzawa_steps = 400; ///< that tell a condensed solve where contact is
 constexpr double worth_changing = 0.6;    ///< condensed, unless elimination takes less by this
+constexpr PetscInt small = 10000;         ///< dofs below which it is condensed in any case
 
 } // namespace
 
@@ -39,12 +40,15 @@ bool eliminates(const Problem &problem, const HfOptions &options) {
       problem.nitsche() != nullptr)
     return false;
   if (options.contact != HfContact::automatic) return options.contact == HfContact::eliminated;
+  if (problem.dofs().total_free < small) return false;
   if (options.samples > 2 && ScaledPart::fits(problem.scene())) return false;
   const ContactCost cost = contact_cost(problem, options.samples);
   return cost.eliminated < worth_changing * cost.condensed;
 }
 
 std::string contact_cost_text(const Problem &problem, const HfOptions &options) {
+  if (options.contact == HfContact::automatic && problem.dofs().total_free < small)
+    return "condensed: there are fewer than " + std::to_string(small) + " dofs (-hf_contact)";
   const ContactCost cost = contact_cost(problem, options.samples);
   return (eliminates(problem, options) ? "eliminated" : "condensed") +
          (": an estimate of " + formatted("%.0f", cost.condensed) +

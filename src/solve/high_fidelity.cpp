@@ -17,6 +17,8 @@ namespace rbvi {
 
 namespace {
 
+constexpr double largest_residual = 1e-10; ///< KKT, of an active-set method
+
 /// At all dofs in natural order, the imposed values among them. Collective.
 Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
   Vector whole = to_natural(problem.dofs(), u);
@@ -174,10 +176,33 @@ MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op) {
                                   compliance_.get());
 }
 
+/// Without a result where elimination does not meet the laws, which then says why in `complaint`.
+std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Operators &op,
+                                                         std::string &complaint) {
+  try {
+    const Vector start = solved_.empty() ? Vector() : nearest(mu)->start.lambda;
+    MethodResult result = grids_->solve(mu, op, start);
+    if (!result.converged)
+      complaint = result.reason;
+    else if (const double residual =
+                 kkt_residual(problem_.trace(), op, result.u.get(), result.lambda).largest();
+             residual > largest_residual)
+      complaint = "a KKT residual of " + short_number(residual);
+    else
+      return result;
+  } catch (const Error &error) { // of every rank
+    complaint = error.what();
+  }
+  if (options_.contact == HfContact::eliminated) throw failure(complaint);
+  return std::nullopt;
+}
+
 MethodResult HighFidelity::run_active_set(const Mu &mu, const Operators &op, HfSolution &solution) {
-  MethodResult result =
-      grids_ ? grids_->solve(mu, op, solved_.empty() ? Vector() : nearest(mu)->start.lambda)
-             : run_condensed(mu, op);
+  std::string complaint;
+  std::optional<MethodResult> eliminated;
+  if (grids_) eliminated = run_eliminated(mu, op, complaint);
+  MethodResult result = eliminated ? std::move(*eliminated) : run_condensed(mu, op);
+  if (!complaint.empty()) result.reason += ", condensed because elimination failed: " + complaint;
   if (!result.converged) return result;
   solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
   solution.outputs = measure(problem_, op, op.weights, result, solution);
@@ -246,7 +271,8 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   solution.columns = result.columns;
   solution.reason = result.reason;
   solution.outputs.seconds = MPI_Wtime() - start;
-  const double allowed = follows ? std::max(1e-10, 10 * options_.nonlinear.tolerance) : 1e-10;
+  const double allowed =
+      follows ? std::max(largest_residual, 10 * options_.nonlinear.tolerance) : largest_residual;
   if (condensed && solution.kkt.largest() > allowed)
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) + ", above " +
                   short_number(allowed) +

@@ -1,5 +1,6 @@
 // rbvi solve, list, inspect.
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/solution_vtu.hpp"
@@ -28,7 +29,10 @@ void command_solve(const ToolOptions &options) {
   const HfSolution solution =
       while_doing("solving " + describe(space, mu), [&] { return solver.solve(mu); });
   ReducedModel mesh;
-  if (!options.vtu.empty()) describe_mesh(problem, mesh);
+  if (!options.vtu.empty()) {
+    describe_mesh(problem, mesh);
+    gather_mesh(problem, mesh);
+  }
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
     std::printf("%s\n", describe(space, mu).c_str());

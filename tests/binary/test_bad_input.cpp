@@ -123,13 +123,13 @@ TEST_P(BadInput, OptionsWithoutAValue) {
 
 TEST_P(BadInput, OptionsOfPetscWithoutAPrefix) {
   const std::string offline = "offline -case case.yaml -out run ";
-  refuse(
-      {{offline + "-ksp_rtol 1e-3", "-hf_ksp_rtol, -v_ksp_rtol, -vi_ksp_rtol, -nitsche_ksp_rtol"},
-       {offline + "-pc_type lu", "need the prefix of a solver: -hf_pc_type"},
-       {offline + "-mat_mumps_icntl_14 50", "prefix of a solver: -hf_mat_mumps_icntl_14"},
-       {offline + "-snes_rtol 1e-3", "prefix of a solver: -vi_snes_rtol, -nitsche_snes_rtol"},
-       {offline + "-eps_nev 3", "need the prefix of a solver: -pga_eps_nev, -infsup_eps_nev"},
-       {offline + "-tao_type lmvm", "no object of rbvi takes PETSc's options -tao_*"}});
+  refuse({{offline + "-ksp_rtol 1e-3",
+           "-hf_ksp_rtol, -hf_krylov_ksp_rtol, -v_ksp_rtol, -vi_ksp_rtol, -nitsche_ksp_rtol"},
+          {offline + "-pc_type lu", "need the prefix of a solver: -hf_pc_type"},
+          {offline + "-mat_mumps_icntl_14 50", "prefix of a solver: -hf_mat_mumps_icntl_14"},
+          {offline + "-snes_rtol 1e-3", "prefix of a solver: -vi_snes_rtol, -nitsche_snes_rtol"},
+          {offline + "-eps_nev 3", "need the prefix of a solver: -pga_eps_nev, -infsup_eps_nev"},
+          {offline + "-tao_type lmvm", "no object of rbvi takes PETSc's options -tao_*"}});
 }
 
 TEST_P(BadInput, OptionsOfEigenvalues) {

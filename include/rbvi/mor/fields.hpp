@@ -11,6 +11,9 @@
 
 namespace rbvi {
 
+/// Collective. Points, cells and imposed values of the mesh into the model of the first rank.
+void gather_mesh(const Problem &problem, ReducedModel &model);
+
 /// Tells a basis from others by its values at some vectors, agreed by all ranks. Collective.
 std::string key_of_fields(const Problem &problem, const LinearBasis &basis);
 

@@ -18,8 +18,8 @@ struct ContactCost {
 ContactCost contact_cost(const Problem &problem, int samples);
 
 /// What HighFidelity does with these options: by the estimate unless they say. Where contact
-/// follows the displacement, or a part of A is scaled and there are several samples, it is
-/// condensed.
+/// follows the displacement, where there are few dofs, or where a part of A is scaled and there are
+/// several samples, it is condensed.
 bool eliminates(const Problem &problem, const HfOptions &options);
 
 /// In one line.

@@ -22,6 +22,7 @@
 #include "rbvi/solve/nitsche.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ enum class HfMethod { active_set, uzawa, vi };
 
 /// How active_set solves the systems of its sets.
 enum class HfContact {
-  automatic, ///< by the estimate of solve/contact_cost.hpp
+  automatic, ///< by the estimate of solve/contact_cost.hpp; where elimination fails, condensed
   condensed, ///< on the multipliers: columns of B A^-1 B^T
   eliminated ///< on the displacement, without the dofs of the active constraints
 };
@@ -114,6 +115,8 @@ private:
   MethodResult run_following(const Mu &mu, const Operators &op, HfSolution &solution);
   MethodResult run_active_set(const Mu &mu, const Operators &op, HfSolution &solution);
   MethodResult run_condensed(const Mu &mu, const Operators &op);
+  std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op,
+                                             std::string &complaint);
   MethodResult run_over_ranks(const Operators &op, HfSolution &solution);
   Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);

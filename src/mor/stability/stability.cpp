@@ -86,6 +86,7 @@ namespace {
 /// Gram matrix, twice. Empty where they are not that.
 Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_product) {
   constexpr double well = 1e-2;
+  if (columns.cols() == 0) return {};
   Matrix basis = columns;
   for (int pass = 0; pass < 2; ++pass) {
     const SparseMatrix sparse = basis.sparseView();
