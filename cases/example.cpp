@@ -8,6 +8,7 @@
 //   mpirun -n 2 build/bin/example run/example       # exit status 0: the reduced answer is right
 #include "rbvi/check/errors.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/stages.hpp"
 #include "rbvi/par/session.hpp"
@@ -89,7 +90,9 @@ void stabilise(Problem &problem, const std::vector<Mu> &training, ReducedBases &
 ReducedModel reduced_model(Problem &problem, const std::vector<Sample> &samples,
                            const ReducedBases &bases) {
   const AffineOperators terms = separate(problem, parameters_of(samples), {.tolerance = 1e-4});
-  return project(problem, samples, terms, bases);
+  ReducedModel model = project(problem, samples, terms, bases);
+  gather_fields(problem, bases.pod.basis, model); // of the basis, for the error of u alone
+  return model;
 }
 
 /// 7. One query: A_N u + B_N^T x = F_N, B_N u <= G_R, x >= 0, on one core, without the mesh. Its

@@ -117,6 +117,8 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
 Truths make_truths(Problem &problem, const ReducedModel &model,
                    const std::vector<Sample> &samples) {
   const Index n = model.primal_size(), count = static_cast<Index>(samples.size());
+  if (model.primal_basis.rows() != problem.dofs().total)
+    throw failure("errors of the displacement need the fields of the model");
   Mat v = problem.v_product();
   std::vector<Handle<Vec>> basis;
   std::vector<Vec> raw;

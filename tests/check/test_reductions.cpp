@@ -165,6 +165,7 @@ TEST_F(ModelOfAnotherScene, SaysWhoseCodeItNeedsWhereOneHasNone) {
   Reduced r(scene, "grid:3", PETSC_COMM_SELF);
   r.model = {};
   Reduction made = reduce(r.problem, r.samples, {});
+  gather_fields(r.problem, made.bases.pod.basis, made.model);
   write_model(made.model, path);
   try {
     (void)read_model(path);
