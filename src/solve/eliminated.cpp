@@ -116,8 +116,8 @@ int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
   RBVI_CALL(KSPSetNormType(ksp.get(), KSP_NORM_UNPRECONDITIONED));
   if (!how.symmetric) RBVI_CALL(KSPSetPCSide(ksp.get(), PC_RIGHT));
   RBVI_CALL(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
-  constexpr double any =
-      1e300; // the last solution can be far off where the right-hand side is small
+  // Where the right-hand side is small the last solution can be far off: that is no divergence.
+  constexpr double any = 1e300;
   RBVI_CALL(KSPSetTolerances(ksp.get(), how.relative, how.absolute, any, how.most_steps));
   RBVI_CALL(KSPSetInitialGuessNonzero(ksp.get(), PETSC_TRUE));
   RBVI_CALL(KSPGetPC(ksp.get(), &pc));

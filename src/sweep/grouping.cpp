@@ -13,14 +13,15 @@ namespace rbvi {
 
 namespace {
 
-// Measured peaks of resident memory on one rank. In two dimensions nested dissection gives the
-// factor of A about 31 n log2 n entries. All that a process holds beyond the 64 MB without a mesh
-// was, in units of 8 n log2 n bytes, for `rbvi solve` 18, 23 and 23 on membrane_obstacle refined
-// once, twice and three times (13e3, 53e3, 213e3 dofs) and 32 on rigid_disk refined twice (91e3);
-// in sweeps 25 on the membrane and 42 on the disk refined twice, its condensed operator included.
-// A condensed operator of thousands of multipliers comes on top: 98 on the membrane refined twice
-// with -hf_contact condensed. In three dimensions the factor alone (CHOLMOD, cubes of tetrahedra
-// with 33e3 to 64e3 dofs) took 120 n^(4/3) bytes for one component, 220 for three.
+// Measured peaks of resident memory on one rank, with direct solvers; multigrid takes less. In two
+// dimensions nested dissection gives the factor of A about 31 n log2 n entries. All that a process
+// holds beyond the 64 MB without a mesh was, in units of 8 n log2 n bytes, for `rbvi solve` 18, 23
+// and 23 on membrane_obstacle refined once, twice and three times (13e3, 53e3, 213e3 dofs) and 32
+// on rigid_disk refined twice (91e3); in sweeps 25 on the membrane and 42 on the disk refined
+// twice, its condensed operator included. A condensed operator of thousands of multipliers comes on
+// top: 98 on the membrane refined twice with -hf_contact condensed. In three dimensions the factor
+// alone (CHOLMOD, cubes of tetrahedra with 33e3 to 64e3 dofs) took 120 n^(4/3) bytes for one
+// component, 220 for three.
 constexpr double process_bytes = 64e6;
 constexpr double plane_entries = 42, space_bytes = 220;
 

@@ -90,6 +90,23 @@ TEST(Eliminated, AgreesByMultigrid) {
   expect_equal(by_multigrid, by_factors);
 }
 
+TEST(Eliminated, WhereItFailsContactIsCondensedAndSaysSo) {
+  Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 1});
+  ASSERT_TRUE(eliminates(problem, {}));
+  const Mu mu{0.18, 0.025, -0.025};
+  HfOptions condensed, forced;
+  condensed.contact = HfContact::condensed;
+  forced.contact = HfContact::eliminated;
+  const HfSolution expected = HighFidelity(problem, condensed).solve(mu);
+  RBVI_CALL(PetscOptionsSetValue(nullptr, "-hf_krylov_ksp_max_it", "1"));
+  const HfSolution found = HighFidelity(problem, {}).solve(mu);
+  EXPECT_THROW(HighFidelity(problem, forced).solve(mu), Error);
+  RBVI_CALL(PetscOptionsClearValue(nullptr, "-hf_krylov_ksp_max_it"));
+  expect_equal(found, expected);
+  EXPECT_NE(found.reason.find("elimination failed"), std::string::npos) << found.reason;
+  EXPECT_EQ(expected.reason.find("elimination failed"), std::string::npos) << expected.reason;
+}
+
 TEST(Eliminated, KeepsItsFactorsWhileSetsChangeLittle) {
   Problem problem(PETSC_COMM_WORLD, make_scene("two_disks"), {});
   Eliminated solver(problem);
