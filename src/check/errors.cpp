@@ -33,9 +33,11 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   const Index k = c.cols(), r = model.generators;
   result.modes = modes;
   result.supremizers = static_cast<int>(k) - modes;
-  result.a.reduced.resize(k * (k + 1) / 2, model.a.size());
-  for (Index q = 0; q < model.a.size(); ++q)
+  result.a.reduced.resize(k * (k + 1) / 2, model.a.reduced.cols());
+  for (Index q = 0; q < model.a.reduced.cols(); ++q)
     result.a.reduced.col(q) = congruence(model.a.reduced.col(q), c);
+  if (model.a_change.rank() > 0)
+    result.a_change.range = c.transpose() * model.a_change.range;
   result.b.reduced.resize(r * k, model.b.size());
   for (Index q = 0; q < model.b.size(); ++q)
     result.b.reduced.col(q) = (model.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();

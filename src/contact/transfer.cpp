@@ -2,6 +2,8 @@
 
 #include "rbvi/core/error.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,47 +92,123 @@ private:
   std::map<Key, std::vector<Index>> cube_;
 };
 
-/// Weights of the neighbours; all on the nearest one where x is that point.
-std::vector<double> weights_of(const std::vector<Neighbour> &neighbours) {
-  std::vector<double> weights(neighbours.size(), 0);
+using Weights = std::vector<std::pair<Index, double>>; ///< node and weight
+
+/// Whether x is the nearest one of some points.
+bool coincides(const std::vector<Neighbour> &neighbours) {
+  return neighbours.front().squared_distance <= 1e-20 * neighbours.back().squared_distance;
+}
+
+Weights by_distance(const std::vector<Neighbour> &neighbours) {
   const double nearest = neighbours.front().squared_distance;
-  if (nearest <= 1e-20 * neighbours.back().squared_distance) {
-    weights.front() = 1;
-    return weights;
-  }
   double sum = 0;
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    sum += weights[k] = nearest / neighbours[k].squared_distance;
-  for (double &weight : weights)
+  Weights weights;
+  for (const Neighbour &neighbour : neighbours)
+    sum += weights.emplace_back(neighbour.point, nearest / neighbour.squared_distance).second;
+  for (auto &[node, weight] : weights)
     weight /= sum;
   return weights;
 }
 
+/// The edges or triangles of an interface around its dual nodes; none where not all of their nodes
+/// are such.
+class DualEntities {
+public:
+  explicit DualEntities(const ContactInterface &interface) : dual_(interface.dual()) {
+    const InterfaceMesh &mesh = interface.mesh();
+    around_.resize(dual_.points.size());
+    if (mesh.degree != 1 || mesh.per_entity > 3) return;
+    std::vector<Index> dual_node(mesh.points.size(), -1);
+    for (std::size_t i = 0; i < dual_.vertices.size(); ++i)
+      dual_node[static_cast<std::size_t>(dual_.vertices[i])] = static_cast<Index>(i);
+    for (Index e = 0; e < mesh.count(); ++e) {
+      std::vector<Index> nodes;
+      for (int k = 0; k < mesh.per_entity; ++k)
+        nodes.push_back(dual_node[static_cast<std::size_t>(mesh.nodes_of(e)[k])]);
+      if (std::ranges::any_of(nodes, [](Index node) { return node < 0; })) continue;
+      for (const Index node : nodes)
+        around_[static_cast<std::size_t>(node)].push_back(nodes);
+    }
+  }
+
+  /// Linear interpolation at x in the entity around one of these nodes that it is deepest inside;
+  /// outside all of them at a point of its boundary. Empty where there is no entity.
+  Weights linear(const Point &x, const std::vector<Neighbour> &near) const {
+    constexpr double vanishing = 1e-8;
+    Vector best;
+    const std::vector<Index> *chosen = nullptr;
+    for (const Neighbour &neighbour : near)
+      for (const std::vector<Index> &entity : around_[static_cast<std::size_t>(neighbour.point)]) {
+        const Vector weights = barycentric(x, entity);
+        if (chosen != nullptr && !(weights.minCoeff() > best.minCoeff())) continue;
+        best = weights;
+        chosen = &entity;
+      }
+    Weights result;
+    if (chosen == nullptr) return result;
+    best = (best.array() > vanishing).select(best, 0.0);
+    best /= best.sum();
+    for (Index k = 0; k < best.size(); ++k)
+      if (best[k] > 0) result.emplace_back((*chosen)[static_cast<std::size_t>(k)], best[k]);
+    return result;
+  }
+
+private:
+  Vector from(const std::vector<Index> &entity, const Point &x) const {
+    const Point &first = dual_.points[static_cast<std::size_t>(entity.front())];
+    return Vector::Map(x.data(), 3) - Vector::Map(first.data(), 3);
+  }
+  /// Of the projection of x onto the line or plane of the entity.
+  Vector barycentric(const Point &x, const std::vector<Index> &entity) const {
+    Matrix sides(3, std::ssize(entity) - 1);
+    for (Index k = 0; k < sides.cols(); ++k)
+      sides.col(k) = from(
+          entity, dual_.points[static_cast<std::size_t>(entity[static_cast<std::size_t>(k) + 1])]);
+    const Vector along =
+        Matrix(sides.transpose() * sides).ldlt().solve(sides.transpose() * from(entity, x));
+    Vector weights(along.size() + 1);
+    weights << 1 - along.sum(), along;
+    return weights;
+  }
+
+  const DualSpace &dual_;
+  std::vector<std::vector<std::vector<Index>>> around_; ///< entities of each dual node
+};
+
+/// Row of component c of a node: the normal multipliers of all nodes come first.
+Index row_of(const DualSpace &dual, Index node, int c) {
+  return c == 0 ? node : dual.nodes() + node * (dual.components - 1) + c - 1;
+}
+
 } // namespace
 
-Vector transferred(const Contact &from, const Contact &to, const Vector &values) {
-  if (from.interfaces.size() != to.interfaces.size() || values.size() != from.dual_size())
+SparseMatrix interpolation(const Contact &from, const Contact &to) {
+  if (from.interfaces.size() != to.interfaces.size())
     throw failure("multipliers can be transferred between meshes of one scene alone");
-  Vector result = Vector::Zero(to.dual_size());
+  std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < from.interfaces.size(); ++i) {
     const DualSpace &coarse = from.interfaces[i]->dual(), &fine = to.interfaces[i]->dual();
     const std::size_t count = from.interfaces[i]->mesh().per_entity == 2 ? 2 : 3;
     const NearestPoints nearest(coarse.points);
+    const DualEntities entities(*from.interfaces[i]);
     for (Index node = 0; node < fine.nodes(); ++node) {
-      const std::vector<Neighbour> neighbours =
-          nearest.of(fine.points[static_cast<std::size_t>(node)], count);
-      const std::vector<double> weights = weights_of(neighbours);
-      // Rows of an interface: the normal multipliers of all nodes, then the tangential ones.
+      const Point &x = fine.points[static_cast<std::size_t>(node)];
+      const std::vector<Neighbour> near = nearest.of(x, count);
+      Weights weights;
+      if (coincides(near))
+        weights = {{near.front().point, 1}};
+      else
+        weights = entities.linear(x, near);
+      if (weights.empty()) weights = by_distance(near);
       for (int c = 0; c < fine.components; ++c)
-        for (std::size_t k = 0; k < neighbours.size(); ++k) {
-          const auto row = [&](const DualSpace &dual, Index n) {
-            return c == 0 ? n : dual.nodes() + n * (dual.components - 1) + c - 1;
-          };
-          result[to.first_row[i] + row(fine, node)] +=
-              weights[k] * values[from.first_row[i] + row(coarse, neighbours[k].point)];
-        }
+        for (const auto &[point, weight] : weights)
+          entries.emplace_back(static_cast<int>(to.first_row[i] + row_of(fine, node, c)),
+                               static_cast<int>(from.first_row[i] + row_of(coarse, point, c)),
+                               weight);
     }
   }
+  SparseMatrix result(to.dual_size(), from.dual_size());
+  result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
 

@@ -82,8 +82,10 @@ struct H5Writer::Impl {
     if (file.get() < 0) throw failure("HDF5 cannot make a file");
   }
 
-  /// A new data set; an empty `shape` is a scalar.
-  Id make(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk_type) const {
+  /// A new data set; an empty `shape` is a scalar. A `packed` one, of two dimensions, is
+  /// compressed.
+  Id make(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk_type,
+          bool packed = false) const {
     const Id space(shape.empty()
                        ? H5Screate(H5S_SCALAR)
                        : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
@@ -92,14 +94,21 @@ struct H5Writer::Impl {
     H5Pset_create_intermediate_group(link.get(), 1);
     const Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(properties.get(), false);
+    if (packed) {
+      constexpr hsize_t entries = hsize_t{1} << 17;
+      const std::array<hsize_t, 2> chunk{std::clamp<hsize_t>(entries / shape[1], 1, shape[0]),
+                                         shape[1]};
+      H5Pset_chunk(properties.get(), 2, chunk.data());
+      H5Pset_deflate(properties.get(), 1);
+    }
     return {H5Dcreate2(file.get(), name.c_str(), disk_type, space.get(), link.get(),
                        properties.get(), H5P_DEFAULT),
             H5Dclose};
   }
 
   void write(const std::string &name, const std::vector<hsize_t> &shape, hid_t disk_type,
-             hid_t memory, const void *data) const {
-    const Id set = make(name, shape, disk_type);
+             hid_t memory, const void *data, bool packed = false) const {
+    const Id set = make(name, shape, disk_type, packed);
     // HDF5 wants an address even where there is nothing to write.
     const double nothing = 0;
     if (set.get() < 0 || H5Dwrite(set.get(), memory, H5S_ALL, H5S_ALL, H5P_DEFAULT,
@@ -124,9 +133,11 @@ H5Writer::H5Writer(H5Writer &&) noexcept = default;
 H5Writer &H5Writer::operator=(H5Writer &&) noexcept = default;
 
 void H5Writer::write(const std::string &name, const Matrix &value) {
+  constexpr Index small = 4096;
   const RowMajor rows = value;
+  const bool mostly_zero = rows.size() > small && 2 * (rows.array() != 0).count() < rows.size();
   impl_->write(name, {static_cast<hsize_t>(rows.rows()), static_cast<hsize_t>(rows.cols())},
-               H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rows.data());
+               H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, rows.data(), mostly_zero);
 }
 
 void H5Writer::create_rows(const std::string &name, Index rows, Index columns) {

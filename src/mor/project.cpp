@@ -1,11 +1,14 @@
 #include "rbvi/mor/reduce.hpp"
 
+#include "bases/cone_tools.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/mor/separation/stiffness_change.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "separation/dense_rows.hpp"
+#include "separation/eim_terms.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -83,19 +86,6 @@ AffineTerms start_terms_of_b(const AffineOperators &affine, Index entries) {
   return terms;
 }
 
-/// Adds a snapshot's projection to every term that contains it.
-template <class Terms>
-void accumulate(const Eim &eim, int snapshot, const Vector &projected, Terms &&terms) {
-  for (int i = 0; i < eim.size(); ++i)
-    if (eim.snapshots[static_cast<std::size_t>(i)] == snapshot)
-      for (int j = i; j < eim.size(); ++j)
-        terms.col(j) += eim.combination(i, j) * projected;
-}
-
-bool uses(const Eim &eim, int snapshot) {
-  return std::find(eim.snapshots.begin(), eim.snapshots.end(), snapshot) != eim.snapshots.end();
-}
-
 } // namespace
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
@@ -108,6 +98,13 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
 
 namespace {
 
+/// X^T Y; most entries of a large dual basis are zero.
+Matrix transposed_times(const Matrix &x, const Matrix &y) {
+  constexpr Index sparse_below = 10; // of its entries one in so many
+  if (sparse_below * (x.array() != 0).count() > x.size()) return x.transpose() * y;
+  return SparseMatrix(Matrix(x.transpose()).sparseView()) * y;
+}
+
 /// Adds a snapshot of B to the terms that contain it: of B^n and B^tau apart each has its own.
 void accumulate_b(const Problem &problem, const AffineOperators &affine, int snapshot,
                   const Operators &op, const Matrix &trace, ReducedModel &model) {
@@ -115,8 +112,8 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
   for (const auto &[eim, row, rows] : rows_of_b(affine, problem)) {
     const Index begin = std::exchange(first, first + eim.size());
     if (!uses(eim, snapshot)) continue;
-    const auto b = op.b.middleRows(row, rows);
-    const Matrix reduced = model.dual_basis.middleRows(row, rows).transpose() * (b * trace);
+    const Matrix reduced = transposed_times(model.dual_basis.middleRows(row, rows),
+                                            op.b.middleRows(row, rows) * trace);
     accumulate(eim, snapshot, reduced.reshaped(), model.b.reduced.middleCols(begin, eim.size()));
   }
 }
@@ -190,8 +187,7 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases,
                      ReducedModel &model) {
   const Index n = model.primal_size(), generators = model.generators;
-  model.a =
-      start_terms(affine.a, affine.sample_a, n * (n + 1) / 2, std::ssize(problem.a_terms().exact));
+  model.a = start_terms(affine.a, affine.sample_a, 0, std::ssize(problem.a_terms().exact));
   model.b = start_terms_of_b(affine, generators * n);
   model.f = start_terms(affine.f, affine.sample_f, n, std::ssize(problem.f_terms().exact));
   model.g = start_terms(affine.g, affine.sample_g, generators);
@@ -203,7 +199,7 @@ void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
                        const AffineOperators &affine, Mat basis, ReducedModel &model) {
   for (const int p : sampled_snapshots(affine)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
-    if (uses(affine.a, p))
+    if (model.a_change.rank() == 0 && uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),
                  model.a.reduced.rightCols(affine.a.size()));
     if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, model.contact_trace, model);
@@ -215,14 +211,53 @@ void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
   }
 }
 
-/// The exact terms of A and F. Collective.
-void project_exact(const Problem &problem, Mat basis, ReducedModel &model) {
+/// The first column of A's terms where they differ on few functions, else its exact terms, and
+/// room for those of the snapshots; the exact terms of F. Collective.
+void project_exact(Problem &problem, const std::vector<Sample> &samples,
+                   const AffineOperators &affine, Mat basis, ReducedModel &model) {
+  const Index n = model.primal_size();
+  std::vector<Mu> set;
+  for (const int p : affine.a.snapshots)
+    set.push_back(samples[static_cast<std::size_t>(p)].mu);
+  if (!model.law && !model.nitsche && !model.online_enriched)
+    model.a_change = stiffness_change(problem, affine.a, set, basis);
+  model.a.reduced.setZero(n * (n + 1) / 2, model.a_change.rank() > 0 ? 1 : model.a.size());
+  if (model.a_change.rank() > 0) {
+    problem.assemble(set.front());
+    model.a.reduced.col(0) = project_stiffness(problem.a_terms().mapped.get(), basis);
+  }
   Index q = 0;
   for (const Handle<Mat> &term : problem.a_terms().exact)
     model.a.reduced.col(q++) = project_stiffness(term.get(), basis);
   q = 0;
   for (const Handle<Vec> &term : problem.f_terms().exact)
     model.f.reduced.col(q++) = project_load(problem.comm(), term.get(), basis);
+}
+
+/// Leaves in the trace of a large pair of spaces the nodes over which contact moves, those that
+/// generators reach and free modes do not, and two layers around them.
+void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
+  constexpr Index large = 100000;
+  constexpr int layers = 2;
+  if (model.law || model.nitsche || model.b.size() == 0 || model.contact_trace.size() < large)
+    return;
+  const auto nonzero = [](const auto &row) { return (row.array() != 0).any(); };
+  std::vector<bool> near(static_cast<std::size_t>(model.dual_basis.rows()));
+  for (Index row = 0; row < model.dual_basis.rows(); ++row)
+    near[static_cast<std::size_t>(row)] =
+        nonzero(model.dual_basis.row(row).head(model.generators - model.free_modes)) &&
+        !nonzero(model.dual_basis.row(row).tail(model.free_modes));
+  for (int layer = 0; layer < layers; ++layer)
+    add_neighbours(near, problem.w_product());
+  Operators op;
+  problem.assemble_contact(any, op);
+  std::vector<bool> known(static_cast<std::size_t>(model.contact_trace.rows()), false);
+  for (Index row = 0; row < op.b.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
+      if (near[static_cast<std::size_t>(row)]) known[static_cast<std::size_t>(entry.col())] = true;
+  for (std::size_t dof = 0; dof < known.size(); ++dof)
+    if (known[dof]) model.trace_dofs.push_back(static_cast<int>(dof));
+  model.contact_trace = model.contact_trace(model.trace_dofs, Eigen::all).eval();
 }
 
 void store_histories(const AffineOperators &affine, const ReducedBases &bases,
@@ -253,8 +288,9 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   Mat basis = nullptr;
   RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
   model.contact_trace = restrict_to(problem.trace(), basis);
-  project_exact(problem, basis, model);
+  project_exact(problem, samples, affine, basis, model);
   project_snapshots(problem, samples, affine, basis, model);
+  restrict_trace(problem, samples.front().mu, model);
   RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
   model.fields_key = key_of_fields(problem, bases.pod.basis);
   store_histories(affine, bases, model.histories);

@@ -1,5 +1,6 @@
 #include "rbvi/mor/stages.hpp"
 
+#include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
 #include "rbvi/par/turns.hpp"
@@ -13,15 +14,32 @@ namespace rbvi {
 
 namespace {
 
+/// ConeOptions::hats of its level. Collective.
+SparseMatrix hats_of_level(const Problem &problem, int level) {
+  const std::unique_ptr<Problem> coarse = problem.coarser(level);
+  if (!coarse)
+    throw bad_input("the mesh has no level that is " + std::to_string(level) + " times coarser");
+  return interpolation(coarse->contact(), problem.contact());
+}
+
+/// Some rows of a matrix, as the columns of the result.
+Matrix rows_as_columns(const SparseMatrix &matrix, const std::vector<Index> &rows) {
+  Matrix columns = Matrix::Zero(matrix.cols(), std::ssize(rows));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (SparseMatrix::InnerIterator entry(matrix, rows[k]); entry; ++entry)
+      columns(entry.col(), static_cast<Index>(k)) = entry.value();
+  return columns;
+}
+
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
-                      const ConeOptions &options) {
+                      ConeOptions options) {
+  if (options.level > 0) options.hats = hats_of_level(problem, options.level);
   if (options.type != ConeType::hybrid) return build_cone(snapshots, problem.w_product(), options);
   const Operators &op = problem.assemble(reference);
   ReplicatedSolver solver(op.a, problem.trace(), "hf_");
   return build_cone(snapshots, problem.w_product(), options,
                     [&](const std::vector<Index> &which) -> Matrix {
-                      const Matrix loads = Matrix(op.b.transpose())(Eigen::all, which);
-                      return op.b * solver.responses(loads);
+                      return op.b * solver.responses(rows_as_columns(op.b, which));
                     });
 }
 
@@ -106,13 +124,13 @@ std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, co
 }
 
 void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training,
-                     const Mu &reference, const ReduceOptions &options,
-                     const Matrix &dual_functions, ReducedBases &bases, StageTable &stages) {
+                     const Mu &reference, const ReduceOptions &options, Matrix dual,
+                     ReducedBases &bases, StageTable &stages) {
   const bool energy = options.product == SupremizerProduct::energy;
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
   RieszSpace riesz;
-  const Matrix dual = orthonormal_dual_basis(dual_functions, problem.w_product());
+  dual = orthonormal_dual_basis(dual, problem.w_product());
   {
     const Stage stage(stages, stage::riesz);
     if (energy)
@@ -262,7 +280,7 @@ int check_answers(const Problem &problem, ReducedModel &model, StageTable &stage
   int wrong = 0;
   collectively(problem.comm(), [&] {
     if (rank_of(problem.comm()) != 0) return;
-    model.self_check = self_check(model, problem.scene());
+    model.self_check = self_check(model, problem.scene(), queries_of_check(model));
     wrong = model.self_check.clean() ? 0 : std::max(1, model.self_check.unanswered);
   });
   MPI_Bcast(&wrong, 1, MPI_INT, 0, problem.comm());

@@ -28,10 +28,10 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
   imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
 }
 
-std::unique_ptr<Problem> Problem::coarser() const {
-  if (mesh_options_.refine == 0) return nullptr;
+std::unique_ptr<Problem> Problem::coarser(int levels) const {
+  if (mesh_options_.refine < levels) return nullptr;
   MeshOptions options = mesh_options_;
-  --options.refine;
+  options.refine -= levels;
   return std::make_unique<Problem>(comm(), given_, options, contact_gather_);
 }
 

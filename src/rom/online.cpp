@@ -7,7 +7,6 @@
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/law/reduced_stiffness.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
-#include "rbvi/rom/model/packed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,22 +47,6 @@ Index solved_size(const ReducedModel &model) {
   return model.modes + std::min(model.supremizers, model.generators);
 }
 
-/// The contact dofs that constraints at single nodes act on, where they are not all: those of the
-/// vertices.
-std::vector<Index> nodal_dofs(const Contact &contact) {
-  std::vector<Index> dofs;
-  for (const auto &interface : contact.interfaces) {
-    if (interface->dual().vertices.empty()) return {};
-    const InterfaceMesh &mesh = interface->mesh();
-    for (const Index node : interface->dual().vertices)
-      for (int c = 0; c < mesh.components; ++c)
-        if (const int dof = mesh.dofs[static_cast<std::size_t>(node * mesh.components + c)];
-            dof >= 0)
-          dofs.push_back(dof);
-  }
-  return dofs;
-}
-
 } // namespace
 
 OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
@@ -84,8 +67,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
     nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());
     return;
   }
-  nodal_dofs_ = nodal_dofs(contact_);
-  nodal_trace_ = model.contact_trace(nodal_dofs_, Eigen::all);
+  trace_.emplace(model, contact_);
   if (model.law) {
     law_ = std::make_unique<LawSolver>(model, scene_, contact_);
     nodal_basis_ = model.dual_basis.sparseView();
@@ -99,7 +81,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
   while (first_dual_ < end && rows[first_dual_] == 0)
     ++first_dual_;
   dual_rows_ = end - first_dual_;
-  packed_.resize(model.a.reduced.rows());
+  if (model.a_change.rank() > 0) changed_.emplace(model);
   g_ = Vector::Zero(model.generators);
   positive_ = model.free_modes == 0 && (model.dual_basis.array() >= 0).all();
 }
@@ -119,6 +101,19 @@ void OnlineSolver::evaluate_contact(const Vector &state, ReducedSolution &soluti
   g_.noalias() = basis * op.g.segment(first_dual_, dual_rows_);
 }
 
+void OnlineSolver::update_changed(const Vector &theta_a, bool new_b) {
+  a_scale_ = std::sqrt(changed_->set(theta_a));
+  if (new_b) {
+    fixed_y_ = b_.transpose();
+    changed_->solve_fixed(fixed_y_);
+  }
+  if (!new_b && theta_a_ == theta_a) return;
+  y_ = fixed_y_;
+  changed_->solve_change(y_);
+  qp_.reset();
+  theta_a_ = theta_a;
+}
+
 void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b) {
   const bool anew = model_.online_enriched;
   const double a_ratio = anew ? 0 : ratio(theta_a, theta_a_);
@@ -131,11 +126,10 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
     Eigen::Map<Vector>(b_.data(), b_.size()).noalias() = model_.b.reduced * theta_b;
     theta_b_ = theta_b;
   }
+  if (changed_) return update_changed(theta_a, b_ratio == 0);
   if (a_ratio == 0) {
     theta_a_.resize(0);
-    packed_.noalias() = model_.a.reduced * theta_a;
-    a_.resize(n, n);
-    unpack(packed_, a_);
+    stiffness_of(model_, theta_a, a_);
     if (anew) enrich();
     l_ = a_;
     const Eigen::LLT<Eigen::Ref<Matrix>> factor(l_);
@@ -153,7 +147,10 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
 
 void OnlineSolver::solve_dual(ReducedSolution &solution) {
   c_ = f_ / a_scale_;
-  l_.triangularView<Eigen::Lower>().solveInPlace(c_);
+  if (changed_)
+    changed_->solve_root(c_);
+  else
+    l_.triangularView<Eigen::Lower>().solveInPlace(c_);
   // The columns of the true Y are those kept, times `scale`: x takes the factor instead.
   const double scale = b_scale_ / a_scale_;
   const NonnegativeQpReport report = qp_.solve(y_, c_, g_ / scale);
@@ -166,7 +163,10 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
   solution.iterations = report.iterations;
   solution.x = qp_.x() / scale;
   solution.u = qp_.residual() / a_scale_;
-  l_.transpose().triangularView<Eigen::Upper>().solveInPlace(solution.u);
+  if (changed_)
+    changed_->solve_transposed(solution.u);
+  else
+    l_.transpose().triangularView<Eigen::Upper>().solveInPlace(solution.u);
 }
 
 /// Of the terms of B u: where bodies touch without a gap, B u and g are round-off, 1e-16 of these
@@ -188,7 +188,9 @@ double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const 
 }
 
 void OnlineSolver::check(ReducedSolution &solution) {
-  const Vector au = a_scale_ * a_scale_ * (a_.selfadjointView<Eigen::Lower>() * solution.u).eval();
+  const Vector au =
+      changed_ ? changed_->times(solution.u)
+               : a_scale_ * a_scale_ * (a_.selfadjointView<Eigen::Lower>() * solution.u).eval();
   const Vector btx = b_scale_ * (b_.transpose() * solution.x);
   const Vector bu = b_scale_ * (b_ * solution.u);
   solution.energy = 0.5 * solution.u.dot(au) - f_.dot(solution.u);
@@ -322,15 +324,7 @@ ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution,
 
 Vector OnlineSolver::contact_gap(const ReducedSolution &solution) const {
   const ContactOperators operators = nodal_operators(solution, multiplier(solution));
-  return gap_left(operators, solution.u);
-}
-
-Vector OnlineSolver::gap_left(const ContactOperators &operators, const Vector &u) const {
-  if (nodal_dofs_.empty())
-    return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * u);
-  Vector at_contact = Vector::Zero(model_.contact_trace.rows());
-  at_contact(nodal_dofs_) = nodal_trace_ * u;
-  return operators.nodal_gap - operators.nodal_b * at_contact;
+  return trace_->gap_left(operators, solution.u);
 }
 
 Vector OnlineSolver::field(const ReducedSolution &solution) const {
@@ -361,7 +355,7 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   }
   const Vector lambda = multiplier(solution);
   const ContactOperators operators = nodal_operators(solution, lambda);
-  const Vector gap = gap_left(operators, solution.u);
+  const Vector gap = trace_->gap_left(operators, solution.u);
   result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
   const double least = law_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);

@@ -4,6 +4,8 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -22,6 +24,12 @@ std::string at(const Worst &worst, const ParameterSpace &space) {
 }
 
 } // namespace
+
+int queries_of_check(const ReducedModel &model) {
+  constexpr double most = 200, fewest = 20, quick = 500;
+  const double factor = quick / std::max(1, model.primal_size());
+  return static_cast<int>(std::clamp(most * factor * factor * factor, fewest, most));
+}
 
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries) {
   SelfCheck check;

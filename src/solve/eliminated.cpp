@@ -337,7 +337,7 @@ MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector
   const MethodResult rough = coarser_->solve(mu, on_coarser, {}, enough_to_start);
   if (!rough.converged) return on_this_.solve(op, {}, accuracy);
   return on_this_.solve(
-      op, transferred(coarser_problem_->contact(), problem_.contact(), rough.start), accuracy);
+      op, interpolation(coarser_problem_->contact(), problem_.contact()) * rough.start, accuracy);
 }
 
 } // namespace rbvi

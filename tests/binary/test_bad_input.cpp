@@ -181,6 +181,8 @@ TEST_P(BadInput, OptionsOfBases) {
   const std::string reference = "while reading option -reference_mu";
   refuse({{offline + "-cone_ring -1", "use a number from 0 to 1000"},
           {offline + "-cone_ring 0.5", "must be an integer"},
+          {offline + "-cone_level 1", "-mesh_refine is 0"},
+          {offline + "-cone_level 1 -mesh_refine 1 -cone_type nodal", "is for -cone_type hybrid"},
           {offline + "-pga_enrichment both", "use one of decorrelated, online, offline"},
           {offline + "-pga_product w", "use one of v, energy"},
           {offline + "-pga_enrichment online -pga_product energy", "leave out -pga_product energy"},

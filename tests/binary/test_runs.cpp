@@ -142,6 +142,40 @@ TEST_F(Runs, EveryEnrichmentIsReducedAndVerified) {
     }
 }
 
+/// A number in the only row of a table.
+double in_table(const std::string &path, const std::string &name) {
+  std::istringstream lines(slurp(path));
+  std::string names, row;
+  std::getline(lines, names);
+  std::getline(lines, row);
+  const std::vector<std::string> columns = split(names, ',');
+  const auto at = std::ranges::find(columns, name) - columns.begin();
+  return parse_number(split(row, ',').at(static_cast<std::size_t>(at)), name);
+}
+
+/// A model of hundreds of functions: terms of A that differ on few of them, displacements kept
+/// where contact moves; and one with the hat functions of the coarser mesh, which is smaller.
+TEST_F(Runs, ManyHatFunctionsAndThoseOfACoarserMesh) {
+  spill("case.yaml", "scene: membrane_obstacle\nmesh_refine: 1\ntrain: random:12:1\n");
+  offline(2, "-out fine");
+  offline(2, "-cone_level 1 -out coarse");
+  const ReducedModel fine = read_model("fine/model.h5"), coarse = read_model("coarse/model.h5");
+  EXPECT_GT(fine.a_change.rank(), 0);
+  EXPECT_LT(fine.a_change.rank(), fine.primal_size() / 3);
+  EXPECT_FALSE(fine.trace_dofs.empty());
+  EXPECT_EQ(coarse.settings.at("cone_level"), "1");
+  EXPECT_LT(2 * coarse.generators, fine.generators);
+  output_of(rbvi(1, "solve -case case.yaml -mu 0.19,0.01,-0.02 -csv truth.csv"));
+  for (const std::string run : {"fine", "coarse"}) {
+    EXPECT_TRUE(read_model(run + "/model.h5").self_check.clean());
+    output_of(rbvi_online(run + "/model.h5 --mu 0.19,0.01,-0.02 --out " + run + ".csv"));
+    for (const char *output : {"energy", "normal_force"}) {
+      const double truth = in_table("truth.csv", output);
+      EXPECT_NEAR(in_table(run + ".csv", output), truth, 2e-3 * std::abs(truth)) << run << output;
+    }
+  }
+}
+
 /// As many functions as the edge moves over nodes, no mode: a model that can be written and read,
 /// and whose answers are refused.
 TEST_F(Runs, AHybridConeWithoutModesIsAModel) {

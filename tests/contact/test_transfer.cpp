@@ -25,7 +25,48 @@ Contact curve(const Scene &scene, int edges) {
   return make_contact(scene, std::move(meshes));
 }
 
+/// The square (-0.1, 0.1)^2 of `side`^2 squares of two triangles each, below the obstacle.
+Contact region(const Scene &scene, int side) {
+  InterfaceMesh mesh;
+  const int nodes = side + 1;
+  for (int j = 0; j <= side; ++j)
+    for (int i = 0; i <= side; ++i)
+      mesh.points.push_back({-0.1 + 0.2 * i / side, -0.1 + 0.2 * j / side, 0});
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      const int a = j * nodes + i;
+      mesh.entities.insert(mesh.entities.end(),
+                           {a, a + 1, a + nodes + 1, a, a + nodes + 1, a + nodes});
+    }
+  mesh.per_entity = 3;
+  mesh.parts = {nodes * nodes};
+  for (int i = 0; i < nodes * nodes; ++i)
+    mesh.dofs.push_back(i);
+  mesh.columns = nodes * nodes;
+  std::vector<InterfaceMesh> meshes;
+  meshes.push_back(mesh);
+  return make_contact(scene, std::move(meshes));
+}
+
 } // namespace
+
+TEST(Transfer, HatFunctionsOfTrianglesAreExactForLinearValues) {
+  const Scene scene = make_scene("membrane_obstacle", {});
+  const Contact coarse = region(scene, 3), fine = region(scene, 12);
+  const auto values = [](const Contact &contact) {
+    Vector result(contact.dual_size());
+    for (Index i = 0; i < result.size(); ++i) {
+      const Point &x = contact.interfaces.front()->dual().points[static_cast<std::size_t>(i)];
+      result[i] = 2 + 3 * x[0] - x[1];
+    }
+    return result;
+  };
+  const Matrix hats = interpolation(coarse, fine);
+  EXPECT_LE((hats * values(coarse) - values(fine)).cwiseAbs().maxCoeff(), 1e-14);
+  EXPECT_GE(hats.minCoeff(), 0);
+  EXPECT_LE((hats.rowwise().sum().array() - 1).abs().maxCoeff(), 1e-14);
+  EXPECT_LE((hats.array() > 0).rowwise().count().maxCoeff(), 3);
+}
 
 TEST(Transfer, IsExactForLinearValuesBetweenHalvedEdges) {
   const Scene scene = make_scene("rigid_disk", {{"friction", "coulomb"}});
@@ -40,14 +81,14 @@ TEST(Transfer, IsExactForLinearValuesBetweenHalvedEdges) {
     }
     return result;
   };
-  EXPECT_LE((transferred(coarse, fine, values(coarse)) - values(fine)).cwiseAbs().maxCoeff(),
+  EXPECT_LE((interpolation(coarse, fine) * values(coarse) - values(fine)).cwiseAbs().maxCoeff(),
             1e-14);
   // Every coarse node is a fine one.
-  EXPECT_LE((transferred(fine, coarse, values(fine)) - values(coarse)).cwiseAbs().maxCoeff(), 0);
+  EXPECT_LE((interpolation(fine, coarse) * values(fine) - values(coarse)).cwiseAbs().maxCoeff(), 0);
 }
 
-TEST(Transfer, RefusesValuesOfAnotherSize) {
+TEST(Transfer, RefusesInterfacesOfAnotherScene) {
   const Scene scene = make_scene("rigid_disk", {{"friction", "coulomb"}});
-  const Contact contact = curve(scene, 10);
-  EXPECT_THROW(transferred(contact, contact, Vector::Zero(3)), Error);
+  const Contact one = curve(scene, 10);
+  EXPECT_THROW(interpolation(one, Contact{}), Error);
 }

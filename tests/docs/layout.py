@@ -74,7 +74,7 @@ def known_sizes(file):
                                       for name in ("modes", "supremizers", "generators"))
     return {"n": modes + supremizers, "R": generators,
             "P": len(file["parameters/names"]), "p": len(file["parameters/free"]),
-            "d": file["interfaces/0/points"].shape[1], "k": len(file["contact/trace"]),
+            "d": file["interfaces/0/points"].shape[1], "k": int(file["contact/dofs"][()]),
             "c": file["contact/dual_basis"].shape[0]}
 
 

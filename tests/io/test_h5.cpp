@@ -97,6 +97,17 @@ TEST_F(SealedFile, ReturnsWhatWasWritten) {
   EXPECT_FALSE(reader.has("deep/no/v"));
 }
 
+TEST_F(SealedFile, MatricesOfMostlyZerosAreSmall) {
+  Matrix sparse = Matrix::Zero(700, 900);
+  for (Index i = 0; i < sparse.rows(); ++i)
+    sparse(i, (7 * i) % sparse.cols()) = 1.0 / static_cast<double>(i + 1);
+  H5Writer writer;
+  writer.write("sparse", sparse);
+  writer.commit(path, "sample", 3);
+  EXPECT_EQ(H5Reader(path, "sample", 3).matrix("sparse"), sparse);
+  EXPECT_LT(std::filesystem::file_size(path), 200000U);
+}
+
 TEST_F(SealedFile, SeveralAreOpenAtOnceAndMove) {
   H5Writer one, two;
   one.write("x", 1.0);

@@ -208,6 +208,62 @@ TEST(HybridCone, ModesAreOrthonormalInW) {
             1e-12);
 }
 
+/// Bilinear hat functions of every other node of the grid, at all of its nodes.
+SparseMatrix coarse_hats() {
+  constexpr Index inner = Membrane::inner, coarse = (inner + 1) / 2;
+  Matrix line = Matrix::Zero(inner, coarse);
+  for (Index i = 0; i < inner; ++i) {
+    line(i, i / 2) += 0.5;
+    line(i, (i + 1) / 2) += 0.5;
+  }
+  Matrix hats(inner * inner, coarse * coarse);
+  for (Index i = 0; i < inner; ++i)
+    for (Index k = 0; k < coarse; ++k)
+      for (Index j = 0; j < inner; ++j)
+        hats.block(i * inner + j, k * coarse, 1, coarse) = line(i, k) * line.row(j);
+  return hats.sparseView();
+}
+
+TEST(HybridCone, HatsOfSingleNodesAreTheDefault) {
+  const Membrane membrane;
+  const Matrix snapshots = training(membrane, 3);
+  SparseMatrix identity(Membrane::count, Membrane::count);
+  identity.setIdentity();
+  EXPECT_EQ(hybrid(snapshots, membrane, {.tolerance = 0}).all(),
+            hybrid(snapshots, membrane, {.tolerance = 0, .hats = identity}).all());
+}
+
+/// Those that reach into the moving zone, whole in it, one for each node of the coarser grid: their
+/// sum is 1 there, so that a uniform pressure is held; and they do not move what stays in contact.
+TEST(HybridCone, CoarserHatsCoverTheMovingZone) {
+  const Membrane membrane;
+  const Matrix snapshots = training(membrane, 4);
+  const SparseMatrix hats = coarse_hats();
+  const Zones fine = zones_of(snapshots, Membrane::inner, 0);
+  const Cone cone = hybrid(snapshots, membrane, {.tolerance = 0, .ring = 0, .hats = hats});
+  const Matrix &generators = cone.basis.generators;
+  Index reaching = 0;
+  for (Index c = 0; c < hats.cols(); ++c) {
+    const Vector on_moving = Matrix(hats)(fine.moving, c);
+    if (on_moving.maxCoeff() == 0) continue;
+    const Vector generator = generators(fine.moving, reaching);
+    EXPECT_LE((generator / generator.norm() - on_moving / on_moving.norm()).norm(), 1e-14);
+    ++reaching;
+  }
+  EXPECT_EQ(generators.cols(), reaching);
+  EXPECT_LT(reaching, static_cast<Index>(fine.moving.size()));
+  const Matrix on_moving = generators(fine.moving, Eigen::all);
+  const Vector ones = Vector::Ones(on_moving.rows());
+  EXPECT_LE((on_moving * on_moving.completeOrthogonalDecomposition().solve(ones) - ones).norm(),
+            1e-12);
+  Nodes still; // contact that no coarse hat of the moving zone makes move
+  for (const Index node : fine.permanent)
+    if ((cone.modes.columns.row(node).array() != 0).any()) still.push_back(node);
+  ASSERT_FALSE(still.empty());
+  const Matrix displacements = membrane.h * generators;
+  EXPECT_LT(displacements(still, Eigen::all).norm(), 1e-12 * displacements.norm());
+}
+
 /// H changes with mu: the modes take that up, and the history says how well.
 TEST(HybridCone, HistoryIsABoundThatFalls) {
   const Membrane reference;

@@ -186,6 +186,18 @@ TEST(OrthonormalRange, reveals_the_rank) {
   EXPECT_EQ(orthonormal_range(Matrix::Zero(6, 3)).cols(), 0);
 }
 
+/// Large sizes: full rank is seen without pivots, less than that is not taken for it.
+TEST(OrthonormalRange, RevealsTheRankOfManyVectors) {
+  const Matrix vectors = random_matrix(320, 300, 8);
+  const Matrix range = orthonormal_range(vectors);
+  ASSERT_EQ(range.cols(), 300);
+  EXPECT_LE((range.transpose() * range - Matrix::Identity(300, 300)).norm(), 1e-12);
+  EXPECT_LE((vectors - range * (range.transpose() * vectors)).norm(), 1e-12 * vectors.norm());
+  Matrix dependent = vectors;
+  dependent.col(170) = vectors.leftCols(3).rowwise().sum();
+  EXPECT_EQ(orthonormal_range(dependent).cols(), 299);
+}
+
 class InfSupConstants : public testing::TestWithParam<std::tuple<int, int, int>> {};
 
 TEST_P(InfSupConstants, agree_with_brute_force_in_the_full_space) {

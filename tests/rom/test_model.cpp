@@ -128,6 +128,24 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_TRUE(copy.self_check.friction.at.empty());
 }
 
+TEST_F(ModelFile, ReturnsWhatLargeModelsHave) {
+  ReducedModel model = full_model();
+  const Index n = model.primal_size(), terms = model.a.size();
+  model.a.reduced = model.a.reduced.leftCols(1).eval();
+  model.a_change = {Vector::Ones(terms), Matrix::Ones(n, 2), Matrix::Ones(3, terms)};
+  model.trace_dofs = {0, 2};
+  model.contact_trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  write_model(model, path);
+  const ReducedModel copy = read_model(path);
+  EXPECT_EQ(copy.a.reduced, model.a.reduced);
+  EXPECT_EQ(copy.a_change.scales, model.a_change.scales);
+  EXPECT_EQ(copy.a_change.range, model.a_change.range);
+  EXPECT_EQ(copy.a_change.cores, model.a_change.cores);
+  EXPECT_EQ(copy.trace_dofs, model.trace_dofs);
+  EXPECT_EQ(copy.contact_trace, model.contact_trace);
+  EXPECT_EQ(copy.contact_dofs(), model.contact_dofs());
+}
+
 TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
   write_model(full_model(), path);
   const ReducedModel with = read_model(path), without = read_model(path, false);
@@ -287,6 +305,9 @@ TEST(CheckModel, NamesWhatDoesNotFit) {
   EXPECT_TRUE(refused([](M &m) { m.g.samples.push_back(m.g.samples[0]); }));
   EXPECT_TRUE(refused([](M &m) { m.interfaces.push_back(m.interfaces[0]); })) << "b has samples";
   EXPECT_TRUE(refused([](M &m) { m.a = {}; }));
+  EXPECT_TRUE(refused([](M &m) { m.trace_dofs = {0, 1, 3}; })) << "there are three";
+  EXPECT_TRUE(refused([](M &m) { m.trace_dofs = {1, 0, 2}; })) << "does not rise";
+  EXPECT_TRUE(refused([](M &m) { m.a_change.range = Matrix::Ones(m.primal_size(), 1); }));
 }
 
 /// The leading part of A, B, F, G as dense matrices is the top left corner of the whole.

@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/online.hpp"
 
 #include <gtest/gtest.h>
@@ -49,6 +50,63 @@ TEST(OnlineSolver, OneTermOfBoth) {
 TEST(OnlineSolver, OneTermOfBothSignsChange) {
   expect_exact<flipping>({4, 2, 5, 1, 1, 2, 2});
 }
+/// The terms of A by one matrix and what differs on two functions; from the file as well.
+TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
+  const synthetic::Sizes sizes{4, 4, 6, 3, 1, 2, 2};
+  const Index n = 8, r = 2;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    ReducedModel model = toy_model(sizes, seed), changed = model;
+    std::mt19937 random(seed);
+    changed.a.reduced = pack(synthetic::random_spd(random, n));
+    StiffnessChange &change = changed.a_change;
+    change.range = synthetic::random_matrix(random, n, r);
+    change.scales = Vector::LinSpaced(3, 0.4, 0.9);
+    change.cores.resize(r * (r + 1) / 2, 3);
+    for (Index q = 0; q < 3; ++q) {
+      change.cores.col(q) = pack(synthetic::random_spd(random, r));
+      Matrix lower(n, n);
+      stiffness_of(changed, Vector::Unit(3, q), lower);
+      model.a.reduced.col(q) = pack(lower);
+    }
+    check_model(changed);
+    OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
+        other(changed, synthetic::toy_scene<smooth>());
+    const ReducedModel part = leading(model, 6, 4), part_of_changed = leading(changed, 6, 4);
+    OnlineSolver part_solver(part, synthetic::toy_scene<smooth>()),
+        other_part(part_of_changed, synthetic::toy_scene<smooth>());
+    for (const Mu &mu : parse_set(model.parameters, "random:8:" + std::to_string(seed))) {
+      const ReducedSolution a = solver.solve(mu), b = other.solve(mu);
+      EXPECT_LE((a.u - b.u).norm(), 1e-11 * a.u.norm());
+      EXPECT_LE((a.x - b.x).norm(), 1e-10 * a.x.norm());
+      EXPECT_NEAR(a.energy, b.energy, 1e-11 * std::abs(a.energy));
+      EXPECT_LE(b.kkt_residual, 1e-11);
+      const Vector u = part_solver.solve(mu).u;
+      EXPECT_LE((other_part.solve(mu).u - u).norm(), 1e-11 * u.norm());
+    }
+    changed.a_change.cores *= -1e3;
+    EXPECT_THROW(OnlineSolver(changed, synthetic::toy_scene<smooth>()).solve({0.2, 0, 0}), Error);
+  }
+}
+
+/// Gaps are known where the model has displacements.
+TEST(OnlineSolver, TraceOfSomeNodes) {
+  const ReducedModel model = toy_model({3, 3, 3, 2, 2, 2, 2}, 5);
+  ReducedModel partial = model;
+  partial.trace_dofs = {0, 2};
+  partial.contact_trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  check_model(partial);
+  OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
+      other(partial, synthetic::toy_scene<smooth>());
+  const ReducedSolution a = solver.solve({0.2, 0, 0}), b = other.solve({0.2, 0, 0});
+  EXPECT_EQ(a.u, b.u);
+  const Vector all = solver.contact_gap(a), some = other.contact_gap(b);
+  EXPECT_DOUBLE_EQ(some[0], all[0]);
+  EXPECT_DOUBLE_EQ(some[2], all[2]);
+  EXPECT_EQ(some[1], std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(*other.outputs({0.2, 0, 0}, b).max_penetration, std::max({0.0, -all[0], -all[2]}),
+              1e-14);
+}
+
 TEST(OnlineSolver, NoLoad) {
   const ReducedModel model = toy_model({3, 3, 5, 3, 2, 0, 1}, 1);
   OnlineSolver solver(model, synthetic::toy_scene<smooth>());

@@ -240,7 +240,7 @@ TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
   expect_complaint("sizes", [](I &i) { i.mesh.degree = 3; });
   expect_complaint("sizes", [](I &i) { i.mesh.components = 0; });
   expect_complaint("sizes", [](I &i) { i.mesh.per_entity = 1; });
-  expect_complaint("sizes", [](I &i) { i.mesh.columns = 20; });
+  expect_complaint("dofs", [](I &i) { i.mesh.columns = 20; });
   expect_complaint("points", [](I &i) { i.mesh.points[3][1] = std::nan(""); });
   expect_complaint("entities", [](I &i) { i.mesh.entities.clear(); });
   expect_complaint("entities", [](I &i) { i.mesh.entities.pop_back(); });

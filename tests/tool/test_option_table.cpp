@@ -23,9 +23,9 @@ std::set<std::string> names_kept(const ToolOptions &options) {
 }
 
 const std::set<std::string> of_all{"training", "mesh_refine", "pod_tolerance", "eim_tolerance"};
-const std::set<std::string> of_dual_bases{"cone_type",     "cone_tolerance",   "cone_feasibility",
-                                          "cone_ring",     "pga_enrichment",   "pga_product",
-                                          "pga_tolerance", "pga_beta_fraction"};
+const std::set<std::string> of_dual_bases{"cone_type",   "cone_tolerance", "cone_feasibility",
+                                          "cone_ring",   "cone_level",     "pga_enrichment",
+                                          "pga_product", "pga_tolerance",  "pga_beta_fraction"};
 
 std::set<std::string> both(std::set<std::string> one, const std::set<std::string> &other) {
   one.insert(other.begin(), other.end());

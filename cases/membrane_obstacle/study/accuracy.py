@@ -52,13 +52,13 @@ def pressure_errors(grid, exact):
     return (np.sqrt(squares / exact.area) / exact.pressure, absolute / exact.force)
 
 
-def errors_at(rbvi, options, mu, exact):
-    """One row: COLUMNS, energy with its sign, and the seconds of the solve."""
+def errors_of(command, exact):
+    """One row: COLUMNS, energy with its sign, and the seconds of the answer. `command`: of the field
+    and the table that it is to write."""
     with tempfile.TemporaryDirectory() as folder:
         field, outputs = Path(folder) / "u.vtu", Path(folder) / "u.csv"
-        command = [rbvi, "solve", "-case", CASE, *options, "-mu", ",".join(map(repr, mu)),
-                   "-vtu", field, "-csv", outputs]
-        done = run(list(map(str, command)), capture_output=True, text=True, check=False)
+        done = run(list(map(str, command(field, outputs))), capture_output=True, text=True,
+                   check=False)
         if done.returncode != 0:
             sys.exit(done.stderr)
         with open(outputs, newline="", encoding="utf-8") as file:
@@ -68,6 +68,21 @@ def errors_at(rbvi, options, mu, exact):
         ("peak_pressure", exact.pressure), ("contact_measure", exact.area),
         ("energy", exact.energy), ("normal_force", exact.force))]
     return [l2, l1, *relative, float(row["seconds"])]
+
+
+def errors_at(rbvi, options, mu, exact):
+    """Of a high-fidelity solve."""
+    return errors_of(lambda field, outputs: [
+        rbvi, "solve", "-case", CASE, *options, "-mu", ",".join(map(repr, mu)), "-vtu", field,
+        "-csv", outputs], exact)
+
+
+def cells_of(rows):
+    """The cells of a table: mean / largest of each column."""
+    cells = [f"{np.mean(column):.2e} / {np.max(column):.1e}"
+             for column in np.abs(rows[:, :len(COLUMNS)]).T]
+    cells[4] += f" ({np.mean(rows[:, 4]):+.1e})"
+    return cells
 
 
 def main():
@@ -85,10 +100,8 @@ def main():
             rows = list(pool.map(lambda pair: errors_at(rbvi, given, *pair),
                                  zip(PARAMETERS, exact)))
         rows = np.array(rows)
-        cells = [f"{np.mean(column):.2e} / {np.max(column):.1e}"
-                 for column in np.abs(rows[:, :len(COLUMNS)]).T]
-        cells[4] += f" ({np.mean(rows[:, 4]):+.1e})"
-        print(f"| {level} | " + " | ".join(cells) + f" | {np.median(rows[:, -1]):.2f} |", flush=True)
+        print(f"| {level} | " + " | ".join(cells_of(rows)) +
+              f" | {np.median(rows[:, -1]):.2f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,11 @@
 
 namespace rbvi {
 
-/// Values at the multipliers of `from`, such as FrictionResult::start, interpolated at those of
-/// `to`: the mean of the nearest dual nodes, two on curves and three on surfaces, weighted by the
-/// inverse squares of their distances. Exact where the nodes coincide. Throws failure if the
-/// interfaces are not the same ones.
-Vector transferred(const Contact &from, const Contact &to, const Vector &values);
+/// The hat functions of the multipliers of `from` at those of `to`: to.dual_size() x
+/// from.dual_size(), entries >= 0, rows of sum 1. Linear on edges and triangles whose nodes carry
+/// multipliers; elsewhere the mean of the nearest dual nodes, two on curves and three on surfaces,
+/// weighted by the inverse squares of their distances. Exact where the nodes coincide. Throws
+/// failure if the interfaces are not the same ones.
+SparseMatrix interpolation(const Contact &from, const Contact &to);
 
 } // namespace rbvi

@@ -59,8 +59,8 @@ public:
   /// boundaries that impose different displacements where they meet.
   Problem(MPI_Comm comm, Scene scene, const MeshOptions &options,
           Index contact_gather = default_contact_gather);
-  /// The same on the mesh with one refinement less; null where there is none. Collective.
-  std::unique_ptr<Problem> coarser() const;
+  /// The same on the mesh with `levels` refinements less; null where there is none. Collective.
+  std::unique_ptr<Problem> coarser(int levels = 1) const;
   int refinements() const { return mesh_options_.refine; }
 
   MPI_Comm comm() const { return mesh_.comm; }

@@ -12,9 +12,11 @@
 
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/law/qp/mixed_qp.hpp"
+#include "rbvi/rom/law/changed_stiffness.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/model.hpp"
 #include "rbvi/rom/nitsche/nitsche_solver.hpp"
+#include "rbvi/rom/nodal_trace.hpp"
 
 #include <memory>
 
@@ -48,7 +50,8 @@ public:
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
   Vector multiplier(const ReducedSolution &solution) const;
-  /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap).
+  /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap); infinite where
+  /// the model has no displacement (ReducedModel::trace_dofs).
   Vector contact_gap(const ReducedSolution &solution) const;
   /// At all dofs, without the motion of the scene, with the values that boundaries impose. Throws
   /// failure if the model was read without its fields.
@@ -65,11 +68,11 @@ private:
   /// Kacanov's iteration with the pair, accelerated.
   void solve_following(ReducedSolution &solution);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
+  /// The same where the terms of A differ on few functions; whether B was made anew.
+  void update_changed(const Vector &theta_a, bool new_b);
   void enrich();
   void solve_dual(ReducedSolution &solution);
   void check(ReducedSolution &solution);
-  /// nodal_gap - nodal_b u.
-  Vector gap_left(const ContactOperators &operators, const Vector &u) const;
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedSolution &solution, const Vector &lambda) const;
 
@@ -77,8 +80,7 @@ private:
   const Scene scene_; ///< with_imposed_loads
   const Sum imposed_energy_;
   Contact contact_;
-  std::vector<Index> nodal_dofs_; ///< contact dofs that nodal_b acts on; empty: all
-  Matrix nodal_trace_;            ///< the primal basis there
+  std::optional<NodalTrace> trace_; ///< but by Nitsche's method
   // The law at nodes, or Nitsche's method: the rest is not used.
   std::unique_ptr<LawSolver> law_;
   SparseMatrix nodal_basis_; ///< with it: the dual basis
@@ -88,8 +90,10 @@ private:
   Index first_dual_, dual_rows_; ///< the rows of the dual basis that are not zero lie among these
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.
-  Vector packed_, theta_a_, theta_b_;
-  Matrix a_, l_, b_, y_; // evaluated contact: B is always that of the query
+  Vector theta_a_, theta_b_;
+  Matrix a_, l_, b_, y_;                    // evaluated contact: B is always that of the query
+  std::optional<ChangedStiffness> changed_; ///< in place of a_ and l_
+  Matrix fixed_y_;                          ///< L^-1 B^T, L of A_1
   Matrix enrichment_; ///< online-enriched: V_N + S_R(mu) in the n functions, which a_ ... f_ are in
   double a_scale_ = 1, b_scale_ = 1;
   Vector f_, g_, c_;

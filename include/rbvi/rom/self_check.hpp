@@ -5,10 +5,13 @@
 
 namespace rbvi {
 
+/// 200, fewer (at least 20) of a model of more than 500 functions, whose queries take long.
+int queries_of_check(const ReducedModel &model);
+
 /// Asks `model` at random parameters of its box, the same on every machine, and collects what
 /// SelfCheck holds. Costs so many queries with outputs. Throws bad_input where model and scene do
 /// not fit.
-SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries = 200);
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries);
 
 /// "200 queries, all answered; largest residual 3e-14 (radius=0.8), ...": lines for people; says
 /// what to do where it is not clean.

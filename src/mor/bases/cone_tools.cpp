@@ -65,6 +65,20 @@ Matrix ProductRoot::solve(const Matrix &y) const {
   return factor_.permutationPinv() * Matrix(factor_.matrixU().solve(y));
 }
 
+SparseMatrix block_of(const SparseMatrix &product, const std::vector<Index> &nodes) {
+  std::vector<Index> position(static_cast<std::size_t>(product.rows()), -1);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    position[static_cast<std::size_t>(nodes[k])] = static_cast<Index>(k);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (SparseMatrix::InnerIterator entry(product, nodes[k]); entry; ++entry)
+      if (const Index column = position[static_cast<std::size_t>(entry.col())]; column >= 0)
+        entries.emplace_back(static_cast<int>(k), static_cast<int>(column), entry.value());
+  SparseMatrix block(std::ssize(nodes), std::ssize(nodes));
+  block.setFromTriplets(entries.begin(), entries.end());
+  return block;
+}
+
 Matrix checked(const Matrix &snapshots, const SparseMatrix &product) {
   if (snapshots.size() == 0) throw failure("no multiplier snapshot to build a cone from");
   if (product.rows() != snapshots.rows() || product.cols() != snapshots.rows())
@@ -199,16 +213,18 @@ Cone GreedyCone::take() {
 }
 
 std::vector<bool> ever_in_contact(const Matrix &snapshots) {
+  const double least = open_below * snapshots.maxCoeff();
   std::vector<bool> result;
   for (const double largest : Vector(snapshots.rowwise().maxCoeff()))
-    result.push_back(largest > open_below * snapshots.maxCoeff());
+    result.push_back(largest > least);
   return result;
 }
 
 std::vector<bool> ever_open(const Matrix &snapshots) {
+  const double open = open_below * snapshots.maxCoeff();
   std::vector<bool> result;
   for (const double least : Vector(snapshots.rowwise().minCoeff()))
-    result.push_back(least <= open_below * snapshots.maxCoeff());
+    result.push_back(least <= open);
   return result;
 }
 

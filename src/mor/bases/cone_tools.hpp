@@ -23,6 +23,9 @@ private:
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
 };
 
+/// Rows and columns of some nodes.
+SparseMatrix block_of(const SparseMatrix &product, const std::vector<Index> &nodes);
+
 constexpr double tie = 1e-10;
 constexpr double round_off = 1e-12; ///< of the largest snapshot: what is left below it is noise
 

@@ -7,7 +7,8 @@
 //
 // The generators are the hat functions of M continued by E: their coefficients are the nodal
 // pressures, so that l >= 0 on M is x >= 0. What is left of the snapshots lives on P, is smooth in
-// mu (the term of q, and the change of H), and a few modes of either sign hold it.
+// mu (the term of q, and the change of H), and a few modes of either sign hold it. Hat functions of
+// a coarser mesh are fewer; pressures over which the edge passes are then as smooth as they are.
 #include "cone_tools.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -40,19 +41,55 @@ ContactZones zones_of(const Matrix &snapshots, const SparseMatrix &product, int 
   return zones;
 }
 
-/// Rows and columns of some nodes.
-SparseMatrix block_of(const SparseMatrix &product, const std::vector<Index> &nodes) {
-  std::vector<Index> position(static_cast<std::size_t>(product.rows()), -1);
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    position[static_cast<std::size_t>(nodes[k])] = static_cast<Index>(k);
+/// What the moving multipliers are combined from: functions of the nodes, `values` (moving nodes x
+/// functions), and the zones that belong to them.
+struct MovingFunctions {
+  ContactZones zones;
+  SparseMatrix values;
+};
+
+/// The functions (nodes x any number) that reach into the moving zone. The zone grows to all nodes
+/// that they reach, but for those in permanent contact that others reach as well.
+MovingFunctions functions_on(const ContactZones &zones, const SparseMatrix &functions) {
+  std::vector<Index> column(static_cast<std::size_t>(functions.cols()), -1);
+  for (const Index node : zones.moving)
+    for (SparseMatrix::InnerIterator entry(functions, node); entry; ++entry)
+      column[static_cast<std::size_t>(entry.col())] = 0;
+  const Index taken = std::count(column.begin(), column.end(), 0);
+  std::vector<bool> permanent(static_cast<std::size_t>(functions.rows()), false);
+  for (const Index node : zones.permanent)
+    permanent[static_cast<std::size_t>(node)] = true;
+  Index next = 0;
+  for (Index &number : column)
+    if (number == 0) number = next++;
+  MovingFunctions result;
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    for (SparseMatrix::InnerIterator entry(product, nodes[k]); entry; ++entry)
-      if (const Index column = position[static_cast<std::size_t>(entry.col())]; column >= 0)
-        entries.emplace_back(static_cast<int>(k), static_cast<int>(column), entry.value());
-  SparseMatrix block(std::ssize(nodes), std::ssize(nodes));
-  block.setFromTriplets(entries.begin(), entries.end());
-  return block;
+  for (Index node = 0; node < functions.rows(); ++node) {
+    std::vector<Eigen::Triplet<double>> row;
+    bool all = true;
+    for (SparseMatrix::InnerIterator entry(functions, node); entry; ++entry) {
+      const Index number = column[static_cast<std::size_t>(entry.col())];
+      if (number < 0) all = false;
+      if (number >= 0)
+        row.emplace_back(static_cast<int>(result.zones.moving.size()), static_cast<int>(number),
+                         entry.value());
+    }
+    if (permanent[static_cast<std::size_t>(node)] && !(all && !row.empty())) {
+      result.zones.permanent.push_back(node);
+    } else if (!row.empty()) {
+      result.zones.moving.push_back(node);
+      entries.insert(entries.end(), row.begin(), row.end());
+    }
+  }
+  result.values.resize(std::ssize(result.zones.moving), taken);
+  result.values.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+SparseMatrix hats_of_nodes(Index nodes) {
+  SparseMatrix hats(nodes, nodes);
+  hats.setIdentity();
+  return hats;
 }
 
 /// E: permanent x moving nodes.
@@ -61,13 +98,28 @@ Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
     return Matrix(static_cast<Index>(zones.permanent.size()),
                   static_cast<Index>(zones.moving.size()));
   if (!condensed) throw failure("a hybrid cone needs columns of the condensed operator");
-  const Matrix columns = condensed(zones.permanent);
-  const Matrix block = columns(zones.permanent, Eigen::all);
-  const Eigen::LLT<Matrix> factor((block + block.transpose()) / 2);
+  constexpr std::size_t at_a_time = 192;
+  Matrix block(std::ssize(zones.permanent), std::ssize(zones.permanent));
+  Matrix result(block.rows(), std::ssize(zones.moving)); // for now H_PM
+  for (std::size_t first = 0; first < zones.permanent.size(); first += at_a_time) {
+    const auto begin = zones.permanent.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<Index> some(
+        begin, begin + std::min<std::ptrdiff_t>(at_a_time, zones.permanent.end() - begin));
+    const Matrix columns = condensed(some);
+    const auto place = static_cast<Index>(first);
+    block.middleCols(place, columns.cols()) = columns(zones.permanent, Eigen::all);
+    result.middleRows(place, columns.cols()) = columns(zones.moving, Eigen::all).transpose();
+  }
+  block = ((block + block.transpose()) / 2).eval();
+  const Eigen::LLT<Eigen::Ref<Matrix>> factor(block);
   if (factor.info() != Eigen::Success)
     throw failure("the condensed operator is not positive definite on the nodes in permanent "
                   "contact: try another -reference_mu");
-  return -factor.solve(columns(zones.moving, Eigen::all).transpose());
+  factor.solveInPlace(result);
+  // Without what is round-off, for most nodes far from the moving ones all of it.
+  constexpr double noise = 1e-14;
+  const double least = noise * result.cwiseAbs().maxCoeff();
+  return result.unaryExpr([&](double e) { return std::abs(e) > least ? -e : 0.0; });
 }
 
 /// Modes of what the generators leave of the snapshots, and the history of their number. `root`: of
@@ -107,22 +159,27 @@ Matrix modes_of(const Matrix &remainder, const ProductRoot &root, double largest
 
 Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
                  const ColumnSource &condensed) {
-  const ProductRoot root(product);
-  const ContactZones zones = zones_of(snapshots, product, options.ring);
-  const auto moving = static_cast<Index>(zones.moving.size());
+  const auto [zones, functions] =
+      functions_on(zones_of(snapshots, product, options.ring),
+                   options.hats.size() > 0 ? options.hats : hats_of_nodes(snapshots.rows()));
+  const Index moving = functions.cols();
   if (options.max_size > 0 && options.max_size < moving)
     throw failure("the edge of contact moves over " + std::to_string(moving) +
-                  " nodes: a hybrid cone needs a larger -cone_max_size");
+                  " nodes: a hybrid cone needs a larger -cone_max_size, or a -cone_level");
   const Matrix extension = continuation(zones, condensed);
-  Matrix hats = Matrix::Zero(snapshots.rows(), moving);
-  for (Index k = 0; k < moving; ++k)
-    hats(zones.moving[static_cast<std::size_t>(k)], k) = 1;
-  hats(zones.permanent, Eigen::all) = extension;
+  // All on the nodes that the basis and the snapshots live on, the permanent ones first.
+  std::vector<Index> nodes = zones.permanent;
+  nodes.insert(nodes.end(), zones.moving.begin(), zones.moving.end());
+  const ProductRoot root(block_of(product, nodes));
+  Matrix functions_there(std::ssize(nodes), moving);
+  functions_there << extension * functions, Matrix(functions);
+  functions_there *= root.times(functions_there).colwise().norm().cwiseInverse().asDiagonal();
 
   Cone cone;
   cone.history.size.push_back(0);
   cone.history.error.push_back(1);
-  cone.basis.generators = hats * root.times(hats).colwise().norm().cwiseInverse().asDiagonal();
+  cone.basis.generators = Matrix::Zero(snapshots.rows(), moving);
+  cone.basis.generators(nodes, Eigen::all) = functions_there;
   const auto permanent = static_cast<Index>(zones.permanent.size());
   cone.modes.columns = Matrix::Zero(snapshots.rows(), 0);
   if (permanent == 0) {
@@ -134,11 +191,15 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
         snapshots(zones.permanent, Eigen::all) - extension * snapshots(zones.moving, Eigen::all);
     const Matrix modes =
         modes_of(remainder, ProductRoot(block_of(product, zones.permanent)),
-                 root.times(snapshots).colwise().norm().maxCoeff(), options, moving, cone.history);
+                 root.times(snapshots(nodes, Eigen::all)).colwise().norm().maxCoeff(), options,
+                 moving, cone.history);
     cone.modes.columns.setZero(snapshots.rows(), modes.cols());
     cone.modes.columns(zones.permanent, Eigen::all) = modes;
+    functions_there.conservativeResizeLike(
+        Matrix::Zero(functions_there.rows(), moving + modes.cols()));
+    functions_there.topRightCorner(permanent, modes.cols()) = modes;
   }
-  cone.history.gram_condition = gram_conditions(root.times(cone.all()), cone.history.size[1]);
+  cone.history.gram_condition = gram_conditions(root.times(functions_there), cone.history.size[1]);
   return cone;
 }
 

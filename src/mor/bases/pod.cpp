@@ -15,7 +15,7 @@ constexpr double dependent = 1e-13; // remainder of a snapshot, relative to its 
 constexpr double equal = 1e-8;      // singular values this close are kept or cut together
 constexpr double sign_tie = 1e-10;
 
-/// Classical Gram-Schmidt, twice, in the product of `basis`.
+/// Classical Gram-Schmidt in the product of `basis`; twice, but for blocks that lose little.
 class GramSchmidt {
 public:
   GramSchmidt(BV basis, PetscInt size, PetscInt capacity) : basis_(basis), size_(size) {
@@ -40,16 +40,25 @@ public:
     PetscInt count = 0;
     RBVI_CALL(BVGetActiveColumns(block, nullptr, &count));
     const PetscInt known = size_;
-    const Vector removed = remove(block, count);
+    Vector removed = remove(block, count);
+    // What is left of less than 0.7 of a column is no longer orthogonal to the rest.
+    bool much = false;
+    for (PetscInt j = 0; j < count && known > 0; ++j) {
+      Vec column = nullptr;
+      RBVI_CALL(BVGetColumn(block, j, &column));
+      much = much || product_norm(column) < removed[j];
+      RBVI_CALL(BVRestoreColumn(block, j, &column));
+    }
+    if (much) removed = (removed.array().square() + remove(block, count).array().square()).sqrt();
     std::vector<bool> taken;
     for (PetscInt j = 0; j < count; ++j) {
-      constexpr double much = 0.1;
+      constexpr double little = 0.1;
       Vec column = nullptr;
       RBVI_CALL(BVGetColumn(block, j, &column));
       const double before = product_norm(column);
       Vector coefficients = remove(column, known);
       // What is left of much is no longer orthogonal to the rest.
-      const bool reduced = size_ > known && product_norm(column) < much * before;
+      const bool reduced = size_ > known && product_norm(column) < little * before;
       coefficients += remove(column, reduced ? 0 : known).tail(coefficients.size());
       const PetscInt size = size_;
       keep(column, coefficients, removed[j], tolerance);
@@ -59,8 +68,13 @@ public:
     return taken;
   }
 
-  /// Cuts the storage of the basis down to its columns.
-  void finish() { RBVI_CALL(BVResize(basis_, size_, PETSC_TRUE)); }
+  /// Cuts the storage of the basis down to its columns, all of them active.
+  void finish() {
+    PetscInt capacity = 0;
+    RBVI_CALL(BVGetSizes(basis_, nullptr, nullptr, &capacity));
+    if (size_ < capacity) RBVI_CALL(BVResize(basis_, size_, PETSC_TRUE));
+    RBVI_CALL(BVSetActiveColumns(basis_, 0, size_));
+  }
 
 private:
   /// Makes a column orthogonal to those from `first` on; its coefficients in them.
@@ -72,19 +86,15 @@ private:
     RBVI_CALL(BVMultVec(basis_, -1.0, 1.0, column, step.data()));
     return step;
   }
-  /// Makes columns orthogonal to the basis, twice; the norm of what each loses.
+  /// Makes columns orthogonal to the basis; the norm of what each loses.
   Vector remove(BV block, PetscInt count) {
-    Matrix coefficients = Matrix::Zero(size_, count);
     if (size_ == 0) return Vector::Zero(count);
     RBVI_CALL(BVSetActiveColumns(basis_, 0, size_));
-    for (int pass = 0; pass < 2; ++pass) {
-      Matrix step(size_, count);
-      Handle<Mat> view;
-      RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, size_, count, step.data(), view.put()));
-      RBVI_CALL(BVDot(block, basis_, view.get()));
-      RBVI_CALL(BVMult(block, -1.0, 1.0, basis_, view.get()));
-      coefficients += step;
-    }
+    Matrix coefficients(size_, count);
+    Handle<Mat> view;
+    RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, size_, count, coefficients.data(), view.put()));
+    RBVI_CALL(BVDot(block, basis_, view.get()));
+    RBVI_CALL(BVMult(block, -1.0, 1.0, basis_, view.get()));
     return coefficients.colwise().norm();
   }
   double product_norm(Vec column) {
@@ -208,17 +218,16 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
   return result;
 }
 
-std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance) {
+namespace {
+
+/// Makes columns orthonormal to a basis and to each other, and appends them; which were taken.
+/// Collective.
+std::vector<int> append(GramSchmidt &factorisation, Mat product, Mat columns, double tolerance) {
   constexpr PetscInt width = 48; ///< columns at a time
   PetscInt count = 0;
-  RBVI_CALL(MatGetSize(columns, nullptr, &count));
-  const BV all = basis.columns.get();
-  const PetscInt known = basis.size();
-  GramSchmidt factorisation(all, known, known + count);
-  Mat product = nullptr;
   Handle<Vec> work;
   Handle<BV> block;
-  RBVI_CALL(BVGetMatrix(all, &product, nullptr));
+  RBVI_CALL(MatGetSize(columns, nullptr, &count));
   RBVI_CALL(MatCreateVecs(columns, nullptr, work.put()));
   RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(columns)), block.put()));
   RBVI_CALL(BVSetSizesFromVec(block.get(), work.get(), std::max(1, std::min(width, count))));
@@ -236,8 +245,23 @@ std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double 
     for (PetscInt j = 0; j < many; ++j)
       if (kept[static_cast<std::size_t>(j)]) taken.push_back(static_cast<int>(first + j));
   }
+  return taken;
+}
+
+Mat product_of(const LinearBasis &basis) {
+  Mat product = nullptr;
+  RBVI_CALL(BVGetMatrix(basis.columns.get(), &product, nullptr));
+  return product;
+}
+
+} // namespace
+
+std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance) {
+  PetscInt count = 0;
+  RBVI_CALL(MatGetSize(columns, nullptr, &count));
+  GramSchmidt factorisation(basis.columns.get(), basis.size(), basis.size() + count);
+  const std::vector<int> taken = append(factorisation, product_of(basis), columns, tolerance);
   factorisation.finish();
-  RBVI_CALL(BVSetActiveColumns(all, 0, basis.size()));
   return taken;
 }
 
@@ -246,13 +270,16 @@ std::vector<int> append_fields(ReplicatedSolver &solver, const Matrix &loads, Li
   constexpr Index at_a_time = 192;
   std::vector<int> taken;
   if (traces != nullptr) traces->resize(loads.rows(), loads.cols());
+  GramSchmidt factorisation(basis.columns.get(), basis.size(),
+                            basis.size() + static_cast<PetscInt>(loads.cols()));
   for (Index first = 0; first < loads.cols(); first += at_a_time) {
     const Index count = std::min(at_a_time, loads.cols() - first);
     const Handle<Mat> fields = solver.fields(loads.middleCols(first, count));
     if (traces != nullptr) traces->middleCols(first, count) = solver.restrict(fields.get());
-    for (const int k : append_orthonormalised(basis, fields.get(), tolerance))
+    for (const int k : append(factorisation, product_of(basis), fields.get(), tolerance))
       taken.push_back(static_cast<int>(first) + k);
   }
+  factorisation.finish();
   return taken;
 }
 

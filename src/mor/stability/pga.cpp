@@ -202,7 +202,7 @@ void take_singular_vectors(Pga &result, PgaSpace &space, const Matrix &range,
       result.reason = reason;
       return;
     }
-    space.add(range * svd.right.col(n));
+    space.take(range * svd.right.col(n), svd.left.col(n));
     result.selected.push_back(-1);
   }
 }

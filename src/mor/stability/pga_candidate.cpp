@@ -41,6 +41,13 @@ void PgaSpace::add(const Vector &source) {
   ++size;
 }
 
+void PgaSpace::take(const Vector &source, const Vector &left) {
+  const auto known = columns.leftCols(modes);
+  sources.col(size - modes) = source;
+  columns.col(size) = (left - known * (known.transpose() * left)).normalized();
+  ++size;
+}
+
 void PgaCandidate::update(const PgaSpace &space) {
   if (seen_ == space.size) return;
   if (seen_ < 0) {

@@ -20,6 +20,9 @@ struct PgaSpace {
 
   /// Adds the normalised remainder of a unit vector with contact coordinates alone.
   void add(const Vector &source);
+  /// Adds what is left of a unit vector, which is known: orthogonal to all but round-off of the
+  /// modes, and to the supremizers before it.
+  void take(const Vector &source, const Vector &left);
 };
 
 /// One training parameter: sigma^2 is the largest eigenvalue of gram = range^T (I - Pi) range, of

@@ -1,5 +1,6 @@
 #include "rbvi/mor/stability/stability.hpp"
 
+#include "../bases/cone_tools.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
 
@@ -82,6 +83,14 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
 
 namespace {
 
+/// X^T W X.
+Matrix gram_of(const Matrix &x, const SparseMatrix &w_product) {
+  constexpr Index sparse_below = 10; // of its entries one in so many
+  if (sparse_below * (x.array() != 0).count() > x.size()) return x.transpose() * (w_product * x);
+  const SparseMatrix sparse = x.sparseView();
+  return Matrix(SparseMatrix(sparse.transpose()) * SparseMatrix(w_product * sparse));
+}
+
 /// Columns with small angles between none of them, made orthonormal by Cholesky factors of their
 /// Gram matrix, twice. Empty where they are not that.
 Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_product) {
@@ -89,9 +98,7 @@ Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_prod
   if (columns.cols() == 0) return {};
   Matrix basis = columns;
   for (int pass = 0; pass < 2; ++pass) {
-    const SparseMatrix sparse = basis.sparseView();
-    const Eigen::LLT<Matrix> cholesky(
-        Matrix(SparseMatrix(sparse.transpose()) * SparseMatrix(w_product * sparse)));
+    const Eigen::LLT<Matrix> cholesky(gram_of(basis, w_product));
     if (cholesky.info() != Eigen::Success) return {};
     const Vector pivots = Matrix(cholesky.matrixL()).diagonal();
     if (!(pivots.minCoeff() > well * pivots.maxCoeff())) return {};
@@ -104,6 +111,16 @@ Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_prod
 
 Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
                               double tolerance) {
+  std::vector<Index> rows;
+  for (Index i = 0; i < generators.rows(); ++i)
+    if ((generators.row(i).array() != 0).any()) rows.push_back(i);
+  if (std::ssize(rows) < generators.rows()) {
+    const Matrix part =
+        orthonormal_dual_basis(generators(rows, Eigen::all), block_of(w_product, rows), tolerance);
+    Matrix basis = Matrix::Zero(generators.rows(), part.cols());
+    basis(rows, Eigen::all) = part;
+    return basis;
+  }
   const auto squares = [&](const Matrix &x) -> Vector {
     return x.cwiseProduct(w_product * x).colwise().sum().transpose().cwiseMax(0);
   };
@@ -130,6 +147,29 @@ Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_pr
   return basis.leftCols(rank);
 }
 
+namespace {
+
+/// Whether a large triangle has full rank beyond doubt, by a few steps of inverse iteration.
+bool clearly_regular(const Matrix &triangle) {
+  constexpr Index large = 256;
+  constexpr double doubtful = 1e-6;
+  constexpr int steps = 8;
+  if (triangle.rows() < large || triangle.rows() != triangle.cols()) return false;
+  const auto upper = triangle.triangularView<Eigen::Upper>();
+  const double largest = triangle.colwise().norm().maxCoeff();
+  if (!(triangle.diagonal().cwiseAbs().minCoeff() > doubtful * largest)) return false;
+  Vector x = Vector::Ones(triangle.cols()).normalized();
+  double inverse = 0;
+  for (int k = 0; k < steps; ++k) {
+    const Vector y = upper.solve(triangle.transpose().triangularView<Eigen::Lower>().solve(x));
+    inverse = std::sqrt(y.norm());
+    x = y.normalized();
+  }
+  return inverse * largest * doubtful < 1;
+}
+
+} // namespace
+
 Matrix orthonormal_range(const Matrix &vectors) {
   const Index size = std::min(vectors.rows(), vectors.cols());
   if (!vectors.allFinite()) throw failure("supremizers with entries that are not finite");
@@ -137,9 +177,13 @@ Matrix orthonormal_range(const Matrix &vectors) {
   // Blocked, then pivoted on the small factor: pivoting the tall matrix costs several times more.
   const Eigen::HouseholderQR<Matrix> qr(vectors);
   const Matrix triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
-  Eigen::ColPivHouseholderQR<Matrix> small(triangle);
-  small.setThreshold(range_tolerance);
-  const Index rank = small.maxPivot() > 0 ? small.rank() : 0;
+  Eigen::ColPivHouseholderQR<Matrix> small;
+  Index rank = size;
+  if (!clearly_regular(triangle)) {
+    small.compute(triangle);
+    small.setThreshold(range_tolerance);
+    rank = small.maxPivot() > 0 ? small.rank() : 0;
+  }
   Matrix basis = Matrix::Zero(vectors.rows(), rank);
   if (rank == size)
     basis.topRows(size).setIdentity();

@@ -3,6 +3,7 @@
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/lagrange.hpp"
+#include "rbvi/rom/model/packed.hpp"
 
 #include <algorithm>
 
@@ -72,6 +73,16 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
   }
   terms.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
   return theta;
+}
+
+void stiffness_of(const ReducedModel &model, const Vector &theta, Matrix &lower) {
+  const StiffnessChange &change = model.a_change;
+  const Index n = model.primal_size(), r = change.rank();
+  lower.resize(n, n);
+  if (r == 0) return unpack(model.a.reduced * theta, lower);
+  unpack(model.a.reduced.col(0) * change.scales.dot(theta), lower);
+  lower.triangularView<Eigen::Lower>() +=
+      change.range * unpacked(change.cores * theta, r) * change.range.transpose();
 }
 
 void check_terms_of(const AffineTerms &terms, const Sum &sum, const ParameterSpace &space,

@@ -50,13 +50,13 @@ void require_indices(const std::vector<int> &indices, Index bound, const std::st
           name + " points outside 0.." + std::to_string(bound - 1));
 }
 
-/// `samples`: of how many meshes the entries are.
-void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samples,
+/// `samples`: of how many meshes the entries are; `columns`: of `reduced`.
+void check_terms(const AffineTerms &terms, Index rows, Index columns, int dim, std::size_t samples,
                  const std::string &name) {
   const Index size = terms.interpolation.rows();
   require_shape(terms.interpolation, size, size, name + "/interpolation");
   require(terms.exact >= 0, name + "/exact is negative");
-  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : rows, terms.size(),
+  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : rows, columns,
                 name + "/reduced");
   require(size == 0 || terms.samples.size() == samples, name + " has sampled entries elsewhere");
   for (const SampleMesh &sample : terms.samples) {
@@ -79,6 +79,18 @@ void check_terms(const AffineTerms &terms, Index rows, int dim, std::size_t samp
       previous = c.entry;
     }
   }
+}
+
+void check_change(const ReducedModel &model) {
+  const StiffnessChange &change = model.a_change;
+  const Index rank = change.rank(), terms = rank > 0 ? model.a.size() : 0;
+  require(rank == 0 || !(model.law || model.nitsche || model.online_enriched),
+          "a/range is for a pair of spaces");
+  require_shape(change.scales, terms, 1, "a/scales");
+  require_shape(change.range, rank > 0 ? model.primal_size() : change.range.rows(), rank,
+                "a/range");
+  require_shape(change.cores, rank > 0 ? rank * (rank + 1) / 2 : change.cores.rows(), terms,
+                "a/cores");
 }
 
 void check_interface(const InterfaceModel &interface, int dim, Index columns) {
@@ -227,7 +239,7 @@ void check_model(const ReducedModel &model) {
   require(!model.interfaces.empty(), "it has no contact interface");
   const int dim = model.interfaces.front().mesh.dim;
   const Index n = model.primal_size(), r = model.generators, dual = model.dual_basis.rows(),
-              contact = model.contact_trace.rows();
+              contact = model.contact_dofs();
   require(dim == 2 || dim == 3, "interfaces have neither 2 nor 3 dimensions");
   require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || model.nitsche),
           "it has no modes or no generators");
@@ -237,16 +249,24 @@ void check_model(const ReducedModel &model) {
   const std::size_t interfaces = model.interfaces.size();
   for (const InterfaceModel &interface : model.interfaces)
     check_interface(interface, dim, contact);
-  check_terms(model.a, n * (n + 1) / 2, dim, 1, "a");
-  check_terms(model.b, r * n, dim, interfaces, "b");
-  check_terms(model.f, n, dim, 1, "f");
-  check_terms(model.g, r, dim, interfaces, "g");
-  check_terms(model.imposed_energy, 1, dim, 1, "imposed_energy");
+  const Index of_a = model.a_change.rank() > 0 ? 1 : model.a.size();
+  check_terms(model.a, n * (n + 1) / 2, of_a, dim, 1, "a");
+  check_change(model);
+  check_terms(model.b, r * n, model.b.size(), dim, interfaces, "b");
+  check_terms(model.f, n, model.f.size(), dim, 1, "f");
+  check_terms(model.g, r, model.g.size(), dim, interfaces, "g");
+  check_terms(model.imposed_energy, 1, model.imposed_energy.size(), dim, 1, "imposed_energy");
   if (model.law) check_law(model, *model.law);
   if (model.nitsche) check_nitsche(model, *model.nitsche);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
-  require_shape(model.contact_trace, contact, n, "contact/trace");
+  const bool partial = !model.trace_dofs.empty();
+  require(!partial || !(model.law || model.nitsche || model.evaluates_contact()),
+          "contact/trace_dofs is for a pair of spaces");
+  require(std::ranges::is_sorted(model.trace_dofs), "contact/trace_dofs does not rise");
+  require_indices(model.trace_dofs, contact, "contact/trace_dofs");
+  require_shape(model.contact_trace, partial ? std::ssize(model.trace_dofs) : contact, n,
+                "contact/trace");
   const Index free = model.parameters.size();
   for (const auto &[mu, name] :
        {std::pair{&model.trained_mu, "training/mu"}, {&model.failed_mu, "training/failed"}})
@@ -278,6 +298,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   result.online_enriched = model.online_enriched && result.supremizers > 0;
   result.generators = r;
   result.free_modes = std::max(0, r - (model.generators - model.free_modes));
+  if (model.a_change.rank() > 0) result.a_change.range = model.a_change.range.topRows(n);
   result.a.reduced = leading_triangle(model.a.reduced, model.primal_size(), n);
   if (model.b.size() > 0) result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
   if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);

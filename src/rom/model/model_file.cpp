@@ -286,13 +286,17 @@ std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
 void write_contact(H5Writer &file, const ReducedModel &model) {
   write_interfaces(file, model.interfaces);
   file.write("contact/dual_basis", model.dual_basis);
+  file.write("contact/dofs", static_cast<int>(model.contact_dofs()));
   file.write("contact/trace", model.contact_trace);
+  file.write("contact/trace_dofs", model.trace_dofs);
 }
 
 void read_contact(const H5Reader &file, ReducedModel &model) {
   model.dual_basis = file.matrix("contact/dual_basis");
   model.contact_trace = file.matrix("contact/trace");
-  model.interfaces = read_interfaces(file, model.contact_trace.rows());
+  model.trace_dofs = file.ints("contact/trace_dofs");
+  model.interfaces = read_interfaces(file, file.integer("contact/dofs"));
+  if (model.interfaces.empty()) throw bad_input("it has no contact interface");
 }
 
 ReducedModel read_members(const H5Reader &file) {
@@ -309,6 +313,7 @@ ReducedModel read_members(const H5Reader &file) {
   model.free_modes = file.integer("size/free_modes");
   model.online_enriched = file.integer("size/online_enriched") != 0;
   model.a = read_terms(file, "a");
+  model.a_change = {file.vector("a/scales"), file.matrix("a/range"), file.matrix("a/cores")};
   model.b = read_terms(file, "b");
   model.f = read_terms(file, "f");
   model.g = read_terms(file, "g");
@@ -338,6 +343,9 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   file.write("size/free_modes", model.free_modes);
   file.write("size/online_enriched", model.online_enriched ? 1 : 0);
   write_terms(file, "a", model.a);
+  file.write("a/scales", model.a_change.scales);
+  file.write("a/range", model.a_change.range);
+  file.write("a/cores", model.a_change.cores);
   write_terms(file, "b", model.b);
   write_terms(file, "f", model.f);
   write_terms(file, "g", model.g);

@@ -61,6 +61,18 @@ void check_dual_basis(const ToolOptions &options) {
                       (has_friction(options.scene) ? "collocated" : "cone") + ", or leave it out");
 }
 
+void check_cone_level(const ToolOptions &options) {
+  const ConeOptions &cone = options.reduce.cone;
+  if (cone.level == 0) return;
+  if (cone.type != ConeType::hybrid)
+    throw bad_input("-cone_level is for -cone_type hybrid: it chooses its hat functions");
+  if (cone.level > options.mesh.refine)
+    throw bad_input("-cone_level " + std::to_string(cone.level) +
+                    " takes the hat functions of a mesh with so many refinements less, and "
+                    "-mesh_refine is " +
+                    std::to_string(options.mesh.refine));
+}
+
 } // namespace
 
 void check_rules(const ToolOptions &options) {
@@ -75,6 +87,7 @@ void check_rules(const ToolOptions &options) {
                     "-pga_product energy");
   check_rows_apart(options.scene, reduce);
   check_dual_basis(options);
+  check_cone_level(options);
 }
 
 } // namespace rbvi

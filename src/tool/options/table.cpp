@@ -243,7 +243,10 @@ std::vector<Option> of_bases() {
                                    "mcpg: tolerated negative part, as a fraction of the maximum")),
       kept(with_dual_basis, number("cone_ring", {0, 1000}, AT(reduce.cone.ring),
                                    "nodal, hybrid: layers of nodes around moving contact; hybrid "
-                                   "doubles them until queries are answered"))};
+                                   "doubles them until queries are answered")),
+      kept(with_dual_basis,
+           number("cone_level", refinements, AT(reduce.cone.level),
+                  "hybrid: hat functions of the mesh with so many refinements less"))};
 }
 
 std::vector<Option> of_stability() {

@@ -16,6 +16,9 @@ enum class Part { b, g };
 Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &contact,
                             const Scene &scene, const FullMu &all_parameters);
 
+/// The lower triangle of A_N with these coefficients of its terms, n x n.
+void stiffness_of(const ReducedModel &model, const Vector &theta, Matrix &lower);
+
 /// Throws bad_input, with the name of the operator, unless the terms are those of the sum.
 void check_terms_of(const AffineTerms &terms, const Sum &sum, const ParameterSpace &space,
                     const std::string &name);

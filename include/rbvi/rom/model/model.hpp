@@ -52,6 +52,15 @@ struct AffineTerms {
   int size() const { return exact + static_cast<int>(interpolation.rows()); }
 };
 
+/// Terms of A that differ on few functions, where what changes with mu lies apart from contact:
+/// term q is scales_q A_1 + Q C_q Q^T.
+struct StiffnessChange {
+  Vector scales; ///< terms
+  Matrix range;  ///< Q: n x r; empty: ReducedModel::a has a column for every term
+  Matrix cores;  ///< lower triangles of the r x r matrices C_q, column by column: r(r+1)/2 x terms
+  Index rank() const { return range.cols(); }
+};
+
 /// Error of one output over the validation set.
 struct OutputError {
   std::string name;                           ///< OutputColumn::name
@@ -201,23 +210,30 @@ struct ReducedModel {
   bool online_enriched = false;
   int primal_size() const { return modes + supremizers; }
 
-  AffineTerms
-      a; ///< reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x terms
+  /// reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x terms; of A_1 alone
+  /// where the terms are in a_change.
+  AffineTerms a;
+  StiffnessChange a_change;
   AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
-  AffineTerms f; ///< n x terms; none: no load
-  AffineTerms g; ///< R x J
+  AffineTerms f;              ///< n x terms; none: no load
+  AffineTerms g;              ///< R x J
   AffineTerms imposed_energy; ///< 1 x terms, of imposed displacements; none: there are none
 
   std::vector<InterfaceModel> interfaces;
-  Matrix dual_basis;    ///< dual dofs x R; entries >= 0 but for hybrid cones
-  Matrix contact_trace; ///< contact dofs x n: the primal basis there
+  Matrix dual_basis; ///< dual dofs x R; entries >= 0 but for hybrid cones
+  /// The primal basis at the contact dofs, k x n. In a large pair of spaces at `trace_dofs` alone,
+  /// those of the nodes over which contact moves and of two layers around them: elsewhere gaps are
+  /// not known.
+  Matrix contact_trace;
+  std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
+  Index contact_dofs() const { return interfaces.front().mesh.columns; } ///< k
   /// B and G do not separate: they are evaluated for each mu on the interfaces.
   bool evaluates_contact() const { return b.size() == 0 && !nitsche; }
   std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
 
   // Full order, for reconstruction; may stay in a file of their own, which may be large.
-  std::string fields_key; ///< of that file, where they are not here
+  std::string fields_key;      ///< of that file, where they are not here
   Matrix primal_basis;         ///< dofs x n, fixed dofs included
   Matrix mesh_points;          ///< nodes x dim, reference coordinates
   std::vector<int> mesh_cells; ///< node numbers of each cell, nodes_per_cell of them
@@ -231,7 +247,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 12;
+inline constexpr int model_schema = 13;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

@@ -1,0 +1,52 @@
+#include "rbvi/rom/nodal_trace.hpp"
+
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+/// The contact dofs that constraints at single nodes act on, where they are not all: those of the
+/// vertices.
+std::vector<Index> nodal_dofs(const Contact &contact) {
+  std::vector<Index> dofs;
+  for (const auto &interface : contact.interfaces) {
+    if (interface->dual().vertices.empty()) return {};
+    const InterfaceMesh &mesh = interface->mesh();
+    for (const Index node : interface->dual().vertices)
+      for (int c = 0; c < mesh.components; ++c)
+        if (const int dof = mesh.dofs[static_cast<std::size_t>(node * mesh.components + c)];
+            dof >= 0)
+          dofs.push_back(dof);
+  }
+  return dofs;
+}
+
+} // namespace
+
+NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact) : model_(model) {
+  if (model.trace_dofs.empty()) {
+    dofs_ = nodal_dofs(contact);
+    trace_ = model.contact_trace(dofs_, Eigen::all);
+    return;
+  }
+  dofs_.assign(model.trace_dofs.begin(), model.trace_dofs.end());
+  trace_ = model.contact_trace;
+  unknown_.assign(static_cast<std::size_t>(model.contact_dofs()), true);
+  for (const Index dof : dofs_)
+    unknown_[static_cast<std::size_t>(dof)] = false;
+}
+
+Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &u) const {
+  if (dofs_.empty()) return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * u);
+  Vector at_contact = Vector::Zero(model_.contact_dofs());
+  at_contact(dofs_) = trace_ * u;
+  Vector gap = operators.nodal_gap - operators.nodal_b * at_contact;
+  for (Index node = 0; node < gap.size() && !unknown_.empty(); ++node)
+    for (SparseMatrix::InnerIterator entry(operators.nodal_b, node); entry; ++entry)
+      if (unknown_[static_cast<std::size_t>(entry.col())])
+        gap[node] = std::numeric_limits<double>::infinity();
+  return gap;
+}
+
+} // namespace rbvi
