@@ -71,7 +71,8 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
     check_model(changed);
     OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
         other(changed, synthetic::toy_scene<smooth>());
-    const ReducedModel part = leading(model, 6, 4), part_of_changed = leading(changed, 6, 4);
+    const int size = seed % 2 == 0 ? 6 : 1; // fewer functions than the change has, too
+    const ReducedModel part = leading(model, size, 4), part_of_changed = leading(changed, size, 4);
     OnlineSolver part_solver(part, synthetic::toy_scene<smooth>()),
         other_part(part_of_changed, synthetic::toy_scene<smooth>());
     for (const Mu &mu : parse_set(model.parameters, "random:8:" + std::to_string(seed))) {

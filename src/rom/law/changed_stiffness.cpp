@@ -7,6 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -27,18 +29,19 @@ ChangedStiffness::ChangedStiffness(const ReducedModel &model)
   Matrix range = model.a_change.range;
   solve_fixed(range);
   const Eigen::HouseholderQR<Matrix> qr(range);
-  u_ = qr.householderQ() * Matrix::Identity(range.rows(), range.cols());
-  along_ = qr.matrixQR().topRows(range.cols()).triangularView<Eigen::Upper>();
+  const Index size = std::min(range.rows(), range.cols()); // of a leading part fewer rows
+  u_ = qr.householderQ() * Matrix::Identity(range.rows(), size);
+  along_ = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
 }
 
 double ChangedStiffness::set(const Vector &theta) {
   const StiffnessChange &change = model_.a_change;
-  const Index r = change.rank();
   scale_ = change.scales.dot(theta);
   if (!(scale_ > 0)) not_definite();
-  core_ = unpacked(change.cores * theta, r);
+  core_ = unpacked(change.cores * theta, change.rank());
+  const Index size = along_.rows();
   const Matrix k = along_ * (core_ / scale_) * along_.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(Matrix::Identity(r, r) + k);
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(Matrix::Identity(size, size) + k);
   if (solver.info() != Eigen::Success || !(solver.eigenvalues()[0] > 0)) not_definite();
   const Vector inverse_roots = solver.eigenvalues().cwiseSqrt().cwiseInverse();
   inverse_ = solver.eigenvectors() * (inverse_roots.array() - 1).matrix().asDiagonal() *

@@ -3,7 +3,7 @@
 //
 //   A_N = s L (I + U K U^T) L^T = R R^T,   R = sqrt(s) L (I + U (M - I) U^T),   M^2 = I + K,
 //
-// s = sum of theta_q scales_q and K of the order r of the change.
+// s = sum of theta_q scales_q, and K = U^T L^-1 (sum of theta_q Q C_q Q^T / s) L^-T U is small.
 #pragma once
 
 #include "rbvi/rom/model/model.hpp"
@@ -26,7 +26,7 @@ public:
 private:
   const ReducedModel &model_;
   Matrix a_, l_;     ///< A_1 and L, their lower triangles
-  Matrix u_, along_; ///< U; U^T L^-1 Q
+  Matrix u_, along_; ///< U, n x min(n, r); U^T L^-1 Q
   Matrix core_;      ///< sum of theta_q C_q
   Matrix inverse_;   ///< M^-1 - I
   double scale_ = 1;
