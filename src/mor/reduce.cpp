@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace rbvi {
 
@@ -316,18 +317,32 @@ void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOpt
   constexpr int widest = 64;
   const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0 &&
                       will_run(result.stages, stage::pga);
-  CheckedPair best = checked_pair(problem, samples, options, result.affine, result.stages);
-  Index hats = best.bases.cone.basis.generators.cols();
-  while (widens && best.wrong > 0 && options.cone.ring < widest) {
-    options.cone.ring = std::max(1, 2 * options.cone.ring);
-    CheckedPair wider = checked_pair(problem, samples, options, result.affine, result.stages);
-    if (wider.bases.cone.basis.generators.cols() == hats) break;
-    hats = wider.bases.cone.basis.generators.cols();
-    if (wider.wrong < best.wrong) best = std::move(wider);
+  // One pair at a time: its fields are as large as the mesh.
+  CheckedPair pair = checked_pair(problem, samples, options, result.affine, result.stages);
+  const auto hats = [&] { return pair.bases.cone.basis.generators.cols(); };
+  int best = pair.ring, fewest = pair.wrong;
+  while (widens && fewest > 0 && options.cone.ring < widest) {
+    const Index before = hats();
+    const int last = std::exchange(options.cone.ring, std::max(1, 2 * options.cone.ring));
+    pair = {};
+    pair = checked_pair(problem, samples, options, result.affine, result.stages);
+    if (hats() == before) {
+      pair.ring = last; // the same pair
+      break;
+    }
+    if (pair.wrong < fewest) {
+      fewest = pair.wrong;
+      best = pair.ring;
+    }
   }
-  result.bases = std::move(best.bases);
-  result.model = std::move(best.model);
-  result.ring = best.ring;
+  if (pair.ring != best) {
+    options.cone.ring = best;
+    pair = {};
+    pair = checked_pair(problem, samples, options, result.affine, result.stages);
+  }
+  result.bases = std::move(pair.bases);
+  result.model = std::move(pair.model);
+  result.ring = pair.ring;
 }
 
 /// The published reduction interpolates B^n and B^tau apart. The others see B in the condensed
