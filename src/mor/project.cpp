@@ -53,10 +53,12 @@ Vector project_load(MPI_Comm comm, Vec f, Mat basis) {
   return result;
 }
 
-/// The training numbers that some operator was sampled at, each once.
-std::vector<int> sampled_snapshots(const AffineOperators &affine) {
+/// The training numbers that some operator was sampled at, each once; A where it is still to be
+/// projected.
+std::vector<int> sampled_snapshots(const AffineOperators &affine, bool with_a) {
   std::vector<int> all;
-  for (const Eim *operator_eim : {&affine.a, &affine.b, &affine.b_tangential, &affine.f, &affine.g})
+  if (with_a) all = affine.a.snapshots;
+  for (const Eim *operator_eim : {&affine.b, &affine.b_tangential, &affine.f, &affine.g})
     all.insert(all.end(), operator_eim->snapshots.begin(), operator_eim->snapshots.end());
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -197,9 +199,10 @@ void start_operators(const Problem &problem, const std::vector<Sample> &samples,
 /// Adds the operators of the snapshots that the terms are made of. Collective.
 void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
                        const AffineOperators &affine, Mat basis, ReducedModel &model) {
-  for (const int p : sampled_snapshots(affine)) {
+  const bool with_a = model.a_change.rank() == 0;
+  for (const int p : sampled_snapshots(affine, with_a)) {
     const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
-    if (model.a_change.rank() == 0 && uses(affine.a, p))
+    if (with_a && uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),
                  model.a.reduced.rightCols(affine.a.size()));
     if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, model.contact_trace, model);

@@ -52,7 +52,7 @@ Handle<Mat> basis_of(const Problem &problem, Index hats, Index fields) {
 
 /// V^T A V, on every rank.
 Matrix projection(Mat basis, Mat a) {
-  Handle<Mat> image, product, whole;
+  Handle<Mat> image;
   RBVI_CALL(MatMatMult(a, basis, MAT_INITIAL_MATRIX, PETSC_DEFAULT, image.put()));
   PetscInt n = 0, local = 0, stride = 0, of_image = 0;
   RBVI_CALL(MatGetSize(basis, nullptr, &n));

@@ -50,7 +50,7 @@ TEST(OnlineSolver, OneTermOfBoth) {
 TEST(OnlineSolver, OneTermOfBothSignsChange) {
   expect_exact<flipping>({4, 2, 5, 1, 1, 2, 2});
 }
-/// The terms of A by one matrix and what differs on two functions; from the file as well.
+/// The terms of A by one matrix and what differs on two functions; a leading part, too.
 TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
   const synthetic::Sizes sizes{4, 4, 6, 3, 1, 2, 2};
   const Index n = 8, r = 2;

@@ -64,8 +64,10 @@ void check_dual_basis(const ToolOptions &options) {
 void check_cone_level(const ToolOptions &options) {
   const ConeOptions &cone = options.reduce.cone;
   if (cone.level == 0) return;
-  if (cone.type != ConeType::hybrid)
-    throw bad_input("-cone_level is for -cone_type hybrid: it chooses its hat functions");
+  if (cone.type != ConeType::hybrid || keeps_law(options.reduce.multipliers.reduction))
+    throw bad_input(
+        "-cone_level is for -cone_type hybrid of -multiplier_reduction cone: it chooses "
+        "its hat functions");
   if (cone.level > options.mesh.refine)
     throw bad_input("-cone_level " + std::to_string(cone.level) +
                     " takes the hat functions of a mesh with so many refinements less, and "

@@ -35,7 +35,7 @@ struct Pod {
 Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &options);
 
 /// Collective. Appends `columns` (dense, distributed like the basis) after V-orthonormalisation
-/// against it, twice; a column with a remainder below `tolerance` of its norm is left out. Returns
+/// against it; a column with a remainder below `tolerance` of its norm is left out. Returns
 /// the positions of the columns taken.
 std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance);
 
