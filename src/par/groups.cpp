@@ -14,12 +14,15 @@ Groups::Groups(MPI_Comm world, int ranks_per_group) {
   mine_ = rank / ranks_per_group;
   leads_ = rank % ranks_per_group == 0;
   MPI_Comm_split(world, mine_, rank, &comm_);
+  MPI_Comm_split(world, rank % ranks_per_group, rank, &across_);
 }
 
 Groups::~Groups() {
   int finalized = 0;
   MPI_Finalized(&finalized);
-  if (finalized == 0 && comm_ != MPI_COMM_NULL) MPI_Comm_free(&comm_);
+  if (finalized != 0) return;
+  for (MPI_Comm *comm : {&comm_, &across_})
+    if (*comm != MPI_COMM_NULL) MPI_Comm_free(comm);
 }
 
 } // namespace rbvi

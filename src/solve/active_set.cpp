@@ -1,12 +1,13 @@
 #include "rbvi/law/friction/friction.hpp"
 #include "rbvi/law/lcp.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
 
 namespace {
 
-constexpr std::size_t block = 128; ///< right-hand sides at a time: bounds the memory
+constexpr Index block = 128; ///< right-hand sides at a time: bounds the memory
 
 /// E^T A^-1 E loads, contact dofs x loads.cols().
 Matrix responses(KSP ksp, const Trace &trace, Mat a, const Matrix &loads) {
@@ -31,35 +32,45 @@ Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &
 Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                          const std::vector<Index> &which) {
   Matrix columns(op.b.rows(), static_cast<Index>(which.size()));
-  for (std::size_t first = 0; first < which.size(); first += block) {
-    const std::size_t count = std::min(block, which.size() - first);
-    Matrix loads = Matrix::Zero(op.b.cols(), static_cast<Index>(count));
-    for (std::size_t k = 0; k < count; ++k)
-      loads.col(static_cast<Index>(k)) = op.b.row(which[first + k]).transpose();
-    columns.middleCols(static_cast<Index>(first), static_cast<Index>(count)) =
-        op.b * responses(ksp, trace, op.a, loads);
+  for (Index first = 0; first < columns.cols(); first += block) {
+    const Index count = std::min(block, columns.cols() - first);
+    Matrix loads = Matrix::Zero(op.b.cols(), count);
+    for (Index k = 0; k < count; ++k)
+      loads.col(k) = op.b.row(which[static_cast<std::size_t>(first + k)]).transpose();
+    columns.middleCols(first, count) = op.b * responses(ksp, trace, op.a, loads);
   }
   return columns;
 }
 
-void Compliance::require(KSP ksp, const Trace &trace, Mat a,
-                         const std::vector<Index> &contact_dofs) {
+void Compliance::require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs,
+                         const Groups *groups) {
   slot_.resize(static_cast<std::size_t>(trace.size), -1);
   std::vector<Index> fresh;
   for (const Index dof : contact_dofs)
     if (slot_[static_cast<std::size_t>(dof)] < 0) fresh.push_back(dof);
-  const Index needed = count_ + static_cast<Index>(fresh.size());
+  const Index needed = count_ + std::ssize(fresh);
   if (needed > columns_.cols())
     columns_.conservativeResize(trace.size, std::min<Index>(trace.size, 2 * needed));
-  for (std::size_t first = 0; first < fresh.size(); first += block) {
-    const auto count = static_cast<Index>(std::min(block, fresh.size() - first));
-    Matrix loads = Matrix::Zero(trace.size, count);
-    for (Index k = 0; k < count; ++k)
-      loads(fresh[first + static_cast<std::size_t>(k)], k) = 1;
-    columns_.middleCols(count_, count) = responses(ksp, trace, a, loads);
-    for (Index k = 0; k < count; ++k)
-      slot_[static_cast<std::size_t>(fresh[first + static_cast<std::size_t>(k)])] = count_++;
+  auto made = columns_.middleCols(count_, std::ssize(fresh));
+  const auto fill = [&](Index first, Index end) {
+    for (; first < end; first += block) {
+      const Index count = std::min(block, end - first);
+      Matrix loads = Matrix::Zero(trace.size, count);
+      for (Index k = 0; k < count; ++k)
+        loads(fresh[static_cast<std::size_t>(first + k)], k) = 1;
+      made.middleCols(first, count) = responses(ksp, trace, a, loads);
+    }
+  };
+  if (groups == nullptr) {
+    fill(0, made.cols());
+  } else {
+    made.setZero();
+    const Index share = made.cols(), mine = groups->mine(), all = groups->count();
+    fill(share * mine / all, share * (mine + 1) / all);
+    over_ranks(groups->across(), MPI_SUM, made);
   }
+  for (const Index dof : fresh)
+    slot_[static_cast<std::size_t>(dof)] = count_++;
 }
 
 Matrix Compliance::condensed_columns(KSP ksp, const Trace &trace, const Operators &op,

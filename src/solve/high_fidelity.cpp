@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace rbvi {
 
@@ -241,6 +242,23 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, HfSolution &solut
   const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
   solution.outputs = measure(problem_, op, weights, result, solution);
   return result;
+}
+
+void HighFidelity::share_columns(const Groups &groups, const std::vector<Mu> &set) {
+  if (!compliance_ || groups.count() == 1 || std::ssize(set) < 2 * groups.count() ||
+      !problem_.scene().f.empty() || options_.method != HfMethod::active_set)
+    return;
+  std::set<Index> dofs;
+  Operators rows;
+  for (const Mu &mu : set) {
+    problem_.assemble_contact(mu, rows);
+    for (Index i = 0; i < rows.g.size(); ++i)
+      for (SparseMatrix::InnerIterator entry(rows.b, i); entry && rows.g[i] < 0; ++entry)
+        dofs.insert(entry.col());
+  }
+  const Operators &op = problem_.assemble(set.front());
+  set_operator(ksp_.get(), op.a);
+  compliance_->require(ksp_.get(), problem_.trace(), op.a, {dofs.begin(), dofs.end()}, &groups);
 }
 
 HfSolution HighFidelity::solve(const Mu &mu) {

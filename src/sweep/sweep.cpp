@@ -220,13 +220,17 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
   Progress progress(groups.count() == 1 ? "samples"
                                         : "samples, " + std::to_string(groups.count()) + " groups",
                     queue.count(), rank == 0);
+  std::vector<Mu> wanted;
+  for (const int k : missing)
+    wanted.push_back(set[static_cast<std::size_t>(k)]);
   HfOptions of_all = options;
   of_all.samples = static_cast<int>(set.size()) / groups.count();
   collectively(world, [&] {
     try {
       HighFidelity solver(problem, of_all);
+      solver.share_columns(groups, wanted);
       while (const std::optional<int> k = queue.next()) {
-        const Mu &mu = set[static_cast<std::size_t>(missing[static_cast<std::size_t>(*k)])];
+        const Mu &mu = wanted[static_cast<std::size_t>(*k)];
         collectively(groups.comm(), [&] {
           solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
                        settings);

@@ -18,6 +18,7 @@
 
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/law/nonlinear/nonlinear.hpp"
+#include "rbvi/par/groups.hpp"
 #include "rbvi/problem/problem.hpp"
 #include "rbvi/solve/nitsche.hpp"
 
@@ -99,6 +100,10 @@ public:
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
   /// not converge; throws bad_input for `vi` on a scene without vertex quadrature.
   HfSolution solve(const Mu &mu);
+  /// Where A is the same for all mu and several groups of ranks are to solve at those of `set`: the
+  /// columns of A^-1 at the nodes that the undeformed bodies do not keep apart there, each group its
+  /// share. Does nothing where solves do not keep columns. Collective on all groups.
+  void share_columns(const Groups &groups, const std::vector<Mu> &set);
   /// Forgets earlier solutions: the next solve starts cold.
   void forget() { solved_.clear(); }
 

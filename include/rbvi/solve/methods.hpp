@@ -42,8 +42,10 @@ public:
                            const std::vector<Index> &which);
 
   Index count() const { return count_; } ///< of the columns that are kept
-  /// Makes these columns exist. Collective.
-  void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs);
+  /// Makes these columns exist. Collective; with `groups`, which all ask for the same ones, on all
+  /// of them, and each solves for its share.
+  void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs,
+               const Groups *groups = nullptr);
   /// One that was required.
   Eigen::Map<const Vector> column(Index contact_dof) const {
     return {columns_.col(slot_[static_cast<std::size_t>(contact_dof)]).data(), columns_.rows()};

@@ -3,6 +3,8 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,6 +16,7 @@ namespace {
 constexpr double dependent = 1e-13; // remainder of a snapshot, relative to its norm
 constexpr double equal = 1e-8;      // singular values this close are kept or cut together
 constexpr double sign_tie = 1e-10;
+constexpr double much_removed = 0.1; // what is left of a column is no longer orthogonal to the rest
 
 /// Classical Gram-Schmidt in the product of `basis`; twice, but for blocks that lose little.
 class GramSchmidt {
@@ -35,35 +38,33 @@ public:
   }
 
   /// Whether each column of a block was taken. All of them against the basis first, by products of
-  /// matrices, then one after the other against those taken from their block.
+  /// matrices; then those that have enough of their own together, and the others one by one.
   std::vector<bool> add_block(BV block, double tolerance) {
     PetscInt count = 0;
     RBVI_CALL(BVGetActiveColumns(block, nullptr, &count));
     const PetscInt known = size_;
     Vector removed = remove(block, count);
+    Matrix gram = gram_of(block, count);
     // What is left of less than 0.7 of a column is no longer orthogonal to the rest.
-    bool much = false;
-    for (PetscInt j = 0; j < count && known > 0; ++j) {
-      Vec column = nullptr;
-      RBVI_CALL(BVGetColumn(block, j, &column));
-      much = much || product_norm(column) < removed[j];
-      RBVI_CALL(BVRestoreColumn(block, j, &column));
+    if (known > 0 && (gram.diagonal().array() < removed.array().square()).any()) {
+      removed = (removed.array().square() + remove(block, count).array().square()).sqrt();
+      gram = gram_of(block, count);
     }
-    if (much) removed = (removed.array().square() + remove(block, count).array().square()).sqrt();
-    std::vector<bool> taken;
+    std::vector<bool> taken = orthonormalise(block, gram, removed, tolerance);
+    for (PetscInt j = 0; j < count; ++j)
+      if (taken[static_cast<std::size_t>(j)]) insert(block, j);
     for (PetscInt j = 0; j < count; ++j) {
-      constexpr double little = 0.1;
+      if (taken[static_cast<std::size_t>(j)]) continue;
       Vec column = nullptr;
       RBVI_CALL(BVGetColumn(block, j, &column));
       const double before = product_norm(column);
       Vector coefficients = remove(column, known);
-      // What is left of much is no longer orthogonal to the rest.
-      const bool reduced = size_ > known && product_norm(column) < little * before;
+      const bool reduced = size_ > known && product_norm(column) < much_removed * before;
       coefficients += remove(column, reduced ? 0 : known).tail(coefficients.size());
       const PetscInt size = size_;
       keep(column, coefficients, removed[j], tolerance);
       RBVI_CALL(BVRestoreColumn(block, j, &column));
-      taken.push_back(size_ > size);
+      taken[static_cast<std::size_t>(j)] = size_ > size;
     }
     return taken;
   }
@@ -96,6 +97,78 @@ private:
     RBVI_CALL(BVDot(block, basis_, view.get()));
     RBVI_CALL(BVMult(block, -1.0, 1.0, basis_, view.get()));
     return coefficients.colwise().norm();
+  }
+  /// X^T X of a block X in the product.
+  static Matrix gram_of(BV block, PetscInt count) {
+    Matrix gram(count, count);
+    Handle<Mat> view;
+    RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, count, count, gram.data(), view.put()));
+    RBVI_CALL(BVDot(block, block, view.get()));
+    if (!gram.allFinite())
+      throw failure("a column to orthonormalise has entries that are not finite");
+    return gram;
+  }
+  /// Those columns of a block that have enough of their own, and how much they have of it.
+  struct Fit {
+    std::vector<Index> columns;
+    Matrix factor;    ///< lower triangle, of their Gram matrix scaled to a diagonal of 1
+    double least = 1; ///< its smallest pivot
+  };
+  /// `gram`: of the block; `removed`: the norm of what is no longer in each column.
+  static Fit fit_columns(const Matrix &gram, const Vector &norms, const Vector &removed,
+                         double tolerance) {
+    constexpr double own = 1e-4; // one Cholesky factor leaves angles of round-off over its square
+    Fit fit;
+    Matrix factor = Matrix::Zero(gram.rows(), gram.cols());
+    for (Index j = 0; j < gram.cols(); ++j) {
+      if (!(norms[j] > 0)) continue;
+      const auto size = std::ssize(fit.columns);
+      Vector row = gram(fit.columns, j).cwiseQuotient(norms(fit.columns)) / norms[j];
+      factor.topLeftCorner(size, size).triangularView<Eigen::Lower>().solveInPlace(row);
+      const double left = std::sqrt(std::max(0.0, 1 - row.squaredNorm()));
+      if (!(left > own) || left * norms[j] <= tolerance * std::hypot(removed[j], norms[j]))
+        continue;
+      factor.row(size).head(size) = row.transpose();
+      factor(size, size) = left;
+      fit.least = std::min(fit.least, left);
+      fit.columns.push_back(j);
+    }
+    const auto size = std::ssize(fit.columns);
+    fit.factor = factor.topLeftCorner(size, size);
+    return fit;
+  }
+  /// The columns of a block that have enough of their own, made orthonormal to each other by a
+  /// Cholesky factor of their Gram matrix, twice. Which they are; the others are as they were.
+  std::vector<bool> orthonormalise(BV block, const Matrix &gram, const Vector &removed,
+                                   double tolerance) {
+    const auto count = static_cast<PetscInt>(gram.cols());
+    const Vector norms = gram.diagonal().cwiseMax(0).cwiseSqrt();
+    const Fit fit = fit_columns(gram, norms, removed, tolerance);
+    std::vector<bool> taken(static_cast<std::size_t>(count), false);
+    if (fit.columns.empty()) return taken;
+    rotate(block, count, fit.columns, norms(fit.columns).cwiseInverse(), fit.factor);
+    if (fit.least < much_removed) remove(block, count);
+    const Matrix again = gram_of(block, count)(fit.columns, fit.columns);
+    rotate(block, count, fit.columns, Vector::Ones(again.cols()),
+           Eigen::LLT<Matrix>(again).matrixL());
+    for (const Index j : fit.columns)
+      taken[static_cast<std::size_t>(j)] = true;
+    return taken;
+  }
+  /// X <- X D L^-T for these columns of a block.
+  static void rotate(BV block, PetscInt count, const std::vector<Index> &columns,
+                     const Vector &scale, const Matrix &lower) {
+    Matrix inverse = scale.asDiagonal();
+    lower.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(inverse);
+    Matrix rotation = Matrix::Identity(count, count);
+    rotation(columns, columns) = inverse;
+    RBVI_CALL(BVMultInPlace(block, sequential_dense(rotation).get(), 0, count));
+  }
+  void insert(BV block, PetscInt j) {
+    Vec column = nullptr;
+    RBVI_CALL(BVGetColumn(block, j, &column));
+    RBVI_CALL(BVInsertVec(basis_, size_++, column));
+    RBVI_CALL(BVRestoreColumn(block, j, &column));
   }
   double product_norm(Vec column) {
     double square = 0;

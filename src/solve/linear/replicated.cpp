@@ -17,11 +17,13 @@ struct Share {
   Index first, count;
 };
 
-/// This rank's part of 0 .. size - 1.
-Share my_share(MPI_Comm comm, Index size) {
-  const int rank = rank_of(comm), ranks = ranks_of(comm);
+/// A rank's part of 0 .. size - 1.
+Share share_of(int rank, int ranks, Index size) {
   const Index first = size * rank / ranks;
   return {first, size * (rank + 1) / ranks - first};
+}
+Share my_share(MPI_Comm comm, Index size) {
+  return share_of(rank_of(comm), ranks_of(comm), size);
 }
 
 } // namespace
@@ -46,8 +48,10 @@ std::vector<PetscInt> whole_rows(Mat a, const Trace &trace) {
 ReplicatedSolver::ReplicatedSolver(Mat a, const Trace &trace, const char *prefix)
     : comm_(trace.comm), trace_(trace), whole_(whole_matrix(a, trace.comm)),
       rows_(whole_rows(a, trace)) {
+  const PetscInt *first_rows = nullptr;
   RBVI_CALL(MatGetLocalSize(a, &local_rows_, nullptr));
-  RBVI_CALL(MatGetOwnershipRange(a, &first_row_, nullptr));
+  RBVI_CALL(MatGetOwnershipRanges(a, &first_rows));
+  first_rows_.assign(first_rows, first_rows + ranks_of(trace.comm) + 1);
   RBVI_CALL(MatSetOption(whole_.get(), MAT_SPD, PETSC_TRUE));
   ksp_ = make_direct_solver(PetscObjectComm(reinterpret_cast<PetscObject>(whole_.get())), prefix);
   RBVI_CALL(KSPSetOperators(ksp_.get(), whole_.get(), whole_.get()));
@@ -91,24 +95,44 @@ Matrix ReplicatedSolver::responses(const Matrix &loads) {
   return result;
 }
 
+/// `mine`: this rank's columns, all rows. Its rows of the columns of all ranks, into `values`.
+/// Collective.
+void ReplicatedSolver::exchange_rows(const Matrix &mine, Index columns, double *values,
+                                     Index stride) const {
+  const auto ranks = static_cast<std::size_t>(ranks_of(comm_));
+  std::vector<int> sent(ranks), sent_at(ranks), received(ranks), received_at(ranks);
+  Vector to(mine.size()), from(local_rows_ * columns);
+  Index at = 0;
+  for (std::size_t r = 0; r < ranks; ++r) {
+    const Index first = first_rows_[r], rows = first_rows_[r + 1] - first;
+    sent_at[r] = static_cast<int>(at);
+    sent[r] = static_cast<int>(rows * mine.cols());
+    for (Index k = 0; k < mine.cols(); ++k, at += rows)
+      to.segment(at, rows) = mine.col(k).segment(first, rows);
+    const Share theirs = share_of(static_cast<int>(r), static_cast<int>(ranks), columns);
+    received_at[r] = static_cast<int>(theirs.first * local_rows_);
+    received[r] = static_cast<int>(theirs.count * local_rows_);
+  }
+  MPI_Alltoallv(to.data(), sent.data(), sent_at.data(), MPI_DOUBLE, from.data(), received.data(),
+                received_at.data(), MPI_DOUBLE, comm_);
+  for (Index k = 0; k < columns; ++k)
+    std::copy_n(from.data() + k * local_rows_, local_rows_, values + k * stride);
+}
+
 Handle<Mat> ReplicatedSolver::fields(const Matrix &loads) {
-  PetscInt size = 0, stride = 0;
-  RBVI_CALL(MatGetSize(whole_.get(), &size, nullptr));
+  PetscInt stride = 0;
   Handle<Mat> result;
-  RBVI_CALL(MatCreateDense(comm_, local_rows_, PETSC_DECIDE, size,
+  RBVI_CALL(MatCreateDense(comm_, local_rows_, PETSC_DECIDE, first_rows_.back(),
                            static_cast<PetscInt>(loads.cols()), nullptr, result.put()));
   RBVI_CALL(MatDenseGetLDA(result.get(), &stride));
   for (Index first = 0; first < loads.cols(); first += block) {
     const Matrix part = loads.middleCols(first, std::min(block, loads.cols() - first));
     const Share mine = my_share(comm_, part.cols());
-    Matrix all = Matrix::Zero(size, part.cols());
-    if (mine.count > 0)
-      all.middleCols(mine.first, mine.count) = solve_columns(part, mine.first, mine.count);
-    over_ranks(comm_, MPI_SUM, all);
+    const Matrix solved = mine.count > 0 ? solve_columns(part, mine.first, mine.count)
+                                         : Matrix(first_rows_.back(), 0);
     double *values = nullptr;
     RBVI_CALL(MatDenseGetArray(result.get(), &values));
-    for (Index k = 0; k < part.cols(); ++k)
-      std::copy_n(all.col(k).data() + first_row_, local_rows_, values + (first + k) * stride);
+    exchange_rows(solved, part.cols(), values + first * stride, stride);
     RBVI_CALL(MatDenseRestoreArray(result.get(), &values));
   }
   RBVI_CALL(MatAssemblyBegin(result.get(), MAT_FINAL_ASSEMBLY));

@@ -24,10 +24,12 @@ public:
 
 private:
   Matrix solve_columns(const Matrix &loads, Index first, Index count);
+  void exchange_rows(const Matrix &mine, Index columns, double *values, Index stride) const;
 
   MPI_Comm comm_;
   Trace trace_;
-  PetscInt local_rows_ = 0, first_row_ = 0;
+  PetscInt local_rows_ = 0;
+  std::vector<PetscInt> first_rows_; ///< of each rank, and behind the last
   Handle<Mat> whole_; ///< all of A, on this rank
   Handle<KSP> ksp_;
   std::vector<PetscInt> rows_; ///< of each contact dof in `whole_`
