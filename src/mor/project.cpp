@@ -100,11 +100,11 @@ void describe_mesh(const Problem &problem, ReducedModel &model) {
 
 namespace {
 
-/// X^T Y; most entries of a large dual basis are zero.
-Matrix transposed_times(const Matrix &x, const Matrix &y) {
-  constexpr Index sparse_below = 10; // of its entries one in so many
-  if (sparse_below * (x.array() != 0).count() > x.size()) return x.transpose() * y;
-  return SparseMatrix(Matrix(x.transpose()).sparseView()) * y;
+/// X^T B V.
+Matrix sandwiched(const Eigen::Ref<const Matrix> &x, const SparseMatrix &b, const Matrix &v) {
+  if (!mostly_zero(x)) return x.transpose() * (b * v);
+  const SparseMatrix sparse = x.sparseView();
+  return SparseMatrix(SparseMatrix(sparse.transpose()) * b) * v;
 }
 
 /// Adds a snapshot of B to the terms that contain it: of B^n and B^tau apart each has its own.
@@ -114,8 +114,8 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
   for (const auto &[eim, row, rows] : rows_of_b(affine, problem)) {
     const Index begin = std::exchange(first, first + eim.size());
     if (!uses(eim, snapshot)) continue;
-    const Matrix reduced = transposed_times(model.dual_basis.middleRows(row, rows),
-                                            op.b.middleRows(row, rows) * trace);
+    const Matrix reduced =
+        sandwiched(model.dual_basis.middleRows(row, rows), op.b.middleRows(row, rows), trace);
     accumulate(eim, snapshot, reduced.reshaped(), model.b.reduced.middleCols(begin, eim.size()));
   }
 }
@@ -290,8 +290,8 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   model.imposed_energy = separate_imposed_energy(problem);
   Mat basis = nullptr;
   RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
-  model.contact_trace = restrict_to(problem.trace(), basis);
   project_exact(problem, samples, affine, basis, model);
+  model.contact_trace = restrict_to(problem.trace(), basis);
   project_snapshots(problem, samples, affine, basis, model);
   restrict_trace(problem, samples.front().mu, model);
   RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));

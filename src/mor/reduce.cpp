@@ -160,6 +160,7 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
                               ? Matrix(riesz.factor.transpose())
                               : supremizers_at(problem, riesz, dual, {training[p]}).front());
   });
+  dual.resize(0, 0); // its room is wanted for what follows
   if (bases.online_enriched) {
     supremizers =
         span_of_supremizers(problem.comm(), riesz, std::move(supremizers), training.size());

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace rbvi {
 
@@ -22,7 +23,8 @@ PetscErrorCode forget_objects() {
 SVD object_of(const char *prefix) {
   Handle<SVD> &svd = objects[prefix];
   if (!svd) {
-    if (objects.size() == 1) RBVI_CALL(PetscRegisterFinalize(forget_objects));
+    static bool registered = false;
+    if (!std::exchange(registered, true)) RBVI_CALL(PetscRegisterFinalize(forget_objects));
     svd = make_small_svd(prefix);
   }
   return svd.get();
@@ -58,6 +60,13 @@ std::optional<SVD> solved(const Matrix &matrix, const char *prefix) {
     throw;
   }
   return svd;
+}
+
+/// An object keeps its last matrix, the vectors and room to work, seven times the size of the
+/// matrix: none is kept after a large one.
+void let_go(const Matrix &matrix, const char *prefix) {
+  constexpr Index large = 100000; // entries
+  if (matrix.size() > large) objects.erase(prefix);
 }
 
 /// By Jacobi's rotations: slower, and they always converge.
@@ -105,10 +114,12 @@ Handle<Mat> sequential_dense(const Matrix &matrix) {
   return copy;
 }
 
-SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
-  const Index count = std::min(matrix.rows(), matrix.cols());
-  SmallSvd result{Vector(count), Matrix(matrix.rows(), count), Matrix(matrix.cols(), count)};
-  if (count == 0) return result;
+namespace {
+
+/// Of a matrix with no more rows than columns, or a square one.
+SmallSvd of_few_rows(const Matrix &matrix, const char *prefix) {
+  const Index count = matrix.rows();
+  SmallSvd result{Vector(count), Matrix(count, count), Matrix(matrix.cols(), count)};
   const std::optional<SVD> svd = solved(matrix, prefix);
   if (!svd) return by_rotations(matrix);
   for (Index k = 0; k < count; ++k) {
@@ -117,6 +128,20 @@ SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
     RBVI_CALL(SVDGetSingularTriplet(*svd, static_cast<PetscInt>(k), &result.values(k), left.get(),
                                     right.get()));
   }
+  let_go(matrix, prefix);
+  return result;
+}
+
+} // namespace
+
+SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
+  if (matrix.size() == 0) return {Vector(0), Matrix(matrix.rows(), 0), Matrix(matrix.cols(), 0)};
+  if (matrix.rows() <= matrix.cols()) return of_few_rows(matrix, prefix);
+  const Eigen::HouseholderQR<Matrix> qr(matrix);
+  SmallSvd result = of_few_rows(
+      qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>(), prefix);
+  result.left.conservativeResizeLike(Matrix::Zero(matrix.rows(), matrix.cols()));
+  result.left.applyOnTheLeft(qr.householderQ());
   return result;
 }
 
@@ -128,6 +153,7 @@ Vector singular_values(const Matrix &matrix, const char *prefix) {
   if (!svd) return by_rotations(factor).values;
   for (Index k = 0; k < values.size(); ++k)
     RBVI_CALL(SVDGetSingularTriplet(*svd, static_cast<PetscInt>(k), &values(k), nullptr, nullptr));
+  let_go(factor, prefix);
   return values;
 }
 

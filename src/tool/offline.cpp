@@ -63,6 +63,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
     return run_sweep(world, groups, work.group_problem(), options.hf, training,
                      options.out / "samples", [&] { begin_run(world, options); });
   });
+  work.end_of_solves();
   check_failures(options, sweep.report, training.size(), "training");
   if (will_run(before, stage::distributed_mesh))
     timed(before, stage::distributed_mesh, [&] { work.world_problem(); });

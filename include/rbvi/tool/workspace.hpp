@@ -13,7 +13,11 @@ class Workspace {
 public:
   /// Collective on `world`. Makes the group's problem and checks the options of its solvers.
   Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options);
-  Problem &group_problem() const { return *group_; }
+  Problem &group_problem() const { return *group_; } ///< not after end_of_solves
+  /// Lets go of the group's problem, where it is not the world's: its solves are over.
+  void end_of_solves() {
+    if (!shared_) group_.reset();
+  }
   /// Made at the first call. Collective on the world.
   Problem &world_problem();
 

@@ -114,4 +114,10 @@ Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const Cone
 Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
                  const ColumnSource &condensed);
 
+/// Whether products are cheaper without the zeros.
+inline bool mostly_zero(const Eigen::Ref<const Matrix> &matrix) {
+  constexpr Index one_in = 10;
+  return one_in * (matrix.array() != 0).count() < matrix.size();
+}
+
 } // namespace rbvi

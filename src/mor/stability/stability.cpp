@@ -85,8 +85,7 @@ namespace {
 
 /// X^T W X.
 Matrix gram_of(const Matrix &x, const SparseMatrix &w_product) {
-  constexpr Index sparse_below = 10; // of its entries one in so many
-  if (sparse_below * (x.array() != 0).count() > x.size()) return x.transpose() * (w_product * x);
+  if (!mostly_zero(x)) return x.transpose() * (w_product * x);
   const SparseMatrix sparse = x.sparseView();
   return Matrix(SparseMatrix(sparse.transpose()) * SparseMatrix(w_product * sparse));
 }
