@@ -47,6 +47,7 @@ private:
   Handle<Mat> reduced_;         ///< what is factorised
   std::vector<Index> factored_; ///< its pivots
   bool of_another_a_ = true;    ///< or of none
+  bool tied_ = false;           ///< with pivots tied to other dofs
   int steps_of_last_ = 0;       ///< Krylov steps of the last system
   int factorisations_ = 0, krylov_steps_ = 0;
   Handle<Vec> u_;       ///< of the last system
@@ -60,12 +61,14 @@ class GridSequence {
 public:
   /// `problem` must outlive it. Collective.
   explicit GridSequence(Problem &problem) : problem_(problem), on_this_(problem) {}
-  /// `op`: of the problem at mu. `start`: as above; empty: from the coarser meshes, where there are
-  /// any, first to a lower `accuracy`. Collective.
+  /// `op`: of the problem at mu. `start`: as above; where it is empty, or the mesh is fine, from the
+  /// coarser meshes, where there are any, first to a lower `accuracy`. Collective.
   MethodResult solve(const Mu &mu, const Operators &op, const Vector &start,
                      double accuracy = 1e-13);
 
 private:
+  bool has_coarser();
+
   Problem &problem_;
   Eliminated on_this_;
   std::unique_ptr<Problem> coarser_problem_;
