@@ -80,64 +80,72 @@ std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &syste
   return pivots;
 }
 
-Elimination::Elimination(const SparseMatrix &c, const std::vector<Index> &pivots)
-    : pivots_(pivots), others_(c), lu_(std::make_unique<Lu>()) {
-  std::vector<Index> position(at(c.cols()), -1);
-  for (std::size_t k = 0; k < pivots.size(); ++k)
-    position[at(pivots[k])] = static_cast<Index>(k);
-  std::vector<Eigen::Triplet<double>> block;
-  others_.prune([&](Index row, Index column, double value) {
-    if (position[at(column)] >= 0)
-      block.emplace_back(static_cast<int>(row), static_cast<int>(position[at(column)]), value);
-    return position[at(column)] < 0;
-  });
-  Eigen::SparseMatrix<double> square(c.rows(), c.rows());
-  square.setFromTriplets(block.begin(), block.end());
-  if (c.rows() == 0) return;
-  lu_->compute(square);
+void SquareFactor::compute(const Eigen::SparseMatrix<double> &matrix) {
+  constexpr double round_off = 1e-14;
+  const Eigen::SparseMatrix<double> transposed = matrix.transpose();
+  // A mass matrix of the active nodes, where a constraint is that of its own node.
+  if ((matrix - transposed).norm() <= round_off * matrix.norm()) {
+    symmetric_ = std::make_unique<Llt>(matrix);
+    if (symmetric_->info() == Eigen::Success) return;
+    symmetric_.reset();
+  }
+  lu_ = std::make_unique<Lu>(matrix);
   if (lu_->info() != Eigen::Success)
     throw failure("the active constraints depend on each other: try -hf_contact condensed");
 }
 
-Vector Elimination::pivot_values(const Vector &right, const Vector &v) const {
-  if (pivots_.empty()) return {};
-  return lu_->solve(Vector(right - others_ * v));
+Matrix SquareFactor::solve(const Matrix &right) const {
+  return symmetric_ ? Matrix(symmetric_->solve(right)) : Matrix(lu_->solve(right));
 }
 
-Vector Elimination::multipliers(const Vector &r) const {
-  if (pivots_.empty()) return {};
-  return lu_->transpose().solve(Vector(r(pivots_)));
+Matrix SquareFactor::solve_transposed(const Matrix &right) const {
+  return symmetric_ ? Matrix(symmetric_->solve(right)) : Matrix(lu_->transpose().solve(right));
 }
 
-Vector Elimination::reduced(const Vector &r) const {
-  Vector result = r;
-  if (pivots_.empty()) return result;
-  result -= others_.transpose() * multipliers(r);
-  result(pivots_).setZero();
-  return result;
+Elimination::Elimination(const SparseMatrix &c, const std::vector<Index> &pivots)
+    : pivots_(pivots) {
+  std::vector<Index> position(at(c.cols()), -1), other(at(c.cols()), -1);
+  for (std::size_t k = 0; k < pivots.size(); ++k)
+    position[at(pivots[k])] = static_cast<Index>(k);
+  std::vector<Eigen::Triplet<double>> block, rest;
+  for (Index row = 0; row < c.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry) {
+      const bool pivot = position[at(entry.col())] >= 0;
+      Index &column = (pivot ? position : other)[at(entry.col())];
+      if (!pivot && entry.value() == 0) continue;
+      if (column < 0) {
+        column = std::ssize(coupled_);
+        coupled_.push_back(entry.col());
+      }
+      (pivot ? block : rest)
+          .emplace_back(static_cast<int>(row), static_cast<int>(column), entry.value());
+    }
+  Eigen::SparseMatrix<double> square(c.rows(), c.rows());
+  square.setFromTriplets(block.begin(), block.end());
+  others_.resize(c.rows(), std::ssize(coupled_));
+  others_.setFromTriplets(rest.begin(), rest.end());
+  if (c.rows() > 0) factor_.compute(square);
 }
 
-SparseMatrix Elimination::ties() const {
+Vector Elimination::pivot_values(const Vector &right, const Vector &coupled) const {
+  return factor_.solve(right - others_ * coupled);
+}
+
+SparseMatrix Elimination::ties(Index contact_dofs) const {
   constexpr double small = 1e-3;
   constexpr Index at_a_time = 64;
   const Eigen::SparseMatrix<double> columns = others_;
-  std::vector<Index> seen;
-  for (Index j = 0; j < columns.cols(); ++j)
-    if (columns.outerIndexPtr()[j] < columns.outerIndexPtr()[j + 1]) seen.push_back(j);
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t first = 0; first < seen.size(); first += at(at_a_time)) {
-    const Index count = std::min(at_a_time, std::ssize(seen) - static_cast<Index>(first));
-    Matrix block(others_.rows(), count);
-    for (Index k = 0; k < count; ++k)
-      block.col(k) = columns.col(seen[first + at(k)]);
-    const Matrix tied = lu_->solve(block);
+  for (Index first = 0; first < columns.cols(); first += at_a_time) {
+    const Index count = std::min(at_a_time, columns.cols() - first);
+    const Matrix tied = factor_.solve(columns.middleCols(first, count));
     for (Index k = 0; k < count; ++k)
       for (Index i = 0; i < tied.rows(); ++i)
         if (std::abs(tied(i, k)) > small)
           entries.emplace_back(static_cast<int>(pivots_[at(i)]),
-                               static_cast<int>(seen[first + at(k)]), -tied(i, k));
+                               static_cast<int>(coupled_[at(first + k)]), -tied(i, k));
   }
-  SparseMatrix result(others_.cols(), others_.cols());
+  SparseMatrix result(contact_dofs, contact_dofs);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }

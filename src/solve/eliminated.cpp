@@ -18,13 +18,6 @@ std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// values on the pivots, zero on the other contact dofs.
-Vector on_pivots(Index size, const std::vector<Index> &pivots, const Vector &values) {
-  Vector result = Vector::Zero(size);
-  if (!pivots.empty()) result(pivots) = values;
-  return result;
-}
-
 void clear_pivots(const Trace &pivot_trace, Vec v) {
   LocalValues values(v);
   for (const PetscInt row : pivot_trace.local_row)
@@ -33,27 +26,23 @@ void clear_pivots(const Trace &pivot_trace, Vec v) {
 
 /// W^T A Z and its preconditioner, for PETSc.
 struct ReducedSystem {
-  const Trace &trace;
   Mat a;
   const Elimination &z, &w;
-  const std::vector<Index> &pivots;
-  Trace pivot_trace;
+  Trace pivots, coupled_by_z, coupled_by_w;
   KSP factor;
   Handle<Vec> scratch;
 
   /// v + what the constraints without right-hand side say of the pivots, where v is zero.
   void extend(Vec v) const {
-    if (pivots.empty()) return;
-    const Vector zero = Vector::Zero(std::ssize(pivots));
-    const Vector values = z.pivot_values(zero, restrict_to(trace, v));
-    add_extension(trace, on_pivots(trace.size, pivots, values), v);
+    if (pivots.size == 0) return;
+    add_extension(pivots, z.pivot_values(Vector::Zero(pivots.size), restrict_to(coupled_by_z, v)),
+                  v);
   }
   /// W^T r, zero at the pivots.
   void reduce(Vec r) const {
-    if (pivots.empty()) return;
-    const Vector before = restrict_to(trace, r);
-    add_extension(trace, w.reduced(before) - before, r);
-    clear_pivots(pivot_trace, r);
+    if (pivots.size == 0) return;
+    add_extension(coupled_by_w, w.carried_over(restrict_to(pivots, r)), r);
+    clear_pivots(pivots, r);
   }
 };
 
@@ -85,7 +74,7 @@ PetscErrorCode apply_preconditioner(PC pc, Vec r, Vec result) {
   PetscCall(PCShellGetContext(pc, &system));
   PetscCall(reported(PETSC_COMM_SELF, [&] {
     solve_linear(system->factor, r, result);
-    clear_pivots(system->pivot_trace, result);
+    clear_pivots(system->pivots, result);
   }));
   PetscFunctionReturn(0);
 }
@@ -97,9 +86,10 @@ struct Krylov {
   int most_steps;
 };
 
-/// Solves for `v`, from where it is. Returns the steps; most_steps + 1 if they did not suffice.
+/// Solves for `v`, from where it is. Returns the steps; most_steps + 1 if they did not suffice, or if
+/// the preconditioner is not positive definite.
 int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
-  const MPI_Comm comm = system.trace.comm;
+  const MPI_Comm comm = system.pivots.comm;
   PetscInt local = 0;
   RBVI_CALL(VecGetLocalSize(v, &local));
   Handle<Mat> shell;
@@ -130,7 +120,7 @@ int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
   PetscInt steps = 0;
   RBVI_CALL(KSPGetConvergedReason(ksp.get(), &reason));
   RBVI_CALL(KSPGetIterationNumber(ksp.get(), &steps));
-  if (reason == KSP_DIVERGED_ITS) return how.most_steps + 1;
+  if (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_PC) return how.most_steps + 1;
   if (reason < 0)
     throw failure(std::string("the system of the active set was not solved (") +
                   KSPConvergedReasons[reason] + ", " + std::to_string(steps) +
@@ -214,7 +204,7 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
   for (const PetscInt row : pivot_trace.local_row)
     rows.push_back(problem_.dofs().first_free + row);
   const bool vectors = problem_.scene().components > 1;
-  const SparseMatrix ties = vectors && !pivots.empty() ? z.ties() : SparseMatrix();
+  const SparseMatrix ties = vectors && !pivots.empty() ? z.ties(trace_.size) : SparseMatrix();
   tied_ = ties.nonZeros() > 0;
   if (!tied_)
     drop_pivots(op.a, rows);
@@ -229,6 +219,9 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
                           problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
+  // A multigrid that is set up again keeps what it knew of the largest eigenvalues: where those have
+  // grown its smoothers are no longer positive definite.
+  if (multigrid_) factor_ = make_multigrid(problem_.comm(), "hf_");
   set_operator(factor_.get(), reduced_.get());
   RBVI_CALL(KSPSetUp(factor_.get()));
   factored_ = pivots;
@@ -245,21 +238,26 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   if (!system.symmetric) unsymmetric.emplace(rows_of(system.t, op.b), pivots);
   const Elimination &w = unsymmetric ? *unsymmetric : z;
   if (of_another_a_) precondition(op, z, pivots);
-  ReducedSystem reduced{trace_,        op.a,      z, w, pivots, part_of(trace_, pivots),
-                        factor_.get(), like(op.f)};
+  ReducedSystem reduced{op.a,
+                        z,
+                        w,
+                        part_of(trace_, pivots),
+                        part_of(trace_, z.coupled()),
+                        part_of(trace_, w.coupled()),
+                        factor_.get(),
+                        like(op.f)};
 
   // force = f - B^T fixed;  right = W^T (force - A u_0).
   const Handle<Vec> force = reaction_rhs(trace_, op, system.fixed), right = like(op.f);
   Handle<Vec> u_0 = like(op.f);
   RBVI_CALL(VecZeroEntries(u_0.get()));
   const Vector constraint = SparseMatrix(system.r.transpose()) * op.g;
-  if (!pivots.empty())
-    add_extension(trace_, on_pivots(trace_.size, pivots, z.pivot_values(constraint)), u_0.get());
+  if (!pivots.empty()) add_extension(reduced.pivots, z.pivot_values(constraint), u_0.get());
   RBVI_CALL(MatMult(op.a, u_0.get(), right.get()));
   RBVI_CALL(VecAYPX(right.get(), -1, force.get()));
   reduced.reduce(right.get());
 
-  clear_pivots(reduced.pivot_trace, u_.get());
+  clear_pivots(reduced.pivots, u_.get());
   // Relative to the forces; those of the last sets are the best guess.
   const double forces = norm(op.f) + reaction_;
   Krylov how{system.symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
@@ -268,6 +266,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   if (steps_of_last_ > how.most_steps) {
     krylov_steps_ += how.most_steps;
     if (pivots != factored_) precondition(op, z, pivots);
+    reduced.factor = factor_.get();
     how.most_steps = most_krylov_steps;
     steps_of_last_ = solve_reduced(reduced, how, right.get(), u_.get());
     if (steps_of_last_ > how.most_steps)
@@ -284,7 +283,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   const Vector u = restrict_to(trace_, u_.get());
   SetSolution found;
   found.x = system.fixed;
-  if (!pivots.empty()) found.x += system.t * w.multipliers(restrict_to(trace_, residual.get()));
+  if (!pivots.empty()) found.x += system.t * w.multipliers(restrict_to(reduced.pivots, residual.get()));
   reaction_ = (op.b.transpose() * found.x).norm();
   found.w = op.g - op.b * u;
   found.terms = op.g.cwiseAbs() + op.b.cwiseAbs() * u.cwiseAbs();
@@ -330,6 +329,7 @@ bool GridSequence::has_coarser() {
   if (!coarser_ && problem_.refinements() > 0) {
     coarser_problem_ = problem_.coarser();
     coarser_ = std::make_unique<GridSequence>(*coarser_problem_);
+    from_coarser_ = interpolation(coarser_problem_->contact(), problem_.contact());
   }
   return coarser_ != nullptr;
 }
@@ -347,8 +347,7 @@ MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector
   const Operators &on_coarser = coarser_problem_->assemble(mu);
   const MethodResult rough = coarser_->solve(mu, on_coarser, {}, enough_to_start);
   if (!rough.converged) return on_this_.solve(op, {}, accuracy);
-  return on_this_.solve(
-      op, interpolation(coarser_problem_->contact(), problem_.contact()) * rough.start, accuracy);
+  return on_this_.solve(op, from_coarser_ * rough.start, accuracy);
 }
 
 } // namespace rbvi

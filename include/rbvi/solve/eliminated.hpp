@@ -73,6 +73,7 @@ private:
   Eliminated on_this_;
   std::unique_ptr<Problem> coarser_problem_;
   std::unique_ptr<GridSequence> coarser_; ///< made when first wanted
+  SparseMatrix from_coarser_;             ///< of multipliers
 };
 
 } // namespace rbvi
