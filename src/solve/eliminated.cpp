@@ -222,7 +222,8 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
   // A multigrid that is set up again keeps what it knew of the largest eigenvalues: where those have
   // grown its smoothers are no longer positive definite.
   if (multigrid_) factor_ = make_multigrid(problem_.comm(), "hf_");
-  set_operator(factor_.get(), reduced_.get());
+  set_operator(factor_.get(), reduced_.get(),
+               problem_.scene().dim == 2 ? Ordering::minimum_fill : Ordering::automatic);
   RBVI_CALL(KSPSetUp(factor_.get()));
   factored_ = pivots;
   of_another_a_ = false;

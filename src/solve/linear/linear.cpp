@@ -34,8 +34,9 @@ Handle<KSP> make_multigrid(MPI_Comm comm, const char *prefix) {
   return ksp;
 }
 
-void set_operator(KSP ksp, Mat a) {
+void set_operator(KSP ksp, Mat a, Ordering ordering) {
   constexpr int extra_room = 80; // per cent of its estimate; 20 by default
+  constexpr int minimum_fill = 2;
   PC pc = nullptr;
   PetscBool factorises = PETSC_FALSE;
   MatSolverType type = nullptr;
@@ -52,7 +53,9 @@ void set_operator(KSP ksp, Mat a) {
   RBVI_CALL(MatSetOptionsPrefixFactor(a, prefix)); // as PCSetUp does, which comes later
   RBVI_CALL(PCFactorSetUpMatSolverType(pc));
   RBVI_CALL(PCFactorGetMatrix(pc, &factor));
-  RBVI_CALL(MatMumpsSetIcntl(factor, 14, extra_room)); // an option for it comes later, and wins
+  // Options for them come later, and win.
+  RBVI_CALL(MatMumpsSetIcntl(factor, 14, extra_room));
+  if (ordering == Ordering::minimum_fill) RBVI_CALL(MatMumpsSetIcntl(factor, 7, minimum_fill));
 }
 
 void solve_linear(KSP ksp, Vec rhs, Vec x) {
