@@ -250,15 +250,21 @@ void HighFidelity::share_columns(const Groups &groups, const std::vector<Mu> &se
     return;
   std::set<Index> dofs;
   Operators rows;
+  Mat a = nullptr;
   for (const Mu &mu : set) {
-    problem_.assemble_contact(mu, rows);
+    try {
+      problem_.assemble_contact(mu, rows);
+      if (a == nullptr) a = problem_.assemble(mu).a;
+    } catch (const Error &) {
+      continue; // of every group; the sample will say why
+    }
     for (Index i = 0; i < rows.g.size(); ++i)
       for (SparseMatrix::InnerIterator entry(rows.b, i); entry && rows.g[i] < 0; ++entry)
         dofs.insert(entry.col());
   }
-  const Operators &op = problem_.assemble(set.front());
-  set_operator(ksp_.get(), op.a);
-  compliance_->require(ksp_.get(), problem_.trace(), op.a, {dofs.begin(), dofs.end()}, &groups);
+  if (a == nullptr) return;
+  set_operator(ksp_.get(), a);
+  compliance_->require(ksp_.get(), problem_.trace(), a, {dofs.begin(), dofs.end()}, &groups);
 }
 
 HfSolution HighFidelity::solve(const Mu &mu) {

@@ -37,6 +37,12 @@ TEST(SmallSvd, factors_tall_wide_and_square) {
   expect_svd(testing_grid::random_matrix(7, 1, 5));
 }
 
+/// The object of the prefix is let go after a large matrix, and made again for the next.
+TEST(SmallSvd, factors_large_matrices_one_after_the_other) {
+  for (const Index columns : {330, 20, 340})
+    expect_svd(testing_grid::random_matrix(350, columns, 11));
+}
+
 TEST(SmallSvd, small_values_are_not_lost) {
   // Singular values 1, 1e-4, 1e-8, 1e-12: the root of an eigenvalue of the square would stop at
   // 1e-8.

@@ -123,5 +123,48 @@ TEST(ComplianceOfASweep, ChangesNoAnswer) {
   }
 }
 
+/// Groups that share columns find what each finds alone, and what they share is enough: no more
+/// columns are solved for.
+TEST(ComplianceOfASweep, IsSharedAmongGroups) {
+  const std::vector<Mu> set{{1.2}, {0.8}, {0.75}, {1.05}, {0.9}, {1.3}, {0.7}, {1.0}};
+  const Groups groups(PETSC_COMM_WORLD, 1);
+  for (const std::string friction : {"none", "coulomb"}) {
+    Problem problem(groups.comm(), make_scene("rigid_disk", {{"friction", friction}}), {});
+    HighFidelity shares(problem, {}), alone(problem, {});
+    shares.share_columns(groups, set);
+    for (std::size_t k = static_cast<std::size_t>(groups.mine()); k < set.size();
+         k += static_cast<std::size_t>(groups.count())) {
+      const HfSolution found = shares.solve(set[k]), expected = alone.solve(set[k]);
+      EXPECT_EQ(found.active, expected.active);
+      EXPECT_LE((found.lambda - expected.lambda).norm(), 1e-10 * expected.lambda.norm());
+      EXPECT_LE((found.u - expected.u).norm(), 1e-11 * expected.u.norm());
+    }
+  }
+}
+
+/// The same columns for any number of groups, each once; those that are there are not made again.
+TEST(ComplianceOfASweep, SharedColumnsAreThoseOfOneGroup) {
+  const Groups groups(PETSC_COMM_WORLD, 1);
+  Problem problem(groups.comm(), make_scene("two_disks"), {});
+  const Trace &trace = problem.trace();
+  const CountingSolver solver(problem.assemble({1.0}).a);
+  const Mat a = problem.assemble({1.0}).a;
+  std::vector<Index> few, many;
+  for (Index dof = 0; dof < 140; ++dof)
+    (dof % 3 == 0 ? few : many).push_back(dof);
+  Compliance shared, own;
+  shared.require(solver.get(), trace, a, few);
+  const int before = solver.solves();
+  std::vector<Index> all = few;
+  all.insert(all.end(), many.begin(), many.end());
+  shared.require(solver.get(), trace, a, all, &groups);
+  const int share = static_cast<int>(many.size()) / groups.count();
+  EXPECT_GE(solver.solves() - before, share);
+  EXPECT_LE(solver.solves() - before, share + 1);
+  own.require(solver.get(), trace, a, all);
+  for (const Index dof : all)
+    EXPECT_LE(relative(shared.column(dof), own.column(dof)), 1e-12) << dof;
+}
+
 } // namespace
 } // namespace rbvi

@@ -76,6 +76,19 @@ TEST(Eliminated, TakesFewStepsFromACoarserMesh) {
   }
 }
 
+/// Also where another parameter has been solved: its sets are many layers of nodes away.
+TEST(Eliminated, FineMeshesStartFromCoarserOnesAtEveryParameter) {
+  if (ranks_of(PETSC_COMM_WORLD) > 1) return;
+  Problem fine(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 2});
+  HfOptions options;
+  options.contact = HfContact::eliminated;
+  HighFidelity solver(fine, options);
+  EXPECT_LE(solver.solve({0.16, -0.05, 0.05}).iterations, 5);
+  const HfSolution after = solver.solve({0.24, 0.05, -0.05});
+  EXPECT_LE(after.iterations, 5);
+  expect_equal(after, HighFidelity(fine, options).solve({0.24, 0.05, -0.05}));
+}
+
 /// Above some size by multigrid: the answer is that of a factorisation.
 TEST(Eliminated, AgreesByMultigrid) {
   Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 1});
