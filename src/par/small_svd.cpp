@@ -138,8 +138,8 @@ SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
   if (matrix.size() == 0) return {Vector(0), Matrix(matrix.rows(), 0), Matrix(matrix.cols(), 0)};
   if (matrix.rows() <= matrix.cols()) return of_few_rows(matrix, prefix);
   const Eigen::HouseholderQR<Matrix> qr(matrix);
-  SmallSvd result = of_few_rows(
-      qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>(), prefix);
+  SmallSvd result =
+      of_few_rows(qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>(), prefix);
   result.left.conservativeResizeLike(Matrix::Zero(matrix.rows(), matrix.cols()));
   result.left.applyOnTheLeft(qr.householderQ());
   return result;

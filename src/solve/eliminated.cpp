@@ -1,5 +1,6 @@
 #include "rbvi/solve/eliminated.hpp"
 
+#include "linear/reduced_system.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
@@ -16,116 +17,6 @@ constexpr int most_krylov_steps = 1000;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
-}
-
-void clear_pivots(const Trace &pivot_trace, Vec v) {
-  LocalValues values(v);
-  for (const PetscInt row : pivot_trace.local_row)
-    values.get()[row] = 0;
-}
-
-/// W^T A Z and its preconditioner, for PETSc.
-struct ReducedSystem {
-  Mat a;
-  const Elimination &z, &w;
-  Trace pivots, coupled_by_z, coupled_by_w;
-  KSP factor;
-  Handle<Vec> scratch;
-
-  /// v + what the constraints without right-hand side say of the pivots, where v is zero.
-  void extend(Vec v) const {
-    if (pivots.size == 0) return;
-    add_extension(pivots, z.pivot_values(Vector::Zero(pivots.size), restrict_to(coupled_by_z, v)),
-                  v);
-  }
-  /// W^T r, zero at the pivots.
-  void reduce(Vec r) const {
-    if (pivots.size == 0) return;
-    add_extension(coupled_by_w, w.carried_over(restrict_to(pivots, r)), r);
-    clear_pivots(pivots, r);
-  }
-};
-
-template <class Call> PetscErrorCode reported(MPI_Comm comm, Call &&call) {
-  try {
-    call();
-  } catch (const std::exception &error) {
-    SETERRQ(comm, PETSC_ERR_LIB, "%s", error.what());
-  }
-  return 0;
-}
-
-PetscErrorCode apply_system(Mat shell, Vec v, Vec result) {
-  ReducedSystem *system = nullptr;
-  PetscFunctionBeginUser;
-  PetscCall(MatShellGetContext(shell, &system));
-  PetscCall(reported(PETSC_COMM_SELF, [&] {
-    RBVI_CALL(VecCopy(v, system->scratch.get()));
-    system->extend(system->scratch.get());
-    RBVI_CALL(MatMult(system->a, system->scratch.get(), result));
-    system->reduce(result);
-  }));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode apply_preconditioner(PC pc, Vec r, Vec result) {
-  ReducedSystem *system = nullptr;
-  PetscFunctionBeginUser;
-  PetscCall(PCShellGetContext(pc, &system));
-  PetscCall(reported(PETSC_COMM_SELF, [&] {
-    solve_linear(system->factor, r, result);
-    clear_pivots(system->pivots, result);
-  }));
-  PetscFunctionReturn(0);
-}
-
-/// How a reduced system is solved.
-struct Krylov {
-  bool symmetric;
-  double relative, absolute; ///< residual: to that of zero, or itself
-  int most_steps;
-};
-
-/// Solves for `v`, from where it is. Returns the steps; most_steps + 1 if they did not suffice, or if
-/// the preconditioner is not positive definite.
-int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
-  const MPI_Comm comm = system.pivots.comm;
-  PetscInt local = 0;
-  RBVI_CALL(VecGetLocalSize(v, &local));
-  Handle<Mat> shell;
-  RBVI_CALL(
-      MatCreateShell(comm, local, local, PETSC_DETERMINE, PETSC_DETERMINE, &system, shell.put()));
-  RBVI_CALL(
-      MatShellSetOperation(shell.get(), MATOP_MULT, reinterpret_cast<void (*)()>(apply_system)));
-  Handle<KSP> ksp;
-  PC pc = nullptr;
-  RBVI_CALL(KSPCreate(comm, ksp.put()));
-  RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), "hf_krylov_"));
-  RBVI_CALL(KSPSetType(ksp.get(), how.symmetric ? KSPCG : KSPGMRES));
-  if (!how.symmetric) RBVI_CALL(KSPGMRESSetRestart(ksp.get(), 100));
-  RBVI_CALL(KSPSetNormType(ksp.get(), KSP_NORM_UNPRECONDITIONED));
-  if (!how.symmetric) RBVI_CALL(KSPSetPCSide(ksp.get(), PC_RIGHT));
-  RBVI_CALL(KSPSetOperators(ksp.get(), shell.get(), shell.get()));
-  // Where the right-hand side is small the last solution can be far off: that is no divergence.
-  constexpr double any = 1e300;
-  RBVI_CALL(KSPSetTolerances(ksp.get(), how.relative, how.absolute, any, how.most_steps));
-  RBVI_CALL(KSPSetInitialGuessNonzero(ksp.get(), PETSC_TRUE));
-  RBVI_CALL(KSPGetPC(ksp.get(), &pc));
-  RBVI_CALL(PCSetType(pc, PCSHELL));
-  RBVI_CALL(PCShellSetContext(pc, &system));
-  RBVI_CALL(PCShellSetApply(pc, apply_preconditioner));
-  RBVI_CALL(KSPSetFromOptions(ksp.get()));
-  RBVI_CALL(KSPSolve(ksp.get(), right, v));
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  PetscInt steps = 0;
-  RBVI_CALL(KSPGetConvergedReason(ksp.get(), &reason));
-  RBVI_CALL(KSPGetIterationNumber(ksp.get(), &steps));
-  if (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_PC) return how.most_steps + 1;
-  if (reason < 0)
-    throw failure(std::string("the system of the active set was not solved (") +
-                  KSPConvergedReasons[reason] + ", " + std::to_string(steps) +
-                  " steps): try -hf_contact condensed");
-  return static_cast<int>(steps);
 }
 
 void assemble(Mat matrix) {
@@ -219,8 +110,8 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
                           problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
-  // A multigrid that is set up again keeps what it knew of the largest eigenvalues: where those have
-  // grown its smoothers are no longer positive definite.
+  // A multigrid that is set up again keeps what it knew of the largest eigenvalues: where those
+  // have grown its smoothers are no longer positive definite.
   if (multigrid_) factor_ = make_multigrid(problem_.comm(), "hf_");
   set_operator(factor_.get(), reduced_.get(),
                problem_.scene().dim == 2 ? Ordering::minimum_fill : Ordering::automatic);
@@ -239,14 +130,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   if (!system.symmetric) unsymmetric.emplace(rows_of(system.t, op.b), pivots);
   const Elimination &w = unsymmetric ? *unsymmetric : z;
   if (of_another_a_) precondition(op, z, pivots);
-  ReducedSystem reduced{op.a,
-                        z,
-                        w,
-                        part_of(trace_, pivots),
-                        part_of(trace_, z.coupled()),
-                        part_of(trace_, w.coupled()),
-                        factor_.get(),
-                        like(op.f)};
+  ReducedSystem reduced(trace_, op.a, z, w, pivots, factor_.get());
 
   // force = f - B^T fixed;  right = W^T (force - A u_0).
   const Handle<Vec> force = reaction_rhs(trace_, op, system.fixed), right = like(op.f);
@@ -258,7 +142,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   RBVI_CALL(VecAYPX(right.get(), -1, force.get()));
   reduced.reduce(right.get());
 
-  clear_pivots(reduced.pivots, u_.get());
+  set_zero(reduced.pivots, u_.get());
   // Relative to the forces; those of the last sets are the best guess.
   const double forces = norm(op.f) + reaction_;
   Krylov how{system.symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
@@ -284,7 +168,8 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   const Vector u = restrict_to(trace_, u_.get());
   SetSolution found;
   found.x = system.fixed;
-  if (!pivots.empty()) found.x += system.t * w.multipliers(restrict_to(reduced.pivots, residual.get()));
+  if (!pivots.empty())
+    found.x += system.t * w.multipliers(restrict_to(reduced.pivots, residual.get()));
   reaction_ = (op.b.transpose() * found.x).norm();
   found.w = op.g - op.b * u;
   found.terms = op.g.cwiseAbs() + op.b.cwiseAbs() * u.cwiseAbs();

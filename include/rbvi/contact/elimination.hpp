@@ -53,9 +53,7 @@ public:
   /// C_P^-T r_P.
   Vector multipliers(const Vector &r_p) const { return factor_.solve_transposed(r_p); }
   /// -C_N^T C_P^-T r_P.
-  Vector carried_over(const Vector &r_p) const {
-    return -(others_.transpose() * multipliers(r_p));
-  }
+  Vector carried_over(const Vector &r_p) const { return -(others_.transpose() * multipliers(r_p)); }
   /// -C_P^-1 C_N in the rows of P without its small entries, contact dofs x contact dofs: it decays
   /// with the distance, as the inverse of a mass matrix does.
   SparseMatrix ties(Index contact_dofs) const;

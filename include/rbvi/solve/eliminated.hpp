@@ -61,8 +61,8 @@ class GridSequence {
 public:
   /// `problem` must outlive it. Collective.
   explicit GridSequence(Problem &problem) : problem_(problem), on_this_(problem) {}
-  /// `op`: of the problem at mu. `start`: as above; where it is empty, or the mesh is fine, from the
-  /// coarser meshes, where there are any, first to a lower `accuracy`. Collective.
+  /// `op`: of the problem at mu. `start`: as above; where it is empty, or the mesh is fine, from
+  /// the coarser meshes, where there are any, first to a lower `accuracy`. Collective.
   MethodResult solve(const Mu &mu, const Operators &op, const Vector &start,
                      double accuracy = 1e-13);
 

@@ -101,8 +101,8 @@ public:
   /// not converge; throws bad_input for `vi` on a scene without vertex quadrature.
   HfSolution solve(const Mu &mu);
   /// Where A is the same for all mu and several groups of ranks are to solve at those of `set`: the
-  /// columns of A^-1 at the nodes that the undeformed bodies do not keep apart there, each group its
-  /// share. Does nothing where solves do not keep columns. Collective on all groups.
+  /// columns of A^-1 at the nodes that the undeformed bodies do not keep apart there, each group
+  /// its share. Does nothing where solves do not keep columns. Collective on all groups.
   void share_columns(const Groups &groups, const std::vector<Mu> &set);
   /// Forgets earlier solutions: the next solve starts cold.
   void forget() { solved_.clear(); }

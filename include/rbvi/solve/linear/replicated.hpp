@@ -30,7 +30,7 @@ private:
   Trace trace_;
   PetscInt local_rows_ = 0;
   std::vector<PetscInt> first_rows_; ///< of each rank, and behind the last
-  Handle<Mat> whole_; ///< all of A, on this rank
+  Handle<Mat> whole_;                ///< all of A, on this rank
   Handle<KSP> ksp_;
   std::vector<PetscInt> rows_; ///< of each contact dof in `whole_`
 };
