@@ -69,7 +69,7 @@ public:
   Verdict all() {
     for (Index i = 0; i < laws_.nodes; ++i) {
       normal(i);
-      tangential(i);
+      if (laws_.dim > 1) tangential(i);
       verdict_.changed = verdict_.changed || verdict_.next.is_active(i) != sets_.is_active(i) ||
                          verdict_.next.tangent_at(i) != sets_.tangent_at(i) || turned(i);
     }
