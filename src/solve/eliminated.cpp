@@ -147,18 +147,20 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   const double forces = norm(op.f) + reaction_;
   Krylov how{system.symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
              multigrid_ ? steps_worth_a_setup : steps_worth_a_factorisation};
-  steps_of_last_ = solve_reduced(reduced, how, right.get(), u_.get());
-  if (steps_of_last_ > how.most_steps) {
+  int steps = solve_reduced(reduced, how, right.get(), u_.get());
+  if (steps > how.most_steps) {
     krylov_steps_ += how.most_steps;
     if (pivots != factored_) precondition(op, z, pivots);
     reduced.factor = factor_.get();
     how.most_steps = most_krylov_steps;
-    steps_of_last_ = solve_reduced(reduced, how, right.get(), u_.get());
-    if (steps_of_last_ > how.most_steps)
+    steps = solve_reduced(reduced, how, right.get(), u_.get());
+    if (steps > how.most_steps)
       throw failure("the system of the active set was not solved in " +
-                    std::to_string(how.most_steps) + " steps: try -hf_contact condensed");
+                    std::to_string(how.most_steps) +
+                    " steps, or its preconditioner is not positive definite: try -hf_contact "
+                    "condensed");
   }
-  krylov_steps_ += steps_of_last_;
+  krylov_steps_ += steps;
   reduced.extend(u_.get());
   RBVI_CALL(VecAXPY(u_.get(), 1, u_0.get()));
 
@@ -225,7 +227,7 @@ MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector
   constexpr double enough_to_start = 1e-8;
   // Steps from a neighbour are as many as layers of cells between the sets; those from coarser
   // meshes are three or four on every mesh, and cost a third more. Measured on membranes: 0.07 and
-  // 0.10 s at 13e3 dofs, 0.5 and 0.4 s at 53e3, 4.8 and 2.0 s at 213e3.
+  // 0.10 s at 13e3 dofs, 0.51 and 0.47 s at 53e3, 4.8 and 2.1 s at 213e3.
   constexpr PetscInt coarser_from = 40000;
   if (start.size() > 0 && (problem_.dofs().total_free < coarser_from || !has_coarser()))
     return on_this_.solve(op, start, accuracy);

@@ -27,7 +27,7 @@ constexpr double plane_entries = 42, space_bytes = 220;
 
 // One solve on two ranks against one: little faster below this size, and above by about so much
 // (the membrane refined three times: 2.08 s on one rank, 1.68 s on two, which the bandwidth of the
-// memory bounds; two_disks refined twice: 2.11 and 1.32 s, three times: 11.9 and 6.0 s).
+// memory bounds; two_disks refined twice: 2.1 and 1.4 to 1.7 s, three times: 11.9 and 6.0 s).
 constexpr double parallel_from = 1.8e5, speedup_of_two = 1.24;
 
 double available_bytes() {

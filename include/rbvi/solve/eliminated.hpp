@@ -48,7 +48,6 @@ private:
   std::vector<Index> factored_; ///< its pivots
   bool of_another_a_ = true;    ///< or of none
   bool tied_ = false;           ///< with pivots tied to other dofs
-  int steps_of_last_ = 0;       ///< Krylov steps of the last system
   int factorisations_ = 0, krylov_steps_ = 0;
   Handle<Vec> u_;       ///< of the last system
   double reaction_ = 0; ///< |B^T x| there

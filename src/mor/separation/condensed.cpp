@@ -9,7 +9,6 @@
 #include "rbvi/solve/linear/replicated.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -118,19 +117,16 @@ Vector blocks_of(const Matrix &h, Index m) {
 /// As few terms as hold the values at all grid points to the tolerance. `values`: (blocks *
 /// `square`) x grid points.
 void compress(const Matrix &values, Index square, double tolerance, CondensedOperator &condensed) {
-  const Index blocks = values.rows() / square, rank = std::min(values.rows(), values.cols());
-  const Eigen::HouseholderQR<Matrix> qr(values);
-  const SmallSvd svd = small_svd(qr.matrixQR().topRows(rank).triangularView<Eigen::Upper>());
+  const Index blocks = values.rows() / square;
+  const SmallSvd svd = small_svd(values);
   Index count = 1;
-  while (count < rank && svd.values[count] > 0.1 * tolerance * svd.values[0])
+  while (count < svd.values.size() && svd.values[count] > 0.1 * tolerance * svd.values[0])
     ++count;
   condensed.shape = svd.values.head(count).asDiagonal() * svd.right.leftCols(count).transpose();
-  Matrix left = Matrix::Zero(values.rows(), count);
-  left.topRows(rank) = svd.left.leftCols(count);
-  left.applyOnTheLeft(qr.householderQ());
   condensed.terms.resize(square, blocks * count);
   for (Index block = 0; block < blocks; ++block)
-    condensed.terms.middleCols(block * count, count) = left.middleRows(block * square, square);
+    condensed.terms.middleCols(block * count, count) =
+        svd.left.block(block * square, 0, square, count);
 }
 
 /// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
