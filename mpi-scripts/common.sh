@@ -2,7 +2,7 @@
 
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-packages=(g++ cmake make pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-bin libmetis-dev
+packages=(g++ cmake ninja-build pkg-config petsc-dev slepc-dev libopenmpi-dev openmpi-bin libmetis-dev
   libhdf5-dev libhdf5-openmpi-dev libeigen3-dev libopenblas-dev libyaml-cpp-dev libgtest-dev
   python3-numpy python3-matplotlib python3-h5py)
 
@@ -43,6 +43,8 @@ install_missing() {
 # build TARGET...
 build() {
   say "building in build/ (Release) with $cores cores: $*"
-  cmake -S . -B build -DCMAKE_BUILD_TYPE=Release >/dev/null
+  local generator=() # a folder that is there keeps its own
+  [[ -e build/CMakeCache.txt ]] || generator=(-G Ninja)
+  cmake -S . -B build "${generator[@]}" -DCMAKE_BUILD_TYPE=Release >/dev/null
   cmake --build build --parallel "$cores" --target "$@"
 }

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
@@ -67,7 +68,7 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   bases.reduction = choice.reduction;
   bases.mended = choice.exact;
   add_modes(problem, samples, options.pod, bases, stages);
-  bases.nodal_dual = nodal_dual_basis(problem, multipliers);
+  bases.nodal_dual = nodal_dual_basis(problem, multipliers, options.cone.level);
   const Matrix &nodal = bases.nodal_dual;
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);

@@ -1,6 +1,7 @@
 #include "rbvi/mor/reduce.hpp"
 
 #include "bases/cone_tools.hpp"
+#include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/mor/separation/stiffness_change.hpp"

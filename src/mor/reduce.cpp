@@ -1,7 +1,7 @@
 #include "rbvi/mor/stages.hpp"
 
-#include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
 #include "rbvi/par/turns.hpp"
 #include "rbvi/rom/self_check.hpp"
@@ -14,14 +14,6 @@
 namespace rbvi {
 
 namespace {
-
-/// ConeOptions::hats of its level. Collective.
-SparseMatrix hats_of_level(const Problem &problem, int level) {
-  const std::unique_ptr<Problem> coarse = problem.coarser(level);
-  if (!coarse)
-    throw bad_input("the mesh has no level that is " + std::to_string(level) + " times coarser");
-  return interpolation(coarse->contact(), problem.contact());
-}
 
 /// Some rows of a matrix, as the columns of the result.
 Matrix rows_as_columns(const SparseMatrix &matrix, const std::vector<Index> &rows) {
@@ -172,25 +164,6 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
       append_representers(riesz, bases.pga.representers, bases.pod.basis, 1e-10).size());
 }
 
-Mu box_centre(const ParameterSpace &space) {
-  Mu mu;
-  for (int i = 0; i < space.size(); ++i)
-    mu.push_back((space.at(i).lower + space.at(i).upper) / 2);
-  return mu;
-}
-
-Matrix multipliers_of(const std::vector<Sample> &samples) {
-  if (samples.empty()) throw failure("there is no sample to build a basis from");
-  Matrix lambda(samples.front().lambda.size(), static_cast<Index>(samples.size()));
-  for (std::size_t p = 0; p < samples.size(); ++p)
-    lambda.col(static_cast<Index>(p)) = samples[p].lambda;
-  if ((lambda.array() == 0).all())
-    throw failure(
-        "all multipliers are zero: there is no contact at any training mu, and nothing to "
-        "reduce; widen the parameter box or move the obstacle");
-  return lambda;
-}
-
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
                ReducedBases &bases, StageTable &stages) {
   const Stage stage(stages, stage::pod);
@@ -310,7 +283,8 @@ CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
 
 /// A pair whose answers are checked. The zones of a hybrid cone are those of the training samples:
 /// where contact opens or closes between them, its layers of nodes are doubled until every query is
-/// answered, or until all nodes are in the zones; the narrowest ring that answers most is kept.
+/// answered, or until all nodes are in the zones; the narrowest ring that answers most is kept. A
+/// training set without the corners of the box does not know how far contact reaches: at least one.
 /// A bound of the size of the cone bounds its ring as well; without supremizers its ring is not why
 /// queries have no answer.
 void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
@@ -318,6 +292,9 @@ void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOpt
   constexpr int widest = 64;
   const bool widens = options.cone.type == ConeType::hybrid && options.cone.max_size == 0 &&
                       will_run(result.stages, stage::pga);
+  if (widens && options.cone.ring == 0 &&
+      !holds_corners(problem.scene().parameters, parameters_of(samples)))
+    options.cone.ring = 1;
   // One pair at a time: its fields are as large as the mesh.
   CheckedPair pair = checked_pair(problem, samples, options, result.affine, result.stages);
   const auto hats = [&] { return pair.bases.cone.basis.generators.cols(); };

@@ -188,7 +188,11 @@ void add_law_rows(const Scene &scene, const ReduceOptions &options, const Reduct
   rows.push_back(condensation_row(options, made));
   if (reduction == MultiplierReduction::condensed)
     rows.push_back({pair_stages,
-                    "the multipliers keep a coefficient at every node: nothing to stabilise",
+                    "the multipliers keep a coefficient at every node" +
+                        (options.cone.level > 0 ? " of the mesh refined " +
+                                                      counted(options.cone.level, "time") + " less"
+                                                : std::string()) +
+                        ": nothing to stabilise",
                     skipped});
   else
     rows.push_back({stage::multipliers, multiplier_text(options, made)});

@@ -182,10 +182,9 @@ TEST_P(BadInput, OptionsOfBases) {
   refuse({{offline + "-cone_ring -1", "use a number from 0 to 1000"},
           {offline + "-cone_ring 0.5", "must be an integer"},
           {offline + "-cone_level 1", "-mesh_refine is 0"},
-          {offline + "-cone_level 1 -mesh_refine 1 -cone_type nodal", "is for -cone_type hybrid"},
-          {"offline -scene rigid_disk -out run -mesh_refine 1 -cone_level 1 -cone_type hybrid "
-           "-multiplier_reduction collocated",
-           "is for -cone_type hybrid"},
+          {offline + "-cone_level 1 -mesh_refine 1 -cone_type nodal", "use -cone_type hybrid"},
+          {"offline -scene rigid_disk -formulation nitsche -out run -mesh_refine 1 -cone_level 1",
+           "Nitsche's method has no multipliers"},
           {offline + "-pga_enrichment both", "use one of decorrelated, online, offline"},
           {offline + "-pga_product w", "use one of v, energy"},
           {offline + "-pga_enrichment online -pga_product energy", "leave out -pga_product energy"},

@@ -28,8 +28,9 @@ struct Reduced {
     reduce(options);
   }
   /// The snapshots alone.
-  Reduced(const Scene &scene, const std::string &training, MPI_Comm comm = PETSC_COMM_WORLD)
-      : problem(comm, scene, {}),
+  Reduced(const Scene &scene, const std::string &training, MPI_Comm comm = PETSC_COMM_WORLD,
+          const MeshOptions &mesh = {})
+      : problem(comm, scene, mesh),
         samples(solve_all(problem, parse_set(problem.scene().parameters, training))) {}
   void reduce(const ReduceOptions &options) {
     Reduction made = rbvi::reduce(problem, samples, options);

@@ -146,6 +146,18 @@ TEST(EnergySupremizers, AreExactWhereADoesNotVary) {
   EXPECT_GE(lambda_v, 1e3 * std::max(lambda, 1e-9));
 }
 
+/// Contact reaches farthest at the corners of the box: who has not seen it there begins with a
+/// ring.
+TEST(HybridCone, NeedsNoRingWhereTrainingHoldsTheCornersOfTheBox) {
+  const SceneOptions coarse{{"circle_edges", "24"}};
+  ReduceOptions options;
+  options.cone.ring = 0;
+  Reduced corners(make_scene("membrane_obstacle", coarse), "grid:3,3,3");
+  EXPECT_EQ(reduce(corners.problem, corners.samples, options).ring, 0);
+  Reduced inside(make_scene("membrane_obstacle", coarse), "random:27:1");
+  EXPECT_GE(reduce(inside.problem, inside.samples, options).ring, 1);
+}
+
 /// The same with the hybrid cone: on the permanent nodes q has the four terms of the obstacle and
 /// the load, so that few modes are exact.
 TEST(EnergySupremizers, HybridIsExactAsWell) {

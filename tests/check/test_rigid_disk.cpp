@@ -7,9 +7,11 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
 
 #include <gtest/gtest.h>
 
@@ -109,6 +111,47 @@ TEST(CondensedModel, NeedsNoSnapshotOfTheMultipliers) {
   const Worst few = errors_of(r, options, unseen);
   EXPECT_LE(few.lambda, 1e-2) << "what three radii miss is the gap, not the law";
   EXPECT_LE(few.tangential, 1e-2);
+}
+
+/// The full problem with multipliers that are hat functions of the coarser mesh: its body is asked
+/// for what it does under those of the model, and the laws are judged at the coarser nodes.
+TEST(CondensedModel, KeepsTheLawOnTheHatsOfACoarserMesh) {
+  MeshOptions fine;
+  fine.refine = 1;
+  Reduced r(disk("radius", {{"arc_edges", "20"}}), "grid:13", PETSC_COMM_WORLD, fine);
+  ReduceOptions options = with(MultiplierReduction::condensed);
+  options.cone.level = 1;
+  r.reduce(options);
+  check_model(r.model);
+  const Problem coarse(PETSC_COMM_WORLD, disk("radius", {{"arc_edges", "20"}}), {});
+  const Matrix &hats = r.model.dual_basis;
+  const Index nodes = coarse.contact().nodes();
+  EXPECT_EQ(hats.cols(), 2 * ((nodes + 1) / 2)) << "pairs of mirror images, of two components";
+  EXPECT_EQ(hats.rows(), 2 * (2 * nodes - 1));
+  OnlineSolver online(r.model);
+  for (const Sample &truth : solve_all(r.problem, {{0.83}, {1.21}})) {
+    const ReducedSolution solution = online.solve(truth.mu);
+    const Operators &op = r.problem.assemble(truth.mu);
+    ReplicatedSolver body(op.a, r.problem.trace(), "hf_");
+    const Vector lambda = hats * solution.x;
+    const Vector w = hats.transpose() * (op.g + op.b * body.responses(op.b.transpose() * lambda));
+    const Vector &x = solution.x;
+    const Index k = hats.cols() / 2;
+    EXPECT_GE(x.head(k).minCoeff(), 0);
+    EXPECT_GE(w.head(k).minCoeff(), -1e-8 * w.maxCoeff());
+    EXPECT_LE(x.head(k).cwiseProduct(w.head(k)).cwiseAbs().maxCoeff(),
+              1e-8 * x.maxCoeff() * w.maxCoeff());
+    for (Index i = 0; i < k; ++i) {
+      const double bound = r.problem.contact().interfaces.front()->bound(solution.mu).value(x[i]);
+      EXPECT_LE(std::abs(x[k + i]), bound * (1 + 1e-12));
+      if (std::abs(x[k + i]) < bound * (1 - 1e-8)) {
+        EXPECT_NEAR(w[k + i], 0, 1e-8 * w.cwiseAbs().maxCoeff()) << "node " << i << " sticks";
+      }
+    }
+    const Outputs found = online.outputs(truth.mu, solution);
+    EXPECT_NEAR(*found.energy, *truth.outputs.energy, 1e-3 * *truth.outputs.energy);
+    EXPECT_NEAR(*found.reaction, *truth.outputs.reaction, 1e-3 * *truth.outputs.reaction);
+  }
 }
 
 TEST(CondensedModel, DuplicatedSamplesChangeNothing) {

@@ -1,6 +1,7 @@
 // The condensed operator of contact with a rigid support, against B A^-1 B^T at single mu.
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/separation/condensed.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -130,6 +131,23 @@ TEST(NodalDualBasis, FoldsMirrorImagesOfSymmetricMultipliersOnly) {
 
   lambda(3, 0) += 1;
   EXPECT_EQ(nodal_dual_basis(problem, lambda).cols(), 2 * vertices);
+}
+
+/// Values of a linear function at the coarser nodes make it at all nodes, of every component.
+TEST(NodalDualBasis, HatsOfACoarserMeshReproduceItsFunctions) {
+  MeshOptions fine;
+  fine.refine = 1;
+  Problem problem(PETSC_COMM_WORLD, disk("radius"), fine);
+  const Problem coarse(PETSC_COMM_WORLD, disk("radius"), {});
+  Matrix lambda = Matrix::Zero(problem.dual_size(), 1);
+  lambda(0, 0) = 1; // not symmetric: nothing is folded
+  const Matrix hats = nodal_dual_basis(problem, lambda, 1);
+  ASSERT_EQ(hats.cols(), coarse.dual_size());
+  EXPECT_GE(hats.minCoeff(), 0);
+  EXPECT_LE((hats.rowwise().sum() - Vector::Ones(hats.rows())).cwiseAbs().maxCoeff(), 1e-14);
+  const Matrix values = Matrix::Random(hats.cols(), 3);
+  EXPECT_LE((nodal_coefficients(hats, hats * values) - values).norm(), 1e-13 * values.norm());
+  EXPECT_THROW((void)nodal_dual_basis(problem, lambda, 2), Error);
 }
 
 } // namespace

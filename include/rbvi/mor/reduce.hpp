@@ -119,6 +119,9 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
 /// The middle of the box. Free parameters.
 Mu box_centre(const ParameterSpace &space);
 
+/// Whether every corner of the box of the free parameters is a training point.
+bool holds_corners(const ParameterSpace &space, const std::vector<Mu> &training);
+
 /// POD of the displacements, as the stage "POD". Collective.
 void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOptions &options,
                ReducedBases &bases, StageTable &stages);

@@ -11,7 +11,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -24,26 +23,6 @@ constexpr double response_tolerance = 1e-6;
 constexpr int most_responses = 200; ///< factorisations
 /// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
 constexpr double load_tolerance = 1e-9;
-
-/// Whether node i is the mirror image of node count - 1 - i.
-bool mirrored(const std::vector<Point> &points) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point &x = points[i], &y = points[points.size() - 1 - i];
-    if (std::hypot(x[0] + y[0], x[1] - y[1]) > 1e-12) return false;
-  }
-  return true;
-}
-
-/// lambda_n even, lambda_tau odd about the middle, to 1e-8 of the largest of all.
-bool symmetric(const Matrix &snapshots, Index nodes, double largest) {
-  for (Index first = 0; first < snapshots.rows(); first += nodes) {
-    const Matrix part = snapshots.middleRows(first, nodes);
-    const double sign = first == 0 ? 1 : -1;
-    const double defect = (part - sign * part.colwise().reverse()).cwiseAbs().maxCoeff();
-    if (defect > 1e-8 * largest) return false;
-  }
-  return true;
-}
 
 /// The parameters of a that are free, each with so many points.
 std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
@@ -143,41 +122,6 @@ std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &
 }
 
 } // namespace
-
-Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots) {
-  const Contact &contact = problem.contact();
-  const double largest = snapshots.cwiseAbs().maxCoeff();
-  bool halves = is_symmetric(problem.scene());
-  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
-    const DualSpace &dual = contact.interfaces[i]->dual();
-    halves =
-        halves && dual.components <= 2 && mirrored(dual.points) &&
-        symmetric(snapshots.middleRows(contact.first_row[i], dual.size()), dual.nodes(), largest);
-  }
-  std::vector<Eigen::Triplet<double>> entries;
-  Index column = 0;
-  for (int component = 0; component < 3; ++component) // normal multipliers first
-    for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
-      const DualSpace &dual = contact.interfaces[i]->dual();
-      if (component >= dual.components) continue;
-      const Index nodes = dual.nodes(), first = contact.first_row[i] + component * nodes;
-      const Index count = halves ? (nodes + 1) / 2 : nodes;
-      for (Index k = 0; k < count; ++k, ++column) {
-        if (halves && nodes - 1 - k != k)
-          entries.emplace_back(first + nodes - 1 - k, column, component == 0 ? 1 : -1);
-        entries.emplace_back(first + k, column, 1);
-      }
-    }
-  Matrix basis = Matrix::Zero(problem.dual_size(), column);
-  for (const auto &entry : entries)
-    basis(entry.row(), entry.col()) = entry.value();
-  return basis;
-}
-
-Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers) {
-  return basis.colwise().squaredNorm().cwiseInverse().asDiagonal() *
-         (basis.transpose() * multipliers);
-}
 
 CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,

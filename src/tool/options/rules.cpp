@@ -54,7 +54,7 @@ void check_dual_basis(const ToolOptions &options) {
     return;
   for (const Option &option : tool_options())
     if ((option.name.starts_with("cone_") || option.name.starts_with("pga_")) &&
-        is_given(option.name))
+        option.name != "cone_level" && is_given(option.name))
       throw bad_input("-" + option.name +
                       " is for a reduced dual basis, and -multiplier_reduction condensed, the "
                       "default here, keeps every node: add -multiplier_reduction " +
@@ -64,10 +64,14 @@ void check_dual_basis(const ToolOptions &options) {
 void check_cone_level(const ToolOptions &options) {
   const ConeOptions &cone = options.reduce.cone;
   if (cone.level == 0) return;
-  if (cone.type != ConeType::hybrid || keeps_law(options.reduce.multipliers.reduction))
-    throw bad_input(
-        "-cone_level is for -cone_type hybrid of -multiplier_reduction cone: it chooses "
-        "its hat functions");
+  const bool law = keeps_law(options.reduce.multipliers.reduction);
+  if (!law && cone.type != ConeType::hybrid)
+    throw bad_input("-cone_level chooses hat functions, and -cone_type " +
+                    cone_type_names()[static_cast<std::size_t>(cone.type)] +
+                    " has none: use -cone_type hybrid");
+  if (by_nitsche(options.scene))
+    throw bad_input("-cone_level is for the mixed formulation: Nitsche's method has no "
+                    "multipliers");
   if (cone.level > options.mesh.refine)
     throw bad_input("-cone_level " + std::to_string(cone.level) +
                     " takes the hat functions of a mesh with so many refinements less, and "

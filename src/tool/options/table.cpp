@@ -30,8 +30,12 @@ bool with_nitsche(const ToolOptions &options) {
   return by_nitsche(options.scene);
 }
 
+bool mixed(const ToolOptions &options) {
+  return !by_nitsche(options.scene);
+}
+
 bool with_law(const ToolOptions &options) {
-  return !by_nitsche(options.scene) && keeps_law(options.reduce.multipliers.reduction);
+  return mixed(options) && keeps_law(options.reduce.multipliers.reduction);
 }
 
 bool with_reduced_law(const ToolOptions &options) {
@@ -40,7 +44,7 @@ bool with_reduced_law(const ToolOptions &options) {
 }
 
 bool with_dual_basis(const ToolOptions &options) {
-  return !by_nitsche(options.scene) && (!with_law(options) || with_reduced_law(options));
+  return mixed(options) && (!with_law(options) || with_reduced_law(options));
 }
 
 /// Models keep the value where `when` says so.
@@ -242,11 +246,11 @@ std::vector<Option> of_bases() {
       kept(with_dual_basis, number("cone_feasibility", relative_error, AT(reduce.cone.feasibility),
                                    "mcpg: tolerated negative part, as a fraction of the maximum")),
       kept(with_dual_basis, number("cone_ring", {0, 1000}, AT(reduce.cone.ring),
-                                   "nodal, hybrid: layers of nodes around moving contact; hybrid "
-                                   "doubles them until queries are answered")),
-      kept(with_dual_basis,
-           number("cone_level", refinements, AT(reduce.cone.level),
-                  "hybrid: hat functions of the mesh with so many refinements less"))};
+                                   "nodal, hybrid: layers of nodes around moving contact; hybrid: "
+                                   "1 or more where training has no corners, doubled as needed")),
+      kept(mixed, number("cone_level", refinements, AT(reduce.cone.level),
+                         "hybrid, and laws at nodes: hat functions of the mesh with so many "
+                         "refinements less"))};
 }
 
 std::vector<Option> of_stability() {
@@ -303,23 +307,19 @@ std::vector<Option> of_multipliers() {
       kept(with_law, number("condensed_tolerance", relative_error, AT(reduce.condensed.tolerance),
                             "relative error of the condensed operator as a function of mu")),
       number("response_tolerance", relative_error, AT(reduce.condensed.responses),
-             "responses A^-1 B^T of the multipliers join the displacement modes, those of further "
-             "A down to this remainder; 0: none"),
+             "responses A^-1 B^T join the modes, those of further A to this remainder; 0: none"),
       kept(with_law,
            choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
                   AT(reduce.multipliers.reduction), "how the multipliers are reduced")),
       flag("multiplier_exact", AT(reduce.multipliers.exact),
-           "collocated, cones, joint: answers that break the law at some node are mended by exact "
-           "steps on the condensed operator"),
+           "collocated, cones, joint: exact steps mend answers that break the law at some node"),
       kept(with_reduced_law,
            number("tangential_tolerance", relative_error, AT(reduce.multipliers.tangential),
-                  "relative error of the modes of lambda_tau (collocated), of both multipliers "
-                  "(joint)")),
+                  "relative error of the modes of lambda_tau (collocated) or of both (joint)")),
       number("joint_extra_nodes", size, AT(reduce.multipliers.extra_nodes),
              "joint: collocation nodes beyond the number of modes"),
       number("gcns_tolerance", positive, AT(reduce.gcns.tolerance),
-             "collocated: e_GCNS at which the selection of nodes stops; 0: goes on to all, keeps "
-             "the best"),
+             "collocated: e_GCNS at which nodes are enough; 0: goes on to all, keeps the best"),
       number("gcns_max_nodes", size, AT(reduce.gcns.max_nodes),
              "collocated: most collocation nodes; 0: no bound")};
 }

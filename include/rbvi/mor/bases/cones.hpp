@@ -62,10 +62,10 @@ struct ConeOptions {
   int max_size = 0;        ///< 0: no bound but the number of snapshots; nodal: not used
   double feasibility = 0;  ///< mcpg, line 9: theta - Upsilon >= -feasibility * max theta
   int ring = 1;            ///< nodal, hybrid: layers of neighbours on either side of moving contact
-  /// hybrid: dual dofs x any number, >= 0, rows of sum 1, in place of hat functions of single nodes:
-  /// those of a mesh that is `level` times coarser (contact/transfer.hpp).
-  SparseMatrix hats{};
+  /// Hat functions of the mesh with so many refinements less in place of those of nodes: hybrid,
+  /// and in place of the nodes where the law of contact is kept at them.
   int level = 0;
+  SparseMatrix hats{}; ///< hybrid: those of `level` (hats_of_level); dual dofs x any number
 };
 
 /// `snapshots`: dual dofs x P, entries >= 0; `product`: Gram matrix of W, symmetric positive

@@ -17,14 +17,6 @@ struct CondensedOptions {
   double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
 };
 
-/// Multipliers of mirror images in one column each where the scene is symmetric, the mesh is, and
-/// the multipliers in `snapshots` (dual dofs x P) are to 1e-8; else one column for each dual dof.
-/// Columns for lambda_n first, as many again with friction.
-Matrix nodal_dual_basis(const Problem &problem, const Matrix &snapshots);
-
-/// Coefficients of multipliers (dual dofs x P) in a basis of disjoint columns.
-Matrix nodal_coefficients(const Matrix &basis, const Matrix &multipliers);
-
 /// Appends to the modes the responses of the body to the terms of F, which the condensed operator
 /// does not see: the gap without multipliers is that of Galerkin's method in the modes. `training`:
 /// what `affine` was made at. Returns how many. Collective.

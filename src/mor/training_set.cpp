@@ -1,0 +1,46 @@
+// What a reduction asks of its training set.
+#include "rbvi/mor/reduce.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+Mu box_centre(const ParameterSpace &space) {
+  Mu mu;
+  for (int i = 0; i < space.size(); ++i)
+    mu.push_back((space.at(i).lower + space.at(i).upper) / 2);
+  return mu;
+}
+
+bool holds_corners(const ParameterSpace &space, const std::vector<Mu> &training) {
+  const auto is_at = [&](const Mu &mu, unsigned corner) {
+    for (int i = 0; i < space.size(); ++i) {
+      const Parameter &p = space.at(i);
+      const double bound = (corner >> i & 1U) != 0 ? p.upper : p.lower;
+      if (std::abs(mu[static_cast<std::size_t>(i)] - bound) > 1e-9 * (p.upper - p.lower))
+        return false;
+    }
+    return true;
+  };
+  for (unsigned corner = 0; corner < 1U << space.size(); ++corner)
+    if (std::ranges::none_of(training, [&](const Mu &mu) { return is_at(mu, corner); }))
+      return false;
+  return true;
+}
+
+Matrix multipliers_of(const std::vector<Sample> &samples) {
+  if (samples.empty()) throw failure("there is no sample to build a basis from");
+  Matrix lambda(samples.front().lambda.size(), static_cast<Index>(samples.size()));
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    lambda.col(static_cast<Index>(p)) = samples[p].lambda;
+  if ((lambda.array() == 0).all())
+    throw failure(
+        "all multipliers are zero: there is no contact at any training mu, and nothing to "
+        "reduce; widen the parameter box or move the obstacle");
+  return lambda;
+}
+
+} // namespace rbvi
