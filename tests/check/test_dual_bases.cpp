@@ -146,14 +146,18 @@ TEST(EnergySupremizers, AreExactWhereADoesNotVary) {
   EXPECT_GE(lambda_v, 1e3 * std::max(lambda, 1e-9));
 }
 
-/// Contact reaches farthest at the corners of the box: who has not seen it there begins with a
-/// ring.
+/// Contact reaches farthest at the corners of the box: a set without them begins with a ring.
 TEST(HybridCone, NeedsNoRingWhereTrainingHoldsTheCornersOfTheBox) {
   const SceneOptions coarse{{"circle_edges", "24"}};
   ReduceOptions options;
   options.cone.ring = 0;
   Reduced corners(make_scene("membrane_obstacle", coarse), "grid:3,3,3");
   EXPECT_EQ(reduce(corners.problem, corners.samples, options).ring, 0);
+  const ParameterSpace &space = corners.problem.scene().parameters;
+  std::vector<Mu> set = corners.mus();
+  EXPECT_TRUE(holds_corners(space, set));
+  set.pop_back(); // the last corner of the grid
+  EXPECT_FALSE(holds_corners(space, set));
   Reduced inside(make_scene("membrane_obstacle", coarse), "random:27:1");
   EXPECT_GE(reduce(inside.problem, inside.samples, options).ring, 1);
 }

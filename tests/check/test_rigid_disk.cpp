@@ -144,6 +144,8 @@ TEST(CondensedModel, KeepsTheLawOnTheHatsOfACoarserMesh) {
     for (Index i = 0; i < k; ++i) {
       const double bound = r.problem.contact().interfaces.front()->bound(solution.mu).value(x[i]);
       EXPECT_LE(std::abs(x[k + i]), bound * (1 + 1e-12));
+      EXPECT_LE(x[k + i] * w[k + i], 1e-8 * x.maxCoeff() * w.cwiseAbs().maxCoeff())
+          << "node " << i << ": friction opposes the slip";
       if (std::abs(x[k + i]) < bound * (1 - 1e-8)) {
         EXPECT_NEAR(w[k + i], 0, 1e-8 * w.cwiseAbs().maxCoeff()) << "node " << i << " sticks";
       }

@@ -64,14 +64,14 @@ void check_dual_basis(const ToolOptions &options) {
 void check_cone_level(const ToolOptions &options) {
   const ConeOptions &cone = options.reduce.cone;
   if (cone.level == 0) return;
+  if (by_nitsche(options.scene))
+    throw bad_input("-cone_level is for the mixed formulation: Nitsche's method has no "
+                    "multipliers");
   const bool law = keeps_law(options.reduce.multipliers.reduction);
   if (!law && cone.type != ConeType::hybrid)
     throw bad_input("-cone_level chooses hat functions, and -cone_type " +
                     cone_type_names()[static_cast<std::size_t>(cone.type)] +
                     " has none: use -cone_type hybrid");
-  if (by_nitsche(options.scene))
-    throw bad_input("-cone_level is for the mixed formulation: Nitsche's method has no "
-                    "multipliers");
   if (cone.level > options.mesh.refine)
     throw bad_input("-cone_level " + std::to_string(cone.level) +
                     " takes the hat functions of a mesh with so many refinements less, and "
