@@ -52,14 +52,15 @@ void wait_for_signal(bool speaks) {
     count = ::read(from_handler, &signal, 1);
   while (count < 0 && errno == EINTR);
   if (count != 1) return;
-  // mpirun kills after a second: the line does not wait for a slow disk.
-  const bool quiet = stop_writing(std::chrono::milliseconds(100));
+  // mpirun kills after a second: the line does not wait for a slow disk, nor for a file that is
+  // being written.
+  (void)stop_writing(std::chrono::milliseconds(0));
   if (speaks) {
     say("rbvi: interrupted" + progress());
     // What a rank says last, mpirun loses at times unless the rank is still there when it is read.
     if (isatty(STDERR_FILENO) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(200));
   }
-  if (!quiet) (void)stop_writing(std::chrono::milliseconds(500));
+  (void)stop_writing(std::chrono::milliseconds(600));
   _exit(128 + signal);
 }
 

@@ -3,6 +3,7 @@
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 namespace rbvi {
 
@@ -35,10 +36,10 @@ SharedQueue::SharedQueue(MPI_Comm world, const Groups &groups, int count)
     : groups_(groups), count_(count), runs_(guided_runs(count, groups.count())) {
   const int words = rank_of(world) == 0 ? static_cast<int>(began) + groups.count() : 0;
   constexpr int size = sizeof(std::int64_t);
-  std::int64_t *values = nullptr;
-  MPI_Win_allocate(words * size, size, MPI_INFO_NULL, world, &values, &window_);
+  MPI_Win_allocate(words * size, size, MPI_INFO_NULL, world, &words_, &window_);
+  if (words == 0) words_ = nullptr;
   MPI_Win_lock_all(MPI_MODE_NOCHECK, window_);
-  std::fill_n(values, words, 0);
+  std::fill_n(words_, words, 0);
   MPI_Win_sync(window_);
   MPI_Barrier(world);
   start_ = MPI_Wtime();
@@ -100,6 +101,10 @@ QueueState SharedQueue::state() const {
     if (*word != 0)
       state.running.push_back(1e-9 * static_cast<double>(std::max<std::int64_t>(0, time - *word)));
   return state;
+}
+
+int SharedQueue::done_here() const {
+  return words_ == nullptr ? 0 : static_cast<int>(std::atomic_ref(words_[done]).load());
 }
 
 double seconds_left(const QueueState &state, int count, int groups) {

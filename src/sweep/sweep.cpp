@@ -186,20 +186,30 @@ void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directo
   });
 }
 
-/// How far an interrupted sweep came, as its files say.
-void tell_when_interrupted(const std::vector<Mu> &set, const fs::path &directory) {
-  std::vector<fs::path> files;
-  for (const Mu &mu : set)
-    files.push_back(sample_file(directory, mu));
-  say_when_interrupted([files = std::move(files)] {
-    std::error_code ignored;
-    const auto done = std::count_if(files.begin(), files.end(), [&](const fs::path &file) {
-      return fs::exists(file, ignored);
-    });
-    return " after " + std::to_string(done) + " of " + std::to_string(files.size()) +
+/// What is said of a sweep that is interrupted: how far all groups came, also after its queue. From
+/// memory, not from files: where a slow disk holds them up, mpirun may kill before they are counted.
+class ToldWhenInterrupted {
+public:
+  ToldWhenInterrupted(const SharedQueue &queue, std::size_t samples)
+      : queue_(queue), samples_(samples) {
+    say_when_interrupted([this] { return text(); });
+  }
+  ~ToldWhenInterrupted() {
+    say_when_interrupted([last = text()] { return last; });
+  }
+  ToldWhenInterrupted(const ToldWhenInterrupted &) = delete;
+  ToldWhenInterrupted &operator=(const ToldWhenInterrupted &) = delete;
+
+private:
+  std::string text() const {
+    const std::size_t left = static_cast<std::size_t>(queue_.count() - queue_.done_here());
+    return " after " + std::to_string(samples_ - left) + " of " + std::to_string(samples_) +
            " samples: the same command goes on from there";
-  });
-}
+  }
+
+  const SharedQueue &queue_;
+  std::size_t samples_;
+};
 
 /// The line that tells how far all groups are. Returns whether they are at the end.
 bool tell(Progress &progress, const SharedQueue &queue, const Groups &groups) {
@@ -217,6 +227,7 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
                    const fs::path &directory, const Settings &settings) {
   const int rank = rank_of(world);
   SharedQueue queue(world, groups, static_cast<int>(missing.size()));
+  const ToldWhenInterrupted told(queue, set.size());
   Progress progress(groups.count() == 1 ? "samples"
                                         : "samples, " + std::to_string(groups.count()) + " groups",
                     queue.count(), rank == 0);
@@ -326,7 +337,6 @@ Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const Hf
   Sweep sweep;
   const std::vector<int> missing =
       missing_samples(world, set, directory, settings, begin, sweep.report);
-  tell_when_interrupted(set, directory);
   MPI_Barrier(world);
   const double start = MPI_Wtime();
   solve_missing(world, groups, problem, options, set, missing, directory, settings);

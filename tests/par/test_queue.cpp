@@ -38,6 +38,7 @@ TEST(SharedQueue, GivesOutEveryNumberOnce) {
       EXPECT_EQ(taken, std::vector<PetscInt>(taken.size(), 1));
       EXPECT_EQ(queue.next(), std::nullopt);
       EXPECT_EQ(queue.state().done, count);
+      EXPECT_EQ(queue.done_here(), rank_of(MPI_COMM_WORLD) == 0 ? count : 0);
       EXPECT_TRUE(queue.state().running.empty());
       EXPECT_FALSE(queue.state().stopped);
     }

@@ -49,6 +49,9 @@ public:
   /// rank of a group is enough.
   void stop();
   QueueState state() const;
+  /// Numbers that are finished, as the memory of the first rank has it; zero on the others. Without
+  /// MPI, from any thread.
+  int done_here() const;
   int count() const { return count_; }
 
 private:
@@ -58,6 +61,7 @@ private:
   const Groups &groups_;
   int count_;
   MPI_Win window_ = MPI_WIN_NULL;
+  std::int64_t *words_ = nullptr; ///< of the window, on the first rank of the world
   double start_ = 0;        ///< MPI_Wtime when all groups were there
   std::vector<int> runs_;   ///< where each run begins; behind them the count
   int first_ = 0, end_ = 0; ///< what is left of the run of this group
