@@ -50,11 +50,8 @@ ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples) {
   StageTable stages{{stage::pod, "displacements to 1e-6"}};
   add_modes(problem, samples, {.tolerance = 1e-6}, bases, stages);
   const Operators &op = problem.assemble(box_centre(problem.scene().parameters));
-  ReplicatedSolver solver(op.a, problem.trace(), "hf_");
-  const auto condensed = [&](const std::vector<Index> &which) -> Matrix { // of B A^-1 B^T
-    return op.b * solver.responses(Matrix(op.b.transpose())(Eigen::all, which));
-  };
-  bases.cone = build_cone(multipliers_of(samples), problem.w_product(), {.ring = 0}, condensed);
+  bases.cone = build_cone(multipliers_of(samples), problem.w_product(), {.ring = 0},
+                          holding(problem, op));
   return bases;
 }
 

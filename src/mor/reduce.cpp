@@ -15,25 +15,12 @@ namespace rbvi {
 
 namespace {
 
-/// Some rows of a matrix, as the columns of the result.
-Matrix rows_as_columns(const SparseMatrix &matrix, const std::vector<Index> &rows) {
-  Matrix columns = Matrix::Zero(matrix.cols(), std::ssize(rows));
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    for (SparseMatrix::InnerIterator entry(matrix, rows[k]); entry; ++entry)
-      columns(entry.col(), static_cast<Index>(k)) = entry.value();
-  return columns;
-}
-
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
                       ConeOptions options) {
   if (options.level > 0) options.hats = hats_of_level(problem, options.level);
   if (options.type != ConeType::hybrid) return build_cone(snapshots, problem.w_product(), options);
-  const Operators &op = problem.assemble(reference);
-  ReplicatedSolver solver(op.a, problem.trace(), "hf_");
-  return build_cone(snapshots, problem.w_product(), options,
-                    [&](const std::vector<Index> &which) -> Matrix {
-                      return op.b * solver.responses(rows_as_columns(op.b, which));
-                    });
+  const HoldingMultipliers hold = holding(problem, problem.assemble(reference));
+  return build_cone(snapshots, problem.w_product(), options, hold);
 }
 
 /// A copy of the modes, orthonormal in another product.

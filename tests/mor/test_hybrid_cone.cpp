@@ -18,6 +18,12 @@ namespace {
 
 using Nodes = std::vector<Index>;
 
+HoldingMultipliers by_columns(const ColumnSource &columns) {
+  return [columns](const Nodes &held, const Matrix &others) {
+    return hold_by_columns(columns, held, others);
+  };
+}
+
 /// Discrete membrane on `side`^2 free nodes pushed onto a paraboloid below its middle `inner`^2
 /// nodes: x >= 0, H x + q(mu) >= 0, complementary, with q = -u_free + depth + |y|^2 / 2 - tilt . y.
 struct Membrane {
@@ -54,6 +60,7 @@ struct Membrane {
   ColumnSource columns() const {
     return [this](const Nodes &which) { return Matrix(h(Eigen::all, which)); };
   }
+  HoldingMultipliers holding() const { return by_columns(columns()); }
   Vector multiplier(double depth, double tilt_x, double tilt_y) const {
     const Vector q = terms * Vector{{1, depth, tilt_x, tilt_y}};
     const LcpResult result = solve_lcp(columns(), q, {});
@@ -96,15 +103,17 @@ Zones zones_of(const Matrix &snapshots, Index side, int ring) {
 
 Cone hybrid(const Matrix &snapshots, const Membrane &membrane, ConeOptions options) {
   options.type = ConeType::hybrid;
-  return build_cone(snapshots, membrane.product, options, membrane.columns());
+  return build_cone(snapshots, membrane.product, options, membrane.holding());
 }
 
 double largest(const Matrix &values, const Cone &cone, const SparseMatrix &product) {
   return distances_to_cone(values, cone.basis, product, cone.modes).maxCoeff();
 }
 
-ColumnSource identity_columns(Index n) {
-  return [n](const Nodes &which) { return Matrix(Matrix::Identity(n, n)(Eigen::all, which)); };
+/// With H = I.
+HoldingMultipliers identity_holding(Index n) {
+  return by_columns(
+      [n](const Nodes &which) { return Matrix(Matrix::Identity(n, n)(Eigen::all, which)); });
 }
 
 /// 1 within `reach` of the centre of a side x side grid.
@@ -310,7 +319,7 @@ TEST(HybridCone, RingsGrowTheMovingAndErodeThePermanentNodes) {
   snapshots << square(side, 3), square(side, 5);
   for (int ring = 0; ring <= 5; ++ring) {
     const Cone cone = build_cone(snapshots, grid_mass(side),
-                                 {.type = ConeType::hybrid, .ring = ring}, identity_columns(n));
+                                 {.type = ConeType::hybrid, .ring = ring}, identity_holding(n));
     const Index inner = 3 - ring, outer = std::min<Index>(5 + ring, side / 2);
     const Vector permanent = inner >= 0 ? square(side, inner) : Vector(Vector::Zero(n));
     EXPECT_EQ(nodes_of(cone.basis.generators.rowwise().sum()),
@@ -338,7 +347,7 @@ TEST(HybridCone, AllPermanentIsAProperOrthogonalDecomposition) {
   const SparseMatrix product = grid_mass(6);
   const Matrix snapshots = moving_bumps(6, 2, 0.1).array() + 0.5;
   const Cone cone = build_cone(snapshots, product, {.type = ConeType::hybrid, .tolerance = 0},
-                               identity_columns(36));
+                               identity_holding(36));
   const ConeHistory &history = cone.history;
   const Matrix &modes = cone.modes.columns;
   EXPECT_EQ(cone.basis.generators.cols(), 0);
@@ -355,7 +364,7 @@ TEST(HybridCone, AllPermanentIsAProperOrthogonalDecomposition) {
   EXPECT_LT(history.error.back(), 1e-12);
   // Never empty, as no greedy cone is.
   EXPECT_EQ(build_cone(snapshots, product, {.type = ConeType::hybrid, .tolerance = 2},
-                       identity_columns(36))
+                       identity_holding(36))
                 .size(),
             1);
 }
@@ -367,7 +376,7 @@ TEST(HybridCone, EqualSingularValuesStayTogether) {
     const Cone cone =
         build_cone(snapshots, identity(4),
                    {.type = ConeType::hybrid, .tolerance = tolerance, .max_size = max_size},
-                   identity_columns(4));
+                   identity_holding(4));
     EXPECT_EQ(cone.history.size.back(), cone.size());
     return cone.size();
   };
@@ -412,7 +421,7 @@ TEST(HybridCone, NeedsADefiniteCondensedOperator) {
     return Matrix(-membrane.h(Eigen::all, which));
   };
   try {
-    build_cone(snapshots, membrane.product, options, negative);
+    build_cone(snapshots, membrane.product, options, by_columns(negative));
     FAIL() << "accepted";
   } catch (const Error &error) {
     EXPECT_NE(std::string(error.what()).find("-reference_mu"), std::string::npos) << error.what();

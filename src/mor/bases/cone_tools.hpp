@@ -112,7 +112,7 @@ Cone angle_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,
 Cone nmf_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options);
 Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options);
 Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
-                 const ColumnSource &condensed);
+                 const HoldingMultipliers &hold);
 
 /// Whether products are cheaper without the zeros.
 inline bool mostly_zero(const Eigen::Ref<const Matrix> &matrix) {

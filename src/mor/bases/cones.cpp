@@ -60,7 +60,7 @@ Cone projected_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,
 }
 
 Cone build_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
-                const ColumnSource &condensed) {
+                const HoldingMultipliers &hold) {
   const Matrix thetas = checked(snapshots, product);
   switch (options.type) {
   case ConeType::cpg:
@@ -73,7 +73,7 @@ Cone build_cone(const Matrix &snapshots, const SparseMatrix &product, const Cone
   case ConeType::nodal:
     return nodal_cone(thetas, product, options);
   case ConeType::hybrid:
-    return hybrid_cone(thetas, product, options, condensed);
+    return hybrid_cone(thetas, product, options, hold);
   }
   throw failure("this type of dual basis does not exist");
 }

@@ -14,8 +14,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <string>
 
@@ -92,34 +90,19 @@ SparseMatrix hats_of_nodes(Index nodes) {
   return hats;
 }
 
-/// E: permanent x moving nodes.
-Matrix continuation(const ContactZones &zones, const ColumnSource &condensed) {
+/// E times some columns on the moving nodes (permanent nodes x the same number).
+Matrix continued(const ContactZones &zones, const Matrix &on_moving, Index nodes,
+                 const HoldingMultipliers &hold) {
   if (zones.permanent.empty() || zones.moving.empty())
-    return Matrix(static_cast<Index>(zones.permanent.size()),
-                  static_cast<Index>(zones.moving.size()));
-  if (!condensed) throw failure("a hybrid cone needs columns of the condensed operator");
-  constexpr std::size_t at_a_time = 192;
-  Matrix block(std::ssize(zones.permanent), std::ssize(zones.permanent));
-  Matrix result(block.rows(), std::ssize(zones.moving)); // for now H_PM
-  for (std::size_t first = 0; first < zones.permanent.size(); first += at_a_time) {
-    const auto begin = zones.permanent.begin() + static_cast<std::ptrdiff_t>(first);
-    const std::vector<Index> some(
-        begin, begin + std::min<std::ptrdiff_t>(at_a_time, zones.permanent.end() - begin));
-    const Matrix columns = condensed(some);
-    const auto place = static_cast<Index>(first);
-    block.middleCols(place, columns.cols()) = columns(zones.permanent, Eigen::all);
-    result.middleRows(place, columns.cols()) = columns(zones.moving, Eigen::all).transpose();
-  }
-  block = ((block + block.transpose()) / 2).eval();
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(block);
-  if (factor.info() != Eigen::Success)
-    throw failure("the condensed operator is not positive definite on the nodes in permanent "
-                  "contact: try another -reference_mu");
-  factor.solveInPlace(result);
+    return Matrix::Zero(std::ssize(zones.permanent), on_moving.cols());
+  if (!hold) throw failure("a hybrid cone needs the multipliers that hold permanent contact");
+  Matrix others = Matrix::Zero(nodes, on_moving.cols());
+  others(zones.moving, Eigen::all) = on_moving;
   // Without what is round-off, for most nodes far from the moving ones all of it.
   constexpr double noise = 1e-14;
+  const Matrix result = hold(zones.permanent, others);
   const double least = noise * result.cwiseAbs().maxCoeff();
-  return result.unaryExpr([&](double e) { return std::abs(e) > least ? -e : 0.0; });
+  return result.unaryExpr([&](double e) { return std::abs(e) > least ? e : 0.0; });
 }
 
 /// Modes of what the generators leave of the snapshots, and the history of their number. `root`: of
@@ -158,7 +141,7 @@ Matrix modes_of(const Matrix &remainder, const ProductRoot &root, double largest
 } // namespace
 
 Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
-                 const ColumnSource &condensed) {
+                 const HoldingMultipliers &hold) {
   const auto [zones, functions] =
       functions_on(zones_of(snapshots, product, options.ring),
                    options.hats.size() > 0 ? options.hats : hats_of_nodes(snapshots.rows()));
@@ -166,13 +149,16 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
   if (options.max_size > 0 && options.max_size < moving)
     throw failure("the edge of contact moves over " + std::to_string(moving) +
                   " nodes: a hybrid cone needs a larger -cone_max_size, or a -cone_level");
-  const Matrix extension = continuation(zones, condensed);
+  // Of the functions and of the snapshots.
+  Matrix on_moving(std::ssize(zones.moving), moving + snapshots.cols());
+  on_moving << Matrix(functions), snapshots(zones.moving, Eigen::all);
+  const Matrix on_permanent = continued(zones, on_moving, snapshots.rows(), hold);
   // All on the nodes that the basis and the snapshots live on, the permanent ones first.
   std::vector<Index> nodes = zones.permanent;
   nodes.insert(nodes.end(), zones.moving.begin(), zones.moving.end());
   const ProductRoot root(block_of(product, nodes));
   Matrix functions_there(std::ssize(nodes), moving);
-  functions_there << extension * functions, Matrix(functions);
+  functions_there << on_permanent.leftCols(moving), on_moving.leftCols(moving);
   functions_there *= root.times(functions_there).colwise().norm().cwiseInverse().asDiagonal();
 
   Cone cone;
@@ -188,7 +174,7 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
     cone.history.reason = "round-off reached";
   } else {
     const Matrix remainder =
-        snapshots(zones.permanent, Eigen::all) - extension * snapshots(zones.moving, Eigen::all);
+        snapshots(zones.permanent, Eigen::all) - on_permanent.rightCols(snapshots.cols());
     const Matrix modes =
         modes_of(remainder, ProductRoot(block_of(product, zones.permanent)),
                  root.times(snapshots(nodes, Eigen::all)).colwise().norm().maxCoeff(), options,

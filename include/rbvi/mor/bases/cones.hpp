@@ -12,7 +12,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
-#include "rbvi/law/lcp.hpp"
+#include "rbvi/mor/bases/held_multipliers.hpp"
 
 #include <string>
 #include <vector>
@@ -72,11 +72,11 @@ struct ConeOptions {
 /// definite, with an entry for every pair of neighbouring nodes. Ties within 1e-10 relative go to
 /// the lowest index. With feasibility > 0 negative remainders are clipped, a snapshot taken can
 /// stay outside the cone and be taken again; the greedy stops when a step does not bring its own
-/// snapshot closer. `condensed` (hybrid alone): columns of B A^-1 B^T at one mu. Throws failure if
+/// snapshot closer. `hold` (hybrid alone): at one mu. Throws failure if
 /// `snapshots` is empty, all zero, not finite or has a negative entry beyond round-off, or if
 /// `product` does not fit or is not positive definite.
 Cone build_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,
-                const ColumnSource &condensed = {});
+                const HoldingMultipliers &hold = {});
 
 /// Relative distance of each column of `values` to what the cone and the modes span:
 /// |v - Pi v|_W / max_p |v_p|_W (all zero if every column is).

@@ -1,0 +1,116 @@
+#include "rbvi/mor/bases/held_multipliers.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr std::size_t at_a_time = 192; ///< columns and solves: bounds the memory
+
+/// Some rows of a matrix, as the columns of the result.
+Matrix rows_as_columns(const SparseMatrix &matrix, const std::vector<Index> &rows) {
+  Matrix columns = Matrix::Zero(matrix.cols(), std::ssize(rows));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (SparseMatrix::InnerIterator entry(matrix, rows[k]); entry; ++entry)
+      columns(entry.col(), static_cast<Index>(k)) = entry.value();
+  return columns;
+}
+
+/// A without the rows and columns of some dofs, ones on their diagonal. Collective.
+Handle<Mat> without_dofs(Mat a, const Trace &trace, const std::vector<Index> &dofs) {
+  Handle<Mat> reduced;
+  PetscInt first = 0;
+  RBVI_CALL(MatGetOwnershipRange(a, &first, nullptr));
+  std::vector<PetscInt> rows;
+  for (const PetscInt row : part_of(trace, dofs).local_row)
+    rows.push_back(first + row);
+  RBVI_CALL(MatDuplicate(a, MAT_COPY_VALUES, reduced.put()));
+  RBVI_CALL(MatZeroRowsColumns(reduced.get(), static_cast<PetscInt>(rows.size()), rows.data(), 1,
+                               nullptr, nullptr));
+  return reduced;
+}
+
+} // namespace
+
+bool holds_dofs(const SparseMatrix &b, const std::vector<Index> &held) {
+  std::vector<bool> taken(static_cast<std::size_t>(b.cols()), false);
+  for (const Index row : held) {
+    int entries = 0;
+    for (SparseMatrix::InnerIterator entry(b, row); entry; ++entry) {
+      if (entry.value() == 0) continue;
+      if (++entries > 1 || taken[static_cast<std::size_t>(entry.col())]) return false;
+      taken[static_cast<std::size_t>(entry.col())] = true;
+    }
+    if (entries == 0) return false;
+  }
+  return true;
+}
+
+Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &held,
+                       const Matrix &others) {
+  Matrix block(std::ssize(held), std::ssize(held)), result(std::ssize(held), others.cols());
+  for (std::size_t first = 0; first < held.size(); first += at_a_time) {
+    const auto begin = held.begin() + static_cast<std::ptrdiff_t>(first);
+    const std::vector<Index> some(begin,
+                                  begin + std::min<std::ptrdiff_t>(at_a_time, held.end() - begin));
+    const Matrix columns = condensed(some);
+    const auto place = static_cast<Index>(first);
+    block.middleCols(place, columns.cols()) = columns(held, Eigen::all);
+    result.middleRows(place, columns.cols()) = -columns.transpose() * others;
+  }
+  block = ((block + block.transpose()) / 2).eval();
+  const Eigen::LLT<Eigen::Ref<Matrix>> factor(block);
+  if (factor.info() != Eigen::Success)
+    throw failure("the condensed operator is not positive definite on the nodes in permanent "
+                  "contact: try another -reference_mu");
+  factor.solveInPlace(result);
+  return result;
+}
+
+Matrix hold_by_reactions(const Problem &problem, const Operators &op,
+                         const std::vector<Index> &held, const Matrix &others) {
+  const Trace &trace = problem.trace();
+  std::vector<Index> dofs;
+  Vector entries(std::ssize(held));
+  for (const Index row : held)
+    for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry) {
+      if (entry.value() == 0) continue;
+      entries[std::ssize(dofs)] = entry.value();
+      dofs.push_back(entry.col());
+    }
+  ReplicatedSolver solver(without_dofs(op.a, trace, dofs).get(), trace, "hf_");
+  Matrix result(std::ssize(held), others.cols());
+  for (Index first = 0; first < others.cols(); first += at_a_time) {
+    const Index count = std::min<Index>(at_a_time, others.cols() - first);
+    const Matrix loads = op.b.transpose() * others.middleCols(first, count);
+    Matrix free_loads = loads;
+    free_loads(dofs, Eigen::all).setZero();
+    const Handle<Mat> fields = solver.fields(free_loads);
+    Handle<Mat> forces;
+    RBVI_CALL(MatMatMult(op.a, fields.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, forces.put()));
+    const Matrix reactions = restrict_to(trace, forces.get()) - loads;
+    result.middleCols(first, count) =
+        entries.cwiseInverse().asDiagonal() * reactions(dofs, Eigen::all);
+  }
+  return result;
+}
+
+HoldingMultipliers holding(const Problem &problem, const Operators &op) {
+  return [&](const std::vector<Index> &held, const Matrix &others) {
+    if (others.cols() < std::ssize(held) && holds_dofs(op.b, held))
+      return hold_by_reactions(problem, op, held, others);
+    ReplicatedSolver solver(op.a, problem.trace(), "hf_");
+    const ColumnSource columns = [&](const std::vector<Index> &which) -> Matrix {
+      return op.b * solver.responses(rows_as_columns(op.b, which));
+    };
+    return hold_by_columns(columns, held, others);
+  };
+}
+
+} // namespace rbvi
