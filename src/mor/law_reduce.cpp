@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/mor/bases/nodal_dual_basis.hpp"
+#include "rbvi/mor/separation/answered_responses.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
@@ -73,7 +74,10 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
-    const CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
+    CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
+    const bool awaits = choice.reduction == MultiplierReduction::condensed && modes != nullptr &&
+                        awaits_answers(scene, loads, options.condensed);
+    if (awaits) modes = nullptr;
     Condensation made =
         condense(problem, loads, separable_contact(scene) ? nodal.cols() : loads.columns.cols(),
                  expand(scene.parameters, training.front()), options.condensed, modes,
@@ -83,6 +87,7 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
     if (!scene.f.empty())
       bases.responses += add_load_responses(problem, affine, training, bases.pod.basis);
     bases.factorisations = made.factorisations;
+    if (awaits) bases.awaiting = std::move(loads);
   }
   if (!will_run(stages, stage::multipliers)) return bases;
   {
@@ -110,6 +115,21 @@ void add_starts(ReducedModel &model, const Problem &problem) {
         solver.start_of(expand(problem.scene().parameters, {mu.begin(), mu.end()}), starts.col(p),
                         model.law->states.size() > 0 ? Vector(model.law->states.col(p)) : Vector());
   }
+  model.law->starts = std::move(starts);
+}
+
+void compress_responses(Problem &problem, const std::vector<Sample> &samples,
+                        const AffineOperators &affine, double tolerance, ReducedBases &bases,
+                        ReducedModel &model, StageTable &stages) {
+  timed(stages, stage::condensation, [&] {
+    bases.responses +=
+        append_answered_responses(problem, *bases.awaiting, model, tolerance, bases.pod.basis);
+    ++bases.factorisations;
+  });
+  bases.awaiting.reset();
+  const Stage stage(stages, stage::projection);
+  Matrix starts = std::move(model.law->starts);
+  model = project(problem, samples, affine, bases);
   model.law->starts = std::move(starts);
 }
 

@@ -173,6 +173,7 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
                 short_number(options.condensed.tolerance)};
   const CondensedOperator &condensed = made->bases.condensed;
   std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") + ", " +
+                     counted(made->bases.responses, "response") + ", " +
                      counted(made->bases.factorisations, "factorisation") + ", " +
                      counted(condensed.terms.cols(), "term");
   if (!condensed.axes.empty()) what += ", error " + short_number(condensed.error);

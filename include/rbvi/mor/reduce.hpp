@@ -58,9 +58,11 @@ struct ReducedBases {
   MultiplierReduction reduction = MultiplierReduction::condensed;
   bool mended = true; ///< NodalLaw::mended
   MultiplierBases multipliers;
-  int modes = 0;          ///< N
-  int supremizers = 0;    ///< S
-  int responses = 0;      ///< the law at nodes: S functions of `condense` in their place
+  int modes = 0;       ///< N
+  int supremizers = 0; ///< S
+  int responses = 0;   ///< the law at nodes: S functions of `condense` in their place
+  /// The law at nodes: the loads of which responses follow, once there are answers of the law.
+  std::optional<CondensedLoads> awaiting;
   int factorisations = 0; ///< of A, for the condensed operator
   bool online_enriched = false;
   double infsup_tolerance = 0; ///< of the greedy, where ReduceOptions asks for it
@@ -109,6 +111,11 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
 /// The law at nodes, with the condensed operator: the training multipliers that
 /// `project` has left in the model become what a query starts from. Serial.
 void add_starts(ReducedModel &model, const Problem &problem);
+/// Lets the responses that bases.awaiting waits for join the modes, by the answers of `model`,
+/// which is projected again. Collective.
+void compress_responses(Problem &problem, const std::vector<Sample> &samples,
+                        const AffineOperators &affine, double tolerance, ReducedBases &bases,
+                        ReducedModel &model, StageTable &stages);
 
 /// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
 /// functions that span the dual space, dual dofs x any number. Collective.

@@ -128,9 +128,10 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const Matrix &basis) {
   if (!separable_contact(problem.scene())) {
     const Index dofs = problem.trace().size;
-    return {Matrix::Identity(dofs, dofs), false, loaded_dofs(problem, training, multipliers)};
+    return {Matrix::Identity(dofs, dofs), true, false, loaded_dofs(problem, training, multipliers)};
   }
-  CondensedLoads loads{separated_loads(problem, affine, training, basis), affine.b_size() == 1};
+  CondensedLoads loads{separated_loads(problem, affine, training, basis), false,
+                       affine.b_size() == 1};
   if (!loads.join && affine.b.exact()) loads.dofs = loaded_dofs(problem, training, multipliers);
   return loads;
 }
@@ -162,21 +163,32 @@ public:
   Vector blocks_at(const Mu &mu) {
     ++factorisations;
     ReplicatedSolver solver(problem_.assemble(mu).a, problem_.trace(), "hf_");
-    const Matrix &loads = of_.columns;
     const bool appends =
         modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end();
-    if (!appends || !of_.join) {
-      const Matrix units = Matrix::Identity(loads.rows(), loads.rows());
-      if (appends) append(solver, units(Eigen::all, of_.dofs));
-      return blocks_of(loads.transpose() * solver.responses(loads), size_);
-    }
-    return blocks_of(loads.transpose() * append(solver, loads), size_);
+    return blocks_of(of_.columns.transpose() * responses(solver, appends), size_);
   }
 
   int factorisations = 0, appended = 0;
 
 private:
-  /// E^T A^-1 E loads.
+  /// E^T A^-1 E loads. Those that join are solved for once.
+  Matrix responses(ReplicatedSolver &solver, bool appends) {
+    const Matrix &loads = of_.columns;
+    if (!appends) return solver.responses(loads);
+    if (of_.join) return append(solver, loads);
+    const Matrix units = Matrix::Identity(loads.rows(), loads.rows());
+    const Matrix joined = append(solver, units(Eigen::all, of_.dofs));
+    if (!of_.units) return solver.responses(loads);
+    std::vector<Index> others;
+    for (Index i = 0; i < loads.rows(); ++i)
+      if (!std::binary_search(of_.dofs.begin(), of_.dofs.end(), i)) others.push_back(i);
+    Matrix result(loads.rows(), loads.rows());
+    result(Eigen::all, of_.dofs) = joined;
+    result(Eigen::all, others) = solver.responses(units(Eigen::all, others));
+    return result;
+  }
+
+  /// E^T A^-1 E loads, and what of A^-1 E loads is new.
   Matrix append(ReplicatedSolver &solver, const Matrix &loads) {
     const double least = appended == 0 ? 1e-8 : responses_;
     Matrix traces;

@@ -60,7 +60,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   options.economical = true;
   if (!problem.nodal && problem.curvature && !problem.laws.has_tangents())
     options.tolerance = 1e-8; // the change after it is of second order
-  const NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
+  NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
   if (!found.converged) throw failure(found.reason);
   if (!(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
@@ -68,9 +68,9 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   assemble_nodal(contact_, all_parameters, {found.state},
                  nodal_is_identity_ ? found.x : Vector(nodal_.transpose() * found.x),
                  answer.contact);
-  const Vector &reaction = found.reaction;
-  answer.energy = 0.5 * (reaction.dot(problem.free - found.state) - load.squaredNorm());
-  answer.u = -stiffness_.response(model_.contact_trace.transpose() * reaction);
+  answer.reaction = std::move(found.reaction);
+  answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
+  answer.u = -stiffness_.response(model_.contact_trace.transpose() * answer.reaction);
   if (load.size() > 0) answer.u += stiffness_.transposed_half_response(load);
   answer.residual = found.residual;
   answer.iterations = found.steps;

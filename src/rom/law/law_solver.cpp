@@ -221,11 +221,12 @@ LawAnswer LawSolver::solve(const FullMu &all_parameters) {
   LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
   solve_law(body, all_parameters, answer);
-  if (model_.evaluates_contact())
-    answer.u = -stiffness_.response(model_.contact_trace.transpose() *
-                                    (body.b_contact.transpose() * answer.x));
-  else
+  if (model_.evaluates_contact()) {
+    answer.reaction = body.b_contact.transpose() * answer.x;
+    answer.u = -stiffness_.response(model_.contact_trace.transpose() * answer.reaction);
+  } else {
     answer.u = -stiffness_.response(answer.theta_b, answer.x);
+  }
   if (body.load.size() > 0) answer.u += stiffness_.transposed_half_response(body.load);
   if (model_.law->condensed.terms.size() == 0)
     answer.energy = 0.5 * (stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm() -

@@ -292,10 +292,8 @@ std::vector<Option> of_multipliers() {
   const std::vector<std::string> reductions{
       "condensed on rigid supports and between two bodies, else cone",
       "a cone (-cone_type), stable by supremizers; without friction",
-      "not at all: the law of contact and friction is exact at every node (or pair of mirror "
-      "images), and the elastic body between them is reduced to its condensed operator B A^-1 B^T, "
-      "interpolated in the parameters of A. The best by orders of magnitude: see "
-      "rigid_disk/README.md",
+      "not at all: the law is exact at every node (or mirrored pair), and the body between them "
+      "is its condensed operator B A^-1 B^T, interpolated in A; the best by orders of magnitude",
       "a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, supremizers, the bound of "
       "friction at nodes chosen greedily (Algorithm 3), B^n and B^tau interpolated apart unless B "
       "is a multiple of one form: the published method; without friction the cone and B^n alone",
@@ -308,6 +306,8 @@ std::vector<Option> of_multipliers() {
                             "relative error of the condensed operator as a function of mu")),
       number("response_tolerance", relative_error, AT(reduce.condensed.responses),
              "responses A^-1 B^T join the modes, those of further A to this remainder; 0: none"),
+      number("response_compression", relative_error, AT(reduce.condensed.compression),
+             "A constant, over 300 responses: those to answers of the law, to this; 0: all"),
       kept(with_law,
            choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
                   AT(reduce.multipliers.reduction), "how the multipliers are reduced")),

@@ -15,6 +15,8 @@ struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
   double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
+  /// Of responses that are many: see append_answered_responses; 0: all of them are appended.
+  double compression = 1e-5;
 };
 
 /// Appends to the modes the responses of the body to the terms of F, which the condensed operator
@@ -31,11 +33,15 @@ struct Condensation {
 
 /// What A^-1 is asked for on the contact dofs.
 struct CondensedLoads {
-  Matrix columns;    ///< contact dofs x any number
-  bool join = false; ///< the responses to all of them can join the modes
+  Matrix columns;     ///< contact dofs x any number
+  bool units = false; ///< they are the unit loads of all contact dofs
+  bool join = false;  ///< the responses to all of them can join the modes
   /// Contact dofs the responses to whose unit loads can join the modes instead: those beside
   /// multipliers that are positive in some sample.
   std::vector<Index> dofs{};
+
+  /// Responses that can join.
+  Index joining() const { return join ? columns.cols() : std::ssize(dofs); }
 };
 
 /// Where b separates (`affine`, over the samples at `training`): its terms on the basis, side by

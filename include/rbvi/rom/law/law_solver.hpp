@@ -14,6 +14,7 @@ namespace rbvi {
 struct LawAnswer {
   Vector u, x; ///< coefficients of the primal and of the dual basis
   Vector theta_b;
+  Vector reaction; ///< B^T x on the contact dofs, where B does not separate
   double energy = 0; ///< a(u,u)/2 - f(u)
   double residual =
       0; ///< largest relative violation of the laws, at all nodes where they are known

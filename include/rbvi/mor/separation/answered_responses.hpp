@@ -1,0 +1,46 @@
+// Responses to what the law answers, in place of those to the loads of all multipliers: where A
+// does not change with mu, the law at the nodes needs no displacements, and its answers at many mu
+// say which of them there are. Their number depends on how far contact moves, not on the mesh.
+#pragma once
+
+#include "rbvi/mor/separation/condensed.hpp"
+
+namespace rbvi {
+
+/// More responses than this are compressed.
+inline constexpr Index few_responses = 300;
+
+/// Whether the responses are compressed: to at most options.compression, instead of joining one by
+/// one. `loads`: of condensed_loads.
+bool awaits_answers(const Scene &scene, const CondensedLoads &loads,
+                    const CondensedOptions &options);
+
+/// Combinations of loads whose responses come closest in the energy to those of some answers of the
+/// law.
+class ResponseDirections {
+public:
+  /// `compliance`: loads^T A^-1 loads. Throws failure where it is not positive definite.
+  explicit ResponseDirections(const Matrix &compliance);
+  /// As few as leave at most `tolerance`, relative to the largest, of each answer so far and of
+  /// `more` (loads x any number).
+  void add(const Matrix &more, double tolerance);
+  /// What they leave of the worst of `answers`, relative to the largest of those added.
+  double left(const Matrix &answers) const;
+  /// Coefficients, loads x r.
+  const Matrix &coefficients() const { return coefficients_; }
+
+private:
+  Matrix root_; ///< R with H = R^T R: the energy of loads c is |R c|^2
+  Matrix answers_, coefficients_;
+  Matrix orthonormal_; ///< R coefficients_
+  double largest_ = 0;
+};
+
+/// Appends responses to the modes, for what `model` answers at the training parameters and at
+/// random ones: a hundred at a time, until another hundred are there to the tolerance. `model`:
+/// with the condensed operator of `loads` and any modes. Returns how many. Collective. Throws
+/// failure where the law has no answer at any mu, or always new ones.
+int append_answered_responses(Problem &problem, const CondensedLoads &loads,
+                              const ReducedModel &model, double tolerance, LinearBasis &modes);
+
+} // namespace rbvi

@@ -1,0 +1,109 @@
+#include "rbvi/mor/separation/answered_responses.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/par/small_svd.hpp"
+#include "rbvi/par/turns.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
+#include "rbvi/solve/linear/replicated.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr std::size_t at_a_time = 100, most = 10000; ///< queries
+
+bool has_constant_stiffness(const Scene &scene) {
+  return std::ranges::none_of(scene.parameters.free, [&](int i) { return depends_on(scene.a, i); });
+}
+
+/// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
+Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const ReducedModel &model,
+                  const std::vector<Mu> &set) {
+  Matrix answers = Matrix::Zero(loads.columns.cols(), std::ssize(set));
+  LawSolver solver(model, problem.scene(), problem.contact());
+  take_turns(problem.comm(), set.size(), [&](std::size_t p) {
+    try {
+      const LawAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
+      answers.col(static_cast<Index>(p)) =
+          loads.units ? answer.reaction : Vector(answer.theta_b[0] * answer.x);
+    } catch (const Error &error) { // the self-check tells of such mu
+      if (error.status() == Status::bad_input) throw;
+    }
+  });
+  over_ranks(problem.comm(), MPI_SUM, answers);
+  return answers;
+}
+
+} // namespace
+
+bool awaits_answers(const Scene &scene, const CondensedLoads &loads,
+                    const CondensedOptions &options) {
+  return (loads.units || loads.join) && has_constant_stiffness(scene) && options.responses > 0 &&
+         options.compression > 0 && loads.joining() > few_responses;
+}
+
+ResponseDirections::ResponseDirections(const Matrix &compliance) {
+  const Eigen::LLT<Matrix> factor((compliance + compliance.transpose()) / 2);
+  if (factor.info() != Eigen::Success)
+    throw failure("the responses of the body to its contact loads are dependent: use "
+                  "-response_compression 0");
+  root_ = factor.matrixU();
+}
+
+void ResponseDirections::add(const Matrix &more, double tolerance) {
+  answers_.conservativeResize(more.rows(), answers_.cols() + more.cols());
+  answers_.rightCols(more.cols()) = more;
+  const SmallSvd svd = small_svd(root_.triangularView<Eigen::Upper>() * answers_);
+  const Matrix parts = svd.values.asDiagonal() * svd.right.transpose();
+  largest_ = parts.colwise().norm().maxCoeff();
+  Index count = 0;
+  while (count < svd.values.size() &&
+         parts.bottomRows(parts.rows() - count).colwise().norm().maxCoeff() > tolerance * largest_)
+    ++count;
+  orthonormal_ = svd.left.leftCols(count);
+  coefficients_ =
+      answers_ * (svd.right.leftCols(count) * svd.values.head(count).cwiseInverse().asDiagonal());
+}
+
+double ResponseDirections::left(const Matrix &answers) const {
+  const Matrix moved = root_.triangularView<Eigen::Upper>() * answers;
+  return (moved - orthonormal_ * (orthonormal_.transpose() * moved)).colwise().norm().maxCoeff() /
+         largest_;
+}
+
+int append_answered_responses(Problem &problem, const CondensedLoads &loads,
+                              const ReducedModel &model, double tolerance, LinearBasis &modes) {
+  const CondensedOperator &condensed = model.law->condensed;
+  const Index size = loads.columns.cols();
+  ResponseDirections directions((condensed.terms * condensed.shape).reshaped(size, size));
+  std::vector<Mu> set;
+  for (const auto &training : model.law->starts_mu.colwise())
+    set.emplace_back(training.begin(), training.end());
+  const Mu any = set.front();
+  Matrix answers = answers_at(problem, loads, model, set);
+  if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
+  ParameterReader random(problem.scene().parameters, "random:" + std::to_string(most) + ":29");
+  do {
+    directions.add(answers, 0.5 * tolerance);
+    set.clear();
+    for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
+      set.push_back(*mu);
+    if (set.empty())
+      throw failure("the responses to the answers of the law go on after " + std::to_string(most) +
+                    " of them: use -response_compression 0 or a larger one");
+    answers = answers_at(problem, loads, model, set);
+  } while (directions.left(answers) > tolerance);
+  ReplicatedSolver solver(problem.assemble(any).a, problem.trace(), "hf_");
+  constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
+  return static_cast<int>(
+      append_fields(solver, loads.columns * directions.coefficients(), modes, dependent, nullptr)
+          .size());
+}
+
+} // namespace rbvi
