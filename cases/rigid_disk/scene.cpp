@@ -86,11 +86,12 @@ const auto rigid_normals = plain<PointMap>("rigid_disk/rigid_normal", 1, rigid_n
 /// `from_arc`: of the point of the exact arc beside x.
 std::function<PointValue> gap_function(const std::string &kind, bool from_arc,
                                        const std::function<PointMap> &normal) {
-  return [=](const FullMu &mu, const Point &x) {
+  return [=, along_normal = kind == "ray", vertical = kind == "vertical"](const FullMu &mu,
+                                                                          const Point &x) {
     const Point at = from_arc ? on_arc(mu, x) : Point{mu[radius] * x[0], mu[radius] * x[1], 0};
     const Point p = from_support(mu, at), n = normal(mu, x);
-    if (kind == "ray") return gap_along(p, n);
-    if (kind == "vertical") {
+    if (along_normal) return gap_along(p, n);
+    if (vertical) {
       if (!(std::abs(p[0]) < 1)) throw failure("no point of the rigid disk is below the arc");
       return (std::sqrt(1 - p[0] * p[0]) - p[1]) * n[1];
     }

@@ -236,20 +236,20 @@ void EntitySum::visit_entities(const FullMu &mu, const std::vector<Point> &mappe
 }
 
 void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const {
-  const auto length = [&](Index e) {
+  Vector squared(mesh_.count());
+  for (Index e = 0; e < mesh_.count(); ++e) {
     const int *nodes = mesh_.nodes_of(e);
     const Point &a = mapped[static_cast<std::size_t>(nodes[0])],
                 &b = mapped[static_cast<std::size_t>(nodes[1])];
-    return std::hypot(b[0] - a[0], b[1] - a[1]);
-  };
-  double longest = 0;
-  for (Index e = 0; e < mesh_.count(); ++e)
-    longest = std::max(longest, length(e));
-  for (Index e = 0; e < mesh_.count(); ++e)
-    if (!(length(e) > 1e-12 * longest))
-      throw failure("edge " + std::to_string(e) +
-                    " of the contact boundary has no length, mapped at " +
-                    describe(scene_.parameters, mu));
+    squared[e] = (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);
+  }
+  Index shortest = 0;
+  if (squared.size() == 0 ||
+      squared.minCoeff<Eigen::PropagateNaN>(&shortest) > 1e-24 * squared.maxCoeff())
+    return;
+  throw failure("edge " + std::to_string(shortest) +
+                " of the contact boundary has no length, mapped at " +
+                describe(scene_.parameters, mu));
 }
 
 void EntitySum::assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,

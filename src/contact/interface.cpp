@@ -61,10 +61,11 @@ void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point
                                        ContactOperators &operators) const {
   const auto rows = static_cast<Index>(dual_.vertices.size());
   SparseMatrix b(rows, mesh_.columns);
-  b.reserve(Eigen::VectorXi::Constant(rows, mesh_.components));
+  b.reserve(rows * mesh_.components);
   operators.nodal_gap = Vector::Zero(rows);
   const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
   for (Index i = 0; i < rows; ++i) {
+    b.startVec(i);
     if (!is_wanted(wanted, i)) continue;
     const Index node = dual_.vertices[static_cast<std::size_t>(i)];
     Point displacement{};
@@ -81,11 +82,11 @@ void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point
       const Index at_node = node * mesh_.components + c;
       const double direction = at.direction[static_cast<std::size_t>(c)];
       if (const int dof = mesh_.dofs[static_cast<std::size_t>(at_node)]; dof >= 0)
-        b.insert(i, dof) = direction;
+        b.insertBackByOuterInnerUnordered(i, dof) = direction;
       if (imposed.size() > 0) operators.nodal_gap[i] -= direction * imposed[at_node];
     }
   }
-  b.makeCompressed();
+  b.finalize();
   operators.nodal_b = std::move(b);
 }
 

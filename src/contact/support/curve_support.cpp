@@ -31,7 +31,8 @@ std::vector<TracePoint> trace_points(int degree, bool lumped) {
 } // namespace
 
 double length_of(const Cell &edge) {
-  return std::hypot(edge.mapped[1][0] - edge.mapped[0][0], edge.mapped[1][1] - edge.mapped[0][1]);
+  const double x = edge.mapped[1][0] - edge.mapped[0][0], y = edge.mapped[1][1] - edge.mapped[0][1];
+  return std::sqrt(x * x + y * y);
 }
 
 CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh, Friction friction,
