@@ -82,6 +82,8 @@ std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &syste
 
 void SquareFactor::compute(const Eigen::SparseMatrix<double> &matrix) {
   constexpr double round_off = 1e-14;
+  single_ = take_single_entries(matrix);
+  if (single_) return;
   const Eigen::SparseMatrix<double> transposed = matrix.transpose();
   // A mass matrix of the active nodes, where a constraint is that of its own node.
   if ((matrix - transposed).norm() <= round_off * matrix.norm()) {
@@ -94,11 +96,31 @@ void SquareFactor::compute(const Eigen::SparseMatrix<double> &matrix) {
     throw failure("the active constraints depend on each other: try -hf_contact condensed");
 }
 
+/// Whether there is one entry in each row and column; columns_ and values_ then hold them.
+bool SquareFactor::take_single_entries(const Eigen::SparseMatrix<double> &matrix) {
+  if (matrix.nonZeros() != matrix.rows()) return false;
+  columns_.assign(at(matrix.rows()), -1);
+  values_.resize(matrix.rows());
+  for (Index column = 0; column < matrix.cols(); ++column) {
+    Eigen::SparseMatrix<double>::InnerIterator entry(matrix, column);
+    if (!entry || entry.value() == 0 || columns_[at(entry.row())] >= 0) return false;
+    columns_[at(entry.row())] = column;
+    values_[entry.row()] = entry.value();
+  }
+  return true;
+}
+
 Matrix SquareFactor::solve(const Matrix &right) const {
+  if (single_) {
+    Matrix result(right.rows(), right.cols());
+    result(columns_, Eigen::all) = values_.cwiseInverse().asDiagonal() * right;
+    return result;
+  }
   return symmetric_ ? Matrix(symmetric_->solve(right)) : Matrix(lu_->solve(right));
 }
 
 Matrix SquareFactor::solve_transposed(const Matrix &right) const {
+  if (single_) return values_.cwiseInverse().asDiagonal() * right(columns_, Eigen::all);
   return symmetric_ ? Matrix(symmetric_->solve(right)) : Matrix(lu_->transpose().solve(right));
 }
 

@@ -243,13 +243,12 @@ void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped
                 &b = mapped[static_cast<std::size_t>(nodes[1])];
     squared[e] = (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);
   }
-  Index shortest = 0;
-  if (squared.size() == 0 ||
-      squared.minCoeff<Eigen::PropagateNaN>(&shortest) > 1e-24 * squared.maxCoeff())
-    return;
-  throw failure("edge " + std::to_string(shortest) +
-                " of the contact boundary has no length, mapped at " +
-                describe(scene_.parameters, mu));
+  const double least = 1e-24 * (squared.size() > 0 ? squared.maxCoeff() : 0);
+  for (Index e = 0; e < mesh_.count(); ++e)
+    if (!(squared[e] > least))
+      throw failure("edge " + std::to_string(e) +
+                    " of the contact boundary has no length, mapped at " +
+                    describe(scene_.parameters, mu));
 }
 
 void EntitySum::assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,

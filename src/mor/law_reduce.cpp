@@ -76,7 +76,7 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
     LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
     CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
     const bool awaits = choice.reduction == MultiplierReduction::condensed && modes != nullptr &&
-                        awaits_answers(scene, loads, options.condensed);
+                        awaits_answers(problem, loads, options.condensed);
     if (awaits) modes = nullptr;
     Condensation made =
         condense(problem, loads, separable_contact(scene) ? nodal.cols() : loads.columns.cols(),

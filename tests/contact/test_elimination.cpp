@@ -27,6 +27,22 @@ std::vector<Index> range(Index first, Index count) {
   return list;
 }
 
+/// Meets the constraints whatever the coupled dofs are, and so does its transpose.
+void expect_eliminates(const Elimination &elimination, const SparseMatrix &c,
+                       const std::vector<Index> &pivots) {
+  Vector u = Vector::LinSpaced(dofs, -1, 2);
+  const Vector right = Vector::LinSpaced(c.rows(), 3, -4);
+  u(pivots) = elimination.pivot_values(right, u(elimination.coupled()));
+  EXPECT_LE((c * u - right).norm(), 1e-14 * right.norm());
+
+  const Matrix c_p = Matrix(c)(Eigen::all, pivots);
+  const Vector r = Vector::LinSpaced(c.rows(), 1, 2);
+  const Vector y = elimination.multipliers(r);
+  EXPECT_LE((c_p.transpose() * y - r).norm(), 1e-14 * r.norm());
+  const Vector carried = -Matrix(c)(Eigen::all, elimination.coupled()).transpose() * y;
+  EXPECT_LE((elimination.carried_over(r) - carried).norm(), 1e-14 * carried.norm());
+}
+
 class EliminationOf : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(SymmetricAndNot, EliminationOf, testing::Values(0.0, 0.3));
 
@@ -35,25 +51,29 @@ TEST_P(EliminationOf, MeetsTheConstraintsAndItsTranspose) {
   const std::vector<Index> pivots = range(1, 6);
   const Elimination elimination(c, pivots);
   ASSERT_EQ(elimination.coupled(), (std::vector<Index>{0, 7}));
-
-  Vector u = Vector::LinSpaced(dofs, -1, 2);
-  const Vector right = Vector::LinSpaced(6, 3, -4);
-  u(pivots) = elimination.pivot_values(right, u(elimination.coupled()));
-  EXPECT_LE((c * u - right).norm(), 1e-14 * right.norm());
+  expect_eliminates(elimination, c, pivots);
 
   const Matrix c_p = Matrix(c)(Eigen::all, pivots);
-  const Vector r = Vector::LinSpaced(6, 1, 2);
-  const Vector y = elimination.multipliers(r);
-  EXPECT_LE((c_p.transpose() * y - r).norm(), 1e-14 * r.norm());
-  const Vector carried = -Matrix(c)(Eigen::all, elimination.coupled()).transpose() * y;
-  EXPECT_LE((elimination.carried_over(r) - carried).norm(), 1e-14 * carried.norm());
-
   const Matrix ties = elimination.ties(dofs);
   const Matrix expected = -c_p.lu().solve(Matrix(c)(Eigen::all, elimination.coupled()));
   const Matrix found = ties(pivots, elimination.coupled());
   EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-3) << "small entries are left out";
   EXPECT_NEAR(found(0, 0), expected(0, 0), 1e-14);
   EXPECT_EQ(ties.norm(), found.norm()) << "nothing elsewhere";
+}
+
+/// As by vertex quadrature; the rows in another order than the dofs.
+TEST(Elimination, OfConstraintsThatSeeOnePivotEach) {
+  SparseMatrix c(3, dofs);
+  c.insert(0, 5) = 2;
+  c.insert(0, 9) = 1;
+  c.insert(1, 3) = -4;
+  c.insert(2, 7) = 0.5;
+  c.insert(2, 9) = 3;
+  const std::vector<Index> pivots{3, 5, 7};
+  const Elimination elimination(c, pivots);
+  ASSERT_EQ(elimination.coupled(), std::vector<Index>{9});
+  expect_eliminates(elimination, c, pivots);
 }
 
 TEST(Elimination, OfNoConstraint) {

@@ -24,8 +24,8 @@ ContactDofs contact_dofs(const Contact &contact);
 std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &system,
                                  const SparseMatrix &c);
 
-/// Solves with a sparse square matrix, by Cholesky where it is symmetric and positive definite, by
-/// LU otherwise.
+/// Solves with a sparse square matrix: entry by entry where each row and column has one, as by
+/// vertex quadrature, by Cholesky where it is symmetric and positive definite, by LU otherwise.
 class SquareFactor {
 public:
   /// Throws failure where the matrix is singular.
@@ -34,8 +34,13 @@ public:
   Matrix solve_transposed(const Matrix &right) const;
 
 private:
+  bool take_single_entries(const Eigen::SparseMatrix<double> &matrix);
+
   using Llt = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
   using Lu = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>;
+  bool single_ = false; ///< one entry in each row and column, values_ in columns_
+  std::vector<Index> columns_;
+  Vector values_;
   std::unique_ptr<Llt> symmetric_;
   std::unique_ptr<Lu> lu_;
 };

@@ -42,10 +42,11 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const Red
 
 } // namespace
 
-bool awaits_answers(const Scene &scene, const CondensedLoads &loads,
+bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options) {
-  return (loads.units || loads.join) && has_constant_stiffness(scene) && options.responses > 0 &&
-         options.compression > 0 && loads.joining() > few_responses;
+  const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
+  return (loads.units || loads.join) && has_constant_stiffness(problem.scene()) &&
+         options.responses > 0 && options.compression > 0 && numbers > options.large_fields;
 }
 
 ResponseDirections::ResponseDirections(const Matrix &compliance) {

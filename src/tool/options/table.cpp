@@ -307,7 +307,7 @@ std::vector<Option> of_multipliers() {
       number("response_tolerance", relative_error, AT(reduce.condensed.responses),
              "responses A^-1 B^T join the modes, those of further A to this remainder; 0: none"),
       number("response_compression", relative_error, AT(reduce.condensed.compression),
-             "A constant, over 300 responses: those to answers of the law, to this; 0: all"),
+             "A constant, responses of over 160 MB: those to answers of the law, to this; 0: all"),
       kept(with_law,
            choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
                   AT(reduce.multipliers.reduction), "how the multipliers are reduced")),

@@ -7,12 +7,9 @@
 
 namespace rbvi {
 
-/// More responses than this are compressed.
-inline constexpr Index few_responses = 300;
-
-/// Whether the responses are compressed: to at most options.compression, instead of joining one by
-/// one. `loads`: of condensed_loads.
-bool awaits_answers(const Scene &scene, const CondensedLoads &loads,
+/// Whether the responses are compressed, to options.compression: where their fields, one by one,
+/// have more than options.large_fields numbers. `loads`: of condensed_loads.
+bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options);
 
 /// Combinations of loads whose responses come closest in the energy to those of some answers of the

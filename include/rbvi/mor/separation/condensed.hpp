@@ -15,8 +15,9 @@ struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
   double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
-  /// Of responses that are many: see append_answered_responses; 0: all of them are appended.
+  /// Of responses whose fields are large: see append_answered_responses; 0: all are appended.
   double compression = 1e-5;
+  double large_fields = 2e7; ///< numbers: 160 MB
 };
 
 /// Appends to the modes the responses of the body to the terms of F, which the condensed operator
