@@ -132,9 +132,9 @@ Elimination::Elimination(const SparseMatrix &c, const std::vector<Index> &pivots
   std::vector<Eigen::Triplet<double>> block, rest;
   for (Index row = 0; row < c.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry) {
+      if (entry.value() == 0) continue; // vertex quadrature keeps the pattern of a mass matrix
       const bool pivot = position[at(entry.col())] >= 0;
       Index &column = (pivot ? position : other)[at(entry.col())];
-      if (!pivot && entry.value() == 0) continue;
       if (column < 0) {
         column = std::ssize(coupled_);
         coupled_.push_back(entry.col());

@@ -68,6 +68,7 @@ TEST(Elimination, OfConstraintsThatSeeOnePivotEach) {
   c.insert(0, 5) = 2;
   c.insert(0, 9) = 1;
   c.insert(1, 3) = -4;
+  c.insert(1, 5) = 0; // of the pattern alone
   c.insert(2, 7) = 0.5;
   c.insert(2, 9) = 3;
   const std::vector<Index> pivots{3, 5, 7};
