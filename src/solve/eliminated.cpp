@@ -3,10 +3,12 @@
 #include "linear/reduced_system.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 
 namespace rbvi {
 
@@ -26,17 +28,17 @@ void assemble(Mat matrix) {
 
 /// Multigrid for large scalar problems: at 14 000 nodes of a membrane it takes as long as a
 /// factorisation and its solves, from 57 000 on a half of it, and no memory for factors. With
-/// vectors direct, or where an option says how.
+/// vectors direct; where an option names another preconditioner, that one.
 bool takes_multigrid(const Problem &problem) {
   constexpr PetscInt from = 10000;
-  PetscBool chosen = PETSC_FALSE;
-  for (const char *name : {"-hf_pc_type", "-hf_ksp_type"}) {
-    PetscBool given = PETSC_FALSE;
-    RBVI_CALL(PetscOptionsHasName(nullptr, nullptr, name, &given));
-    if (given == PETSC_TRUE) chosen = PETSC_TRUE;
-  }
-  return chosen == PETSC_FALSE && problem.scene().components == 1 &&
-         problem.dofs().total_free >= from;
+  char type[64] = "";
+  PetscBool given = PETSC_FALSE;
+  RBVI_CALL(PetscOptionsGetString(nullptr, nullptr, "-hf_pc_type", type, sizeof type, &given));
+  if (given == PETSC_TRUE)
+    return std::string_view(type) != PCCHOLESKY && std::string_view(type) != PCLU;
+  RBVI_CALL(PetscOptionsHasName(nullptr, nullptr, "-hf_ksp_type", &given));
+  if (given == PETSC_TRUE) return false;
+  return problem.scene().components == 1 && problem.dofs().total_free >= from;
 }
 
 /// T^T B, or R^T B.
@@ -110,6 +112,10 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
                           problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
+  if (vectors) {
+    if (!rigid_modes_) rigid_modes_ = rigid_body_modes(problem_.mesh(), problem_.dofs());
+    RBVI_CALL(MatSetNearNullSpace(reduced_.get(), rigid_modes_.get()));
+  }
   // A multigrid that is set up again keeps what it knew of the largest eigenvalues: where those
   // have grown its smoothers are no longer positive definite.
   if (multigrid_) factor_ = make_multigrid(problem_.comm(), "hf_");

@@ -103,6 +103,23 @@ TEST(Eliminated, AgreesByMultigrid) {
   expect_equal(by_multigrid, by_factors);
 }
 
+/// Elastic bodies where an option asks for it: one cycle of multigrid a step, with their rigid-body
+/// modes.
+TEST(Eliminated, AgreesByMultigridOnElasticBodies) {
+  for (const auto &[name, mu] :
+       {std::pair{"rigid_disk", Mu{1.2}}, std::pair{"two_disks", Mu{0.9}}}) {
+    SCOPED_TRACE(name);
+    Problem problem(PETSC_COMM_WORLD, make_scene(name), {});
+    HfOptions options;
+    options.contact = HfContact::eliminated;
+    const HfSolution by_factors = HighFidelity(problem, options).solve(mu);
+    RBVI_CALL(PetscOptionsSetValue(nullptr, "-hf_pc_type", "gamg"));
+    const HfSolution by_multigrid = HighFidelity(problem, options).solve(mu);
+    RBVI_CALL(PetscOptionsClearValue(nullptr, "-hf_pc_type"));
+    expect_equal(by_multigrid, by_factors);
+  }
+}
+
 TEST(Eliminated, WhereItFailsContactIsCondensedAndSaysSo) {
   Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 1});
   ASSERT_TRUE(eliminates(problem, {}));

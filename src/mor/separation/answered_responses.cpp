@@ -10,17 +10,11 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
-
 namespace rbvi {
 
 namespace {
 
 constexpr std::size_t at_a_time = 100, most = 10000; ///< queries
-
-bool has_constant_stiffness(const Scene &scene) {
-  return std::ranges::none_of(scene.parameters.free, [&](int i) { return depends_on(scene.a, i); });
-}
 
 /// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
 Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const ReducedModel &model,
@@ -45,7 +39,7 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const Red
 bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options) {
   const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
-  return (loads.units || loads.join) && has_constant_stiffness(problem.scene()) &&
+  return (loads.units || loads.join) && constant_stiffness(problem.scene()) &&
          options.responses > 0 && options.compression > 0 && numbers > options.large_fields;
 }
 

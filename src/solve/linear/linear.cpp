@@ -27,10 +27,10 @@ Handle<KSP> make_multigrid(MPI_Comm comm, const char *prefix) {
   PC pc = nullptr;
   RBVI_CALL(KSPCreate(comm, ksp.put()));
   RBVI_CALL(KSPSetOptionsPrefix(ksp.get(), prefix));
-  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY));
   RBVI_CALL(KSPGetPC(ksp.get(), &pc));
   RBVI_CALL(PCSetType(pc, PCGAMG));
   RBVI_CALL(KSPSetFromOptions(ksp.get()));
+  RBVI_CALL(KSPSetType(ksp.get(), KSPPREONLY)); // once in each step of another method
   return ksp;
 }
 

@@ -9,8 +9,8 @@ namespace rbvi {
 /// several; options under `prefix` override. Collective.
 Handle<KSP> make_direct_solver(MPI_Comm comm, const char *prefix);
 
-/// KSP that applies one cycle of algebraic multigrid (GAMG), for a method around it; options under
-/// `prefix`. Collective.
+/// KSP that applies one cycle of algebraic multigrid (GAMG), or once the preconditioner that an
+/// option under `prefix` names, for a method around it. Collective.
 Handle<KSP> make_multigrid(MPI_Comm comm, const char *prefix);
 
 /// What MUMPS orders its factors by. By minimum fill factors of plane problems are a third larger,

@@ -1,0 +1,14 @@
+// Displacements of a rigid body: what a multigrid method for elasticity must represent on coarse
+// levels.
+#pragma once
+
+#include "rbvi/fem/dofs.hpp"
+#include "rbvi/par/petsc.hpp"
+
+namespace rbvi {
+
+/// Translations and rotations on the free dofs, orthonormalised, of the reference mesh: three in
+/// the plane, six in space. For matrices with the rows of `dofs` (MatSetNearNullSpace). Collective.
+Handle<MatNullSpace> rigid_body_modes(const Mesh &mesh, const Dofs &dofs);
+
+} // namespace rbvi
