@@ -112,7 +112,7 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
                           problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
-  if (vectors) {
+  if (vectors && multigrid_) {
     if (!rigid_modes_) rigid_modes_ = rigid_body_modes(problem_.mesh(), problem_.dofs());
     RBVI_CALL(MatSetNearNullSpace(reduced_.get(), rigid_modes_.get()));
   }

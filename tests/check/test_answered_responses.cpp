@@ -1,5 +1,5 @@
 // Responses to the answers of the law in place of those to the loads of all multipliers.
-#include "../linear_algebra.hpp"
+#include "../law/random_matrix.hpp"
 #include "reduced.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -7,8 +7,6 @@
 #include "rbvi/solve/linear/vectors.hpp"
 
 #include <gtest/gtest.h>
-
-#include <random>
 
 namespace rbvi {
 namespace {
@@ -19,14 +17,6 @@ Scene scene_of(const std::string &name, const SceneOptions &options) {
   Scene scene = make_scene(name, options);
   scene.parameters = free_only(scene.parameters, "radius");
   return scene;
-}
-
-Matrix random_matrix(Index rows, Index cols, unsigned seed) {
-  std::mt19937 generator(seed);
-  Matrix result(rows, cols);
-  for (double &value : result.reshaped())
-    value = 2.0 * static_cast<double>(generator()) / std::mt19937::max() - 1;
-  return result;
 }
 
 /// Largest distance of the samples to the span of the basis, relative, in V.
@@ -52,9 +42,10 @@ double distance(Problem &problem, const std::vector<Sample> &samples, const Line
 TEST(ResponseDirections, AreAsFewAsTheAnswersNeed) {
   constexpr Index size = 30, rank = 4;
   constexpr double small = 1e-4;
-  const Matrix root = random_matrix(size, size, 1);
+  Random random(1);
+  const Matrix root = random.matrix(size, size);
   const Matrix compliance = root.transpose() * root + Matrix::Identity(size, size);
-  const Matrix factors = random_matrix(size, rank, 2), numbers = random_matrix(rank, 40, 3);
+  const Matrix factors = random.matrix(size, rank), numbers = random.matrix(rank, 40);
   Matrix answers = factors * numbers;
   ResponseDirections directions(compliance);
   directions.add(answers.leftCols(20), 1e-8);
@@ -65,7 +56,7 @@ TEST(ResponseDirections, AreAsFewAsTheAnswersNeed) {
   EXPECT_LE(directions.left(answers.rightCols(20)), 1e-8);
 
   // One more direction, which counts from its size on.
-  answers.col(30) += small * random_matrix(size, 1, 4);
+  answers.col(30) += small * random.vector(size);
   const double left = directions.left(answers.rightCols(20));
   EXPECT_GT(left, 0.01 * small);
   directions.add(answers.rightCols(20), 2 * left);

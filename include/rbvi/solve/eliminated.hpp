@@ -9,7 +9,8 @@
 // gradients (GMRES where a slip under Coulomb's law makes it unsymmetric), preconditioned by a
 // factorisation of A without the rows and columns of P, for two bodies of A with the slave's dofs
 // in P tied to the master's at single nodes, or by algebraic multigrid for it where u is a scalar
-// and there are many dofs, or where an option asks for it. It stays while the sets change by little.
+// and there are many dofs, or where an option asks for it. It stays while the sets change by
+// little.
 //
 // Multipliers and B are on every rank, displacement dofs are distributed.
 #pragma once
@@ -45,7 +46,7 @@ private:
   bool multigrid_;             ///< in place of a factorisation
   Handle<KSP> factor_;
   Handle<Mat> reduced_;              ///< what is factorised
-  Handle<MatNullSpace> rigid_modes_; ///< where the unknowns are vectors
+  Handle<MatNullSpace> rigid_modes_; ///< of vectors by multigrid
   std::vector<Index> factored_;      ///< its pivots
   bool of_another_a_ = true;         ///< or of none
   bool tied_ = false;                ///< with pivots tied to other dofs

@@ -11,7 +11,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr std::size_t at_a_time = 192; ///< columns and solves: bounds the memory
+constexpr std::size_t at_a_time = 192; ///< columns, solves: bounds the memory
 
 /// Some rows of a matrix, as the columns of the result.
 Matrix rows_as_columns(const SparseMatrix &matrix, const std::vector<Index> &rows) {
@@ -38,18 +38,21 @@ Handle<Mat> without_dofs(Mat a, const Trace &trace, const std::vector<Index> &do
 
 } // namespace
 
-bool holds_dofs(const SparseMatrix &b, const std::vector<Index> &held) {
+std::optional<HeldDofs> held_dofs(const SparseMatrix &b, const std::vector<Index> &held) {
   std::vector<bool> taken(static_cast<std::size_t>(b.cols()), false);
-  for (const Index row : held) {
-    int entries = 0;
-    for (SparseMatrix::InnerIterator entry(b, row); entry; ++entry) {
+  HeldDofs result{{}, Vector(std::ssize(held))};
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    for (SparseMatrix::InnerIterator entry(b, held[k]); entry; ++entry) {
       if (entry.value() == 0) continue;
-      if (++entries > 1 || taken[static_cast<std::size_t>(entry.col())]) return false;
+      if (result.dofs.size() > k || taken[static_cast<std::size_t>(entry.col())])
+        return std::nullopt;
       taken[static_cast<std::size_t>(entry.col())] = true;
+      result.entries[static_cast<Index>(k)] = entry.value();
+      result.dofs.push_back(entry.col());
     }
-    if (entries == 0) return false;
+    if (result.dofs.size() == k) return std::nullopt;
   }
-  return true;
+  return result;
 }
 
 Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &held,
@@ -73,38 +76,31 @@ Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &
   return result;
 }
 
-Matrix hold_by_reactions(const Problem &problem, const Operators &op,
-                         const std::vector<Index> &held, const Matrix &others) {
+Matrix hold_by_reactions(const Problem &problem, const Operators &op, const HeldDofs &held,
+                         const Matrix &others) {
   const Trace &trace = problem.trace();
-  std::vector<Index> dofs;
-  Vector entries(std::ssize(held));
-  for (const Index row : held)
-    for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry) {
-      if (entry.value() == 0) continue;
-      entries[std::ssize(dofs)] = entry.value();
-      dofs.push_back(entry.col());
-    }
-  ReplicatedSolver solver(without_dofs(op.a, trace, dofs).get(), trace, "hf_");
-  Matrix result(std::ssize(held), others.cols());
+  ReplicatedSolver solver(without_dofs(op.a, trace, held.dofs).get(), trace, "hf_");
+  Matrix result(std::ssize(held.dofs), others.cols());
   for (Index first = 0; first < others.cols(); first += at_a_time) {
     const Index count = std::min<Index>(at_a_time, others.cols() - first);
     const Matrix loads = op.b.transpose() * others.middleCols(first, count);
     Matrix free_loads = loads;
-    free_loads(dofs, Eigen::all).setZero();
+    free_loads(held.dofs, Eigen::all).setZero();
     const Handle<Mat> fields = solver.fields(free_loads);
     Handle<Mat> forces;
     RBVI_CALL(MatMatMult(op.a, fields.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, forces.put()));
     const Matrix reactions = restrict_to(trace, forces.get()) - loads;
     result.middleCols(first, count) =
-        entries.cwiseInverse().asDiagonal() * reactions(dofs, Eigen::all);
+        held.entries.cwiseInverse().asDiagonal() * reactions(held.dofs, Eigen::all);
   }
   return result;
 }
 
 HoldingMultipliers holding(const Problem &problem, const Operators &op) {
   return [&](const std::vector<Index> &held, const Matrix &others) {
-    if (others.cols() < std::ssize(held) && holds_dofs(op.b, held))
-      return hold_by_reactions(problem, op, held, others);
+    if (others.cols() < std::ssize(held))
+      if (const std::optional<HeldDofs> dofs = held_dofs(op.b, held))
+        return hold_by_reactions(problem, op, *dofs, others);
     ReplicatedSolver solver(op.a, problem.trace(), "hf_");
     const ColumnSource columns = [&](const std::vector<Index> &which) -> Matrix {
       return op.b * solver.responses(rows_as_columns(op.b, which));

@@ -17,10 +17,9 @@ namespace {
 constexpr std::size_t at_a_time = 100, most = 10000; ///< queries
 
 /// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
-Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const ReducedModel &model,
+Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver &solver,
                   const std::vector<Mu> &set) {
   Matrix answers = Matrix::Zero(loads.columns.cols(), std::ssize(set));
-  LawSolver solver(model, problem.scene(), problem.contact());
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
     try {
       const LawAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
@@ -54,7 +53,9 @@ ResponseDirections::ResponseDirections(const Matrix &compliance) {
 void ResponseDirections::add(const Matrix &more, double tolerance) {
   answers_.conservativeResize(more.rows(), answers_.cols() + more.cols());
   answers_.rightCols(more.cols()) = more;
-  const SmallSvd svd = small_svd(root_.triangularView<Eigen::Upper>() * answers_);
+  moved_.conservativeResize(more.rows(), answers_.cols());
+  moved_.rightCols(more.cols()) = root_.triangularView<Eigen::Upper>() * more;
+  const SmallSvd svd = small_svd(moved_);
   const Matrix parts = svd.values.asDiagonal() * svd.right.transpose();
   largest_ = parts.colwise().norm().maxCoeff();
   Index count = 0;
@@ -81,23 +82,25 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   for (const auto &training : model.law->starts_mu.colwise())
     set.emplace_back(training.begin(), training.end());
   const Mu any = set.front();
-  Matrix answers = answers_at(problem, loads, model, set);
+  LawSolver solver(model, problem.scene(), problem.contact());
+  Matrix answers = answers_at(problem, loads, solver, set);
   if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
   ParameterReader random(problem.scene().parameters, "random:" + std::to_string(most) + ":29");
+  constexpr double of_the_tolerance = 0.5; // the rest is for what comes between the answers
   do {
-    directions.add(answers, 0.5 * tolerance);
+    directions.add(answers, of_the_tolerance * tolerance);
     set.clear();
     for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
       set.push_back(*mu);
     if (set.empty())
       throw failure("the responses to the answers of the law go on after " + std::to_string(most) +
                     " of them: use -response_compression 0 or a larger one");
-    answers = answers_at(problem, loads, model, set);
+    answers = answers_at(problem, loads, solver, set);
   } while (directions.left(answers) > tolerance);
-  ReplicatedSolver solver(problem.assemble(any).a, problem.trace(), "hf_");
+  ReplicatedSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
   return static_cast<int>(
-      append_fields(solver, loads.columns * directions.coefficients(), modes, dependent, nullptr)
+      append_fields(body, loads.columns * directions.coefficients(), modes, dependent, nullptr)
           .size());
 }
 

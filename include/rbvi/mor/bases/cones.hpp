@@ -72,7 +72,7 @@ struct ConeOptions {
 /// definite, with an entry for every pair of neighbouring nodes. Ties within 1e-10 relative go to
 /// the lowest index. With feasibility > 0 negative remainders are clipped, a snapshot taken can
 /// stay outside the cone and be taken again; the greedy stops when a step does not bring its own
-/// snapshot closer. `hold` (hybrid alone): at one mu. Throws failure if
+/// snapshot closer. `hold` (hybrid alone): of A and B at one mu (holding). Throws failure if
 /// `snapshots` is empty, all zero, not finite or has a negative entry beyond round-off, or if
 /// `product` does not fit or is not positive definite.
 Cone build_cone(const Matrix &snapshots, const SparseMatrix &product, const ConeOptions &options,

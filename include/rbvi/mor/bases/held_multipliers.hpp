@@ -7,6 +7,7 @@
 #include "rbvi/problem/problem.hpp"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace rbvi {
@@ -19,16 +20,23 @@ using HoldingMultipliers =
 Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &held,
                        const Matrix &others);
 
+/// The dofs that rows P of B hold, and the entries there.
+struct HeldDofs {
+  std::vector<Index> dofs;
+  Vector entries;
+};
+
+/// Nothing where a row has more entries than one, or two rows the same dof: vertex quadrature has
+/// one each.
+std::optional<HeldDofs> held_dofs(const SparseMatrix &b, const std::vector<Index> &held);
+
 /// By solves with A without the dofs of P, one for each column of `others`: l_P are the reactions
-/// there. For a B whose rows P have one entry each, of different dofs (holds_dofs).
-Matrix hold_by_reactions(const Problem &problem, const Operators &op,
-                         const std::vector<Index> &held, const Matrix &others);
+/// there. Collective.
+Matrix hold_by_reactions(const Problem &problem, const Operators &op, const HeldDofs &held,
+                         const Matrix &others);
 
-/// Whether rows P of B have one entry each, of different dofs, as by vertex quadrature.
-bool holds_dofs(const SparseMatrix &b, const std::vector<Index> &held);
-
-/// The one of the two with fewer solves that B allows. Both arguments must outlive the result, whose
-/// calls are collective.
+/// The one of the two with fewer solves that B allows. Both arguments must outlive the result,
+/// whose calls are collective.
 HoldingMultipliers holding(const Problem &problem, const Operators &op);
 
 } // namespace rbvi

@@ -29,7 +29,7 @@ public:
 private:
   Matrix root_; ///< R with H = R^T R: the energy of loads c is |R c|^2
   Matrix answers_, coefficients_;
-  Matrix orthonormal_; ///< R coefficients_
+  Matrix moved_, orthonormal_; ///< R times these
   double largest_ = 0;
 };
 
