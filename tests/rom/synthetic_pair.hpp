@@ -10,6 +10,20 @@
 
 namespace rbvi::synthetic {
 
+inline Scene scene_with(const std::string &multiplier,
+                        const std::string &integration = "intersection") {
+  return make_scene("two_disks",
+                    {{"degree", "1"}, {"multiplier", multiplier}, {"integration", integration}});
+}
+
+inline Scene p0() {
+  return scene_with("p0");
+}
+
+inline Scene p1() {
+  return scene_with("p1");
+}
+
 struct PairSizes {
   int modes = 4, supremizers = 3, generators = 4;
   Index slave = 12, master = 9; ///< nodes: 5 macro-edges, the last of three edges

@@ -1,33 +1,19 @@
-#include "synthetic.hpp"
+// Model files: what is written is read, and what does not fit is refused.
+#include "files.hpp"
+#include "full_model.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/rom/online.hpp"
-#include "rbvi/rom/print.hpp"
-#include "rbvi/rom/solution_vtu.hpp"
-
-#include <fstream>
-#include <gtest/gtest.h>
-#include <sstream>
-#include <unistd.h>
 
 namespace rbvi {
 namespace {
 
 using Path = std::filesystem::path;
 
-struct ModelFile : testing::Test {
-  Path directory = Path(testing::TempDir()) / ("rbvi_model_" + std::to_string(::getpid()));
+struct ModelFile : InOwnDirectory {
   Path path = directory / "model.h5";
-  void SetUp() override { std::filesystem::create_directories(directory); }
-  void TearDown() override { std::filesystem::remove_all(directory); }
 };
-
-std::string slurp(const Path &path) {
-  std::ostringstream bytes;
-  bytes << std::ifstream(path, std::ios::binary).rdbuf();
-  return bytes.str();
-}
 
 void expect_same(const AffineTerms &a, const AffineTerms &b) {
   EXPECT_EQ(a.reduced, b.reduced);
@@ -45,23 +31,6 @@ void expect_same(const AffineTerms &a, const AffineTerms &b) {
       EXPECT_EQ(x.contributions[i].local, y.contributions[i].local);
     }
   }
-}
-
-ReducedModel full_model() {
-  ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
-  model.parameters = free_only(model.parameters, "radius,center_y");
-  model.parameters.all[1].value = 0.01;
-  model.settings = {{"-pod_tolerance", "1e-3"}, {"-cone", "mcpg"}};
-  model.mesh_fingerprint = "0123456789abcdef";
-  model.free_modes = 1;
-  model.a.error = 1e-3;
-  model.histories = {{"pod/error", {1, 0.1}}, {"cone/e_orth", {}}};
-  model.stage_seconds = {{"snapshots", 12.5}};
-  model.validation_enriched = {64, 1e-4, 2e-4, 3e-4, 4e-4};
-  model.validation_enriched.outputs = {{"energy", 1, 2, 3, 4, 5, 6},
-                                       {"kkt_residual", 0, 1e-15, 0, 0, 0, 0}};
-  model.self_check = {200, 3, {0.2, 0.01}, "contact opens", {1e-12, {0.17, 0}}, {1e-3, {0.2, 0}}};
-  return model;
 }
 
 /// Ranges of validity are the scene's: no file changes them, and none may leave them.
@@ -267,184 +236,6 @@ TEST_F(ModelFile, WhatThisBuildLacksIsBadInput) {
   model = full_model();
   model.parameters.all[0].name = "diameter";
   EXPECT_TRUE(refused(model));
-}
-
-TEST(CheckModel, NamesWhatDoesNotFit) {
-  const auto refused = [](auto change) {
-    ReducedModel model = full_model();
-    change(model);
-    try {
-      check_model(model);
-    } catch (const Error &) {
-      return true;
-    }
-    return false;
-  };
-  using M = ReducedModel;
-  EXPECT_FALSE(refused([](M &) {}));
-  // A hybrid cone continues its hats with negative values, and need not have modes.
-  EXPECT_FALSE(refused([](M &m) { m.dual_basis(0, 0) = -1; }));
-  EXPECT_FALSE(refused([](M &m) {
-    m.dual_basis(0, 0) = -1;
-    m.free_modes = 0;
-  }));
-  EXPECT_TRUE(refused([](M &m) { m.modes = 4; }));
-  EXPECT_TRUE(refused([](M &m) { m.a.reduced(0, 0) = std::nan(""); }));
-  EXPECT_TRUE(refused([](M &m) { m.dual_basis(0, 0) = std::nan(""); }));
-  EXPECT_TRUE(refused([](M &m) { m.free_modes = -1; }));
-  EXPECT_TRUE(refused([](M &m) { m.free_modes = 5; }));
-  EXPECT_TRUE(refused([](M &m) { m.mesh_cells[0] = 5; }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces.clear(); }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces[0].nodes[0] = -1; }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces[0].mesh.entities[0] = 3; }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces[0].mesh.entities.push_back(0); }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples[0].contributions[0].cell = 99; }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples[0].contributions.back().entry = 2; }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples[0].corners = 6; }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples.clear(); }));
-  EXPECT_TRUE(refused([](M &m) { m.g.samples.push_back(m.g.samples[0]); }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces.push_back(m.interfaces[0]); })) << "b has samples";
-  EXPECT_TRUE(refused([](M &m) { m.a = {}; }));
-  EXPECT_TRUE(refused([](M &m) { m.trace_dofs = {0, 1, 3}; })) << "there are three";
-  EXPECT_TRUE(refused([](M &m) { m.trace_dofs = {1, 0, 2}; })) << "does not rise";
-  EXPECT_TRUE(refused([](M &m) { m.a_change.range = Matrix::Ones(m.primal_size(), 1); }));
-}
-
-/// The leading part of A, B, F, G as dense matrices is the top left corner of the whole.
-TEST(Leading, IsTheTopLeftCorner) {
-  const ReducedModel model = full_model();
-  const ReducedModel part = leading(model, 4, 3);
-  check_model(part);
-  EXPECT_EQ(part.modes, 3);
-  EXPECT_EQ(part.supremizers, 1);
-  for (int q = 0; q < model.a.size(); ++q)
-    for (Index j = 0, at = 0; j < 4; ++j)
-      for (Index i = j; i < 4; ++i, ++at)
-        EXPECT_EQ(part.a.reduced(at, q), model.a.reduced(5 * j - j * (j - 1) / 2 + i - j, q));
-  for (Index i = 0; i < 3; ++i)
-    for (Index j = 0; j < 4; ++j)
-      EXPECT_EQ(part.b.reduced(j * 3 + i, 1), model.b.reduced(j * 4 + i, 1));
-  EXPECT_EQ(part.f.reduced, model.f.reduced.topRows(4));
-  EXPECT_EQ(part.g.reduced, model.g.reduced.topRows(3));
-  EXPECT_EQ(part.validation_enriched.count, 0);
-  EXPECT_EQ(leading(model, 5, 4).validation_enriched.count, 64);
-  EXPECT_THROW(leading(model, 6, 4), Error);
-  EXPECT_THROW(leading(model, 0, 4), Error);
-  EXPECT_THROW(leading(model, 5, 5), Error);
-}
-
-TEST(Leading, CutsTheModesFirst) {
-  ReducedModel model = full_model();
-  model.free_modes = 2;
-  EXPECT_EQ(leading(model, 5, 4).free_modes, 2);
-  EXPECT_EQ(leading(model, 5, 3).free_modes, 1);
-  EXPECT_EQ(leading(model, 5, 2).free_modes, 0);
-  EXPECT_EQ(leading(model, 5, 1).free_modes, 0);
-}
-
-TEST(Leading, WithoutSupremizersNothingIsMadeOnline) {
-  ReducedModel model = full_model();
-  model.online_enriched = true;
-  EXPECT_TRUE(leading(model, 5, 4).online_enriched);
-  EXPECT_TRUE(leading(model, 4, 4).online_enriched);
-  EXPECT_FALSE(leading(model, 3, 4).online_enriched);
-  EXPECT_FALSE(leading(model, 2, 4).online_enriched);
-  ReducedModel plain = model;
-  plain.online_enriched = false;
-  const ReducedModel cut = leading(model, 3, 4), same = leading(plain, 3, 4);
-  const Mu mu{0.2, 0.01};
-  EXPECT_EQ(OnlineSolver(cut).solve(mu).u, OnlineSolver(same).solve(mu).u);
-}
-
-TEST(Leading, DecorrelatedKeepsItsOwnErrors) {
-  ReducedModel model = full_model();
-  model.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
-  EXPECT_EQ(expected_errors(model).u_max, 2e-4);
-  EXPECT_EQ(expected_errors(leading(model, 3, 4)).u_max, 0.2);
-  EXPECT_EQ(expected_errors(leading(model, 3, 3)).count, 0);
-  EXPECT_EQ(expected_errors(leading(model, 2, 4)).count, 0);
-}
-
-TEST(PrintModel, ShowsParametersSizesAndErrors) {
-  std::ostringstream out;
-  print_model(out, full_model());
-  for (const char *part : {"membrane_obstacle", "radius", "[0.16, 0.24] m", "0.01 (fixed) m",
-                           "supremizers", "-pod_tolerance", "0.0004 max"})
-    EXPECT_NE(out.str().find(part), std::string::npos) << part << " in\n" << out.str();
-}
-
-TEST(PrintModel, ShowsModesAndOnlineEnrichmentWhereTheyAre) {
-  const auto printed = [](const ReducedModel &model) {
-    std::ostringstream out;
-    print_model(out, model);
-    return out.str();
-  };
-  ReducedModel model = full_model(); // 3 generators and a mode
-  EXPECT_NE(printed(model).find("free modes"), std::string::npos) << printed(model);
-  EXPECT_EQ(printed(model).find("made online"), std::string::npos);
-  model.free_modes = 0;
-  model.online_enriched = true;
-  EXPECT_EQ(printed(model).find("free modes"), std::string::npos);
-  EXPECT_NE(printed(model).find("made online"), std::string::npos);
-}
-
-/// The numbers of one DataArray.
-std::vector<double> data_array(const std::string &vtu, const std::string &name) {
-  const std::size_t begin = vtu.find('>', vtu.find("Name=\"" + name + "\"")) + 1;
-  std::istringstream text(vtu.substr(begin, vtu.find('<', begin) - begin));
-  return {std::istream_iterator<double>(text), {}};
-}
-
-TEST_F(ModelFile, VtuHoldsTheMappedFieldAndContact) {
-  const ReducedModel model = full_model();
-  OnlineSolver solver(model);
-  const Mu mu{0.18, 0.02};
-  const ReducedSolution solution = solver.solve(mu);
-  const auto write = [&](const std::filesystem::path &file) {
-    return write_vtu(file, solver.scene(), expand(model.parameters, mu), model,
-                     solver.field(solution), solver.multiplier(solution));
-  };
-  const std::vector<std::filesystem::path> files = write(directory / "u.vtu");
-  EXPECT_EQ(files, (std::vector{directory / "u.vtu", directory / "u_contact.vtu"}));
-  const std::string field = slurp(directory / "u.vtu");
-  const std::vector<double> points = data_array(field, "points"), u = data_array(field, "u");
-  ASSERT_EQ(points.size(), 15U);
-  ASSERT_EQ(u.size(), 5U);
-  for (int i = 0; i < 5; ++i) {
-    EXPECT_EQ(u[std::size_t(i)], solver.field(solution)[i]);
-    const Point x = solver.scene().map({0.18, 0.01, 0.02}, point_of(model.mesh_points, i));
-    EXPECT_EQ(points[std::size_t(3 * i)], x[0]);
-    EXPECT_EQ(points[std::size_t(3 * i + 1)], x[1]);
-  }
-  EXPECT_EQ(data_array(field, "connectivity").size(), 12U);
-  EXPECT_EQ(data_array(field, "offsets"), (std::vector<double>{3, 6, 9, 12}));
-  EXPECT_EQ(data_array(field, "types"), (std::vector<double>{5, 5, 5, 5}));
-  EXPECT_EQ(data_array(field, "mu_radius"), std::vector<double>{0.18});
-  EXPECT_EQ(data_array(field, "mu_center_x"), std::vector<double>{0.01});
-  EXPECT_EQ(data_array(field, "body"), (std::vector<double>(4, 1)));
-  EXPECT_EQ(field.find("von_mises"), std::string::npos) << "a membrane has no stresses";
-  const std::string contact = slurp(directory / "u_contact.vtu");
-  const Vector pressure = solver.multiplier(solution);
-  EXPECT_EQ(data_array(contact, "pressure"),
-            (std::vector<double>(pressure.data(), pressure.data() + 3)));
-  EXPECT_EQ(data_array(contact, "gap").size(), 3U);
-  EXPECT_THROW(write(path / "no" / "u.vtu"), Error);
-}
-
-/// A high-fidelity solution is written with a model that has nothing else.
-TEST_F(ModelFile, VtuReadsFieldsAndInterfacesAlone) {
-  const ReducedModel model = full_model();
-  ReducedModel bare;
-  bare.mesh_points = model.mesh_points;
-  bare.mesh_cells = model.mesh_cells;
-  bare.interfaces = model.interfaces;
-  const Scene scene = scene_of(model);
-  const Vector u = Vector::LinSpaced(5, 0, 1), lambda = Vector::LinSpaced(3, 1, 2);
-  const auto written = [&](const ReducedModel &of) {
-    write_vtu(directory / "u.vtu", scene, {0.2, 0, 0}, of, u, lambda);
-    return slurp(directory / "u.vtu") + slurp(directory / "u_contact.vtu");
-  };
-  EXPECT_EQ(written(bare), written(model));
 }
 
 } // namespace
