@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/mor/bases/near_contact.hpp"
 #include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/separation/answered_responses.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
@@ -70,6 +71,12 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   bases.mended = choice.exact;
   add_modes(problem, samples, options.pod, bases, stages);
   bases.nodal_dual = nodal_dual_basis(problem, multipliers, options.cone.level);
+  if (choice.reduction == MultiplierReduction::condensed && !follows_state(scene)) {
+    const std::vector<Index> near = columns_near_contact(problem.contact(), bases.nodal_dual,
+                                                         multipliers, options.condensed.ring);
+    bases.dropped = bases.nodal_dual.cols() - std::ssize(near);
+    bases.nodal_dual = bases.nodal_dual(Eigen::all, near).eval();
+  }
   const Matrix &nodal = bases.nodal_dual;
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 namespace rbvi {
@@ -210,19 +211,42 @@ void add_histories(const CurveReport &curve,
   }
 }
 
+/// What a self-check found, on every rank.
+struct Checked {
+  int unanswered = 0;
+  bool clean = true;
+  int wrong() const { return clean ? 0 : std::max(1, unanswered); } ///< queries
+};
+
+/// Collective. The self-check into the model of rank 0.
+Checked check_answers(const Problem &problem, ReducedModel &model, StageTable &stages) {
+  const Stage stage(stages, stage::self_check);
+  std::array<int, 2> found{};
+  collectively(problem.comm(), [&] {
+    if (rank_of(problem.comm()) != 0) return;
+    model.self_check = self_check(model, problem.scene(), queries_of_check(model));
+    found = {model.self_check.unanswered, model.self_check.clean() ? 1 : 0};
+  });
+  MPI_Bcast(found.data(), 2, MPI_INT, 0, problem.comm());
+  return {found[0], found[1] != 0};
+}
+
 /// Modes alone, then the curve.
 void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
                     const ReduceOptions &options, Reduction &result) {
   add_modes(problem, samples, options.pod, result.bases, result.stages);
   result.model = timed(result.stages, stage::projection,
                        [&] { return project(problem, samples, result.affine, result.bases); });
-  const Stage stage(result.stages, stage::contact_curve);
-  const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
-  Matrix coefficients;
-  if (options.curve.rule == CurveRule::interpolated || problem.nitsche()->facing.follows_state)
-    coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
-  result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
-  add_histories(result.curve, result.model.histories);
+  {
+    const Stage stage(result.stages, stage::contact_curve);
+    const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
+    Matrix coefficients;
+    if (options.curve.rule == CurveRule::interpolated || problem.nitsche()->facing.follows_state)
+      coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
+    result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
+    add_histories(result.curve, result.model.histories);
+  }
+  check_answers(problem, result.model, result.stages);
 }
 
 void add_collocation(Problem &problem, const std::vector<Sample> &samples,
@@ -233,20 +257,6 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
   result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
   result.model.histories["gcns/error"] = nodes.error;
   result.model.histories["gcns/violation"] = nodes.violation;
-}
-
-/// Collective. The self-check into the model of rank 0. On every rank: how many of its queries went
-/// wrong, 0 where it is clean.
-int check_answers(const Problem &problem, ReducedModel &model, StageTable &stages) {
-  const Stage stage(stages, stage::self_check);
-  int wrong = 0;
-  collectively(problem.comm(), [&] {
-    if (rank_of(problem.comm()) != 0) return;
-    model.self_check = self_check(model, problem.scene(), queries_of_check(model));
-    wrong = model.self_check.clean() ? 0 : std::max(1, model.self_check.unanswered);
-  });
-  MPI_Bcast(&wrong, 1, MPI_INT, 0, problem.comm());
-  return wrong;
 }
 
 struct CheckedPair {
@@ -264,7 +274,7 @@ CheckedPair checked_pair(Problem &problem, const std::vector<Sample> &samples,
                    0};
   pair.model = timed(stages, stage::projection,
                      [&] { return project(problem, samples, affine, pair.bases); });
-  pair.wrong = check_answers(problem, pair.model, stages);
+  pair.wrong = check_answers(problem, pair.model, stages).wrong();
   return pair;
 }
 
@@ -320,9 +330,8 @@ std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
   return apart;
 }
 
-/// The law at nodes.
-void reduce_law(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
-                Reduction &result) {
+void make_law(Problem &problem, const std::vector<Sample> &samples, const ReduceOptions &options,
+              Reduction &result) {
   result.bases = build_law_bases(problem, samples, options, result.affine, result.stages);
   {
     const Stage stage(result.stages, stage::projection);
@@ -334,6 +343,18 @@ void reduce_law(Problem &problem, const std::vector<Sample> &samples, const Redu
                        result.model, result.stages);
   if (will_run(result.stages, stage::collocation))
     add_collocation(problem, samples, options.gcns, result);
+}
+
+/// The law at nodes; at all of them where contact reaches the edge of those near it.
+void reduce_law(Problem &problem, const std::vector<Sample> &samples, ReduceOptions options,
+                Reduction &result) {
+  make_law(problem, samples, options, result);
+  const Checked checked = check_answers(problem, result.model, result.stages);
+  if (checked.unanswered == 0 || result.bases.dropped == 0) return;
+  options.condensed.ring = std::numeric_limits<double>::infinity();
+  result.bases = {}; // one basis at a time: its fields are as large as the mesh
+  make_law(problem, samples, options, result);
+  check_answers(problem, result.model, result.stages);
 }
 
 } // namespace
@@ -349,14 +370,12 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   result.affine = timed(result.stages, stage::interpolation, [&] {
     return separate(problem, training, options.eim, rows_apart(options));
   });
-  const bool pair = !by_nitsche(problem.scene()) && !keeps_law(options.multipliers.reduction);
-  if (pair)
-    reduce_pair(problem, samples, options, result);
-  else if (by_nitsche(problem.scene()))
+  if (by_nitsche(problem.scene()))
     reduce_nitsche(problem, samples, options, result);
-  else
+  else if (keeps_law(options.multipliers.reduction))
     reduce_law(problem, samples, options, result);
-  if (!pair) check_answers(problem, result.model, result.stages);
+  else
+    reduce_pair(problem, samples, options, result);
   result.stages =
       finished_stages(result.stages, reduction_stages(problem.scene(), options, &result));
   return result;

@@ -172,7 +172,8 @@ StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
             "the condensed operator, at the Chebyshev points of the parameters of A to " +
                 short_number(options.condensed.tolerance)};
   const CondensedOperator &condensed = made->bases.condensed;
-  std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") + ", " +
+  std::string what = counted(made->bases.nodal_dual.cols(), "multiplier") +
+                     (made->bases.dropped > 0 ? " near contact" : "") + ", " +
                      counted(made->bases.responses, "response") + ", " +
                      counted(made->bases.factorisations, "factorisation") + ", " +
                      counted(condensed.terms.cols(), "term");

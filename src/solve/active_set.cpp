@@ -1,7 +1,10 @@
 #include "rbvi/law/friction/friction.hpp"
 #include "rbvi/law/lcp.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/solve/linear/complement.hpp"
 #include "rbvi/solve/methods.hpp"
+
+#include <numeric>
 
 namespace rbvi {
 
@@ -71,6 +74,21 @@ void Compliance::require(KSP ksp, const Trace &trace, Mat a, const std::vector<I
   }
   for (const Index dof : fresh)
     slot_[static_cast<std::size_t>(dof)] = count_++;
+}
+
+void Compliance::require_all(const Trace &trace, Mat a, const Groups *groups) {
+  if (groups == nullptr) {
+    columns_ = compliance_by_complement(a, trace);
+  } else {
+    columns_.resize(trace.size, trace.size);
+    collectively(groups->across(), [&] { // which the first group does not talk on
+      if (groups->mine() == 0) columns_ = compliance_by_complement(a, trace);
+    });
+    MPI_Bcast(columns_.data(), static_cast<int>(columns_.size()), MPI_DOUBLE, 0, groups->across());
+  }
+  count_ = trace.size;
+  slot_.resize(static_cast<std::size_t>(count_));
+  std::iota(slot_.begin(), slot_.end(), Index{0});
 }
 
 Matrix Compliance::condensed_columns(KSP ksp, const Trace &trace, const Operators &op,

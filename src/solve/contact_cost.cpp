@@ -1,6 +1,8 @@
 #include "rbvi/solve/contact_cost.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/solve/linear/complement.hpp"
 #include "rbvi/solve/linear/scaled_part.hpp"
 
 #include <cmath>
@@ -15,8 +17,23 @@ constexpr double factorisation = 75;      ///< of sparse Cholesky factors in two
 constexpr double krylov_steps = 60;       ///< of the few sets from a neighbour or a coarser mesh
 constexpr double steps_of_a_set = 20;     ///< where sets are far from the factors
 constexpr double first_uzawa_steps = 400; ///< that tell a condensed solve where contact is
-constexpr double worth_changing = 0.6;    ///< condensed, unless elimination takes less by this
+constexpr double worth_changing = 0.6;    ///< from columns: elimination has to take less by this
 constexpr PetscInt small = 10000;         ///< dofs below which it is condensed in any case
+
+} // namespace
+
+namespace {
+
+bool by_complement(const Problem &problem) {
+  return constant_stiffness(problem.scene()) &&
+         takes_complement(problem, problem.trace().size / 2.0);
+}
+
+/// Which the first rank makes, where factors are those of all.
+double complement(const Problem &problem) {
+  const double ranks = ranks_of(problem.comm());
+  return complement_cost(problem.dofs().total_free, problem.trace().size) * 2 * ranks / (1 + ranks);
+}
 
 } // namespace
 
@@ -30,9 +47,17 @@ ContactCost contact_cost(const Problem &problem, int samples) {
   // From nothing, the sets move by a layer of nodes a step.
   const double first = problem.refinements() > 0 ? 40 : steps_of_a_set * std::sqrt(nodes);
   ContactCost cost;
-  cost.condensed = (kept ? columns / count : columns) + first_uzawa_steps / count + dense;
+  if (by_complement(problem))
+    cost.condensed = (factorisation + complement(problem)) / count + dense;
+  else
+    cost.condensed = (kept ? columns / count : columns) + first_uzawa_steps / count + dense;
   cost.eliminated = factorisation + krylov_steps + first / count;
   return cost;
+}
+
+bool takes_complement(const Problem &problem, double columns) {
+  return complement_pays(problem.dofs().total_free, problem.trace().size, columns, true) &&
+         solves_directly("hf_");
 }
 
 bool eliminates(const Problem &problem, const HfOptions &options) {
@@ -43,7 +68,7 @@ bool eliminates(const Problem &problem, const HfOptions &options) {
   if (problem.dofs().total_free < small) return false;
   if (options.samples > 2 && ScaledPart::fits(problem.scene())) return false;
   const ContactCost cost = contact_cost(problem, options.samples);
-  return cost.eliminated < worth_changing * cost.condensed;
+  return cost.eliminated < (by_complement(problem) ? 1 : worth_changing) * cost.condensed;
 }
 
 std::string contact_cost_text(const Problem &problem, const HfOptions &options) {

@@ -264,7 +264,15 @@ void HighFidelity::share_columns(const Groups &groups, const std::vector<Mu> &se
   }
   if (a == nullptr) return;
   set_operator(ksp_.get(), a);
+  if (takes_complement(problem_, static_cast<double>(dofs.size()) / groups.count()))
+    return compliance_->require_all(problem_.trace(), a, &groups);
   compliance_->require(ksp_.get(), problem_.trace(), a, {dofs.begin(), dofs.end()}, &groups);
+}
+
+void HighFidelity::complete_compliance(Mat a) {
+  const double half = problem_.trace().size / 2.0; // of the columns, as contact_cost has it
+  if (compliance_ && compliance_->count() == 0 && takes_complement(problem_, half))
+    compliance_->require_all(problem_.trace(), a);
 }
 
 HfSolution HighFidelity::solve(const Mu &mu) {
@@ -282,6 +290,7 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   set_operator(ksp_.get(), op.a);
   HfSolution solution;
   const bool follows = follows_state(problem_.contact());
+  if (condensed) complete_compliance(op.a);
   const MethodResult result = follows     ? run_following(mu, op, solution)
                               : condensed ? run_active_set(mu, op, solution)
                                           : run_over_ranks(op, solution);

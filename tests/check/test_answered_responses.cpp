@@ -49,7 +49,7 @@ TEST(ResponseDirections, AreAsFewAsTheAnswersNeed) {
   Matrix answers = factors * numbers;
   ResponseDirections directions(compliance);
   directions.add(answers.leftCols(20), 1e-8);
-  const Matrix few = directions.coefficients();
+  const Matrix few = directions.coefficients(1e-8);
   EXPECT_EQ(few.cols(), rank);
   EXPECT_LE((few.transpose() * compliance * few - Matrix::Identity(rank, rank)).norm(), 1e-10)
       << "orthonormal in the energy";
@@ -59,11 +59,15 @@ TEST(ResponseDirections, AreAsFewAsTheAnswersNeed) {
   answers.col(30) += small * random.vector(size);
   const double left = directions.left(answers.rightCols(20));
   EXPECT_GT(left, 0.01 * small);
-  directions.add(answers.rightCols(20), 2 * left);
-  EXPECT_EQ(directions.coefficients().cols(), rank);
   directions.add(answers.rightCols(20), 0.01 * left);
-  EXPECT_EQ(directions.coefficients().cols(), rank + 1);
   EXPECT_LE(directions.left(answers), 0.01 * left);
+  EXPECT_EQ(directions.coefficients(2 * left).cols(), rank);
+  const Matrix all = directions.coefficients(0.01 * left);
+  EXPECT_EQ(all.cols(), rank + 1);
+  const Matrix rest = answers - all * (all.transpose() * (compliance * answers));
+  EXPECT_LE(std::sqrt((rest.transpose() * compliance * rest).diagonal().maxCoeff()),
+            0.02 * left *
+                std::sqrt((answers.transpose() * compliance * answers).diagonal().maxCoeff()));
   EXPECT_THROW(ResponseDirections(-compliance), Error);
 }
 

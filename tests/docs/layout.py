@@ -75,6 +75,7 @@ def known_sizes(file):
     return {"n": modes + supremizers, "R": generators,
             "P": len(file["parameters/names"]), "p": len(file["parameters/free"]),
             "d": file["interfaces/0/points"].shape[1], "k": int(file["contact/dofs"][()]),
+            "l": len(file["law/dofs"]) if "law/dofs" in file else 0,
             "c": file["contact/dual_basis"].shape[0]}
 
 

@@ -54,6 +54,7 @@ struct ReducedBases {
   Cone cone;
   Pga pga;
   Matrix nodal_dual; ///< the law at nodes: the nodal dual basis; cone is empty
+  Index dropped = 0; ///< columns of it that are too far from contact to be kept
   CondensedOperator condensed;
   MultiplierReduction reduction = MultiplierReduction::condensed;
   bool mended = true; ///< NodalLaw::mended

@@ -17,6 +17,10 @@ struct ContactCost {
 /// `samples`: that share what can be kept.
 ContactCost contact_cost(const Problem &problem, int samples);
 
+/// Whether the columns of a compliance that is kept, so many of them, are made by A's Schur
+/// complement (solve/linear/complement.hpp): by sizes, and where options leave A a direct solver.
+bool takes_complement(const Problem &problem, double columns);
+
 /// What HighFidelity does with these options: by the estimate unless they say. Where contact
 /// follows the displacement, where there are few dofs, or where a part of A is scaled and there are
 /// several samples, it is condensed.

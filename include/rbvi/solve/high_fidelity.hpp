@@ -117,6 +117,8 @@ private:
   };
   const Solved *nearest(const Mu &mu) const;
   Start nearest_start(const Mu &mu, const Operators &op);
+  /// All columns of the compliance at once, where that takes less than those that are needed.
+  void complete_compliance(Mat a);
   MethodResult run_following(const Mu &mu, const Operators &op, HfSolution &solution);
   MethodResult run_active_set(const Mu &mu, const Operators &op, HfSolution &solution);
   MethodResult run_condensed(const Mu &mu, const Operators &op);

@@ -46,6 +46,9 @@ public:
   /// of them, and each solves for its share.
   void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs,
                const Groups *groups = nullptr);
+  /// Makes all of them exist, by A's Schur complement on the contact dofs. Collective; with
+  /// `groups`, the first makes them for all.
+  void require_all(const Trace &trace, Mat a, const Groups *groups = nullptr);
   /// One that was required.
   Eigen::Map<const Vector> column(Index contact_dof) const {
     return {columns_.col(slot_[static_cast<std::size_t>(contact_dof)]).data(), columns_.rows()};

@@ -24,7 +24,7 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver
     try {
       const LawAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
       answers.col(static_cast<Index>(p)) =
-          loads.units ? answer.reaction : Vector(answer.theta_b[0] * answer.x);
+          !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.x);
     } catch (const Error &error) { // the self-check tells of such mu
       if (error.status() == Status::bad_input) throw;
     }
@@ -38,7 +38,7 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver
 bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options) {
   const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
-  return (loads.units || loads.join) && constant_stiffness(problem.scene()) &&
+  return (!loads.units.empty() || loads.join) && constant_stiffness(problem.scene()) &&
          options.responses > 0 && options.compression > 0 && numbers > options.large_fields;
 }
 
@@ -50,27 +50,47 @@ ResponseDirections::ResponseDirections(const Matrix &compliance) {
   root_ = factor.matrixU();
 }
 
-void ResponseDirections::add(const Matrix &more, double tolerance) {
-  answers_.conservativeResize(more.rows(), answers_.cols() + more.cols());
-  answers_.rightCols(more.cols()) = more;
-  moved_.conservativeResize(more.rows(), answers_.cols());
-  moved_.rightCols(more.cols()) = root_.triangularView<Eigen::Upper>() * more;
-  const SmallSvd svd = small_svd(moved_);
+Matrix ResponseDirections::remainder(Matrix moved) const {
+  for (int pass = 0; pass < 2 && space_.cols() > 0; ++pass)
+    moved -= space_ * (space_.transpose() * moved).eval();
+  return moved;
+}
+
+namespace {
+
+/// As many of the first singular vectors as leave at most this of every column.
+Matrix leading_vectors(const Matrix &columns, double allowed) {
+  const SmallSvd svd = small_svd(columns);
   const Matrix parts = svd.values.asDiagonal() * svd.right.transpose();
-  largest_ = parts.colwise().norm().maxCoeff();
   Index count = 0;
   while (count < svd.values.size() &&
-         parts.bottomRows(parts.rows() - count).colwise().norm().maxCoeff() > tolerance * largest_)
+         parts.bottomRows(parts.rows() - count).colwise().norm().maxCoeff() > allowed)
     ++count;
-  orthonormal_ = svd.left.leftCols(count);
-  coefficients_ =
-      answers_ * (svd.right.leftCols(count) * svd.values.head(count).cwiseInverse().asDiagonal());
+  return svd.left.leftCols(count);
+}
+
+} // namespace
+
+void ResponseDirections::add(const Matrix &answers, double tolerance) {
+  const Matrix moved = root_.triangularView<Eigen::Upper>() * answers;
+  largest_ = std::max(largest_, moved.colwise().norm().maxCoeff());
+  const Matrix fresh = leading_vectors(remainder(moved), tolerance * largest_);
+  const Index before = parts_.cols(), size = space_.cols();
+  space_.conservativeResize(moved.rows(), size + fresh.cols());
+  space_.rightCols(fresh.cols()) = fresh;
+  parts_.conservativeResize(space_.cols(), before + moved.cols());
+  parts_.bottomRows(fresh.cols()).setZero(); // add() has left them out
+  parts_.rightCols(moved.cols()) = space_.transpose() * moved;
 }
 
 double ResponseDirections::left(const Matrix &answers) const {
   const Matrix moved = root_.triangularView<Eigen::Upper>() * answers;
-  return (moved - orthonormal_ * (orthonormal_.transpose() * moved)).colwise().norm().maxCoeff() /
-         largest_;
+  return remainder(moved).colwise().norm().maxCoeff() / largest_;
+}
+
+Matrix ResponseDirections::coefficients(double tolerance) const {
+  return root_.triangularView<Eigen::Upper>().solve(space_ *
+                                                    leading_vectors(parts_, tolerance * largest_));
 }
 
 int append_answered_responses(Problem &problem, const CondensedLoads &loads,
@@ -86,9 +106,11 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   Matrix answers = answers_at(problem, loads, solver, set);
   if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
   ParameterReader random(problem.scene().parameters, "random:" + std::to_string(most) + ":29");
-  constexpr double of_the_tolerance = 0.5; // the rest is for what comes between the answers
+  // A part of the tolerance each: for what is not taken, what comes between answers, what the few
+  // directions leave.
+  constexpr double not_taken = 0.1, between = 0.5, of_few = 0.4;
   do {
-    directions.add(answers, of_the_tolerance * tolerance);
+    directions.add(answers, not_taken * tolerance);
     set.clear();
     for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
       set.push_back(*mu);
@@ -96,12 +118,13 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
       throw failure("the responses to the answers of the law go on after " + std::to_string(most) +
                     " of them: use -response_compression 0 or a larger one");
     answers = answers_at(problem, loads, solver, set);
-  } while (directions.left(answers) > tolerance);
+  } while (directions.left(answers) > between * tolerance);
   ReplicatedSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
-  return static_cast<int>(
-      append_fields(body, loads.columns * directions.coefficients(), modes, dependent, nullptr)
-          .size());
+  return static_cast<int>(append_fields(body,
+                                        loads.columns * directions.coefficients(of_few * tolerance),
+                                        modes, dependent, nullptr)
+                              .size());
 }
 
 } // namespace rbvi

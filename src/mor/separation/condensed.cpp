@@ -2,16 +2,18 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/separation/response_space.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/complement.hpp"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace rbvi {
@@ -59,24 +61,59 @@ Matrix separated_loads(Problem &problem, const AffineOperators &affine,
   return loads;
 }
 
-/// Contact dofs that b couples with multipliers that are positive in a sample, and with their two
-/// neighbours on either side: where contact is at other mu. Increasing.
-std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training,
-                               const Matrix &multipliers) {
+/// Ones at some of the contact dofs, a column each.
+template <class Integer> Matrix unit_loads(Index dofs, const std::vector<Integer> &at) {
+  Matrix loads = Matrix::Zero(dofs, std::ssize(at));
+  for (Index k = 0; k < loads.cols(); ++k)
+    loads(at[static_cast<std::size_t>(k)], k) = 1;
+  return loads;
+}
+
+/// Contact dofs that b couples, at some mu of the set, with rows of it that are wanted there or
+/// have one that is among their two neighbours on either side. Increasing.
+template <class Wanted>
+std::vector<Index> coupled_dofs(Problem &problem, const std::vector<Mu> &set, Wanted &&wanted) {
   constexpr Index neighbours = 2;
   std::set<Index> dofs;
   Operators op;
-  for (std::size_t p = 0; p < training.size(); ++p) {
-    problem.assemble_contact(training[p], op);
-    for (Index i = 0; i < multipliers.rows(); ++i) {
-      const Index first = std::max<Index>(0, i - neighbours);
-      const Index count = std::min(multipliers.rows(), i + neighbours + 1) - first;
-      if (!(multipliers.col(static_cast<Index>(p)).segment(first, count).maxCoeff() > 0)) continue;
-      for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
+  for (std::size_t p = 0; p < set.size(); ++p) {
+    problem.assemble_contact(set[p], op);
+    for (Index i = 0; i < op.b.rows(); ++i) {
+      bool near = false;
+      for (Index k = std::max<Index>(0, i - neighbours);
+           k < std::min(op.b.rows(), i + neighbours + 1) && !near; ++k)
+        near = wanted(p, k);
+      for (SparseMatrix::InnerIterator entry(op.b, i); entry && near; ++entry)
         if (entry.value() != 0) dofs.insert(entry.col());
     }
   }
   return {dofs.begin(), dofs.end()};
+}
+
+/// Beside multipliers that are positive in a sample: where contact is at other mu.
+std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training,
+                               const Matrix &multipliers) {
+  return coupled_dofs(problem, training, [&](std::size_t p, Index row) {
+    return multipliers(row, static_cast<Index>(p)) > 0;
+  });
+}
+
+/// Those that the rows of the basis meet wherever the parameters are.
+std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &basis) {
+  std::vector<int> dofs(static_cast<std::size_t>(problem.trace().size));
+  std::iota(dofs.begin(), dofs.end(), 0);
+  const Vector rows = basis.rowwise().lpNorm<Eigen::Infinity>();
+  if (follows_state(problem.scene()) || rows.minCoeff() > 0) return dofs;
+  const ParameterSpace &space = problem.scene().parameters;
+  std::string corners = "grid:2";
+  for (int i = 1; i < space.size(); ++i)
+    corners += ",2";
+  for (const std::string &more : {corners, std::string("random:100:31")})
+    for (Mu &mu : parse_set(space, more))
+      set.push_back(std::move(mu));
+  const auto met =
+      coupled_dofs(problem, set, [&](std::size_t, Index row) { return rows[row] > 0; });
+  return {met.begin(), met.end()};
 }
 
 /// The blocks of H = `loads`^T A^-1 `loads`, below each other: column by column, m^2 entries each.
@@ -128,10 +165,11 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const Matrix &basis) {
   if (!separable_contact(problem.scene())) {
     const Index dofs = problem.trace().size;
-    return {Matrix::Identity(dofs, dofs), true, false, loaded_dofs(problem, training, multipliers)};
+    std::vector<int> met = met_dofs(problem, training, basis);
+    Matrix units = unit_loads(dofs, met);
+    return {std::move(units), std::move(met), false, loaded_dofs(problem, training, multipliers)};
   }
-  CondensedLoads loads{separated_loads(problem, affine, training, basis), false,
-                       affine.b_size() == 1};
+  CondensedLoads loads{separated_loads(problem, affine, training, basis), {}, affine.b_size() == 1};
   if (!loads.join && affine.b.exact()) loads.dofs = loaded_dofs(problem, training, multipliers);
   return loads;
 }
@@ -162,32 +200,19 @@ public:
   /// Collective.
   Vector blocks_at(const Mu &mu) {
     ++factorisations;
-    ReplicatedSolver solver(problem_.assemble(mu).a, problem_.trace(), "hf_");
-    const bool appends =
-        modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end();
-    return blocks_of(of_.columns.transpose() * responses(solver, appends), size_);
+    const Mat a = problem_.assemble(mu).a;
+    if (modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end()) {
+      ReplicatedSolver solver(a, problem_.trace(), "hf_");
+      if (of_.join) return blocks_of(of_.columns.transpose() * append(solver, of_.columns), size_);
+      append(solver, unit_loads(of_.columns.rows(), of_.dofs));
+      return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns, &solver), size_);
+    }
+    return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns), size_);
   }
 
   int factorisations = 0, appended = 0;
 
 private:
-  /// E^T A^-1 E loads. Those that join are solved for once.
-  Matrix responses(ReplicatedSolver &solver, bool appends) {
-    const Matrix &loads = of_.columns;
-    if (!appends) return solver.responses(loads);
-    if (of_.join) return append(solver, loads);
-    const Matrix units = Matrix::Identity(loads.rows(), loads.rows());
-    const Matrix joined = append(solver, units(Eigen::all, of_.dofs));
-    if (!of_.units) return solver.responses(loads);
-    std::vector<Index> others;
-    for (Index i = 0; i < loads.rows(); ++i)
-      if (!std::binary_search(of_.dofs.begin(), of_.dofs.end(), i)) others.push_back(i);
-    Matrix result(loads.rows(), loads.rows());
-    result(Eigen::all, of_.dofs) = joined;
-    result(Eigen::all, others) = solver.responses(units(Eigen::all, others));
-    return result;
-  }
-
   /// E^T A^-1 E loads, and what of A^-1 E loads is new.
   Matrix append(ReplicatedSolver &solver, const Matrix &loads) {
     const double least = appended == 0 ? 1e-8 : responses_;
@@ -300,6 +325,7 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
     result.responses = exact.appended;
     result.factorisations = exact.factorisations;
   }
+  condensed.dofs = loads.units;
   compress(values, size * size, options.tolerance, condensed);
   return result;
 }

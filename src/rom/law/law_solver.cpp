@@ -1,5 +1,6 @@
 #include "rbvi/rom/law/law_solver.hpp"
 
+#include "edge_of_nodes.hpp"
 #include "model_compliance.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -17,6 +18,8 @@ namespace rbvi {
 namespace {
 
 constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at all nodes
+constexpr const char *keeps_more =
+    "reduce again with training parameters up to the ends of the box, or a larger -condensed_ring";
 
 } // namespace
 
@@ -26,11 +29,19 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
   if (model.law->reduction != MultiplierReduction::condensed) law_.emplace(*model.law);
   samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
   set_laws();
-  if (model.evaluates_contact()) nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
+  edge_ = edge_of_nodes(contact, model.dual_basis);
+  if (model.evaluates_contact()) {
+    const std::vector<int> &dofs = model.law->condensed.dofs;
+    nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
+    trace_ = model.contact_trace(dofs, Eigen::all);
+    place_.assign(static_cast<std::size_t>(model.contact_trace.rows()), -1);
+    for (std::size_t k = 0; k < dofs.size(); ++k)
+      place_[static_cast<std::size_t>(dofs[k])] = static_cast<int>(k);
+    compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
+  }
   if (!follows_state(contact)) return;
   if (law_)
     throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
-  compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
   nodal_is_identity_ = model.dual_basis.isIdentity(0);
   const ContactInterface *nodal = nodal_interface(contact);
   if (nodal != nullptr && nodal_is_identity_) nodal_compliance_.emplace(nodal->averages());
@@ -58,6 +69,32 @@ void LawSolver::set_laws() {
       interface_of_.push_back(static_cast<int>(i));
     }
   laws_.bound.resize(laws_.normal.size());
+}
+
+SparseMatrix LawSolver::known_columns(const SparseMatrix &b) const {
+  if (trace_.rows() == b.cols()) return b;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(b.nonZeros()));
+  for (Index row = 0; row < b.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(b, row); entry; ++entry) {
+      if (entry.value() == 0) continue;
+      const int column = place_[static_cast<std::size_t>(entry.col())];
+      if (column < 0)
+        throw failure("a multiplier of the model meets the other body where no training parameter "
+                      "takes it: " +
+                      std::string(keeps_more));
+      entries.emplace_back(row, column, entry.value());
+    }
+  SparseMatrix known(b.rows(), trace_.rows());
+  known.setFromTriplets(entries.begin(), entries.end());
+  return known;
+}
+
+void LawSolver::check_edge(const Vector &x) const {
+  for (const Index column : edge_)
+    if (x[column] != 0)
+      throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
+                    std::string(keeps_more));
 }
 
 NodeLaws LawSolver::laws_at(const FullMu &all_parameters) const {
@@ -106,7 +143,7 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, con
   BodyAtMu body;
   if (model_.evaluates_contact()) {
     assemble(contact_, all_parameters, {state}, answer.contact);
-    body.b_contact = nodal_ * answer.contact.b;
+    body.b_contact = known_columns(nodal_ * answer.contact.b);
     body.q = nodal_ * answer.contact.g;
   } else {
     answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters);
@@ -116,7 +153,7 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, con
   const Vector &theta_b = answer.theta_b;
   if (law.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
   if (model_.evaluates_contact() && model_.f.size() > 0)
-    body.b = body.b_contact * model_.contact_trace;
+    body.b = body.b_contact * trace_;
   else if (law.reduction == MultiplierReduction::collocated || model_.f.size() > 0)
     body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
   stiffness_.set(all_parameters);
@@ -132,7 +169,7 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, con
   return body;
 }
 
-Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) const {
+Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) {
   const Matrix &terms = model_.law->condensed.terms;
   const auto count = static_cast<Index>(which.size());
   if (!model_.evaluates_contact()) {
@@ -143,17 +180,18 @@ Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Inde
           terms.middleRows(which[static_cast<std::size_t>(k)] * m, m) * body.terms;
     return result;
   }
-  const Index dofs = model_.contact_trace.rows();
-  Matrix moved = Matrix::Zero(dofs, count); // contact dofs, by unit multipliers
+  Matrix moved = Matrix::Zero(trace_.rows(), count); // contact dofs, by unit multipliers
+  compliance_->set(body.terms);
   for (Index k = 0; k < count; ++k)
     for (SparseMatrix::InnerIterator entry(body.b_contact, which[static_cast<std::size_t>(k)]);
-         entry; ++entry)
-      moved.col(k).noalias() +=
-          terms.middleRows(entry.col() * dofs, dofs) * (entry.value() * body.terms);
+         entry; ++entry) {
+      compliance_->require({entry.col()});
+      moved.col(k) += entry.value() * compliance_->column(entry.col());
+    }
   return body.b_contact * moved;
 }
 
-LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) const {
+LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) {
   std::vector<Index> all(static_cast<std::size_t>(model_.generators));
   std::iota(all.begin(), all.end(), 0);
   const Matrix h = condensed_columns(body, all);
@@ -212,7 +250,7 @@ void LawSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters, La
 }
 
 LawAnswer LawSolver::solve(const FullMu &all_parameters) {
-  if (compliance_) {
+  if (follows_state(contact_)) {
     LawAnswer answer = solve_following(all_parameters);
     last_start_ = answer.start;
     last_ = parts_of_box(scene_.parameters, all_parameters);
@@ -221,9 +259,10 @@ LawAnswer LawSolver::solve(const FullMu &all_parameters) {
   LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
   solve_law(body, all_parameters, answer);
+  check_edge(answer.x);
   if (model_.evaluates_contact()) {
     answer.reaction = body.b_contact.transpose() * answer.x;
-    answer.u = -stiffness_.response(model_.contact_trace.transpose() * answer.reaction);
+    answer.u = -stiffness_.response(trace_.transpose() * answer.reaction);
   } else {
     answer.u = -stiffness_.response(answer.theta_b, answer.x);
   }

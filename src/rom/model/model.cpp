@@ -142,7 +142,7 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
   const CondensedOperator &condensed = law.condensed;
   const Index m = model.generators, b = model.b.size();
   const Index blocks = model.evaluates_contact() ? 1 : b * (b + 1) / 2;
-  const Index size = model.evaluates_contact() ? model.contact_trace.rows() : m;
+  const Index size = model.evaluates_contact() ? std::ssize(condensed.dofs) : m;
   require(law.normal > 0 && law.normal <= m, "law/normal does not fit");
   require(law.reduction >= MultiplierReduction::condensed &&
               law.reduction <= MultiplierReduction::joint,
@@ -154,6 +154,7 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
   if (condensed.terms.size() > 0) {
     require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes), "law/shape");
     require_shape(condensed.terms, size * size, blocks * condensed.shape.rows(), "law/terms");
+    require_indices(condensed.dofs, model.contact_trace.rows(), "law/dofs");
   } else {
     require(law.reduction == MultiplierReduction::collocated, "it has no condensed operator");
   }

@@ -191,6 +191,7 @@ void write_law(H5Writer &file, const std::optional<NodalLaw> &law) {
   file.write("law/error", law->condensed.error);
   file.write("law/shape", law->condensed.shape);
   file.write("law/terms", law->condensed.terms);
+  file.write("law/dofs", law->condensed.dofs);
   const TermsApart &apart = law->apart;
   file.write("law/apart", std::vector<double>{static_cast<double>(apart.normal), apart.normal_error,
                                               apart.tangential_error});
@@ -217,6 +218,7 @@ std::optional<NodalLaw> read_law(const H5Reader &file) {
   law.condensed.error = file.number("law/error");
   law.condensed.shape = file.matrix("law/shape");
   law.condensed.terms = file.matrix("law/terms");
+  law.condensed.dofs = file.ints("law/dofs");
   const std::vector<double> apart = file.doubles("law/apart");
   if (apart.size() != 3) throw bad_input("law/apart has not 3 entries");
   law.apart = {static_cast<int>(apart[0]), apart[1], apart[2]};

@@ -1,6 +1,7 @@
 #include "rbvi/solve/linear/scaled_part.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/solve/linear/complement.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -93,9 +94,9 @@ ScaledPart::ScaledPart(const Problem &problem) : problem_(problem), contact_(pro
 
   const PetscInt c = contact_.size, n = interface_.size;
   solver_ = std::make_unique<ReplicatedSolver>(lower.get(), both_, "hf_");
-  const Matrix g = solver_->responses(Matrix::Identity(c + n, c + n));
-  const Matrix g_upper =
-      ReplicatedSolver(upper.get(), interface_, "hf_").responses(Matrix::Identity(n, n));
+  const Matrix g =
+      condensed_by_loads(lower.get(), both_, "hf_", Matrix::Identity(c + n, c + n), solver_.get());
+  const Matrix g_upper = condensed_by_loads(upper.get(), interface_, "hf_", Matrix::Identity(n, n));
   // G_ii(upper) w = theta^-1 G_ii(lower) w, theta = 1 + width * sigma.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(g_upper, g.bottomRightCorner(n, n));
   if (solver.info() != Eigen::Success)

@@ -297,13 +297,13 @@ std::vector<Option> of_multipliers() {
       "a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, supremizers, the bound of "
       "friction at nodes chosen greedily (Algorithm 3), B^n and B^tau interpolated apart unless B "
       "is a multiple of one form: the published method; without friction the cone and B^n alone",
-      "cones for lambda_n and for what is left to the bound, so that Coulomb's bound holds at "
-      "every node",
-      "modes of both multipliers together, by least squares on the law at nodes chosen by pivoted "
-      "QR"};
+      "cones for lambda_n and what is left to the bound: Coulomb's bound holds at every node",
+      "modes of both multipliers, by least squares on the law at nodes chosen by pivoted QR"};
   return {
       kept(with_law, number("condensed_tolerance", relative_error, AT(reduce.condensed.tolerance),
                             "relative error of the condensed operator as a function of mu")),
+      kept(with_law, number("condensed_ring", positive, AT(reduce.condensed.ring),
+                            "condensed: how far beyond contact multipliers are, over its extent")),
       number("response_tolerance", relative_error, AT(reduce.condensed.responses),
              "responses A^-1 B^T join the modes, those of further A to this remainder; 0: none"),
       number("response_compression", relative_error, AT(reduce.condensed.compression),

@@ -18,18 +18,21 @@ class ResponseDirections {
 public:
   /// `compliance`: loads^T A^-1 loads. Throws failure where it is not positive definite.
   explicit ResponseDirections(const Matrix &compliance);
-  /// As few as leave at most `tolerance`, relative to the largest, of each answer so far and of
-  /// `more` (loads x any number).
-  void add(const Matrix &more, double tolerance);
-  /// What they leave of the worst of `answers`, relative to the largest of those added.
+  /// Takes what is new of these answers (loads x any number), but for `tolerance`, relative to the
+  /// largest so far.
+  void add(const Matrix &answers, double tolerance);
+  /// What those taken leave of the worst of `answers`, relative to the largest of those added.
   double left(const Matrix &answers) const;
-  /// Coefficients, loads x r.
-  const Matrix &coefficients() const { return coefficients_; }
+  /// Coefficients, loads x r, orthonormal in the energy: as few as leave at most `tolerance`,
+  /// likewise, of every answer that was added, beside what add() left.
+  Matrix coefficients(double tolerance) const;
 
 private:
-  Matrix root_; ///< R with H = R^T R: the energy of loads c is |R c|^2
-  Matrix answers_, coefficients_;
-  Matrix moved_, orthonormal_; ///< R times these
+  Matrix remainder(Matrix moved) const; ///< beside the space
+
+  Matrix root_;  ///< R with H = R^T R: the energy of loads c is |R c|^2
+  Matrix space_; ///< R times what was taken, orthonormal
+  Matrix parts_; ///< of the answers in it
   double largest_ = 0;
 };
 

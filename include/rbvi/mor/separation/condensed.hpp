@@ -15,6 +15,7 @@ struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
   double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
+  double ring = 0.5;       ///< of columns_near_contact
   /// Of responses whose fields are large: see append_answered_responses; 0: all are appended.
   double compression = 1e-5;
   double large_fields = 2e7; ///< numbers: 160 MB
@@ -34,9 +35,10 @@ struct Condensation {
 
 /// What A^-1 is asked for on the contact dofs.
 struct CondensedLoads {
-  Matrix columns;     ///< contact dofs x any number
-  bool units = false; ///< they are the unit loads of all contact dofs
-  bool join = false;  ///< the responses to all of them can join the modes
+  Matrix columns; ///< contact dofs x any number
+  std::vector<int>
+      units{};       ///< the contact dofs that they are the unit loads of, rising; empty: none
+  bool join = false; ///< the responses to all of them can join the modes
   /// Contact dofs the responses to whose unit loads can join the modes instead: those beside
   /// multipliers that are positive in some sample.
   std::vector<Index> dofs{};
@@ -48,7 +50,9 @@ struct CondensedLoads {
 /// Where b separates (`affine`, over the samples at `training`): its terms on the basis, side by
 /// side; all of them join where there is one term, single dofs where it is an exact sum of more:
 /// where it is interpolated no response makes the displacement more exact. Where b is evaluated at
-/// each mu: the unit vectors of the contact dofs. `multipliers`: dual dofs x P. Not collective.
+/// each mu: the unit vectors of the contact dofs that the rows of the basis and their neighbours
+/// meet at the training parameters, at random ones and in the corners of the box; of all contact
+/// dofs where contact follows the displacement. `multipliers`: dual dofs x P. Not collective.
 CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,
                                const Matrix &basis);

@@ -14,7 +14,7 @@ namespace rbvi {
 struct LawAnswer {
   Vector u, x; ///< coefficients of the primal and of the dual basis
   Vector theta_b;
-  Vector reaction; ///< B^T x on the contact dofs, where B does not separate
+  Vector reaction;   ///< B^T x on CondensedOperator::dofs, where B does not separate
   double energy = 0; ///< a(u,u)/2 - f(u)
   double residual =
       0; ///< largest relative violation of the laws, at all nodes where they are known
@@ -47,9 +47,9 @@ private:
     Vector w, diagonal; ///< H x + q, H_jj
     Vector start;       ///< x - w / H_jj
   };
-  AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x) const;
+  AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x);
   /// H(:, which), m x which.size().
-  Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) const;
+  Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which);
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, LawAnswer &answer);
   void solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer);
@@ -66,15 +66,21 @@ private:
   const Contact &contact_;
   std::optional<ReducedLaw> law_;
   void set_laws();
+  /// The columns of B that the condensed operator knows. Throws failure where it meets others.
+  SparseMatrix known_columns(const SparseMatrix &b) const;
+  void check_edge(const Vector &x) const;
   NodeLaws laws_at(const FullMu &all_parameters) const;
 
   std::vector<int> interface_of_; ///< of each node of laws_
   NodeLaws laws_;                 ///< of the columns of the dual basis, without bounds
   SparseMatrix nodal_;            ///< the dual basis transposed, where b does not separate
-  Matrix samples_;                ///< where the starts are, as parts of the box
-  Vector last_start_, last_;      ///< of the last query, and where it was
+  std::vector<int> place_;  ///< of each contact dof in CondensedOperator::dofs; -1: it is not there
+  Matrix trace_;            ///< the primal basis at these dofs
+  std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
+  Matrix samples_;          ///< where the starts are, as parts of the box
+  Vector last_start_, last_;                    ///< of the last query, and where it was
+  std::unique_ptr<ModelCompliance> compliance_; ///< where b does not separate
   // Where contact follows the displacement:
-  std::unique_ptr<ModelCompliance> compliance_;
   std::optional<NodalCompliance> nodal_compliance_;
   bool nodal_is_identity_ = false; ///< nodal_
   SparseMatrix w_product_;         ///< of the columns of the dual basis

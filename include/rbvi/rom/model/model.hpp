@@ -99,11 +99,12 @@ struct SelfCheck {
 /// H(mu) = sum over t of coefficient_t(mu) terms_t. The terms come in blocks, one for each pair of
 /// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
 /// the grid at mu. Where b does not separate, the terms are those of E^T A^-1 E on the contact dofs
-/// (m of them), in one block, and H = B (sum of terms) B^T.
+/// that the dual basis meets (m of them), in one block, and H = B (sum of terms) B^T.
 struct CondensedOperator {
   std::vector<ChebyshevAxis> axes; ///< of the free parameters that a depends on
   Matrix shape;                    ///< J x grid points
   Matrix terms;                    ///< m^2 x (blocks * J): symmetric matrices, column by column
+  std::vector<int> dofs;           ///< where b does not separate: these contact dofs, rising
   double error = 0;                ///< of the interpolation over the grid, relative, estimated
 };
 
@@ -136,7 +137,8 @@ struct TermsApart {
 };
 
 /// The law of contact and friction at every node, or on functions of the nodes. The dual basis of
-/// the model is nodal: a column for every node of the interfaces, or pair of mirror images.
+/// the model is nodal: a column for every node of the interfaces, or pair of mirror images; with
+/// MultiplierReduction::condensed of those near contact alone.
 struct NodalLaw {
   int normal = 0; ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
   MultiplierReduction reduction = MultiplierReduction::condensed; ///< neither of the first two
@@ -215,8 +217,8 @@ struct ReducedModel {
   AffineTerms a;
   StiffnessChange a_change;
   AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
-  AffineTerms f;              ///< n x terms; none: no load
-  AffineTerms g;              ///< R x J
+  AffineTerms f; ///< n x terms; none: no load
+  AffineTerms g; ///< R x J
   AffineTerms imposed_energy; ///< 1 x terms, of imposed displacements; none: there are none
 
   std::vector<InterfaceModel> interfaces;
@@ -247,7 +249,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 13;
+inline constexpr int model_schema = 14;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

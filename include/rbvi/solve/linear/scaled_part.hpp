@@ -26,7 +26,8 @@ public:
   /// same at the two bounds of all of them, and nothing loads the body but contact.
   static bool fits(const Scene &scene);
 
-  /// Two factorisations, at the bounds of theta, and n_c + 2 n_i solves, shared among the ranks.
+  /// Factorisations at the bounds of theta, and n_c + 2 n_i solves or two complements
+  /// (condensed_by_loads).
   /// `problem` must outlive it. Collective.
   explicit ScaledPart(const Problem &problem);
   /// The operators of the next calls. Not collective.
