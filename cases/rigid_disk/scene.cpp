@@ -53,13 +53,15 @@ Point from_support(const FullMu &mu, const Point &x) {
 }
 
 Point radial_normal(const FullMu &, const Point &x) {
-  return {x[0] / norm(x), x[1] / norm(x), 0};
+  const double distance = norm(x);
+  return {x[0] / distance, x[1] / distance, 0};
 }
 
 /// Normal of the rigid disk at the point next to x, towards it.
 Point rigid_normal(const FullMu &mu, const Point &x) {
   const Point p = from_support(mu, on_arc(mu, x));
-  return {-p[0] / norm(p), -p[1] / norm(p), 0};
+  const double distance = norm(p);
+  return {-p[0] / distance, -p[1] / distance, 0};
 }
 
 /// Along the normal n from p to the disk |p| = 1 (p being from its centre).

@@ -167,12 +167,11 @@ void EntitySum::set_dual(Index vertices, int components, bool lumped, const Spar
 
 std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
   if (wanted.empty()) return {};
-  std::vector<bool> result;
-  for (Index e = 0; e < mesh_.count(); ++e) {
-    const std::span<const Index> rows = rows_of(e);
-    result.push_back(std::any_of(rows.begin(), rows.begin() + entity_dim_ + 1,
-                                 [&](Index dual) { return dual >= 0 && is_wanted(wanted, dual); }));
-  }
+  std::vector<bool> result(static_cast<std::size_t>(mesh_.count()), false);
+  for (Index e = 0; e < mesh_.count(); ++e)
+    for (const Index dual : rows_of(e).first(static_cast<std::size_t>(entity_dim_) + 1))
+      if (dual >= 0 && wanted[static_cast<std::size_t>(dual)])
+        result[static_cast<std::size_t>(e)] = true;
   return result;
 }
 
@@ -285,11 +284,11 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &state, cons
                                ContactOperators &operators) {
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
-  WantedNodes loaded;
   const Index tangents = dual_.components - 1;
-  for (Index i = 0; i < dual_.nodes() && lambda.size() > 0; ++i)
-    loaded.push_back(lambda[i] != 0 ||
-                     !lambda.segment(dual_.nodes() + i * tangents, tangents).isZero(0));
+  WantedNodes loaded(lambda.size() > 0 ? static_cast<std::size_t>(dual_.nodes()) : 0, false);
+  for (Index i = 0; i < std::ssize(loaded); ++i)
+    if (lambda[i] != 0 || !lambda.segment(dual_.nodes() + i * tangents, tangents).isZero(0))
+      loaded[static_cast<std::size_t>(i)] = true;
   const std::vector<Point> mapped = mapped_vertices(mu, {});
   visit_entities(mu, mapped, entities_at(loaded), [&](Index e, const Cell &cell) {
     add_weights(mu, e, cell, values, operators.weights);

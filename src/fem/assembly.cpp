@@ -47,6 +47,7 @@ std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell
 
 MappedCells reference_cells(const Mesh &mesh) {
   MappedCells result;
+  result.cells.reserve(mesh.cells.size());
   for (const auto &vertices : mesh.cells) {
     Cell cell{mesh.dim, {}, {}};
     for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i)
