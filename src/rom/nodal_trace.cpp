@@ -1,5 +1,9 @@
 #include "rbvi/rom/nodal_trace.hpp"
 
+#include "law/edge_of_nodes.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
 #include <limits>
 
 namespace rbvi {
@@ -22,9 +26,27 @@ std::vector<Index> nodal_dofs(const Contact &contact) {
   return dofs;
 }
 
+/// NodalTrace::held_.
+std::vector<bool> held_by(const ReducedModel &model, const Contact &contact) {
+  const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
+  if (!model.law || rows.minCoeff() > 0) return {};
+  std::vector<bool> held;
+  if (model.evaluates_contact()) {
+    held.assign(static_cast<std::size_t>(model.contact_dofs()), false);
+    for (const int dof : model.law->condensed.dofs)
+      held[static_cast<std::size_t>(dof)] = true;
+    return held;
+  }
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i)
+    for (Index node = 0; node < contact.interfaces[i]->dual().nodes(); ++node)
+      held.push_back(rows[contact.first_row[i] + node] > 0);
+  return held;
+}
+
 } // namespace
 
-NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact) : model_(model) {
+NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact)
+    : model_(model), held_(held_by(model, contact)) {
   if (model.trace_dofs.empty()) {
     dofs_ = nodal_dofs(contact);
     trace_ = model.contact_trace(dofs_, Eigen::all);
@@ -47,6 +69,22 @@ Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &u) 
       if (unknown_[static_cast<std::size_t>(entry.col())])
         gap[node] = std::numeric_limits<double>::infinity();
   return gap;
+}
+
+void NodalTrace::check_outside(const ContactOperators &operators, const Vector &gap) const {
+  constexpr double touching = 1e-3; // of the largest gap without displacement
+  if (held_.empty()) return;
+  const double least = -touching * operators.nodal_gap.cwiseAbs().maxCoeff();
+  const auto is_outside = [&](Index node) {
+    if (!model_.evaluates_contact()) return !held_[static_cast<std::size_t>(node)];
+    for (SparseMatrix::InnerIterator entry(operators.nodal_b, node); entry; ++entry)
+      if (entry.value() != 0 && !held_[static_cast<std::size_t>(entry.col())]) return true;
+    return false;
+  };
+  for (Index node = 0; node < gap.size(); ++node)
+    if (gap[node] < least && is_outside(node))
+      throw failure("the bodies meet far from the nodes that the model has multipliers at: " +
+                    std::string(keeps_more));
 }
 
 } // namespace rbvi

@@ -356,6 +356,7 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   const Vector lambda = multiplier(solution);
   const ContactOperators operators = nodal_operators(solution, lambda);
   const Vector gap = trace_->gap_left(operators, solution.u);
+  trace_->check_outside(operators, gap);
   result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
   const double least = law_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);

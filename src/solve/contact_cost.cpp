@@ -75,10 +75,12 @@ std::string contact_cost_text(const Problem &problem, const HfOptions &options) 
   if (options.contact == HfContact::automatic && problem.dofs().total_free < small)
     return "condensed: there are fewer than " + std::to_string(small) + " dofs (-hf_contact)";
   const ContactCost cost = contact_cost(problem, options.samples);
-  return (eliminates(problem, options) ? "eliminated" : "condensed") +
-         (": an estimate of " + formatted("%.0f", cost.condensed) +
-          " solves with A for a sample condensed, of " + formatted("%.0f", cost.eliminated) +
-          " eliminated (-hf_contact)");
+  const std::string how = eliminates(problem, options) ? "eliminated"
+                          : by_complement(problem)     ? "condensed by a Schur complement"
+                                                       : "condensed";
+  return how + (": an estimate of " + formatted("%.0f", cost.condensed) +
+                " solves with A for a sample condensed, of " + formatted("%.0f", cost.eliminated) +
+                " eliminated (-hf_contact)");
 }
 
 } // namespace rbvi

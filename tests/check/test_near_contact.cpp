@@ -90,6 +90,38 @@ TEST(NearContact, GivesTheAnswersOfAllNodes) {
   }
 }
 
+/// The nodes of the model are at one end of the arc, where nothing touches: all of the answer is
+/// missing, and is no answer.
+TEST(NearContact, SaysWhereBodiesMeetElsewhere) {
+  for (const Case &c : {Case{"rigid_disk", "radius", {{"arc_edges", "80"}}},
+                        Case{"two_disks", "radius", {{"arc_edges", "32"}}}}) {
+    SCOPED_TRACE(c.scene);
+    const Scene scene = scene_of(c);
+    Reduced r(scene, "grid:3");
+    for (Sample &sample : r.samples) {
+      sample.lambda.setZero();
+      const Index nodes = r.problem.contact().nodes();
+      sample.lambda.segment(c.scene == "two_disks" ? nodes - 4 : 0, 4).setOnes();
+    }
+    ReduceOptions options;
+    options.condensed.ring = 1;
+    options.multipliers.reduction = MultiplierReduction::condensed;
+    StageTable stages = reduction_stages(scene, options);
+    r.affine = separate(r.problem, r.mus(), options.eim);
+    const ReducedBases bases = build_law_bases(r.problem, r.samples, options, r.affine, stages);
+    ASSERT_GT(bases.dropped, 0);
+    const ReducedModel elsewhere = project(r.problem, r.samples, r.affine, bases);
+    OnlineSolver solver(elsewhere);
+    try {
+      (void)solver.outputs({1.0}, solver.solve({1.0}));
+      FAIL() << "the bodies penetrate";
+    } catch (const Error &error) {
+      EXPECT_NE(std::string(error.what()).find("far from the nodes"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 /// Trained where contact is small: a query says so, a reduction takes all nodes.
 TEST(NearContact, AnswersNothingWhereItReachesTheEdge) {
   for (const Case &c : {Case{"rigid_disk", "indentation", {{"arc_edges", "80"}}},

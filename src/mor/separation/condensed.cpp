@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 namespace rbvi {
@@ -77,7 +78,11 @@ std::vector<Index> coupled_dofs(Problem &problem, const std::vector<Mu> &set, Wa
   std::set<Index> dofs;
   Operators op;
   for (std::size_t p = 0; p < set.size(); ++p) {
-    problem.assemble_contact(set[p], op);
+    try {
+      problem.assemble_contact(set[p], op);
+    } catch (const Error &) {
+      continue; // where the interfaces cannot be, no query has an answer
+    }
     for (Index i = 0; i < op.b.rows(); ++i) {
       bool near = false;
       for (Index k = std::max<Index>(0, i - neighbours);
@@ -98,6 +103,19 @@ std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training
   });
 }
 
+/// The parameters of a set that the scene allows.
+void append_allowed(const ParameterSpace &space, const std::string &text, std::vector<Mu> &set) {
+  ParameterReader reader(space, text);
+  while (true) {
+    try {
+      std::optional<Mu> mu = reader.next();
+      if (!mu) return;
+      set.push_back(std::move(*mu));
+    } catch (const Error &) { // the next one
+    }
+  }
+}
+
 /// Those that the rows of the basis meet wherever the parameters are.
 std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &basis) {
   std::vector<int> dofs(static_cast<std::size_t>(problem.trace().size));
@@ -108,9 +126,8 @@ std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &b
   std::string corners = "grid:2";
   for (int i = 1; i < space.size(); ++i)
     corners += ",2";
-  for (const std::string &more : {corners, std::string("random:100:31")})
-    for (Mu &mu : parse_set(space, more))
-      set.push_back(std::move(mu));
+  append_allowed(space, corners, set);
+  append_allowed(space, "random:100:31", set);
   const auto met =
       coupled_dofs(problem, set, [&](std::size_t, Index row) { return rows[row] > 0; });
   return {met.begin(), met.end()};

@@ -3,7 +3,6 @@
 #include "../bases/cone_tools.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "rbvi/solve/linear/complement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,9 +47,9 @@ RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<I
       return space;
     }
   }
-  const Matrix traces = condensed_by_loads(product, space.trace, "v_", Matrix::Identity(size, size),
-                                           space.solver.get());
-  space.factor = lower_cholesky(traces, "the inverse V product on the contact dofs");
+  const Matrix traces = space.solver->responses(Matrix::Identity(size, size));
+  space.factor = lower_cholesky((traces + traces.transpose()) / 2,
+                                "the inverse V product on the contact dofs");
   return space;
 }
 

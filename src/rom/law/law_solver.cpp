@@ -18,8 +18,6 @@ namespace rbvi {
 namespace {
 
 constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at all nodes
-constexpr const char *keeps_more =
-    "reduce again with training parameters up to the ends of the box, or a larger -condensed_ring";
 
 } // namespace
 

@@ -4,9 +4,8 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/linear/linear.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <numeric>
-#include <string_view>
 
 namespace rbvi {
 

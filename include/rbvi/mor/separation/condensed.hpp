@@ -36,8 +36,8 @@ struct Condensation {
 /// What A^-1 is asked for on the contact dofs.
 struct CondensedLoads {
   Matrix columns; ///< contact dofs x any number
-  std::vector<int>
-      units{};       ///< the contact dofs that they are the unit loads of, rising; empty: none
+  /// The contact dofs that they are the unit loads of, rising; empty: they are no unit loads.
+  std::vector<int> units{};
   bool join = false; ///< the responses to all of them can join the modes
   /// Contact dofs the responses to whose unit loads can join the modes instead: those beside
   /// multipliers that are positive in some sample.
