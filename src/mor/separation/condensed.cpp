@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <set>
 
 namespace rbvi {
@@ -103,19 +102,6 @@ std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training
   });
 }
 
-/// The parameters of a set that the scene allows.
-void append_allowed(const ParameterSpace &space, const std::string &text, std::vector<Mu> &set) {
-  ParameterReader reader(space, text);
-  while (true) {
-    try {
-      std::optional<Mu> mu = reader.next();
-      if (!mu) return;
-      set.push_back(std::move(*mu));
-    } catch (const Error &) { // the next one
-    }
-  }
-}
-
 /// Those that the rows of the basis meet wherever the parameters are.
 std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &basis) {
   std::vector<int> dofs(static_cast<std::size_t>(problem.trace().size));
@@ -126,8 +112,9 @@ std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &b
   std::string corners = "grid:2";
   for (int i = 1; i < space.size(); ++i)
     corners += ",2";
-  append_allowed(space, corners, set);
-  append_allowed(space, "random:100:31", set);
+  for (const std::string &more : {corners, std::string("random:100:31")})
+    for (Mu &mu : parse_set(space, more))
+      set.push_back(std::move(mu));
   const auto met =
       coupled_dofs(problem, set, [&](std::size_t, Index row) { return rows[row] > 0; });
   return {met.begin(), met.end()};
