@@ -35,6 +35,22 @@ Scene scene_of(const Case &c) {
   return scene;
 }
 
+ReduceOptions law_within(double ring) {
+  ReduceOptions options;
+  options.condensed.ring = ring;
+  options.multipliers.reduction = MultiplierReduction::condensed;
+  return options;
+}
+
+/// The model of the nodes near contact of the samples, whether or not its queries are answered.
+ReducedModel near_samples(Reduced &r, const ReduceOptions &options) {
+  StageTable stages = reduction_stages(r.problem.scene(), options);
+  r.affine = separate(r.problem, r.mus(), options.eim);
+  const ReducedBases bases = build_law_bases(r.problem, r.samples, options, r.affine, stages);
+  EXPECT_GT(bases.dropped, 0);
+  return project(r.problem, r.samples, r.affine, bases);
+}
+
 TEST(NearContact, KeepsWhatIsWithinTheRing) {
   Problem problem(PETSC_COMM_WORLD, disk("radius"), {});
   const Contact &contact = problem.contact();
@@ -103,14 +119,7 @@ TEST(NearContact, SaysWhereBodiesMeetElsewhere) {
       const Index nodes = r.problem.contact().nodes();
       sample.lambda.segment(c.scene == "two_disks" ? nodes - 4 : 0, 4).setOnes();
     }
-    ReduceOptions options;
-    options.condensed.ring = 1;
-    options.multipliers.reduction = MultiplierReduction::condensed;
-    StageTable stages = reduction_stages(scene, options);
-    r.affine = separate(r.problem, r.mus(), options.eim);
-    const ReducedBases bases = build_law_bases(r.problem, r.samples, options, r.affine, stages);
-    ASSERT_GT(bases.dropped, 0);
-    const ReducedModel elsewhere = project(r.problem, r.samples, r.affine, bases);
+    const ReducedModel elsewhere = near_samples(r, law_within(1));
     OnlineSolver solver(elsewhere);
     try {
       (void)solver.outputs({1.0}, solver.solve({1.0}));
@@ -132,14 +141,8 @@ TEST(NearContact, AnswersNothingWhereItReachesTheEdge) {
     const auto at = [&](double part) { return Mu{d.lower + part * (d.upper - d.lower)}; };
     Reduced r(scene, "grid:1");
     r.samples = solve_all(r.problem, {at(0), at(0.02)});
-    ReduceOptions options;
-    options.condensed.ring = 0.15;
-    options.multipliers.reduction = MultiplierReduction::condensed;
-    StageTable stages = reduction_stages(scene, options);
-    r.affine = separate(r.problem, r.mus(), options.eim);
-    const ReducedBases bases = build_law_bases(r.problem, r.samples, options, r.affine, stages);
-    EXPECT_GT(bases.dropped, 0);
-    const ReducedModel narrow = project(r.problem, r.samples, r.affine, bases);
+    const ReduceOptions options = law_within(0.15);
+    const ReducedModel narrow = near_samples(r, options);
     OnlineSolver solver(narrow);
     EXPECT_NO_THROW(solver.solve(at(0.01)));
     try {

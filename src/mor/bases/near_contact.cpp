@@ -8,42 +8,37 @@ namespace rbvi {
 
 namespace {
 
-double squared_distance(const Point &a, const Point &b) {
-  double sum = 0;
-  for (std::size_t c = 0; c < a.size(); ++c)
-    sum += (a[c] - b[c]) * (a[c] - b[c]);
-  return sum;
+using At = Eigen::Map<const Eigen::Vector3d>;
+
+/// The diagonal of the bounding box.
+double extent(const std::vector<Point> &points) {
+  Eigen::Vector3d low = At(points.front().data()), high = low;
+  for (const Point &point : points) {
+    low = low.cwiseMin(At(point.data()));
+    high = high.cwiseMax(At(point.data()));
+  }
+  return (high - low).norm();
 }
 
-/// Squared; of the bounding box.
-double squared_extent(const std::vector<Point> &points) {
-  Point low = points.front(), high = low;
-  for (const Point &point : points)
-    for (std::size_t c = 0; c < point.size(); ++c) {
-      low[c] = std::min(low[c], point[c]);
-      high[c] = std::max(high[c], point[c]);
-    }
-  return squared_distance(low, high);
-}
-
-/// Per node of the interface at rows `first`: whether it is near one that carries.
-std::vector<bool> near_contact(const DualSpace &dual, Index first, const Matrix &snapshots,
-                               double ring) {
+/// Per node of an interface: whether it is near one that carries.
+std::vector<bool> near_contact(const Contact &contact, std::size_t interface,
+                               const Matrix &snapshots, double ring) {
   constexpr double round_off = 1e-12; // some solvers leave it where nothing touches
   const double least = round_off * snapshots.cwiseAbs().maxCoeff();
+  const DualSpace &dual = contact.interfaces[interface]->dual();
+  std::vector<bool> carries(static_cast<std::size_t>(dual.nodes()), false);
+  for (Index row = contact.first_row[interface]; row < contact.first_row[interface + 1]; ++row)
+    if (snapshots.row(row).cwiseAbs().maxCoeff() > least)
+      carries[static_cast<std::size_t>(dual_row(contact, row).node)] = true;
   std::vector<Point> carrying;
-  for (Index node = 0; node < dual.nodes(); ++node)
-    for (Index row = node; row < dual.size(); row += dual.nodes())
-      if (snapshots.row(first + row).cwiseAbs().maxCoeff() > least) {
-        carrying.push_back(dual.points[static_cast<std::size_t>(node)]);
-        break;
-      }
-  std::vector<bool> near(static_cast<std::size_t>(dual.nodes()), true);
+  for (std::size_t node = 0; node < carries.size(); ++node)
+    if (carries[node]) carrying.push_back(dual.points[node]);
+  std::vector<bool> near(carries.size(), true);
   if (carrying.size() < 2) return near;
-  const double reach = ring * ring * squared_extent(carrying);
+  const double reach = ring * extent(carrying);
   for (std::size_t node = 0; node < near.size(); ++node)
     near[node] = std::ranges::any_of(carrying, [&](const Point &point) {
-      return squared_distance(point, dual.points[node]) <= reach;
+      return (At(point.data()) - At(dual.points[node].data())).norm() <= reach;
     });
   return near;
 }
@@ -57,8 +52,7 @@ std::vector<Index> columns_near_contact(const Contact &contact, const Matrix &ba
   if (std::isinf(ring)) return columns;
   std::vector<std::vector<bool>> near;
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i)
-    near.push_back(
-        near_contact(contact.interfaces[i]->dual(), contact.first_row[i], snapshots, ring));
+    near.push_back(near_contact(contact, i, snapshots, ring));
   std::erase_if(columns, [&](Index column) {
     Index row = 0;
     basis.col(column).cwiseAbs().maxCoeff(&row);

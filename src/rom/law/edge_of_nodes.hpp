@@ -9,8 +9,8 @@ namespace rbvi {
 inline constexpr const char *keeps_more =
     "reduce again with training parameters up to the ends of the box, or a larger -condensed_ring";
 
-/// The columns of a nodal dual basis (dual dofs x any number) at the nodes that are nearest to some
-/// node of their interface without a column, rising; none where every node has one.
+/// The columns for lambda_n of a nodal dual basis (dual dofs x any number) at the nodes that are
+/// nearest to some node of their interface without a column, rising; none where every node has one.
 std::vector<Index> edge_of_nodes(const Contact &contact, const Matrix &basis);
 
 } // namespace rbvi
