@@ -93,22 +93,38 @@ SerialMesh generated_mesh(const Scene &scene) {
                   "': this build has " + names);
 }
 
-SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options) {
+/// The given mesh refined so many times; those on the way are left in `levels`.
+SerialMesh refined_mesh(SerialMesh mesh, int times, const Scene &scene, const std::string &source,
+                        std::vector<SerialMesh> &levels) {
+  for (int level = 1; level <= times; ++level) {
+    SerialMesh finer = refined(mesh);
+    levels.push_back(std::move(mesh));
+    mesh = std::move(finer);
+    snap_curves(mesh, scene);
+    const std::string name = source + ", refined " + std::to_string(level) + " times";
+    check_volumes(mesh, name);
+    check_places(mesh, scene, name);
+  }
+  return mesh;
+}
+
+/// Leaves in `levels` those that it was refined from, where they are not known.
+SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
+                              std::vector<SerialMesh> &levels) {
   if (options.refine < 0) throw bad_input("the number of mesh refinements is negative");
-  SerialMesh mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
   const std::string source =
       options.file.empty() ? "the built-in mesh" : "mesh file '" + options.file + "'";
-  check_mesh(mesh, source);
-  check_facts(mesh, scene, source);
-  for (int level = 1; level <= options.refine; ++level) {
-    mesh = refined(mesh);
-    snap_curves(mesh, scene);
-    const std::string finer = source + ", refined " + std::to_string(level) + " times";
-    check_mesh(mesh, finer);
-    check_places(mesh, scene, finer);
+  SerialMesh mesh;
+  if (options.levels) {
+    mesh = options.levels->at(static_cast<std::size_t>(options.refine));
+  } else {
+    mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
+    check_mesh(mesh, source);
+    check_facts(mesh, scene, source);
+    mesh = refined_mesh(std::move(mesh), options.refine, scene, source, levels);
   }
   balance_inclusion(mesh, scene);
-  check_mesh(mesh, source);
+  check_volumes(mesh, source);
   return mesh;
 }
 
@@ -267,16 +283,18 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
   }
 }
 
-/// Which of these DMPlex points carry a label.
-std::vector<bool> marks(DM dm, const std::string &name, const std::vector<PetscInt> &points) {
-  std::vector<bool> marked;
-  DMLabel label = nullptr;
-  RBVI_CALL(DMGetLabel(dm, name.c_str(), &label));
-  for (const PetscInt point : points) {
-    PetscInt value = -1;
-    RBVI_CALL(DMLabelGetValue(label, point, &value));
-    marked.push_back(value == 1);
-  }
+/// Which of these DMPlex points, of these heights, carry a label.
+std::vector<bool> marks(const Mesh &mesh, const std::string &name,
+                        std::initializer_list<PetscInt> heights,
+                        const std::vector<PetscInt> &points) {
+  PetscInt end = 0;
+  RBVI_CALL(DMPlexGetChart(mesh.dm.get(), nullptr, &end));
+  std::vector<bool> labelled(static_cast<std::size_t>(end), false), marked;
+  for (const PetscInt height : heights)
+    for (const PetscInt point : labelled_points(mesh.dm.get(), name, height))
+      labelled[static_cast<std::size_t>(point)] = true;
+  for (const PetscInt point : points)
+    marked.push_back(labelled[static_cast<std::size_t>(point)]);
   return marked;
 }
 
@@ -286,11 +304,12 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const Communicator world(comm);
   SerialMesh serial;
   serial.dim = scene.dim;
+  std::vector<SerialMesh> levels;
   std::vector<int> part;
   std::string fingerprint(16, '0');
   collectively(comm, [&] {
     if (world.rank != 0) return;
-    serial = undistributed_mesh(scene, options);
+    serial = undistributed_mesh(scene, options, levels);
     part = partition_cells(serial, world.size);
     fingerprint = fingerprint_of(serial);
   });
@@ -299,6 +318,8 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   mesh.comm = comm;
   mesh.dim = scene.dim;
   mesh.degree = scene.degree;
+  mesh.levels = options.levels ? options.levels
+                               : std::make_shared<const std::vector<SerialMesh>>(std::move(levels));
   std::array<PetscInt, 2> totals{static_cast<PetscInt>(serial.points.size()),
                                  static_cast<PetscInt>(serial.cells.size())};
   MPI_Bcast(totals.data(), 2, MPIU_INT, 0, comm);
@@ -326,9 +347,9 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   std::vector<PetscInt> cells(mesh.cells.size());
   std::iota(cells.begin(), cells.end(), 0);
   for (const std::string &name : scene.mesh.regions)
-    mesh.region[name] = marks(mesh.dm.get(), name, cells);
+    mesh.region[name] = marks(mesh, name, {0}, cells);
   for (const std::string &name : scene.mesh.boundaries) {
-    mesh.boundary[name] = marks(mesh.dm.get(), name, mesh.dm_point);
+    mesh.boundary[name] = marks(mesh, name, {mesh.dim - 1, mesh.dim}, mesh.dm_point);
     mesh.facets[name] = boundary_facets(mesh, name, elsewhere, begin);
   }
   return mesh;
@@ -339,7 +360,8 @@ PetscInt count_nodes(MPI_Comm comm, const Scene &scene, const MeshOptions &optio
   collectively(comm, [&] {
     if (rank_of(comm) != 0) return;
     if (options.refine < 0) throw bad_input("the number of mesh refinements is negative");
-    const SerialMesh first = undistributed_mesh(scene, {options.file, 0});
+    std::vector<SerialMesh> levels;
+    const SerialMesh first = undistributed_mesh(scene, {options.file, 0}, levels);
     nodes = static_cast<PetscInt>(nodes_when_refined(first, options.refine, scene.degree));
   });
   MPI_Bcast(&nodes, 1, MPIU_INT, 0, comm);

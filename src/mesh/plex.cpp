@@ -5,6 +5,8 @@
 
 #include <petscdmplex.h>
 
+#include <algorithm>
+#include <iterator>
 #include <span>
 
 namespace rbvi {
@@ -52,17 +54,22 @@ void label_facets(DM dm, DMLabel label, const SerialMesh &mesh,
 } // namespace
 
 std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt height) {
-  std::vector<PetscInt> points;
   DMLabel label = nullptr;
   RBVI_CALL(DMGetLabel(dm, name.c_str(), &label));
-  if (label == nullptr) return points;
-  PetscInt begin = 0, end = 0;
+  if (label == nullptr) return {};
+  PetscInt begin = 0, end = 0, count = 0;
   RBVI_CALL(DMPlexGetHeightStratum(dm, height, &begin, &end));
-  for (PetscInt point = begin; point < end; ++point) {
-    PetscInt value = -1;
-    RBVI_CALL(DMLabelGetValue(label, point, &value));
-    if (value >= 0) points.push_back(point);
-  }
+  Handle<IS> marked; // null where there is none
+  RBVI_CALL(DMLabelGetStratumIS(label, 1, marked.put()));
+  if (!marked) return {};
+  const PetscInt *point = nullptr;
+  RBVI_CALL(ISGetLocalSize(marked.get(), &count));
+  RBVI_CALL(ISGetIndices(marked.get(), &point));
+  std::vector<PetscInt> points;
+  std::copy_if(point, point + count, std::back_inserter(points),
+               [&](PetscInt p) { return begin <= p && p < end; });
+  RBVI_CALL(ISRestoreIndices(marked.get(), &point));
+  std::sort(points.begin(), points.end());
   return points;
 }
 

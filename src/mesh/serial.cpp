@@ -46,23 +46,6 @@ OrientedFacet facet_of(const SerialMesh &mesh, int cell, int opposite) {
   return facet;
 }
 
-void check_volumes(const SerialMesh &mesh, const std::string &source) {
-  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-    std::array<Point, 4> vertices{};
-    double longest = 0;
-    for (int i = 0; i <= mesh.dim; ++i) {
-      vertices[at(i)] = mesh.points[at(mesh.cells[c][at(i)])];
-      for (int j = 0; j < i; ++j) {
-        longest = std::max(longest, distance(vertices[at(i)], vertices[at(j)]));
-      }
-    }
-    if (!(simplex(mesh.dim, vertices).volume > 1e-12 * std::pow(longest, mesh.dim)))
-      throw bad_input(source + ": cell " + std::to_string(c) + " near (" +
-                      std::to_string(vertices[0][0]) + ", " + std::to_string(vertices[0][1]) +
-                      ") is degenerate or inverted");
-  }
-}
-
 /// `facets`: those of all cells, by increasing vertices.
 void check_boundaries(const SerialMesh &mesh, const std::vector<OrientedFacet> &facets,
                       const std::string &source) {
@@ -140,6 +123,23 @@ double extent_of(const SerialMesh &mesh) {
     for (const double coordinate : x)
       largest = std::max(largest, std::abs(coordinate));
   return largest;
+}
+
+void check_volumes(const SerialMesh &mesh, const std::string &source) {
+  for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+    std::array<Point, 4> vertices{};
+    double longest = 0;
+    for (int i = 0; i <= mesh.dim; ++i) {
+      vertices[at(i)] = mesh.points[at(mesh.cells[c][at(i)])];
+      for (int j = 0; j < i; ++j) {
+        longest = std::max(longest, distance(vertices[at(i)], vertices[at(j)]));
+      }
+    }
+    if (!(simplex(mesh.dim, vertices).volume > 1e-12 * std::pow(longest, mesh.dim)))
+      throw bad_input(source + ": cell " + std::to_string(c) + " near (" +
+                      std::to_string(vertices[0][0]) + ", " + std::to_string(vertices[0][1]) +
+                      ") is degenerate or inverted");
+  }
 }
 
 void check_mesh(const SerialMesh &mesh, const std::string &source) {

@@ -11,7 +11,7 @@ namespace {
 
 /// Words of the window. Behind them, for each group, when it began with its number in nanoseconds
 /// plus one, zero where it has none.
-enum Word : MPI_Aint { runs_taken, stopped, done, nanoseconds, began };
+enum Word : MPI_Aint { runs_taken, stopped, done, failed, nanoseconds, began };
 
 /// Sums, replacements and MPI_NO_OP: compare-and-swap by osc/rdma of Open MPI 4.1.4 crashes where a
 /// rank addresses itself in shared memory.
@@ -75,8 +75,9 @@ std::optional<int> SharedQueue::next() {
   return number;
 }
 
-void SharedQueue::finish() {
+void SharedQueue::finish(bool solved) {
   if (!groups_.leads()) return;
+  if (!solved) fetch_and(MPI_SUM, 1, failed, window_); // first: at no time too many are solved
   fetch_and(MPI_REPLACE, 0, began + groups_.mine(), window_);
   fetch_and(MPI_SUM, now() - began_, nanoseconds, window_);
   fetch_and(MPI_SUM, 1, done, window_);
@@ -103,8 +104,10 @@ QueueState SharedQueue::state() const {
   return state;
 }
 
-int SharedQueue::done_here() const {
-  return words_ == nullptr ? 0 : static_cast<int>(std::atomic_ref(words_[done]).load());
+int SharedQueue::solved_here() const {
+  if (words_ == nullptr) return 0;
+  const std::int64_t finished = std::atomic_ref(words_[done]).load(); // before those that failed
+  return static_cast<int>(finished - std::atomic_ref(words_[failed]).load());
 }
 
 double seconds_left(const QueueState &state, int count, int groups) {

@@ -32,6 +32,7 @@ std::unique_ptr<Problem> Problem::coarser(int levels) const {
   if (mesh_options_.refine < levels) return nullptr;
   MeshOptions options = mesh_options_;
   options.refine -= levels;
+  options.levels = mesh_.levels;
   return std::make_unique<Problem>(comm(), given_, options, contact_gather_);
 }
 

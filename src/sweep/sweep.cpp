@@ -37,7 +37,8 @@ fs::path failure_file(const fs::path &sample) {
 }
 
 /// Solves one sample; its file, or the file with the reason of its failure, is there afterwards.
-void solve_sample(HighFidelity &solver, const Groups &groups, const ParameterSpace &space,
+/// Returns whether it was solved.
+bool solve_sample(HighFidelity &solver, const Groups &groups, const ParameterSpace &space,
                   const Mu &mu, const fs::path &file, const Settings &settings) {
   std::string reason;
   Sample sample;
@@ -47,13 +48,14 @@ void solve_sample(HighFidelity &solver, const Groups &groups, const ParameterSpa
     if (error.status() == Status::bad_input) throw;
     reason = error.what();
   }
-  if (!groups.leads()) return;
+  if (!groups.leads()) return reason.empty();
   if (reason.empty()) {
     write_sample(file, sample, settings);
     fs::remove(failure_file(file));
   } else {
     write_atomically(failure_file(file), reason + ", while solving " + describe(space, mu) + "\n");
   }
+  return reason.empty();
 }
 
 double median(std::vector<double> values) {
@@ -187,7 +189,8 @@ void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directo
 }
 
 /// What is said of a sweep that is interrupted: how far all groups came, also after its queue. From
-/// memory, not from files: where a slow disk holds them up, mpirun may kill before they are counted.
+/// memory, not from files: where a slow disk holds them up, mpirun may kill before they are
+/// counted.
 class ToldWhenInterrupted {
 public:
   ToldWhenInterrupted(const SharedQueue &queue, std::size_t samples)
@@ -202,7 +205,7 @@ public:
 
 private:
   std::string text() const {
-    const std::size_t left = static_cast<std::size_t>(queue_.count() - queue_.done_here());
+    const std::size_t left = static_cast<std::size_t>(queue_.count() - queue_.solved_here());
     return " after " + std::to_string(samples_ - left) + " of " + std::to_string(samples_) +
            " samples: the same command goes on from there";
   }
@@ -242,11 +245,12 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
       solver.share_columns(groups, wanted);
       while (const std::optional<int> k = queue.next()) {
         const Mu &mu = wanted[static_cast<std::size_t>(*k)];
+        bool solved = false;
         collectively(groups.comm(), [&] {
-          solve_sample(solver, groups, problem.scene().parameters, mu, sample_file(directory, mu),
-                       settings);
+          solved = solve_sample(solver, groups, problem.scene().parameters, mu,
+                                sample_file(directory, mu), settings);
         });
-        queue.finish();
+        queue.finish(solved);
         if (progress.due()) (void)tell(progress, queue, groups);
       }
     } catch (...) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
+#include <string_view>
 
 namespace rbvi {
 namespace {
@@ -19,6 +21,11 @@ struct Way {
 constexpr Way ways[] = {{Enrichment::offline, SupremizerProduct::v},
                         {Enrichment::offline, SupremizerProduct::energy},
                         {Enrichment::online, SupremizerProduct::v}};
+
+/// All of them on one map: what an enrichment does knows nothing of maps.
+std::span<const Way> ways_with(std::string_view map) {
+  return std::span(ways).first(map == "similarity" ? std::size(ways) : 1);
+}
 
 std::string described(ConeType type, const Way &way) {
   return cone_type_names()[static_cast<std::size_t>(type)] + ", " +
@@ -39,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Maps, DualBases, testing::Values("similarity", "graded"
 TEST_P(DualBases, ABasisOfAllSnapshotsReturnsThem) {
   Reduced r(make_scene("membrane_obstacle", {{"disc_map", GetParam()}}), "grid:2,2,2");
   for (const ConeType type : {ConeType::hybrid, ConeType::nodal})
-    for (const Way &way : ways) {
+    for (const Way &way : ways_with(GetParam())) {
       SCOPED_TRACE(described(type, way));
       r.reduce(with(everything(), type, way));
       EXPECT_EQ(r.model.online_enriched, way.enrichment == Enrichment::online);
@@ -56,7 +63,7 @@ TEST_P(DualBases, EveryTypeAndEnrichmentReduces) {
   Reduced r(make_scene("membrane_obstacle", {{"disc_map", GetParam()}}), "grid:3,2,2");
   for (const ConeType type : {ConeType::cpg, ConeType::mcpg, ConeType::angle_greedy, ConeType::nmf,
                               ConeType::nodal, ConeType::hybrid})
-    for (const Way &way : ways) {
+    for (const Way &way : ways_with(GetParam())) {
       SCOPED_TRACE(described(type, way));
       ReduceOptions options = with({}, type, way);
       options.cone.tolerance = 1e-2;

@@ -7,14 +7,30 @@
 #include "rbvi/par/petsc.hpp"
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace rbvi {
 
+/// The undistributed mesh on one process, vertices and cells in natural order.
+struct SerialMesh {
+  int dim = 2;
+  std::vector<Point> points;
+  std::vector<std::array<int, 4>> cells; ///< dim + 1 vertices, the rest -1; positively oriented
+  std::map<std::string, std::vector<int>> region; ///< cells of each named region
+  /// Facets of each named boundary: dim vertices each, the rest -1.
+  std::map<std::string, std::vector<std::array<int, 3>>> boundary;
+};
+
+/// The undistributed meshes that a mesh was refined from, by their numbers of refinements, before
+/// their inclusions are balanced; on the first rank, elsewhere none.
+using MeshLevels = std::shared_ptr<const std::vector<SerialMesh>>;
+
 struct MeshOptions {
-  std::string file; ///< Gmsh file; "" for the scene's built-in generator
-  int refine = 0;   ///< uniform refinements; vertices of curves are brought back (snap_curves)
+  std::string file;    ///< Gmsh file; "" for the scene's built-in generator
+  int refine = 0;      ///< uniform refinements; vertices of curves are brought back (snap_curves)
+  MeshLevels levels{}; ///< of a finer mesh of this file and scene, whose part this one is
 };
 
 /// A facet of a cell: owned cell, and which of its facets (facet_cell).
@@ -33,6 +49,7 @@ struct Mesh {
   PetscInt total_vertices = 0, total_cells = 0; ///< of the undistributed mesh
   PetscInt total_nodes = 0;
   std::string fingerprint; ///< hash of the undistributed mesh, 16 hex digits
+  MeshLevels levels;
 
   std::vector<Point> points;          ///< local nodes, reference coordinates; vertices first
   std::vector<PetscInt> natural_node; ///< per local node; vertices have the lowest numbers
@@ -51,16 +68,6 @@ struct Mesh {
 /// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,
 /// degree) numbers, the rest -1.
 std::array<int, most_nodes> nodes_of(const Mesh &mesh, std::size_t cell);
-
-/// The undistributed mesh on one process, vertices and cells in natural order.
-struct SerialMesh {
-  int dim = 2;
-  std::vector<Point> points;
-  std::vector<std::array<int, 4>> cells; ///< dim + 1 vertices, the rest -1; positively oriented
-  std::map<std::string, std::vector<int>> region; ///< cells of each named region
-  /// Facets of each named boundary: dim vertices each, the rest -1.
-  std::map<std::string, std::vector<std::array<int, 3>>> boundary;
-};
 
 /// Unit square [-1/2, 1/2]^2 with a fitted disc of radius 0.2 about its centre (region "obstacle",
 /// boundary "boundary"): 3573 nodes, 469 of them in the closed disc, aspect ratios <= 1.55.

@@ -33,8 +33,12 @@ void snap_curves(SerialMesh &mesh, const Scene &scene);
 void balance_inclusion(SerialMesh &mesh, const Scene &scene);
 
 /// Throws bad_input, naming `source`: a degenerate or inverted cell (volume <= 1e-12 times its
-/// longest edge to the power dim), two cells on the same side of their common facet, or a facet of
-/// a boundary that is on no cell.
+/// longest edge to the power dim). All that can be wrong with a mesh refined from one that
+/// check_mesh passed.
+void check_volumes(const SerialMesh &mesh, const std::string &source);
+
+/// The same, and further: two cells on the same side of their common facet, or a facet of a
+/// boundary that is on no cell.
 void check_mesh(const SerialMesh &mesh, const std::string &source);
 
 /// Throws bad_input, naming `source` and the part, where a vertex of a part is farther than 1e-6 of

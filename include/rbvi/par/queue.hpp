@@ -43,15 +43,15 @@ public:
   /// The next number for this group; none when all are given out, or some group has stopped.
   /// Collective on the group.
   std::optional<int> next();
-  /// The number that this group has is finished.
-  void finish();
+  /// The number that this group has is finished; not `solved`: without a result.
+  void finish(bool solved = true);
   /// No group gets another number: for a group that leaves by an exception. One call of the first
   /// rank of a group is enough.
   void stop();
   QueueState state() const;
-  /// Numbers that are finished, as the memory of the first rank has it; zero on the others. Without
-  /// MPI, from any thread.
-  int done_here() const;
+  /// Numbers that are finished with a result, as the memory of the first rank has it; zero on the
+  /// others. Without MPI, from any thread.
+  int solved_here() const;
   int count() const { return count_; }
 
 private:
@@ -62,10 +62,10 @@ private:
   int count_;
   MPI_Win window_ = MPI_WIN_NULL;
   std::int64_t *words_ = nullptr; ///< of the window, on the first rank of the world
-  double start_ = 0;        ///< MPI_Wtime when all groups were there
-  std::vector<int> runs_;   ///< where each run begins; behind them the count
-  int first_ = 0, end_ = 0; ///< what is left of the run of this group
-  std::int64_t began_ = 0;  ///< with its number, nanoseconds
+  double start_ = 0;              ///< MPI_Wtime when all groups were there
+  std::vector<int> runs_;         ///< where each run begins; behind them the count
+  int first_ = 0, end_ = 0;       ///< what is left of the run of this group
+  std::int64_t began_ = 0;        ///< with its number, nanoseconds
 };
 
 /// Seconds until all of `count` numbers are finished, by the mean of those that are; groups work

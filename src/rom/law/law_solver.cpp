@@ -184,7 +184,7 @@ Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Inde
     for (SparseMatrix::InnerIterator entry(body.b_contact, which[static_cast<std::size_t>(k)]);
          entry; ++entry) {
       compliance_->require({entry.col()});
-      moved.col(k) += entry.value() * compliance_->column(entry.col());
+      compliance_->add(entry.col(), entry.value(), moved.col(k));
     }
   return body.b_contact * moved;
 }

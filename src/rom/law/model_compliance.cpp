@@ -1,5 +1,7 @@
 #include "model_compliance.hpp"
 
+#include "rbvi/rom/model/packed.hpp"
+
 #include <cmath>
 
 namespace rbvi {
@@ -7,7 +9,10 @@ namespace rbvi {
 ModelCompliance::ModelCompliance(const CondensedOperator &operator_of)
     : of_(operator_of),
       size_(std::lround(std::sqrt(static_cast<double>(operator_of.terms.rows())))),
-      columns_(size_, size_), known_(static_cast<std::size_t>(size_)) {}
+      columns_(Matrix::Zero(size_, size_)), known_(static_cast<std::size_t>(size_)) {
+  for (const Index size : diagonal_blocks(operator_of.terms))
+    bodies_.insert(bodies_.end(), static_cast<std::size_t>(size), {std::ssize(bodies_), size});
+}
 
 bool ModelCompliance::set(const Vector &coefficients) {
   if (coefficients_.size() == coefficients.size() && coefficients_ == coefficients) return false;
@@ -19,7 +24,9 @@ bool ModelCompliance::set(const Vector &coefficients) {
 void ModelCompliance::require(const std::vector<Index> &dofs) {
   for (const Index dof : dofs) {
     if (known_[static_cast<std::size_t>(dof)]) continue;
-    columns_.col(dof).noalias() = of_.terms.middleRows(dof * size_, size_) * coefficients_;
+    const auto [first, count] = body_of(dof);
+    columns_.col(dof).segment(first, count).noalias() =
+        of_.terms.middleRows(dof * size_ + first, count) * coefficients_;
     known_[static_cast<std::size_t>(dof)] = true;
   }
 }

@@ -1,4 +1,5 @@
-// E^T A^-1 E of a model on its contact dofs: the sum of its terms, a column when it is required.
+// E^T A^-1 E of a model on its contact dofs: the sum of its terms, a column when it is required. A
+// column of one body is zero on the others.
 #pragma once
 
 #include "rbvi/law/nonlinear/nonlinear.hpp"
@@ -22,13 +23,25 @@ public:
   Eigen::Map<const Vector> column(Index dof) const override {
     return {columns_.col(dof).data(), size_};
   }
+  /// Adds a multiple of a column that is known.
+  void add(Index dof, double factor, Eigen::Ref<Vector> sum) const {
+    const auto [first, count] = body_of(dof);
+    sum.segment(first, count) += factor * columns_.col(dof).segment(first, count);
+  }
 
 private:
+  /// The dofs of the body of one.
+  struct Range {
+    Index first, count;
+  };
+  Range body_of(Index dof) const { return bodies_[static_cast<std::size_t>(dof)]; }
+
   const CondensedOperator &of_;
   Index size_;
   Vector coefficients_;
   Matrix columns_;
   std::vector<bool> known_;
+  std::vector<Range> bodies_; ///< per dof
 };
 
 } // namespace rbvi

@@ -1,6 +1,7 @@
 // model.h5: its data sets are listed in LAYOUT.md beside this file.
 #include "model_fields.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
 #include "stored_operators.hpp"
 
@@ -190,7 +191,9 @@ void write_law(H5Writer &file, const std::optional<NodalLaw> &law) {
   file.write("law/axes", axes);
   file.write("law/error", law->condensed.error);
   file.write("law/shape", law->condensed.shape);
-  file.write("law/terms", law->condensed.terms);
+  const std::vector<int> blocks = diagonal_blocks(law->condensed.terms);
+  file.write("law/blocks", blocks);
+  file.write("law/terms", pack_blocks(law->condensed.terms, blocks));
   file.write("law/dofs", law->condensed.dofs);
   const TermsApart &apart = law->apart;
   file.write("law/apart", std::vector<double>{static_cast<double>(apart.normal), apart.normal_error,
@@ -217,7 +220,7 @@ std::optional<NodalLaw> read_law(const H5Reader &file) {
         {static_cast<int>(axes[i]), axes[i + 1], axes[i + 2], static_cast<int>(axes[i + 3])});
   law.condensed.error = file.number("law/error");
   law.condensed.shape = file.matrix("law/shape");
-  law.condensed.terms = file.matrix("law/terms");
+  law.condensed.terms = unpacked_blocks(file.matrix("law/terms"), file.ints("law/blocks"));
   law.condensed.dofs = file.ints("law/dofs");
   const std::vector<double> apart = file.doubles("law/apart");
   if (apart.size() != 3) throw bad_input("law/apart has not 3 entries");

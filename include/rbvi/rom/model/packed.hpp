@@ -3,6 +3,8 @@
 
 #include "rbvi/core/dense.hpp"
 
+#include <vector>
+
 namespace rbvi {
 
 /// Fills the lower triangle of a square matrix.
@@ -28,5 +30,18 @@ inline Vector pack(const Matrix &square) {
     packed.segment(at, n - j) = square.col(j).tail(n - j);
   return packed;
 }
+
+// Symmetric matrices of order n that are zero outside of the same diagonal blocks, one for each
+// body. `squares`: n^2 x count, each a column of its entries, column by column.
+
+/// The orders of as many blocks as there are, from the first rows on; one of order n where there is
+/// no matrix that is not zero between two of them.
+std::vector<int> diagonal_blocks(const Matrix &squares);
+
+/// The lower triangles of these blocks, one behind the other.
+Matrix pack_blocks(const Matrix &squares, const std::vector<int> &blocks);
+
+/// The whole matrices again. Throws bad_input where the numbers of entries do not agree.
+Matrix unpacked_blocks(const Matrix &packed, const std::vector<int> &blocks);
 
 } // namespace rbvi
