@@ -86,7 +86,7 @@ Handle<Mat> extension(const Trace &trace, const Matrix &values, Mat like) {
   RBVI_CALL(MatDenseGetArray(dense.get(), &local));
   for (Index j = 0; j < values.cols(); ++j)
     for (std::size_t k = 0; k < trace.index.size(); ++k)
-      local[trace.local_row[k] + j * stride] = values(trace.index[k], j);
+      local[trace.local_row[k] + j * stride] += values(trace.index[k], j);
   RBVI_CALL(MatDenseRestoreArray(dense.get(), &local));
   RBVI_CALL(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
   RBVI_CALL(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));

@@ -2,43 +2,24 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
-#include <limits>
 
 namespace rbvi {
 
 namespace {
 
-// Measured peaks of resident memory on one rank, with direct solvers; multigrid takes less. In two
-// dimensions nested dissection gives the factor of A about 31 n log2 n entries. All that a process
-// holds beyond the 64 MB without a mesh was, in units of 8 n log2 n bytes, for `rbvi solve` 18, 23
-// and 23 on membrane_obstacle refined once, twice and three times (13e3, 53e3, 213e3 dofs) and 32
-// on rigid_disk refined twice (91e3); in sweeps 25 on the membrane and 42 on the disk refined
-// twice, its condensed operator included. A condensed operator of thousands of multipliers comes on
-// top: 98 on the membrane refined twice with -hf_contact condensed. In three dimensions the factor
-// alone (CHOLMOD, cubes of tetrahedra with 33e3 to 64e3 dofs) took 120 n^(4/3) bytes for one
-// component, 220 for three.
+// All that a process holds without a mesh. In three dimensions the factor alone (CHOLMOD, cubes of
+// tetrahedra with 33e3 to 64e3 dofs) took 120 n^(4/3) bytes for one component, 220 for three.
 constexpr double process_bytes = 64e6;
-constexpr double plane_entries = 42, space_bytes = 220;
+constexpr double space_bytes = 220;
 
 // One solve on two ranks against one: little faster below this size, and above by about so much
 // (the membrane refined three times: 2.08 s on one rank, 1.68 s on two, which the bandwidth of the
 // memory bounds; two_disks refined twice: 2.1 and 1.4 to 1.7 s, three times: 11.9 and 6.0 s).
 constexpr double parallel_from = 1.8e5, speedup_of_two = 1.24;
-
-double available_bytes() {
-  std::ifstream file("/proc/meminfo");
-  std::string name, unit;
-  for (double kilobytes = 0; file >> name >> kilobytes;) {
-    if (name == "MemAvailable:") return 1024 * kilobytes;
-    std::getline(file, unit);
-  }
-  return std::numeric_limits<double>::infinity();
-}
 
 /// "Solves are by 2 groups of 1 rank: ".
 std::string groups_text(int ranks, int ranks_per_solve) {
@@ -52,27 +33,10 @@ std::string memory_text(double bytes) {
 
 } // namespace
 
-NodeMemory tightest_node(MPI_Comm comm) {
-  MPI_Comm node = MPI_COMM_NULL;
-  MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
-  const int ranks = ranks_of(node);
-  double bytes = available_bytes();
-  MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_MIN, node);
-  MPI_Comm_free(&node);
-  struct {
-    double share;
-    int rank;
-  } tightest{bytes / ranks, rank_of(comm)};
-  MPI_Allreduce(MPI_IN_PLACE, &tightest, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
-  std::array<double, 2> found{static_cast<double>(ranks), bytes};
-  MPI_Bcast(found.data(), 2, MPI_DOUBLE, tightest.rank, comm);
-  return {static_cast<int>(found[0]), found[1]};
-}
-
 double solve_bytes(const SolveSize &size) {
   const double n = std::max(2.0, size.dofs);
-  return process_bytes + (size.dim == 2 ? 8 * plane_entries * n * std::log2(n)
-                                        : space_bytes * std::pow(n, 4.0 / 3));
+  return process_bytes +
+         (size.dim == 2 ? plane_solve_bytes(n) : space_bytes * std::pow(n, 4.0 / 3));
 }
 
 double solve_speedup(const SolveSize &size, int ranks) {

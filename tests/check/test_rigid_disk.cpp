@@ -6,7 +6,7 @@
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ TEST(CondensedModel, KeepsTheLawOnTheHatsOfACoarserMesh) {
   for (const Sample &truth : solve_all(r.problem, {{0.83}, {1.21}})) {
     const ReducedSolution solution = online.solve(truth.mu);
     const Operators &op = r.problem.assemble(truth.mu);
-    ReplicatedSolver body(op.a, r.problem.trace(), "hf_");
+    ResponseSolver body(op.a, r.problem.trace(), "hf_");
     const Vector lambda = hats * solution.x;
     const Vector w = hats.transpose() * (op.g + op.b * body.responses(op.b.transpose() * lambda));
     const Vector &x = solution.x;

@@ -8,7 +8,7 @@
 #include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   const StabilityCheck check = make_stability_check(r.problem, r.model);
   const std::vector<InfSup> found =
       infsup_over(PETSC_COMM_WORLD, r.problem, check, at_rest(set), r.model.b.size() == 1);
-  ReplicatedSolver solver(r.problem.v_product(), r.problem.trace(), "v_");
+  ResponseSolver solver(r.problem.v_product(), r.problem.trace(), "v_");
   // Generators of a greedy cone nearly depend on each other: orthonormal functions of their span.
   const Matrix w = Matrix(r.problem.w_product());
   const Eigen::LLT<Matrix> factor(w);

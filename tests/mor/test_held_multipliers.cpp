@@ -1,7 +1,7 @@
 // Multipliers that hold a part of the contact region, against what the body does under them.
 #include "../law/random_matrix.hpp"
 #include "rbvi/mor/bases/held_multipliers.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(HeldMultipliers, KeepTheHeldNodesWhereTheyAre) {
     Matrix all = on_the_others(problem.dual_size(), held, 3);
     all(held, Eigen::all) = holding(problem, op)(held, all);
     EXPECT_GT(all(held, Eigen::all).norm(), 0.1 * all.norm());
-    ReplicatedSolver body(op.a, problem.trace(), "hf_");
+    ResponseSolver body(op.a, problem.trace(), "hf_");
     const Matrix u = op.b * body.responses(op.b.transpose() * all);
     EXPECT_LE(u(held, Eigen::all).norm(), 1e-11 * u.norm());
   }

@@ -3,7 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/condensed.hpp"
 #include "rbvi/mor/separation/response_space.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ Matrix unit_loads(const Problem &problem, Index count) {
 
 /// One mode: the response to all of them together.
 LinearBasis one_mode(Problem &problem, const Matrix &loads) {
-  ReplicatedSolver solver(problem.assemble({1, 0.3}).a, problem.trace(), "hf_");
+  ResponseSolver solver(problem.assemble({1, 0.3}).a, problem.trace(), "hf_");
   const Handle<Mat> fields = solver.fields(loads.rowwise().sum());
   Handle<Vec> column;
   RBVI_CALL(MatCreateVecs(fields.get(), nullptr, column.put()));
@@ -48,7 +48,7 @@ double worst_compliance(Problem &problem, const Matrix &loads, const LinearBasis
   const ReducedResponses reduced(problem, loads, basis);
   double worst = 0;
   for (const Mu &mu : unseen) {
-    ReplicatedSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
+    ResponseSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
     const Matrix exact = loads.transpose() * solver.responses(loads);
     const Matrix found = reduced.compliance(expand(problem.scene().parameters, mu));
     worst = std::max(worst, (found - exact).norm() / exact.norm());

@@ -15,7 +15,8 @@ Matrix two_matrices(const std::vector<int> &orders, Index n) {
     const Matrix random = Matrix::Random(orders[k], orders[k]);
     for (Index t = 0; t < (k % 2 == 0 ? 2 : 1); ++t)
       squares.col(t).reshaped(n, n).block(first, first, orders[k], orders[k]) =
-          random + random.transpose() + 3.0 * Matrix::Constant(orders[k], orders[k], t + 1.0);
+          random + random.transpose() +
+          3.0 * Matrix::Constant(orders[k], orders[k], static_cast<double>(t + 1));
     first += orders[k];
   }
   return squares;

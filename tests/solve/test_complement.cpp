@@ -29,7 +29,7 @@ TEST(Complement, IsTheInverseOfTheCompliance) {
     const Trace &trace = problem.trace();
     const Mat a = problem.assemble(centre(problem.scene().parameters)).a;
     const Matrix units = Matrix::Identity(trace.size, trace.size);
-    const Matrix solved = ReplicatedSolver(a, trace, "hf_").responses(units);
+    const Matrix solved = ResponseSolver(a, trace, "hf_").responses(units);
     const Matrix made = compliance_by_complement(a, trace);
     EXPECT_LE(relative(made, solved), 1e-11);
     EXPECT_EQ((made - made.transpose()).norm(), 0);
@@ -57,7 +57,7 @@ TEST(Complement, CondensesLoads) {
       loads(size + k, k) = -0.5; // the same dof once more
       loads(size + (k + 7) % size, k) = 0.25;
     }
-    ReplicatedSolver solver(a, twice, "hf_");
+    ResponseSolver solver(a, twice, "hf_");
     const Matrix expected = loads.transpose() * solver.responses(loads);
     EXPECT_LE(relative(condensed_by_loads(a, twice, "hf_", loads), expected), 1e-11) << count;
     EXPECT_LE(relative(condensed_by_loads(a, twice, "hf_", loads, &solver), expected), 1e-11);

@@ -36,7 +36,8 @@ Matrix restrict_to(const Trace &trace, Mat dense);
 /// f += E values. Not collective (each rank adds to the rows it owns).
 void add_extension(const Trace &trace, const Eigen::Ref<const Vector> &values, Vec f);
 
-/// M = E values (n_c x columns) as a dense distributed matrix with the row layout of `like`.
+/// M = E values (n_c x columns) as a dense distributed matrix with the row layout of `like`; values
+/// of dofs that repeat add up.
 /// Collective.
 Handle<Mat> extension(const Trace &trace, const Matrix &values, Mat like);
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rbvi/mesh/mesh.hpp"
+#include "rbvi/par/node_memory.hpp"
 
 #include <cstddef>
 #include <string>
@@ -14,15 +15,6 @@ struct SolveSize {
   double dofs = 0;
   int dim = 2;
 };
-
-/// The node that has least memory for each of its ranks.
-struct NodeMemory {
-  int ranks = 1;    ///< ours on it
-  double bytes = 0; ///< that are available there
-};
-
-/// By MemAvailable of /proc/meminfo; infinite where the system does not tell. Collective.
-NodeMemory tightest_node(MPI_Comm comm);
 
 /// Estimated peak memory of one solve in bytes, in all, however many ranks share it; rather too
 /// much than too little. Dense operators of thousands of multipliers (-hf_contact condensed) are

@@ -1,7 +1,7 @@
 #include "rbvi/mor/bases/held_multipliers.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -79,7 +79,7 @@ Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &
 Matrix hold_by_reactions(const Problem &problem, const Operators &op, const HeldDofs &held,
                          const Matrix &others) {
   const Trace &trace = problem.trace();
-  ReplicatedSolver solver(without_dofs(op.a, trace, held.dofs).get(), trace, "hf_");
+  ResponseSolver solver(without_dofs(op.a, trace, held.dofs).get(), trace, "hf_");
   Matrix result(std::ssize(held.dofs), others.cols());
   for (Index first = 0; first < others.cols(); first += at_a_time) {
     const Index count = std::min<Index>(at_a_time, others.cols() - first);
@@ -101,7 +101,7 @@ HoldingMultipliers holding(const Problem &problem, const Operators &op) {
     if (others.cols() < std::ssize(held))
       if (const std::optional<HeldDofs> dofs = held_dofs(op.b, held))
         return hold_by_reactions(problem, op, *dofs, others);
-    ReplicatedSolver solver(op.a, problem.trace(), "hf_");
+    ResponseSolver solver(op.a, problem.trace(), "hf_");
     const ColumnSource columns = [&](const std::vector<Index> &which) -> Matrix {
       return op.b * solver.responses(rows_as_columns(op.b, which));
     };

@@ -338,7 +338,7 @@ std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double 
   return taken;
 }
 
-std::vector<int> append_fields(ReplicatedSolver &solver, const Matrix &loads, LinearBasis &basis,
+std::vector<int> append_fields(ResponseSolver &solver, const Matrix &loads, LinearBasis &basis,
                                double tolerance, Matrix *traces) {
   constexpr Index at_a_time = 192;
   std::vector<int> taken;

@@ -6,7 +6,7 @@
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -119,7 +119,7 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
                     " of them: use -response_compression 0 or a larger one");
     answers = answers_at(problem, loads, solver, set);
   } while (directions.left(answers) > between * tolerance);
-  ReplicatedSolver body(problem.assemble(any).a, problem.trace(), "hf_");
+  ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
   return static_cast<int>(append_fields(body,
                                         loads.columns * directions.coefficients(of_few * tolerance),

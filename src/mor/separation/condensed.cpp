@@ -206,7 +206,7 @@ public:
     ++factorisations;
     const Mat a = problem_.assemble(mu).a;
     if (modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end()) {
-      ReplicatedSolver solver(a, problem_.trace(), "hf_");
+      ResponseSolver solver(a, problem_.trace(), "hf_");
       if (of_.join) return blocks_of(of_.columns.transpose() * append(solver, of_.columns), size_);
       append(solver, unit_loads(of_.columns.rows(), of_.dofs));
       return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns, &solver), size_);
@@ -218,7 +218,7 @@ public:
 
 private:
   /// E^T A^-1 E loads, and what of A^-1 E loads is new.
-  Matrix append(ReplicatedSolver &solver, const Matrix &loads) {
+  Matrix append(ResponseSolver &solver, const Matrix &loads) {
     const double least = appended == 0 ? 1e-8 : responses_;
     Matrix traces;
     appended += static_cast<int>(append_fields(solver, loads, *modes_, least, &traces).size());

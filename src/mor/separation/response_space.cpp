@@ -3,7 +3,7 @@
 #include "dense_rows.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <Eigen/Cholesky>
@@ -200,7 +200,7 @@ ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matr
   return append_fields(
       problem,
       [&](const Operators &op) {
-        return ReplicatedSolver(op.a, problem.trace(), "hf_").fields(weighted);
+        return ResponseSolver(op.a, problem.trace(), "hf_").fields(weighted);
       },
       axes, all_parameters, tolerance, most, basis);
 }

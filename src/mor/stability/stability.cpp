@@ -35,7 +35,7 @@ RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<I
   RieszSpace space;
   space.dofs = dofs;
   space.trace = dofs.empty() ? trace : part_of(trace, dofs);
-  space.solver = std::make_shared<ReplicatedSolver>(product, space.trace, "v_");
+  space.solver = std::make_shared<ResponseSolver>(product, space.trace, "v_");
   const Index size = space.trace.size;
   if (loads.cols() > 0 && 2 * loads.cols() <= size) {
     const Matrix gram = loads.transpose() * space.solver->responses(loads);

@@ -182,10 +182,8 @@ Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Inde
   compliance_->set(body.terms);
   for (Index k = 0; k < count; ++k)
     for (SparseMatrix::InnerIterator entry(body.b_contact, which[static_cast<std::size_t>(k)]);
-         entry; ++entry) {
-      compliance_->require({entry.col()});
+         entry; ++entry)
       compliance_->add(entry.col(), entry.value(), moved.col(k));
-    }
   return body.b_contact * moved;
 }
 

@@ -21,14 +21,17 @@ bool ModelCompliance::set(const Vector &coefficients) {
   return true;
 }
 
+void ModelCompliance::make(Index dof) {
+  if (known_[static_cast<std::size_t>(dof)]) return;
+  const auto [first, count] = body_of(dof);
+  columns_.col(dof).segment(first, count).noalias() =
+      of_.terms.middleRows(dof * size_ + first, count) * coefficients_;
+  known_[static_cast<std::size_t>(dof)] = true;
+}
+
 void ModelCompliance::require(const std::vector<Index> &dofs) {
-  for (const Index dof : dofs) {
-    if (known_[static_cast<std::size_t>(dof)]) continue;
-    const auto [first, count] = body_of(dof);
-    columns_.col(dof).segment(first, count).noalias() =
-        of_.terms.middleRows(dof * size_ + first, count) * coefficients_;
-    known_[static_cast<std::size_t>(dof)] = true;
-  }
+  for (const Index dof : dofs)
+    make(dof);
 }
 
 } // namespace rbvi

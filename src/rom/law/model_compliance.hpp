@@ -23,8 +23,9 @@ public:
   Eigen::Map<const Vector> column(Index dof) const override {
     return {columns_.col(dof).data(), size_};
   }
-  /// Adds a multiple of a column that is known.
-  void add(Index dof, double factor, Eigen::Ref<Vector> sum) const {
+  /// Adds a multiple of a column, made where it is not known.
+  void add(Index dof, double factor, Eigen::Ref<Vector> sum) {
+    make(dof);
     const auto [first, count] = body_of(dof);
     sum.segment(first, count) += factor * columns_.col(dof).segment(first, count);
   }
@@ -34,6 +35,7 @@ private:
   struct Range {
     Index first, count;
   };
+  void make(Index dof);
   Range body_of(Index dof) const { return bodies_[static_cast<std::size_t>(dof)]; }
 
   const CondensedOperator &of_;

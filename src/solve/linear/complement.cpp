@@ -150,7 +150,7 @@ Matrix compliance_by_complement(Mat a, const Trace &trace) {
 }
 
 Matrix condensed_by_loads(Mat a, const Trace &trace, const char *prefix, const Matrix &loads,
-                          ReplicatedSolver *solver) {
+                          ResponseSolver *solver) {
   if (loads.cols() == 0) return {};
   PetscInt size = 0, begin = 0;
   RBVI_CALL(MatGetSize(a, &size, nullptr));
@@ -159,14 +159,15 @@ Matrix condensed_by_loads(Mat a, const Trace &trace, const char *prefix, const M
   const double solves = static_cast<double>(loads.cols()) / ranks_of(trace.comm);
   const auto count = static_cast<PetscInt>(touched.dofs.size());
   Matrix made;
-  if (solves_directly(prefix) && complement_pays(size, count, solves, solver != nullptr)) {
+  if (solves_directly(prefix) && complement_pays(size, count, solves, solver != nullptr) &&
+      factors_fit(trace.comm, size)) {
     const Eigen::SparseMatrix<double> sparse = touched.loads.sparseView();
     made = sparse.transpose() *
            Matrix(compliance_by_complement(a, part_of(trace, touched.dofs)) * sparse);
   } else if (solver != nullptr) {
     made = loads.transpose() * solver->responses(loads);
   } else {
-    made = loads.transpose() * ReplicatedSolver(a, trace, prefix).responses(loads);
+    made = loads.transpose() * ResponseSolver(a, trace, prefix).responses(loads);
   }
   return (made + made.transpose()) / 2;
 }

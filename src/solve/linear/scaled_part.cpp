@@ -93,7 +93,7 @@ ScaledPart::ScaledPart(const Problem &problem) : problem_(problem), contact_(pro
     throw failure("the part of the stiffness that a parameter scales is zero");
 
   const PetscInt c = contact_.size, n = interface_.size;
-  solver_ = std::make_unique<ReplicatedSolver>(lower.get(), both_, "hf_");
+  solver_ = std::make_unique<ResponseSolver>(lower.get(), both_, "hf_");
   const Matrix g =
       condensed_by_loads(lower.get(), both_, "hf_", Matrix::Identity(c + n, c + n), solver_.get());
   const Matrix g_upper = condensed_by_loads(upper.get(), interface_, "hf_", Matrix::Identity(n, n));

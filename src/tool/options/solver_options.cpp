@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <algorithm>
@@ -104,7 +104,7 @@ void try_solvers(Problem &problem, const HfOptions &options) {
   for (int i = 0; i < space.size(); ++i)
     mu.push_back(space.at(i).value);
   (void)HighFidelity(problem, options).solve(mu);
-  (void)ReplicatedSolver(problem.v_product(), problem.trace(), "v_")
+  (void)ResponseSolver(problem.v_product(), problem.trace(), "v_")
       .responses(Matrix::Identity(problem.trace().size, 1));
 }
 

@@ -2,7 +2,7 @@
 // factor (B.1), never the eigenvalues of a squared Gram matrix alone.
 #pragma once
 
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <string>
 #include <vector>
@@ -41,7 +41,7 @@ std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double 
 
 /// Collective. The same of A^-1 E loads, some columns at a time: at most those are held beside the
 /// basis. `traces`, where given: E^T A^-1 E loads.
-std::vector<int> append_fields(ReplicatedSolver &solver, const Matrix &loads, LinearBasis &basis,
+std::vector<int> append_fields(ResponseSolver &solver, const Matrix &loads, LinearBasis &basis,
                                double tolerance, Matrix *traces = nullptr);
 
 } // namespace rbvi

@@ -13,7 +13,7 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/fem/trace.hpp"
 #include "rbvi/mor/bases/pod.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <memory>
 #include <string>
@@ -24,13 +24,13 @@ namespace rbvi {
 /// The map between displacement fields and Euclidean coordinates above, for all contact dofs or for
 /// those that b couples with the multipliers at hand; or, where b depends on mu by a factor alone,
 /// for the loads B^T X of these multipliers, which are fewer: F in place of E. Dense parts
-/// replicated.
+/// on every rank.
 struct RieszSpace {
   Matrix factor;           ///< L, lower triangular: n_c x n_c, or as many as loads
   std::vector<Index> dofs; ///< the n_c contact dofs of the scene that it covers; empty: all
   Matrix loads;            ///< F: n_c x columns of X; empty: the identity
   Trace trace;             ///< onto these dofs
-  std::shared_ptr<ReplicatedSolver> solver;
+  std::shared_ptr<ResponseSolver> solver;
 };
 
 /// Collective. One factorisation of `product` (KSP prefix -v_), n_c solves shared among the ranks.

@@ -5,7 +5,7 @@
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/fem/trace.hpp"
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 namespace rbvi {
 
@@ -30,6 +30,6 @@ Matrix compliance_by_complement(Mat a, const Trace &trace);
 /// `loads`: dofs of `trace`, which may repeat, x any number. Throws failure where A is not positive
 /// definite. Collective.
 Matrix condensed_by_loads(Mat a, const Trace &trace, const char *prefix, const Matrix &loads,
-                          ReplicatedSolver *solver = nullptr);
+                          ResponseSolver *solver = nullptr);
 
 } // namespace rbvi

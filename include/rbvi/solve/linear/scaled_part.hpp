@@ -12,7 +12,7 @@
 // (Woodbury's formula, diagonal in the basis V). Each kappa then costs two small products.
 #pragma once
 
-#include "rbvi/solve/linear/replicated.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include "rbvi/problem/problem.hpp"
 
@@ -42,10 +42,10 @@ private:
   void find_interface(const Problem &problem);
 
   const Problem &problem_;
-  double lower_ = 0, width_ = 0;             ///< of the range of theta
-  Trace contact_, interface_, both_;         ///< both_: contact dofs, then the interface
-  std::unique_ptr<ReplicatedSolver> solver_; ///< at kappa_0, the lower bound
-  Matrix compliance_;                        ///< G_cc
+  double lower_ = 0, width_ = 0;           ///< of the range of theta
+  Trace contact_, interface_, both_;       ///< both_: contact dofs, then the interface
+  std::unique_ptr<ResponseSolver> solver_; ///< at kappa_0, the lower bound
+  Matrix compliance_;                      ///< G_cc
   Matrix w_, y_;
   Vector sigma_; ///< times the width of the range of theta
 
