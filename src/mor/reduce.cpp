@@ -158,7 +158,7 @@ void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOp
   std::vector<Handle<Vec>> owned;
   std::vector<Vec> snapshots;
   for (const Sample &sample : samples) {
-    owned.push_back(from_natural(problem.dofs(), sample.u));
+    owned.push_back(from_natural(problem.dofs(), displacement(problem.comm(), sample)));
     snapshots.push_back(owned.back().get());
   }
   bases.pod = pod(snapshots, problem.v_product(), options);
@@ -189,7 +189,8 @@ Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &sample
                        const LinearBasis &modes) {
   Matrix result(modes.size(), static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p)
-    RBVI_CALL(BVDotVec(modes.columns.get(), from_natural(problem.dofs(), samples[p].u).get(),
+    RBVI_CALL(BVDotVec(modes.columns.get(),
+                       from_natural(problem.dofs(), displacement(problem.comm(), samples[p])).get(),
                        result.col(static_cast<Index>(p)).data()));
   return result;
 }

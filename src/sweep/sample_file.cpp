@@ -3,6 +3,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
+#include "rbvi/par/collective.hpp"
 
 #include <limits>
 
@@ -117,7 +118,15 @@ Sample read_sample(const std::filesystem::path &path, const Settings &settings) 
   Sample sample = contents([&] { return sample_in(file); });
   if (sample_file(path.parent_path(), sample.mu).filename() != path.filename())
     throw DamagedFile(path.string() + " holds the answer at another parameter than its name says");
+  sample.file = path;
   return sample;
+}
+
+Vector displacement(MPI_Comm comm, const Sample &sample) {
+  if (sample.u.size() > 0) return sample.u;
+  Vector u;
+  collectively(comm, [&] { u = contents([&] { return open_sample(sample.file).vector("u"); }); });
+  return u;
 }
 
 } // namespace rbvi

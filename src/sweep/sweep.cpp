@@ -168,13 +168,14 @@ std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
 
 /// The samples that are there, and the reasons of those that are not. Collective.
 void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directory,
-             const Settings &settings, Sweep &sweep) {
+             const Settings &settings, Fields fields, Sweep &sweep) {
   collectively(world, [&] {
     for (const Mu &mu : set) {
       const fs::path file = sample_file(directory, mu);
       if (fs::exists(file)) {
         try {
           sweep.samples.push_back(read_sample(file, settings));
+          if (fields == Fields::in_files) sweep.samples.back().u = Vector();
         } catch (const DamagedFile &error) { // since the sweep began
           throw failure(error.what());
         }
@@ -336,7 +337,7 @@ fs::path sample_file(const fs::path &directory, const Mu &mu) {
 
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
                 const std::vector<Mu> &set, const fs::path &directory,
-                const std::function<void()> &begin) {
+                const std::function<void()> &begin, Fields fields) {
   const Settings settings = sample_settings(problem, options);
   Sweep sweep;
   const std::vector<int> missing =
@@ -345,7 +346,7 @@ Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const Hf
   const double start = MPI_Wtime();
   solve_missing(world, groups, problem, options, set, missing, directory, settings);
   sweep.report.seconds = MPI_Wtime() - start;
-  collect(world, set, directory, settings, sweep);
+  collect(world, set, directory, settings, fields, sweep);
   sweep.report.reused = static_cast<int>(set.size() - missing.size());
   sweep.report.solved = static_cast<int>(missing.size() - sweep.report.failed.size());
   sweep.report.seconds_per_solve = median_seconds(sweep.samples, set, missing);

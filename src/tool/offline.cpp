@@ -60,8 +60,9 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
   StageTable after = closing_stages();
   Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
   Sweep sweep = timed(before, stage::snapshots, [&] {
-    return run_sweep(world, groups, work.group_problem(), options.hf, training,
-                     options.out / "samples", [&] { begin_run(world, options); });
+    return run_sweep(
+        world, groups, work.group_problem(), options.hf, training, options.out / "samples",
+        [&] { begin_run(world, options); }, Fields::in_files);
   });
   work.end_of_solves();
   check_failures(options, sweep.report, training.size(), "training");

@@ -372,8 +372,9 @@ void command_verify(const ToolOptions &given) {
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
   const std::vector<ContactPoint> points =
       follows_state(problem.scene())
-          ? contact_points(run_sweep(world, groups, work.group_problem(), options.hf, training,
-                                     options.out / "samples")
+          ? contact_points(run_sweep(
+                               world, groups, work.group_problem(), options.hf, training,
+                               options.out / "samples", [] {}, Fields::in_files)
                                .samples)
           : at_rest(training);
   write_separation(out / "eim.csv", problem, model, points, contact_points(answers), truths.mu);

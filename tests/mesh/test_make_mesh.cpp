@@ -129,6 +129,24 @@ TEST(MakeMeshCounts, ARefinementAddsOneVertexPerEdge) {
   EXPECT_NE(fine.fingerprint, make_mesh(PETSC_COMM_WORLD, scene, {}).fingerprint);
 }
 
+/// The same, bit by bit, whether it is made or taken from a finer one; also where the rim of an
+/// inclusion is balanced after the refinements.
+TEST(MakeMeshLevels, AFinerMeshHasTheCoarserOnes) {
+  for (const std::string name : {"membrane_obstacle", "rigid_disk", "two_disks"}) {
+    Scene scene = make_scene(name);
+    scene.degree = 2;
+    const Mesh fine = make_mesh(PETSC_COMM_WORLD, scene, {"", 2});
+    for (const int refine : {0, 1}) {
+      const Mesh made = make_mesh(PETSC_COMM_WORLD, scene, {"", refine});
+      const Mesh taken = make_mesh(PETSC_COMM_WORLD, scene, {"", refine, fine.levels});
+      EXPECT_EQ(taken.fingerprint, made.fingerprint) << name;
+      EXPECT_EQ(taken.points, made.points) << name;
+      EXPECT_EQ(taken.cells, made.cells) << name;
+      EXPECT_EQ(taken.boundary, made.boundary) << name;
+    }
+  }
+}
+
 TEST(MakeMeshCounts, EveryRankHasItsShare) {
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {});
   int ranks = 1;

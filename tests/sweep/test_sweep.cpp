@@ -127,6 +127,23 @@ TEST_F(SweepTest, SameSamplesForAnyGroups) {
   }
 }
 
+TEST_F(SweepTest, FieldsAreReadFromTheirFilesWhenAsked) {
+  const Sweep held = sweep(five);
+  const Groups groups(PETSC_COMM_WORLD, 1);
+  Problem problem(groups.comm(), wide_scene(), {mesh.string(), 0});
+  const Sweep left = run_sweep(
+      PETSC_COMM_WORLD, groups, problem, {}, five, directory / "samples", [] {}, Fields::in_files);
+  ASSERT_EQ(left.samples.size(), five.size());
+  for (std::size_t i = 0; i < five.size(); ++i) {
+    EXPECT_EQ(left.samples[i].u.size(), 0);
+    EXPECT_TRUE(left.samples[i].lambda == held.samples[i].lambda);
+    EXPECT_TRUE(displacement(PETSC_COMM_WORLD, left.samples[i]) == held.samples[i].u);
+  }
+  alone([&] { fs::remove(left.samples[2].file); });
+  EXPECT_THROW((void)displacement(PETSC_COMM_WORLD, left.samples[2]), Error) << "on every rank";
+  EXPECT_TRUE(displacement(PETSC_COMM_WORLD, held.samples[2]) == held.samples[2].u);
+}
+
 /// On the built-in mesh, in an order without neighbours: starts differ, answers do not.
 TEST_F(SweepTest, SameSamplesOfARandomSetForAnyGroups) {
   const Scene scene = make_scene("membrane_obstacle");

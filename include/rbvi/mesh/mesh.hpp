@@ -49,7 +49,7 @@ struct Mesh {
   PetscInt total_vertices = 0, total_cells = 0; ///< of the undistributed mesh
   PetscInt total_nodes = 0;
   std::string fingerprint; ///< hash of the undistributed mesh, 16 hex digits
-  MeshLevels levels;
+  MeshLevels levels;       ///< that it was refined from
 
   std::vector<Point> points;          ///< local nodes, reference coordinates; vertices first
   std::vector<PetscInt> natural_node; ///< per local node; vertices have the lowest numbers

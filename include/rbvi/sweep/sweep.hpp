@@ -19,15 +19,20 @@ namespace rbvi {
 /// One solved parameter.
 struct Sample {
   Mu mu;
-  Vector u;      ///< all dofs, natural order
+  Vector u;      ///< all dofs, natural order; empty where it is read when asked (displacement)
   Vector lambda; ///< dual dofs
   Outputs outputs;
   /// Where contact follows the displacement: contact dofs x steps, HfSolution::states; else empty.
   Matrix states{};
+  std::filesystem::path file{}; ///< that has it; empty: none
 };
 
 /// What a solve at mu leaves.
 Sample make_sample(const Mu &mu, HfSolution solution);
+
+/// Its u, from its file where it is not held, on every rank. Throws DamagedFile if that has
+/// changed. Collective on `comm`.
+Vector displacement(MPI_Comm comm, const Sample &sample);
 
 /// Their parameters.
 std::vector<Mu> parameters_of(const std::vector<Sample> &samples);
@@ -55,6 +60,9 @@ struct Sweep {
   SweepReport report;
 };
 
+/// Of the samples of a sweep: held on every rank, all of them, or left in their files.
+enum class Fields { held, in_files };
+
 /// `samples/<hash of mu>.h5`
 std::filesystem::path sample_file(const std::filesystem::path &directory, const Mu &mu);
 
@@ -65,6 +73,6 @@ std::filesystem::path sample_file(const std::filesystem::path &directory, const 
 Sweep run_sweep(
     MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
     const std::vector<Mu> &set, const std::filesystem::path &directory,
-    const std::function<void()> &begin = [] {});
+    const std::function<void()> &begin = [] {}, Fields fields = Fields::held);
 
 } // namespace rbvi

@@ -195,7 +195,7 @@ Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) 
   const Index points = 4 * static_cast<Index>(curve.cells.size());
   Matrix result(curve.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p) {
-    const Vector u = samples[p].u(problem.places().natural_dofs);
+    const Vector u = displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
     const auto faces =
         nitsche_faces(curve, expand(curve.scene.parameters, samples[p].mu), curve.cells, u);
     result.col(static_cast<Index>(p)) = nitsche_pressures(faces, u).reshaped().head(result.rows());
