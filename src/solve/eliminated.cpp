@@ -1,6 +1,7 @@
 #include "rbvi/solve/eliminated.hpp"
 
 #include "linear/reduced_system.hpp"
+#include "linear/saddle_system.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
@@ -127,9 +128,9 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
   ++factorisations_;
 }
 
-SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &system,
-                                     double accuracy) {
-  const SparseMatrix c = rows_of(system.r, op.b);
+/// Sets u and returns the multipliers y. Throws failure where the equation cannot be solved.
+Vector Eliminated::eliminate(const Operators &op, const SetSystem &system, const SparseMatrix &c,
+                             Vec force, double accuracy) {
   const std::vector<Index> pivots = choose_pivots(dofs_, system, c);
   const Elimination z(c, pivots);
   std::optional<Elimination> unsymmetric;
@@ -138,14 +139,13 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
   if (of_another_a_) precondition(op, z, pivots);
   ReducedSystem reduced(trace_, op.a, z, w, pivots, factor_.get());
 
-  // force = f - B^T fixed;  right = W^T (force - A u_0).
-  const Handle<Vec> force = reaction_rhs(trace_, op, system.fixed), right = like(op.f);
-  Handle<Vec> u_0 = like(op.f);
+  // right = W^T (force - A u_0).
+  const Handle<Vec> right = like(op.f), u_0 = like(op.f);
   RBVI_CALL(VecZeroEntries(u_0.get()));
   const Vector constraint = SparseMatrix(system.r.transpose()) * op.g;
   if (!pivots.empty()) add_extension(reduced.pivots, z.pivot_values(constraint), u_0.get());
   RBVI_CALL(MatMult(op.a, u_0.get(), right.get()));
-  RBVI_CALL(VecAYPX(right.get(), -1, force.get()));
+  RBVI_CALL(VecAYPX(right.get(), -1, force));
   reduced.reduce(right.get());
 
   set_zero(reduced.pivots, u_.get());
@@ -163,21 +163,38 @@ SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &syste
     if (steps > how.most_steps)
       throw failure("the system of the active set was not solved in " +
                     std::to_string(how.most_steps) +
-                    " steps, or its preconditioner is not positive definite: try -hf_contact "
-                    "condensed");
+                    " steps, or its preconditioner is not positive definite");
   }
   krylov_steps_ += steps;
   reduced.extend(u_.get());
   RBVI_CALL(VecAXPY(u_.get(), 1, u_0.get()));
+  if (pivots.empty()) return {};
 
   const Handle<Vec> residual = like(op.f);
   RBVI_CALL(MatMult(op.a, u_.get(), residual.get()));
-  RBVI_CALL(VecAYPX(residual.get(), -1, force.get()));
+  RBVI_CALL(VecAYPX(residual.get(), -1, force));
+  return w.multipliers(restrict_to(reduced.pivots, residual.get()));
+}
+
+SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &system,
+                                     double accuracy) {
+  const SparseMatrix c = rows_of(system.r, op.b);
+  const Handle<Vec> force = reaction_rhs(trace_, op, system.fixed); // f - B^T fixed
+  Vector y;
+  if (complaint_.empty()) {
+    try {
+      y = eliminate(op, system, c, force.get(), accuracy);
+    } catch (const Error &error) { // of every rank
+      complaint_ = error.what();
+    }
+  }
+  if (!complaint_.empty())
+    y = solve_saddle(trace_, op.a, rows_of(system.t, op.b), c, force.get(),
+                     SparseMatrix(system.r.transpose()) * op.g, u_.get());
   const Vector u = restrict_to(trace_, u_.get());
   SetSolution found;
   found.x = system.fixed;
-  if (!pivots.empty())
-    found.x += system.t * w.multipliers(restrict_to(reduced.pivots, residual.get()));
+  if (y.size() > 0) found.x += system.t * y;
   reaction_ = (op.b.transpose() * found.x).norm();
   found.w = op.g - op.b * u;
   found.terms = op.g.cwiseAbs() + op.b.cwiseAbs() * u.cwiseAbs();
@@ -193,6 +210,7 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
   for (double &value : diagonal)
     if (!(value > 0)) value = mean;
 
+  complaint_.clear();
   // Ties follow B, which changes with mu.
   if (tied_ || !constant_stiffness(problem_.scene())) of_another_a_ = true;
   if (!u_) {
@@ -211,11 +229,14 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
   result.active = std::move(found.active);
   result.iterations = found.iterations;
   result.converged = found.converged;
-  result.reason = found.converged ? found.reason + ", " + std::to_string(factorisations_) +
-                                        " factorisations and " + std::to_string(krylov_steps_) +
-                                        " Krylov steps so far"
-                                  : found.reason + ": try -hf_contact condensed, or a start closer "
-                                                   "to the solution";
+  result.reason = found.reason;
+  if (!found.converged)
+    result.reason += ": try -hf_contact condensed, or a start closer to the solution";
+  else if (complaint_.empty())
+    result.reason += ", " + std::to_string(factorisations_) + " factorisations and " +
+                     std::to_string(krylov_steps_) + " Krylov steps so far";
+  else
+    result.reason += ", by systems with multipliers because elimination failed: " + complaint_;
   return result;
 }
 

@@ -10,7 +10,8 @@
 // factorisation of A without the rows and columns of P, for two bodies of A with the slave's dofs
 // in P tied to the master's at single nodes, or by algebraic multigrid for it where u is a scalar
 // and there are many dofs, or where an option asks for it. It stays while the sets change by
-// little.
+// little. Where a constraint has no pivot or the iteration fails, the systems of that solve keep
+// their multipliers and are solved by a sparse LU factorisation each.
 //
 // Multipliers and B are on every rank, displacement dofs are distributed.
 #pragma once
@@ -35,6 +36,8 @@ public:
 
 private:
   SetSolution solve_system(const Operators &op, const SetSystem &system, double accuracy);
+  Vector eliminate(const Operators &op, const SetSystem &system, const SparseMatrix &c, Vec force,
+                   double accuracy);
   void drop_pivots(Mat a, const std::vector<PetscInt> &rows);
   void tie_pivots(Mat a, const SparseMatrix &ties, const std::vector<PetscInt> &rows);
   void precondition(const Operators &op, const Elimination &z, const std::vector<Index> &pivots);
@@ -51,8 +54,9 @@ private:
   bool of_another_a_ = true;         ///< or of none
   bool tied_ = false;                ///< with pivots tied to other dofs
   int factorisations_ = 0, krylov_steps_ = 0;
-  Handle<Vec> u_;       ///< of the last system
-  double reaction_ = 0; ///< |B^T x| there
+  Handle<Vec> u_;         ///< of the last system
+  double reaction_ = 0;   ///< |B^T x| there
+  std::string complaint_; ///< why systems of this solve are not eliminated
 };
 
 /// Eliminated on a mesh and on those that it was refined from. From the sets of the coarser mesh
