@@ -73,8 +73,7 @@ std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &syste
       pivots[at(k)] = entry.col();
     }
     if (pivots[at(k)] < 0)
-      throw failure("an active constraint has no displacement of its own to eliminate: try "
-                    "-hf_contact condensed");
+      throw failure("an active constraint has no displacement of its own to eliminate");
     taken[at(pivots[at(k)])] = 1;
   }
   return pivots;

@@ -107,8 +107,7 @@ int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
   if (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_PC) return how.most_steps + 1;
   if (reason < 0)
     throw failure(std::string("the system of the active set was not solved (") +
-                  KSPConvergedReasons[reason] + ", " + std::to_string(steps) +
-                  " steps): try -hf_contact condensed");
+                  KSPConvergedReasons[reason] + ", " + std::to_string(steps) + " steps)");
   return static_cast<int>(steps);
 }
 
