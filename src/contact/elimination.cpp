@@ -92,7 +92,7 @@ void SquareFactor::compute(const Eigen::SparseMatrix<double> &matrix) {
   }
   lu_ = std::make_unique<Lu>(matrix);
   if (lu_->info() != Eigen::Success)
-    throw failure("the active constraints depend on each other: try -hf_contact condensed");
+    throw failure("the active constraints depend on each other");
 }
 
 /// Whether there is one entry in each row and column; columns_ and values_ then hold them.
