@@ -78,7 +78,7 @@ void print_self_check(std::ostream &out, const SelfCheck &check, const Parameter
     out << "  reduce again with more training parameters (-train), or a smaller box\n";
   else if (!check.clean())
     out << "  residuals above 1e-10: the laws are met to that only; reduce again with smaller "
-           "tolerances, or -multiplier_reduction condensed on a rigid support\n";
+           "tolerances, or -multiplier_reduction condensed where the model has another\n";
 }
 
 } // namespace rbvi

@@ -3,6 +3,7 @@
 #include "../index.hpp"
 #include "../pivoting.hpp"
 #include "fixed_point.hpp"
+#include "loaded_columns.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <Eigen/Cholesky>
@@ -63,7 +64,7 @@ LinearisedContact::LinearisedContact(const NonlinearContact &contact, const Vect
   q_ = at_.g - at_.b * free_;
 }
 
-Matrix LinearisedContact::columns(const std::vector<Index> &which) {
+void LinearisedContact::move(const std::vector<Index> &which) {
   std::vector<Index> dofs;
   for (const Index row : which)
     for (SparseMatrix::InnerIterator entry(at_.b, row); entry; ++entry)
@@ -71,14 +72,21 @@ Matrix LinearisedContact::columns(const std::vector<Index> &which) {
   std::sort(dofs.begin(), dofs.end());
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   contact_.compliance.require(dofs);
-  Matrix result(at_.b.rows(), std::ssize(which));
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    Vector &of_row = moved_[at(which[k])];
-    of_row = Vector::Zero(at_.b.cols());
-    for (SparseMatrix::InnerIterator entry(at_.b, which[k]); entry; ++entry)
-      of_row += entry.value() * contact_.compliance.column(entry.col());
-    result.col(static_cast<Index>(k)) = at_.b * of_row;
+  for (const Index row : which) {
+    LoadedColumns columns;
+    for (SparseMatrix::InnerIterator entry(at_.b, row); entry; ++entry)
+      columns.add(-entry.value(), contact_.compliance.column(entry.col()).data(),
+                  contact_.compliance.body_of(entry.col()));
+    moved_[at(row)] = Vector::Zero(at_.b.cols());
+    columns.subtract_from(moved_[at(row)], {0, at_.b.cols()});
   }
+}
+
+Matrix LinearisedContact::columns(const std::vector<Index> &which) {
+  move(which);
+  Matrix result(at_.b.rows(), std::ssize(which));
+  for (std::size_t k = 0; k < which.size(); ++k)
+    result.col(static_cast<Index>(k)) = at_.b * moved_[at(which[k])];
   return result;
 }
 
@@ -168,12 +176,12 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
     std::vector<Index> fresh;
     std::copy_if(active.begin(), active.end(), std::back_inserter(fresh),
                  [this](Index row) { return moved_[at(row)].size() == 0; });
-    (void)columns(fresh);
+    move(fresh);
     const Matrix of_active = moved(active), near = of_active(dofs, Eigen::all);
-    Matrix h(of_active.cols(), of_active.cols());
-    for (std::size_t k = 0; k < active.size(); ++k)
-      for (Index j = 0; j < h.cols(); ++j)
-        h(static_cast<Index>(k), j) = at_.b.row(active[k]).dot(of_active.col(j));
+    Matrix h(of_active.cols(), of_active.cols()); // its lower triangle
+    for (Index k = 0; k < h.cols(); ++k)
+      for (Index j = 0; j <= k; ++j)
+        h(k, j) = at_.b.row(active[at(k)]).dot(of_active.col(j));
     const Eigen::LLT<Matrix> factor(h);
     if (!active.empty() && factor.info() != Eigen::Success) return std::nullopt;
     const Vector x0 = -factor.solve(q_(active));
@@ -185,8 +193,11 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
     const Vector z = curvature(d);
     const Vector x = x0 - factor.solve(near.transpose() * z);
     Vector u = free_ - of_active * x;
+    LoadedColumns by_curvature;
     for (std::size_t k = 0; k < dofs.size(); ++k)
-      u -= z[static_cast<Index>(k)] * contact_.compliance.column(dofs[k]);
+      by_curvature.add(z[static_cast<Index>(k)], contact_.compliance.column(dofs[k]).data(),
+                       contact_.compliance.body_of(dofs[k]));
+    by_curvature.subtract_from(u, {0, u.size()});
     const std::vector<Index> wrong = violated(active, x, u);
     if (!wrong.empty()) {
       active = pivoting::exchanged(active, wrong);

@@ -31,8 +31,11 @@ public:
 
 private:
   Vector diagonal() const;
+  /// Makes the columns of C B^T of these multipliers.
+  void move(const std::vector<Index> &which);
+  /// B C B^T(:, which).
   Matrix columns(const std::vector<Index> &which);
-  /// The columns of C B^T of these multipliers, which `columns` has made.
+  /// The columns of C B^T of these multipliers, which have been made.
   Matrix moved(const std::vector<Index> &which) const;
   Iterate iterate(Vector x) const;
   std::vector<Index> violated(const std::vector<Index> &active, const Vector &x,

@@ -240,8 +240,9 @@ Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change
   next.u = state;
   for (const auto &[first, count] : rows_)
     next.u.segment(first, count) = contact_.free.segment(first, count);
-  for (Index dof = 0; dof < here_.load.size(); ++dof)
-    if (here_.load[dof] != 0) subtract(here_.load[dof], contact_.compliance.column(dof), next.u);
+  LoadedColumns of_dofs, of_nodes;
+  of_dofs.add(here_.load, contact_.compliance);
+  subtract(of_dofs, next.u);
   e_ = (compliance.average() * (next.u - state)).reshaped(2, contact_.laws.nodes());
   Eigen::Matrix2Xd loads;
   if (contact_.laws.has_tangents()) {
@@ -253,7 +254,9 @@ Iterate NodalSteps::step(const Vector &state, const Iterate &last, double change
   }
   for (Index node = 0; node < loads.cols(); ++node)
     for (Index c = 0; c < 2; ++c)
-      if (loads(c, node) != 0) subtract(loads(c, node), compliance.moved(node).col(c), next.u);
+      if (loads(c, node) != 0)
+        of_nodes.add(loads(c, node), compliance.moved(node).col(c).data(), {0, next.u.size()});
+  subtract(of_nodes, next.u);
   next.reaction = here_.load;
   add_loads(compliance.average(), loads, next.reaction);
   next.diagonal = diagonals(nodes);
@@ -287,9 +290,9 @@ void NodalSteps::see(const std::vector<Index> &nodes) {
   rows_.clear();
   for (Index dof = 0; dof < std::ssize(wanted); ++dof)
     if (wanted[at(dof)]) {
-      if (rows_.empty() || rows_.back().first + rows_.back().second != dof)
-        rows_.emplace_back(dof, 0);
-      ++rows_.back().second;
+      if (rows_.empty() || rows_.back().first + rows_.back().count != dof)
+        rows_.push_back({dof, 0});
+      ++rows_.back().count;
     }
 }
 
@@ -298,11 +301,10 @@ bool NodalSteps::complete(Iterate &iterate) {
   if (!seen.empty()) {
     if (contact_.laws.has_tangents()) tangent_at_.resize(2, 0);
     rows_ = {{0, contact_.free.size()}};
-    Vector u = contact_.free;
-    for (Index dof = 0; dof < u.size(); ++dof)
-      if (iterate.reaction[dof] != 0)
-        subtract(iterate.reaction[dof], contact_.compliance.column(dof), u);
-    iterate.u = std::move(u);
+    iterate.u = contact_.free;
+    LoadedColumns of_dofs;
+    of_dofs.add(iterate.reaction, contact_.compliance);
+    subtract(of_dofs, iterate.u);
   }
   contact_.nodal->evaluate(iterate.u, iterate.x, near_, here_);
   const std::vector<Index> nodes = touching(iterate.x);

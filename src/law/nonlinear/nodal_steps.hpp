@@ -4,6 +4,7 @@
 #pragma once
 
 #include "linearised_contact.hpp"
+#include "loaded_columns.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -30,10 +31,10 @@ private:
   std::vector<Index> touching(const Vector &x) const;
   /// These nodes, and some beside them, are near.
   void see(const std::vector<Index> &nodes);
-  /// u less the factor times a column of C, on rows_.
-  template <class Column> void subtract(double factor, const Column &column, Vector &u) const {
-    for (const auto &[first, count] : rows_)
-      u.segment(first, count) -= factor * column.segment(first, count);
+  /// u less what they move, on rows_.
+  void subtract(const LoadedColumns &columns, Vector &u) const {
+    for (const ComplianceColumns::Range &rows : rows_)
+      columns.subtract_from(u, rows);
   }
   double diagonal(Index node, const Frame &along) const;
   Vector diagonals(const std::vector<Index> &known) const;
@@ -47,8 +48,8 @@ private:
   Eigen::Matrix2Xd kacanov(const Iterate &last, Iterate &next);
 
   const NonlinearContact &contact_;
-  std::vector<bool> near_;                    ///< per node; empty: all
-  std::vector<std::pair<Index, Index>> rows_; ///< the contact dofs beside them: first, count
+  std::vector<bool> near_;                     ///< per node; empty: all
+  std::vector<ComplianceColumns::Range> rows_; ///< the contact dofs beside them
   NodalCondition here_;
   Eigen::Matrix2Xd e_;          ///< 2 x nodes, A (u_0 - C load - s)
   Eigen::Matrix2Xd tangent_at_; ///< the normals when the tangent was made; empty: there is none

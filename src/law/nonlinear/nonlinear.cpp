@@ -21,6 +21,13 @@ namespace {
 
 constexpr int patience = 15; ///< steps without a smaller change before it is given up
 
+/// |x - P(start)| over max |x|, start = x - w / H_jj, P the projection of the laws.
+double violation(const NodeLaws &laws, const Vector &x, const Vector &start) {
+  const double size = x.cwiseAbs().maxCoeff();
+  const double largest = (x - admissible(laws, start)).cwiseAbs().maxCoeff();
+  return size > 0 ? largest / size : largest;
+}
+
 class Iteration {
 public:
   Iteration(const NonlinearContact &contact, const NonlinearOptions &options)
@@ -51,6 +58,7 @@ public:
   bool run(Iterate &iterate, double part, double tolerance, NonlinearResult &result);
 
 private:
+  bool is_complete(Iterate &iterate, double part, bool predicted);
   Iterate step(const Vector &state, const Iterate &last, double change, double part);
   void measure(const Iterate &next, const Vector &state, const Vector &reaction,
                const Vector &last_x, double part, NonlinearResult &result) const;
@@ -93,6 +101,17 @@ void Iteration::measure(const Iterate &next, const Vector &state, const Vector &
                                        : ratio(dual(next.x - last_x), dual(next.x));
 }
 
+/// Whether steps between nodes have no more to do: none overlap unseen, and where the tolerance is
+/// that of a `predicted` change, the laws are met to it, too.
+bool Iteration::is_complete(Iterate &iterate, double part, bool predicted) {
+  if (!nodal_ || part < 1) return true;
+  if (!nodal_->complete(iterate)) return false;
+  const Vector &w = nodal_->condition().w;
+  return !predicted ||
+         violation(contact_.laws, iterate.x, iterate.x - w.cwiseQuotient(iterate.diagonal)) <=
+             options_.tolerance;
+}
+
 bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearResult &result) {
   const bool smooth = !contact_.laws.has_tangents(); // its contraction can be told from the last
   Vector state = iterate.u, reaction = iterate.reaction;
@@ -111,7 +130,7 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
     result.rate = k == 0 ? 0 : change / last;
     const bool predicts = options_.economical && nodal_ && smooth && k > 1;
     const double left = predicts ? change * std::min(result.rate, 1.0) : change;
-    if (left <= tolerance && (!nodal_ || part < 1 || nodal_->complete(iterate))) return true;
+    if (left <= tolerance && is_complete(iterate, part, change > tolerance)) return true;
     since_best = change < best ? 0 : since_best + 1;
     best = std::min(best, change);
     if (since_best >= patience) break;
@@ -169,9 +188,7 @@ void finish(const NonlinearContact &contact, const NodalCondition *nodal, Iterat
     found.reaction = here.b.transpose() * found.x;
   }
   result.start = found.x - w.cwiseQuotient(found.diagonal);
-  const double size = found.x.cwiseAbs().maxCoeff();
-  const double violation = (found.x - admissible(contact.laws, result.start)).cwiseAbs().maxCoeff();
-  result.residual = size > 0 ? violation / size : violation;
+  result.residual = violation(contact.laws, found.x, result.start);
   result.x = std::move(found.x);
   result.reaction = std::move(found.reaction);
   result.state = std::move(found.u);

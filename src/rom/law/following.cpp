@@ -70,7 +70,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
                  answer.contact);
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
-  answer.u = -stiffness_.response(model_.contact_trace.transpose() * answer.reaction);
+  answer.u = moved_by(answer.reaction);
   if (load.size() > 0) answer.u += stiffness_.transposed_half_response(load);
   answer.residual = found.residual;
   answer.iterations = found.steps;

@@ -32,6 +32,7 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
     const std::vector<int> &dofs = model.law->condensed.dofs;
     nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
     trace_ = model.contact_trace(dofs, Eigen::all);
+    unit_loads_ = stiffness_.turned(trace_.transpose());
     place_.assign(static_cast<std::size_t>(model.contact_trace.rows()), -1);
     for (std::size_t k = 0; k < dofs.size(); ++k)
       place_[static_cast<std::size_t>(dofs[k])] = static_cast<int>(k);
@@ -134,6 +135,13 @@ Vector LawSolver::term_coefficients(const FullMu &all_parameters, const Vector &
 
 Vector LawSolver::load_at(const FullMu &all_parameters) const {
   return model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
+}
+
+Vector LawSolver::moved_by(const Vector &reaction) const {
+  Vector load = Vector::Zero(unit_loads_.rows());
+  for (Index dof = 0; dof < reaction.size(); ++dof)
+    if (reaction[dof] != 0) load -= reaction[dof] * unit_loads_.col(dof);
+  return stiffness_.response_of_turned(load);
 }
 
 BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, const Vector &state) {
@@ -258,7 +266,7 @@ LawAnswer LawSolver::solve(const FullMu &all_parameters) {
   check_edge(answer.x);
   if (model_.evaluates_contact()) {
     answer.reaction = body.b_contact.transpose() * answer.x;
-    answer.u = -stiffness_.response(trace_.transpose() * answer.reaction);
+    answer.u = moved_by(answer.reaction);
   } else {
     answer.u = -stiffness_.response(answer.theta_b, answer.x);
   }

@@ -23,6 +23,7 @@ public:
   Eigen::Map<const Vector> column(Index dof) const override {
     return {columns_.col(dof).data(), size_};
   }
+  Range body_of(Index dof) const override { return bodies_[static_cast<std::size_t>(dof)]; }
   /// Adds a multiple of a column, made where it is not known.
   void add(Index dof, double factor, Eigen::Ref<Vector> sum) {
     make(dof);
@@ -31,12 +32,7 @@ public:
   }
 
 private:
-  /// The dofs of the body of one.
-  struct Range {
-    Index first, count;
-  };
   void make(Index dof);
-  Range body_of(Index dof) const { return bodies_[static_cast<std::size_t>(dof)]; }
 
   const CondensedOperator &of_;
   Index size_;

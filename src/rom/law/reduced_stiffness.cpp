@@ -113,7 +113,16 @@ Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const 
 Vector ReducedStiffness::response(const Vector &load) const {
   if (model_.online_enriched) return subspace_ * factor_.solve(subspace_.transpose() * load);
   if (eigenvectors_.size() == 0) return factor_.solve(load);
-  return eigenvectors_ * (eigenvectors_.transpose() * load).cwiseQuotient(diagonal_);
+  return response_of_turned(eigenvectors_.transpose() * load);
+}
+
+Matrix ReducedStiffness::turned(const Matrix &loads) const {
+  return eigenvectors_.size() > 0 ? Matrix(eigenvectors_.transpose() * loads) : loads;
+}
+
+Vector ReducedStiffness::response_of_turned(const Vector &load) const {
+  return eigenvectors_.size() > 0 ? Vector(eigenvectors_ * load.cwiseQuotient(diagonal_))
+                                  : response(load);
 }
 
 Matrix ReducedStiffness::half_response(const Matrix &loads) const {

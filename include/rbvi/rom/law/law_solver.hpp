@@ -23,10 +23,10 @@ struct LawAnswer {
   ContactOperators contact; ///< at mu, where they do not separate
 };
 
-/// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
-/// query if that is far nearer.
 class ModelCompliance;
 
+/// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
+/// query if that is far nearer.
 class LawSolver {
 public:
   /// `model`, `scene` and `contact` must outlive it. Throws bad_input where they do not fit.
@@ -60,6 +60,8 @@ private:
   NonlinearStart following_start(const FullMu &all_parameters) const;
   LawAnswer solve_following(const FullMu &all_parameters);
   Vector term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const;
+  /// -A_N^-1 of the forces on CondensedOperator::dofs.
+  Vector moved_by(const Vector &reaction) const;
 
   const ReducedModel &model_;
   const Scene &scene_;
@@ -76,6 +78,7 @@ private:
   SparseMatrix nodal_;            ///< the dual basis transposed, where b does not separate
   std::vector<int> place_;  ///< of each contact dof in CondensedOperator::dofs; -1: it is not there
   Matrix trace_;            ///< the primal basis at these dofs
+  Matrix unit_loads_;       ///< of a unit force at each of these dofs: ReducedStiffness::turned
   std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
   Matrix samples_;          ///< where the starts are, as parts of the box
   Vector last_start_, last_;                    ///< of the last query, and where it was
