@@ -2,8 +2,6 @@
 
 #include "rbvi/core/error.hpp"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,12 +34,13 @@ public:
         lower[k] = std::min(lower[k], p[k]);
         upper[k] = std::max(upper[k], p[k]);
       }
-    lower_ = lower;
     // A few points in a cube, on a curve; more on a surface.
     const double longest =
         std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2]});
-    cubes_ = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(points.size()))));
-    width_ = longest > 0 ? longest / cubes_ : 1;
+    const int cubes = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(points.size()))));
+    width_ = longest > 0 ? longest / cubes : 1;
+    lower_ = lower;
+    last_ = key(upper);
     for (std::size_t i = 0; i < points.size(); ++i)
       cube_[key(points[i])].push_back(static_cast<Index>(i));
   }
@@ -74,9 +73,11 @@ private:
   /// The points of the cubes exactly `reach` from the centre, in one direction at least.
   void add_shell(const Point &x, const Key &centre, int reach,
                  std::vector<Neighbour> &found) const {
-    for (int i = -reach; i <= reach; ++i)
-      for (int j = -reach; j <= reach; ++j)
-        for (int k = -reach; k <= reach; ++k) {
+    const auto first = [&](std::size_t k) { return std::max(-reach, -centre[k]); };
+    const auto last = [&](std::size_t k) { return std::min(reach, last_[k] - centre[k]); };
+    for (int i = first(0); i <= last(0); ++i)
+      for (int j = first(1); j <= last(1); ++j)
+        for (int k = first(2); k <= last(2); ++k) {
           if (std::max({std::abs(i), std::abs(j), std::abs(k)}) != reach) continue;
           const auto cube = cube_.find({centre[0] + i, centre[1] + j, centre[2] + k});
           if (cube == cube_.end()) continue;
@@ -87,7 +88,7 @@ private:
 
   const std::vector<Point> &points_;
   Point lower_{};
-  int cubes_ = 1;
+  Key last_{}; ///< the cube of the upper corner
   double width_ = 1;
   std::map<Key, std::vector<Index>> cube_;
 };
@@ -131,15 +132,16 @@ public:
     }
   }
 
-  /// Linear interpolation at x in the entity around one of these nodes that it is deepest inside;
-  /// outside all of them at a point of its boundary. Empty where there is no entity.
+  /// Linear interpolation at x in the entity around one of these nodes that holds it, or that it is
+  /// least outside of, there at a point of its boundary. Empty where there is no entity.
   Weights linear(const Point &x, const std::vector<Neighbour> &near) const {
     constexpr double vanishing = 1e-8;
-    Vector best;
+    Barycentric best;
     const std::vector<Index> *chosen = nullptr;
     for (const Neighbour &neighbour : near)
       for (const std::vector<Index> &entity : around_[static_cast<std::size_t>(neighbour.point)]) {
-        const Vector weights = barycentric(x, entity);
+        if (chosen != nullptr && best.minCoeff() >= 0) break;
+        const Barycentric weights = barycentric(x, entity);
         if (chosen != nullptr && !(weights.minCoeff() > best.minCoeff())) continue;
         best = weights;
         chosen = &entity;
@@ -154,20 +156,26 @@ public:
   }
 
 private:
-  Vector from(const std::vector<Index> &entity, const Point &x) const {
-    const Point &first = dual_.points[static_cast<std::size_t>(entity.front())];
-    return Vector::Map(x.data(), 3) - Vector::Map(first.data(), 3);
+  using Barycentric = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>; // no entity has more nodes
+  Eigen::Vector3d point(Index node) const {
+    return Eigen::Vector3d::Map(dual_.points[static_cast<std::size_t>(node)].data());
   }
   /// Of the projection of x onto the line or plane of the entity.
-  Vector barycentric(const Point &x, const std::vector<Index> &entity) const {
-    Matrix sides(3, std::ssize(entity) - 1);
-    for (Index k = 0; k < sides.cols(); ++k)
-      sides.col(k) = from(
-          entity, dual_.points[static_cast<std::size_t>(entity[static_cast<std::size_t>(k) + 1])]);
-    const Vector along =
-        Matrix(sides.transpose() * sides).ldlt().solve(sides.transpose() * from(entity, x));
-    Vector weights(along.size() + 1);
-    weights << 1 - along.sum(), along;
+  Barycentric barycentric(const Point &x, const std::vector<Index> &entity) const {
+    const Eigen::Vector3d first = point(entity[0]), side = point(entity[1]) - first;
+    const Eigen::Vector3d from = Eigen::Vector3d::Map(x.data()) - first;
+    const double square = side.squaredNorm(), along = side.dot(from) / square;
+    Barycentric weights(std::ssize(entity));
+    if (entity.size() == 2) {
+      weights << 1 - along, along;
+      return weights;
+    }
+    // The part of the other side, and of x, across the first one.
+    const Eigen::Vector3d other = point(entity[2]) - first;
+    const double skew = side.dot(other) / square;
+    const Eigen::Vector3d across = other - skew * side;
+    const double height = across.dot(from) / across.squaredNorm();
+    weights << 1 - (along - skew * height) - height, along - skew * height, height;
     return weights;
   }
 

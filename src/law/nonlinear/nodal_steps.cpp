@@ -176,57 +176,88 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
   }
 }
 
-/// Columns of H at the nodes that are near, of all multipliers; kept as long as the normals.
+/// The nodes near contact with laws of their own, and no column of H yet.
+void NodalSteps::begin_near() {
+  const NodeLaws &laws = contact_.laws;
+  near_nodes_.clear();
+  near_laws_ = {};
+  for (Index node = 0; node < laws.nodes(); ++node)
+    if (near_.empty() || near_[at(node)]) {
+      near_nodes_.push_back(node);
+      near_laws_.bound.push_back(laws.bound[at(node)]);
+    }
+  const Index count = std::ssize(near_nodes_);
+  for (Index k = 0; k < count; ++k) {
+    near_laws_.normal.push_back(k);
+    near_laws_.tangent.push_back(count + k);
+  }
+  near_laws_.rows = 2 * count;
+  near_rows_ = near_nodes_;
+  for (const Index node : near_nodes_)
+    near_rows_.push_back(laws.nodes() + node);
+  h_.resize(2 * count, 2 * count);
+  known_.assign(at(2 * count), false);
+}
+
+/// Columns of H between the nodes that are near; kept as long as the normals.
 Matrix NodalSteps::columns(const std::vector<Index> &which) {
-  const Index nodes = contact_.laws.nodes();
+  const Index count = std::ssize(near_nodes_);
   NodalCompliance &compliance = contact_.nodal->compliance;
   std::vector<Index> fresh, of_fresh;
   for (const Index row : which)
     if (!known_[at(row)]) {
       fresh.push_back(row);
-      of_fresh.push_back(row % nodes);
+      of_fresh.push_back(near_nodes_[at(row % count)]);
     }
   compliance.require(of_fresh, contact_.compliance);
   for (const Index row : fresh) {
     known_[at(row)] = true;
-    const Frame load = row < nodes ? normal(row) : tangent(row - nodes);
-    for (Index a = 0; a < nodes; ++a) {
-      if (!near_.empty() && !near_[at(a)]) continue;
-      const Frame moved = compliance.block(a, row % nodes) * load;
-      h_(a, row) = normal(a).dot(moved);
-      h_(nodes + a, row) = tangent(a).dot(moved);
+    const Index node = near_nodes_[at(row % count)];
+    const Frame load = row < count ? normal(node) : tangent(node);
+    for (Index k = 0; k < count; ++k) {
+      const Index a = near_nodes_[at(k)];
+      const Frame moved = compliance.block(a, node) * load;
+      h_(k, row) = normal(a).dot(moved);
+      h_(count + k, row) = tangent(a).dot(moved);
     }
   }
   return h_(Eigen::all, which);
 }
 
-/// The laws with H between the nodes and what is left of w beside H x.
+/// The laws of the nodes near contact, with H between them and what is left of w beside H x.
 Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
   const NodeLaws &laws = contact_.laws;
   if (!are_as_before(touching(last.x), tangent_at_)) {
-    h_.setZero(laws.rows, laws.rows);
-    known_.assign(at(laws.rows), false);
+    begin_near();
     tangent_at_ = here_.normal;
   }
   const auto columns = [this](const std::vector<Index> &which) { return this->columns(which); };
-  Vector q = here_.w;
-  for (Index a = 0; a < laws.nodes(); ++a) {
-    q[a] -= normal(a).dot(e_.col(a));
-    q[laws.nodes() + a] -= tangent(a).dot(e_.col(a));
-  }
+  const Index count = std::ssize(near_nodes_);
+  const Vector x = last.x(near_rows_);
+  Vector q = here_.w(near_rows_);
   std::vector<Index> loaded;
-  for (Index row = 0; row < laws.rows; ++row)
-    if (last.x[row] != 0) loaded.push_back(row);
-  q -= columns(loaded) * last.x(loaded);
-  FrictionResult found = solve_friction(columns, q, laws, last.start);
+  for (Index k = 0; k < count; ++k) {
+    const Index node = near_nodes_[at(k)];
+    q[k] -= normal(node).dot(e_.col(node));
+    q[count + k] -= tangent(node).dot(e_.col(node));
+  }
+  for (Index row = 0; row < x.size(); ++row)
+    if (x[row] != 0) loaded.push_back(row);
+  q -= columns(loaded) * x(loaded);
+  const FrictionResult found = solve_friction(
+      columns, q, near_laws_, last.start.size() > 0 ? Vector(last.start(near_rows_)) : Vector());
   if (!found.converged) throw failure(found.reason);
-  Eigen::Matrix2Xd loads(2, laws.nodes());
-  for (Index a = 0; a < laws.nodes(); ++a)
-    loads.col(a) = (found.x[a] - last.x[a]) * normal(a) +
-                   (found.x[laws.nodes() + a] - last.x[laws.nodes() + a]) * tangent(a);
-  next.x = std::move(found.x);
-  next.start = std::move(found.start);
-  next.active = std::move(found.active);
+  Eigen::Matrix2Xd loads = Eigen::Matrix2Xd::Zero(2, laws.nodes());
+  for (Index k = 0; k < count; ++k) {
+    const Index node = near_nodes_[at(k)];
+    loads.col(node) =
+        (found.x[k] - x[k]) * normal(node) + (found.x[count + k] - x[count + k]) * tangent(node);
+  }
+  next.x = next.start = Vector::Zero(laws.rows);
+  next.x(near_rows_) = found.x;
+  next.start(near_rows_) = found.start;
+  for (const Index k : found.active)
+    next.active.push_back(near_nodes_[at(k)]);
   return loads;
 }
 

@@ -39,6 +39,7 @@ private:
   double diagonal(Index node, const Frame &along) const;
   Vector diagonals(const std::vector<Index> &known) const;
   bool are_as_before(const std::vector<Index> &nodes, const Eigen::Matrix2Xd &before) const;
+  void begin_near();
   Matrix columns(const std::vector<Index> &which);
   void set_tangent(const std::vector<Index> &active);
   /// The loads, two components a node, that a Newton step adds; changes x.
@@ -53,7 +54,10 @@ private:
   NodalCondition here_;
   Eigen::Matrix2Xd e_;          ///< 2 x nodes, A (u_0 - C load - s)
   Eigen::Matrix2Xd tangent_at_; ///< the normals when the tangent was made; empty: there is none
-  // With friction: H, the columns that are known.
+  // With friction: the nodes near contact, their rows and laws; H between them, the columns that
+  // are known.
+  std::vector<Index> near_nodes_, near_rows_;
+  NodeLaws near_laws_;
   Matrix h_;
   std::vector<bool> known_;
   // Without friction, between the active nodes: H, its factor; tangential displacements under

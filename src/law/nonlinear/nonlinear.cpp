@@ -113,7 +113,7 @@ bool Iteration::is_complete(Iterate &iterate, double part, bool predicted) {
 }
 
 bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearResult &result) {
-  const bool smooth = !contact_.laws.has_tangents(); // its contraction can be told from the last
+  const bool friction = contact_.laws.has_tangents();
   Vector state = iterate.u, reaction = iterate.reaction;
   Anderson anderson(3);
   std::vector<Iterate> images;
@@ -128,24 +128,31 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
     const double change = std::max(result.change_u, result.change_x);
     if (!std::isfinite(iterate.u.norm())) break;
     result.rate = k == 0 ? 0 : change / last;
-    const bool predicts = options_.economical && nodal_ && smooth && k > 1;
+    const bool predicts = options_.economical && nodal_ && k > 1;
     const double left = predicts ? change * std::min(result.rate, 1.0) : change;
-    if (left <= tolerance && is_complete(iterate, part, change > tolerance)) return true;
+    if (left <= tolerance) {
+      if (is_complete(iterate, part, change > tolerance)) return true;
+      anderson = Anderson(3); // from here on states are seen as a whole
+      images.clear();
+    }
     since_best = change < best ? 0 : since_best + 1;
     best = std::min(best, change);
     if (since_best >= patience) break;
     last = change;
     state = iterate.u;
     reaction = iterate.reaction;
-    if (method_ != NonlinearMethod::anderson) continue;
+    // Steps between nodes with friction are Kacanov's: they contract alike, and gain as much.
+    if (method_ != NonlinearMethod::anderson && !(nodal_ && friction)) continue;
     images.push_back(iterate);
     const Vector shares = anderson.combine(iterate.u - result.iterates.back());
     if (images.size() > at(shares.size())) images.erase(images.begin());
     state.setZero();
     reaction.setZero();
+    if (nodal_) iterate.x.setZero(); // the next step starts from it, too
     for (Index j = 0; j < shares.size(); ++j) {
       state += shares[j] * images[at(j)].u;
       reaction += shares[j] * images[at(j)].reaction;
+      if (nodal_) iterate.x += shares[j] * images[at(j)].x;
     }
   }
   result.reason = "the condition that follows the displacement does not settle: after " +

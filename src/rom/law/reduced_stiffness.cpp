@@ -113,16 +113,22 @@ Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const 
 Vector ReducedStiffness::response(const Vector &load) const {
   if (model_.online_enriched) return subspace_ * factor_.solve(subspace_.transpose() * load);
   if (eigenvectors_.size() == 0) return factor_.solve(load);
-  return response_of_turned(eigenvectors_.transpose() * load);
+  return eigenvectors_ * (eigenvectors_.transpose() * load).cwiseQuotient(diagonal_);
 }
 
+/// Of one term: its response to them.
 Matrix ReducedStiffness::turned(const Matrix &loads) const {
-  return eigenvectors_.size() > 0 ? Matrix(eigenvectors_.transpose() * loads) : loads;
+  if (eigenvectors_.size() == 0) return loads;
+  Matrix result = eigenvectors_.transpose() * loads;
+  if (eigenvalues_.cols() == 1)
+    result = eigenvectors_ * (eigenvalues_.cwiseInverse().asDiagonal() * result);
+  return result;
 }
 
 Vector ReducedStiffness::response_of_turned(const Vector &load) const {
-  return eigenvectors_.size() > 0 ? Vector(eigenvectors_ * load.cwiseQuotient(diagonal_))
-                                  : response(load);
+  if (eigenvectors_.size() == 0) return response(load);
+  if (eigenvalues_.cols() == 1) return load * (eigenvalues_(0) / diagonal_[0]);
+  return eigenvectors_ * load.cwiseQuotient(diagonal_);
 }
 
 Matrix ReducedStiffness::half_response(const Matrix &loads) const {

@@ -27,8 +27,8 @@ public:
   /// A_N^-1 B_N^T x, B_N of the coefficients `theta_b`.
   Vector response(const Vector &theta_b, const Vector &x) const;
   Vector response(const Vector &load) const; ///< A_N^-1 load, n entries
-  /// The loads of unit forces, n x any number, as response_of_turned takes them: one product less
-  /// a query where A_N is diagonal in another basis. They stay the same for every mu.
+  /// The loads of unit forces, n x any number, as response_of_turned takes them: products that a
+  /// query is spared where A_N is diagonal in another basis. They stay the same for every mu.
   Matrix turned(const Matrix &loads) const;
   Vector response_of_turned(const Vector &load) const; ///< A_N^-1 of the load that was turned
   /// Some root of it: L loads, L^T L = A_N^-1. `loads`: n x any number.
