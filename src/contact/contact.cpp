@@ -120,9 +120,13 @@ void stack(const Contact &contact, const std::vector<ContactOperators> &all,
   operators.g = stacked(each(all, &ContactOperators::g));
   stack_nodal(all, operators);
   operators.uncovered.clear();
-  for (std::size_t i = 0; i < all.size(); ++i)
+  operators.segments.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::vector<Index> &segments = all[i].segments;
+    operators.segments.insert(operators.segments.end(), segments.begin(), segments.end());
     for (const Index row : all[i].uncovered)
       operators.uncovered.push_back(contact.first_row[i] + row);
+  }
 }
 
 void assemble_nodal(const Contact &contact, const FullMu &mu, const ContactState &state,
@@ -194,6 +198,17 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
   return laws;
 }
 
+std::string failure_at(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
+                       const Vector &lambda, const std::string &reason) {
+  Outputs outputs;
+  if (lambda.size() > 0) contact_outputs(contact, mu, operators, lambda, 0, outputs);
+  if (outputs.ends_in_contact.value_or(0) == 0) return reason;
+  return "contact has come to the end of its boundary: try a smaller indentation or offset, or "
+         "more "
+         "-nonlinear_load_steps (" +
+         reason + ")";
+}
+
 void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
                      const Vector &lambda, double least, Outputs &outputs) {
   if (contact.interfaces.size() == 1)
@@ -214,7 +229,7 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     for (const auto member :
          {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
           &Outputs::horizontal_reaction, &Outputs::contact_measure, &Outputs::contact_nodes,
-          &Outputs::stick_nodes})
+          &Outputs::stick_nodes, &Outputs::ends_in_contact})
       combine(outputs.*member, one.*member, true);
     for (const auto member : {&Outputs::peak_pressure, &Outputs::friction_violation})
       combine(outputs.*member, one.*member, false);

@@ -51,6 +51,8 @@ const std::vector<OutputColumn> &output_columns() {
       {"expected_error_lambda", &Outputs::expected_error_lambda, check,
        "largest error of the multipliers that verify measured, relative"},
       {"iterations", &Outputs::iterations, check, "steps of the solver"},
+      {"load_steps", &Outputs::load_steps, check,
+       "large deformations: load steps, where steps from the start failed; else 0"},
       {"contraction", &Outputs::contraction, check,
        "large deformations: change in the last step over that in the one before"},
       {"seconds", &Outputs::seconds, check, "wall time of the answer"}};
@@ -79,15 +81,26 @@ const OutputColumn &output_column(const std::string &name) {
   return *found;
 }
 
+namespace {
+
+/// Of so many answers.
+std::string end_warning(long at_ends, long all, const char *answers) {
+  const std::string who = all == 1 ? "contact reaches the end of its boundary"
+                                   : std::to_string(at_ends) + " of " + std::to_string(all) + ' ' +
+                                         answers + " touch an end of the contact boundary";
+  return who + ", beside which the body would touch too: a smaller indentation or offset, or a "
+               "scene with a wider contact boundary";
+}
+
+} // namespace
+
 std::string resolution_warning(const Outputs &outputs) {
   // Measured on rigid_disk (its README): with 7 nodes in contact forces are 3e-3 off and the peak
   // 6e-2, with 9 they are 3e-4 and 1e-2. With 5 sticking nodes the tangential force is 2e-3 off,
   // with fewer by up to 1.5 times the share of one node, whose stress is undecided where the slip
   // turns.
   constexpr double fewest_in_contact = 9, fewest_that_stick = 5;
-  if (outputs.ends_in_contact.value_or(0) > 0)
-    return "contact reaches the end of its boundary, beside which the body would touch too: a "
-           "smaller indentation or offset";
+  if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(1, 1, "");
   const double contact = outputs.contact_nodes.value_or(0);
   const bool narrow = contact > 0 && contact < fewest_in_contact;
   const bool slips = contact > 0 && outputs.stick_nodes &&
@@ -109,13 +122,18 @@ std::string resolution_warning(const Outputs &outputs) {
 
 void ResolutionTally::add(const Outputs &outputs) {
   const std::string warning = resolution_warning(outputs);
-  if (!warning.empty() && answers++ == 0) first = warning;
+  ++all;
+  if (outputs.ends_in_contact.value_or(0) > 0)
+    ++at_ends;
+  else if (!warning.empty() && coarse++ == 0)
+    first = warning;
 }
 
-void ResolutionTally::print(std::ostream &out) const {
-  if (answers == 0) return;
+void ResolutionTally::print(std::ostream &out, const char *answers) const {
+  if (at_ends > 0) out << "warning: " << end_warning(at_ends, all, answers) << '\n';
+  if (coarse == 0) return;
   out << "warning: " << first;
-  if (answers > 1) out << " (the first of " << answers << " such answers)";
+  if (coarse > 1) out << " (the first of " << coarse << " such " << answers << ')';
   out << '\n';
 }
 

@@ -244,6 +244,7 @@ void OnlineSolver::solve_following(ReducedSolution &solution) {
   Anderson anderson(3);
   std::vector<Vector> images;
   int iterations = 0;
+  double last_change = 0;
   for (int k = 0; k < most_steps; ++k) {
     solve_pair(state, solution);
     iterations += solution.iterations;
@@ -253,10 +254,12 @@ void OnlineSolver::solve_following(ReducedSolution &solution) {
                          (solution.x - last_x).norm() <= tolerance * solution.x.norm();
     if (settled) {
       solution.iterations = iterations;
+      solution.contraction = change.norm() / last_change;
       assemble(contact_, solution.mu, {images.back()}, solution.contact);
       return;
     }
     last_x = solution.x;
+    last_change = change.norm();
     const Vector shares = anderson.combine(change);
     if (std::ssize(images) > shares.size()) images.erase(images.begin());
     state.setZero();
@@ -288,6 +291,8 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
     solution.energy = answer.energy;
     solution.kkt_residual = answer.residual;
     solution.iterations = answer.iterations;
+    solution.load_steps = answer.load_steps;
+    solution.contraction = answer.contraction;
     return solution;
   }
   if (follows_state(contact_))
@@ -344,6 +349,8 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   result.energy = images * solution.energy;
   result.kkt_residual = solution.kkt_residual;
   result.iterations = solution.iterations;
+  result.load_steps = solution.load_steps;
+  result.contraction = solution.contraction;
   const ValidationErrors &expected = expected_errors(model_);
   if (expected.count > 0 && in_box(scene_.parameters, mu)) {
     result.expected_error_u = expected.u_max;

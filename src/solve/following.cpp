@@ -42,7 +42,7 @@ MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compli
   ContactOperators at_state;
   NonlinearContact nonlinear{[&](const Vector &state, Linearised &linearised) {
                                assemble(contact, op.mu, {state}, at_state);
-                               linearised = {at_state.b, at_state.g};
+                               linearised = {at_state.b, at_state.g, at_state.segments};
                              },
                              {},
                              columns,
@@ -60,7 +60,8 @@ MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compli
     nonlinear.nodal.emplace(NodalContact{nodal->nodal_at(op.mu), *compliance.nodal});
   }
   steps = solve_nonlinear(nonlinear, start, options);
-  if (!steps.converged) throw failure(steps.reason);
+  if (!steps.converged)
+    throw failure(failure_at(contact, op.mu, at_state, steps.last_x, steps.reason));
   assemble(contact, op.mu, {steps.state}, op);
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));

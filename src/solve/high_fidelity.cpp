@@ -89,7 +89,7 @@ const std::vector<std::string> &hf_method_names() {
 HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     : problem_(problem), options_(options), ksp_(make_direct_solver(problem.comm(), "hf_")) {
   if (options.method != HfMethod::active_set && follows_state(problem.contact()))
-    throw bad_input("-method " + hf_method_names()[static_cast<std::size_t>(options.method)] +
+    throw bad_input("-hf_method " + hf_method_names()[static_cast<std::size_t>(options.method)] +
                     " is for small deformations: leave it out, or use -kinematics small");
   if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
   if (problem.nitsche()) {
@@ -221,6 +221,7 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
                                         start, options_.nonlinear, steps);
   solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
   solution.outputs = measure(problem_, op, op.weights, result, solution);
+  solution.outputs.load_steps = steps.load_steps;
   solution.outputs.contraction = steps.rate;
   solution.states = std::move(steps.iterates);
   solution.states.push_back(std::move(steps.state));

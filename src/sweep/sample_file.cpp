@@ -11,7 +11,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 5;
+constexpr int sample_schema = 6;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
@@ -27,6 +27,7 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::min_u,
                                     &Outputs::contact_nodes,
                                     &Outputs::stick_nodes,
+                                    &Outputs::ends_in_contact,
                                     &Outputs::kkt_residual,
                                     &Outputs::max_penetration,
                                     &Outputs::friction_violation,
@@ -34,6 +35,7 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::law_error_tangential,
                                     &Outputs::law_error_tau_over_n,
                                     &Outputs::iterations,
+                                    &Outputs::load_steps,
                                     &Outputs::contraction,
                                     &Outputs::seconds};
 

@@ -37,7 +37,9 @@ void command_solve(const ToolOptions &options) {
     if (rank_of(world) != 0) return;
     std::printf("%s\n", describe(space, mu).c_str());
     print_outputs(std::cout, solution.outputs);
-    warn_of_resolution({{mu, {}, {}, solution.outputs}}, std::cout);
+    ResolutionTally resolution;
+    resolution.add(solution.outputs);
+    resolution.print(std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
     if (!options.csv.empty()) {
       write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});

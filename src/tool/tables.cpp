@@ -39,11 +39,16 @@ void write_sample_table(const std::filesystem::path &path, const ParameterSpace 
   write_atomically(path, out.str());
 }
 
-void warn_of_resolution(const std::vector<Sample> &samples, std::ostream &out) {
+void tell_of_samples(const std::vector<Sample> &samples, std::ostream &out) {
   ResolutionTally tally;
-  for (const Sample &sample : samples)
+  long in_load_steps = 0;
+  for (const Sample &sample : samples) {
     tally.add(sample.outputs);
-  tally.print(out);
+    if (sample.outputs.load_steps.value_or(0) > 0) ++in_load_steps;
+  }
+  if (in_load_steps > 0)
+    out << in_load_steps << " of " << samples.size() << " samples took load steps\n";
+  tally.print(out, "samples");
 }
 
 } // namespace rbvi

@@ -223,6 +223,76 @@ TEST(LargePair, ItsCurvatureIsTheDerivativeOfTheReaction) {
   }
 }
 
+/// A state that moves the upper body sideways.
+Vector aside(const InterfaceMesh &mesh, double by) {
+  Vector state = Vector::Zero(mesh.columns);
+  for (Index i = 0; i < mesh.parts[0]; ++i)
+    state[2 * i] = by;
+  return state;
+}
+
+// As vertices of one curve pass those of the other B and g change by as little as elsewhere: an
+// iteration needs no segments that are held.
+TEST(LargePair, OperatorsAreContinuousWhereVerticesPassEachOther) {
+  constexpr int steps = 400;
+  for (const int degree : {1, 2})
+    for (const MultiplierSpace space : spaces) {
+      const Scene scene = scene_of(degree);
+      const InterfaceMesh mesh = two_circles(16, 0.01, degree);
+      const auto large = deformed_bodies({"slave", "master", space}).make(scene, mesh);
+      ContactOperators last = at(*large, {0}, aside(mesh, -0.3));
+      double largest = 0, sum = 0;
+      int passed = 0;
+      for (int k = 1; k <= steps; ++k) {
+        const ContactOperators op = at(*large, {0}, aside(mesh, 0.6 * k / steps - 0.3));
+        const double change =
+            (Matrix(op.b) - Matrix(last.b)).norm() + (op.g - last.g).norm() / 0.01;
+        largest = std::max(largest, change);
+        sum += change;
+        if (op.segments != last.segments) ++passed;
+        last = op;
+      }
+      EXPECT_GT(passed, 20);
+      EXPECT_LT(largest, 3 * sum / steps) << degree;
+    }
+}
+
+/// Ends with pressure where the multipliers of `rows` carry.
+double ends(const ContactInterface &interface, const ContactOperators &op,
+            const std::vector<Index> &rows) {
+  Vector lambda = Vector::Zero(interface.dual().nodes());
+  lambda(rows).setOnes();
+  Outputs outputs;
+  interface.outputs({0}, op, lambda, 0, outputs);
+  return *outputs.ends_in_contact;
+}
+
+// The upper curve ends at 0 and 2, the lower one at 1.6: between vertices of the upper one.
+TEST(LargePair, ContactAtAnEndOfEitherCurveIsCounted) {
+  Curve upper, lower;
+  for (Index i = 0; i <= 8; ++i)
+    upper.push_back({0.25 * static_cast<double>(i), 0, 0});
+  for (Index i = 0; i <= 6; ++i)
+    lower.push_back({0.3 * static_cast<double>(i) - 0.2, 0, 0});
+  const Scene scene = scene_of(2);
+  InterfaceMesh mesh = two_curves(upper, lower, 2);
+  const auto edges = deformed_bodies({"slave", "master", spaces[0]}).make(scene, mesh),
+             nodes = deformed_bodies({"slave", "master", spaces[1]}).make(scene, mesh);
+  const ContactOperators on_edges = at(*edges, {0}, {}), on_nodes = at(*nodes, {0}, {});
+  EXPECT_EQ(ends(*edges, on_edges, {1, 2, 3, 4, 5}), 0);
+  EXPECT_EQ(ends(*edges, on_edges, {5, 6}), 1) << "the last with a partner";
+  EXPECT_EQ(ends(*edges, on_edges, {0, 1}), 1);
+  EXPECT_EQ(ends(*edges, on_edges, {0, 6}), 2);
+  EXPECT_EQ(ends(*nodes, on_nodes, {1, 2, 3, 4, 5}), 0);
+  EXPECT_EQ(ends(*nodes, on_nodes, {6}), 1) << "the last vertex with a partner";
+  EXPECT_EQ(ends(*nodes, on_nodes, {7}), 1) << "its function has a partner in part";
+  EXPECT_EQ(ends(*nodes, on_nodes, {0, 6}), 2);
+  mesh.dofs[0] = -1; // on an axis of symmetry contact has no end
+  const auto half = deformed_bodies({"slave", "master", spaces[0]}).make(scene, mesh);
+  EXPECT_EQ(ends(*half, at(*half, {0}, {}), {0, 1}), 0);
+  EXPECT_EQ(ends(*half, at(*half, {0}, {}), {0, 6}), 1);
+}
+
 TEST(LargePair, ACurveThatFoldsIsAFailureOfThisState) {
   Random random(2);
   const InterfaceMesh mesh = two_curves(line(random, 4, 0, 1, 0.1), line(random, 4, 0, 1, 0), 1);

@@ -124,5 +124,26 @@ TEST(ResolutionTally, PrintsTheFirstAndHowMany) {
             "warning: " + resolution_warning(zones(20, 1, 1)) + " (the first of 2 such answers)\n");
 }
 
+TEST(ResolutionTally, CountsTheAnswersAtAnEndOfContactByThemselves) {
+  Outputs at_end = zones(8, 6, 1);
+  at_end.ends_in_contact = 1;
+  EXPECT_NE(resolution_warning(at_end).find("contact reaches the end"), std::string::npos);
+  std::ostringstream one, three;
+  ResolutionTally tally;
+  tally.add(at_end);
+  tally.print(one);
+  EXPECT_EQ(one.str(), "warning: " + resolution_warning(at_end) + "\n");
+  tally.add(zones(5, 5, 1));
+  at_end.ends_in_contact = 2;
+  tally.add(at_end);
+  tally.print(three, "samples");
+  EXPECT_EQ(three.str().find("warning: 2 of 3 samples touch an end of the contact boundary"), 0U);
+  EXPECT_NE(three.str().find("\nwarning: " + resolution_warning(zones(5, 5, 1)) + "\n"),
+            std::string::npos);
+  Outputs off = at_end;
+  off.ends_in_contact = 0;
+  EXPECT_EQ(resolution_warning(off), resolution_warning(zones(8, 6, 1)));
+}
+
 } // namespace
 } // namespace rbvi

@@ -333,6 +333,67 @@ TEST(Nonlinear, AnIterationThatDoesNotContractIsNoAnswer) {
   EXPECT_NEAR((bead.at + newton.state).norm(), 1, 1e-12);
 }
 
+/// The refusal of a method.
+std::string refusal(const NonlinearContact &contact, NonlinearMethod method) {
+  NonlinearOptions options;
+  options.method = method;
+  try {
+    (void)solve_nonlinear(contact, {contact.undeformed, {}}, options);
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Nonlinear, AMethodThatContactHasNotIsRefused) {
+  Beads beads = pushed_row(5, 0.1);
+  DenseColumns columns(beads.compliance);
+  NonlinearContact contact = beads.problem(columns);
+  EXPECT_EQ(refusal(contact, NonlinearMethod::newton), "");
+  EXPECT_NE(refusal(contact, NonlinearMethod::nodal).find("leave it out (newton)"),
+            std::string::npos);
+  contact.curvature = {};
+  EXPECT_NE(refusal(contact, NonlinearMethod::newton).find("-normal rigid"), std::string::npos);
+  beads.friction = true;
+  const NonlinearContact rough = beads.problem(columns);
+  EXPECT_NE(refusal(rough, NonlinearMethod::newton).find("without friction"), std::string::npos);
+  EXPECT_EQ(refusal(rough, NonlinearMethod::automatic), "");
+}
+
+// Segments that alternate to the end are told, in an answer and in a failure; what settles is not.
+TEST(Nonlinear, SegmentsThatDoNotSettleAreReported) {
+  const Beads beads = pushed_row(21, 0.2);
+  DenseColumns columns(beads.compliance);
+  NonlinearContact contact = beads.problem(columns);
+  NonlinearOptions options;
+  int steps = 0, settled = 2;
+  contact.linearise = [&](const Vector &state, Linearised &l) {
+    beads.linearise(state, l);
+    l.segments = {std::min(steps++, settled) % 2};
+  };
+  const NonlinearStart rest{Vector::Zero(2 * beads.count()), {}};
+  const NonlinearResult still = solve_nonlinear(contact, rest, options);
+  ASSERT_TRUE(still.converged) << still.reason;
+  EXPECT_EQ(still.segments_moved, 3);
+  EXPECT_EQ(still.reason.find("vertices"), std::string::npos) << still.reason;
+  steps = 0;
+  settled = 1000;
+  const NonlinearResult alternating = solve_nonlinear(contact, rest, options);
+  ASSERT_TRUE(alternating.converged) << alternating.reason;
+  EXPECT_EQ(alternating.segments_moved, alternating.steps);
+  EXPECT_NE(alternating.reason.find("vertices"), std::string::npos) << alternating.reason;
+  EXPECT_LT((alternating.x - still.x).norm(), 1e-14 * still.x.norm());
+  options.max_steps = 2;
+  options.load_steps = 0;
+  const NonlinearResult failed = solve_nonlinear(contact, rest, options);
+  EXPECT_FALSE(failed.converged);
+  EXPECT_NE(failed.reason.find("vertices"), std::string::npos) << failed.reason;
+  EXPECT_EQ(failed.last_x.size(), still.x.size());
+  EXPECT_EQ(failed.reason.find("newton"), std::string::npos) << "it is Newton's method";
+  EXPECT_NE(failed.reason.find("anderson"), std::string::npos) << failed.reason;
+}
+
 TEST(Anderson, SolvesALinearFixedPointLikeGmres) {
   Random random(2);
   const Matrix rotation{{0, -1.5}, {1.5, 0}}; // |eigenvalues| 1.5: the plain iteration diverges

@@ -1,6 +1,7 @@
 // Contact of the deformed body: against values found by another code, by the work of its forces,
 // and with other methods, starts, meshes and ranks.
 #include "rbvi/core/error.hpp"
+#include "rbvi/mesh/mesh.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -179,7 +180,7 @@ TEST(LargeDeformations, TheStartAndTheNormalOfTheBodyDoNotMatter) {
   EXPECT_NEAR(*surface.outputs.reaction, *deformed.outputs.reaction, 1e-3);
 }
 
-// Another mesh on one side than on the other: a start from rest has an antisymmetric part.
+// On a mirrored mesh.
 TEST(LargeDeformations, AShiftedSupportIsTheMirrorImageOfOneShiftedTheOtherWay) {
   Problem problem(PETSC_COMM_WORLD, disk("coulomb", {{"arc_edges", "60"}}), {});
   const HfSolution right = HighFidelity(problem, {}).solve({0.8, 0.15, 0.06}),
@@ -190,6 +191,71 @@ TEST(LargeDeformations, AShiftedSupportIsTheMirrorImageOfOneShiftedTheOtherWay) 
   EXPECT_LT((right.lambda.tail(n) + left.lambda.tail(n).reverse()).norm(),
             1e-9 * right.lambda.norm());
   EXPECT_NEAR(*right.outputs.horizontal_reaction, -*left.outputs.horizontal_reaction, 1e-10);
+}
+
+/// The built-in mesh with polar angles turned by 0.08 sin^2(4 phi), to the same side everywhere:
+/// another mesh on one side than on the other. The ends of the arc, of the flat side and the lowest
+/// point stay where they are.
+MeshOptions turned_mesh() {
+  SerialMesh mesh = wide_half_disc();
+  for (Point &x : mesh.points) {
+    const double r = std::hypot(x[0], x[1]), phi = std::atan2(x[0], -x[1]);
+    const double turned = phi + 0.08 * std::pow(std::sin(4 * phi), 2);
+    if (x[1] < 0) x = {r * std::sin(turned), -r * std::cos(turned), 0};
+  }
+  MeshOptions options;
+  options.levels = std::make_shared<const std::vector<SerialMesh>>(1, std::move(mesh));
+  return options;
+}
+
+// There the slow antisymmetric mode is seen at offset 0, too, and the solution is that of the
+// mirrored mesh.
+TEST(LargeDeformations, OnAnUnsymmetricMeshAllAgreesButKacanovsSteps) {
+  HfOptions kacanov, newton;
+  kacanov.nonlinear.method = NonlinearMethod::kacanov;
+  newton.nonlinear.method = NonlinearMethod::newton;
+  const Scene scene = disk("none");
+  Problem even(PETSC_COMM_WORLD, scene, {}), uneven(PETSC_COMM_WORLD, scene, turned_mesh());
+  ASSERT_NE(even.mesh().fingerprint, uneven.mesh().fingerprint);
+  const Mu mu{1, 0.2, 0};
+  const HfSolution mirrored = HighFidelity(even, kacanov).solve(mu),
+                   slow = HighFidelity(uneven, kacanov).solve(mu),
+                   fast = HighFidelity(uneven, newton).solve(mu);
+  EXPECT_LT((slow.lambda - fast.lambda).norm(), 1e-9 * fast.lambda.norm());
+  EXPECT_LT((slow.u - fast.u).norm(), 1e-9 * fast.u.norm());
+  EXPECT_LT(*mirrored.outputs.contraction, 0.12);
+  EXPECT_GT(*slow.outputs.contraction, 0.3);
+  EXPECT_LT(*slow.outputs.contraction, 0.42);
+  EXPECT_GE(slow.iterations, mirrored.iterations + 5);
+  EXPECT_LE(fast.iterations, 7);
+  EXPECT_NEAR(*slow.outputs.energy, *mirrored.outputs.energy, 1e-5 * *mirrored.outputs.energy);
+  EXPECT_NEAR(*slow.outputs.reaction, *mirrored.outputs.reaction,
+              1e-4 * *mirrored.outputs.reaction);
+}
+
+TEST(LargeDeformations, OnAnUnsymmetricMeshTheHorizontalReactionIsADerivative) {
+  HfOptions options;
+  options.nonlinear.tolerance = 1e-12;
+  Problem problem(PETSC_COMM_WORLD, disk("none"), turned_mesh());
+  HighFidelity solver(problem, options);
+  const double h = 1e-4;
+  for (const double offset : {0.0, 0.06}) {
+    const double slope = (*solver.solve({1, 0.15, offset + h}).outputs.energy -
+                          *solver.solve({1, 0.15, offset - h}).outputs.energy) /
+                         (2 * h);
+    EXPECT_NEAR(slope, *solver.solve({1, 0.15, offset}).outputs.horizontal_reaction, 1e-6);
+  }
+}
+
+TEST(LargeDeformations, OnAnUnsymmetricMeshOneSolveIsTheSameOnAnyNumberOfRanks) {
+  for (const char *friction : {"none", "coulomb"}) {
+    const Scene scene = disk(friction);
+    Problem all(PETSC_COMM_WORLD, scene, turned_mesh()), own(PETSC_COMM_SELF, scene, turned_mesh());
+    const HfSolution shared = HighFidelity(all, {}).solve({1, 0.2, 0}),
+                     alone = HighFidelity(own, {}).solve({1, 0.2, 0});
+    EXPECT_LT((shared.u - alone.u).norm(), 1e-9 * alone.u.norm());
+    EXPECT_LT((shared.lambda - alone.lambda).norm(), 1e-9 * alone.lambda.norm());
+  }
 }
 
 TEST(LargeDeformations, OneSolveIsTheSameOnAnyNumberOfRanks) {
@@ -221,6 +287,11 @@ TEST(LargeDeformations, BadInputIsRefused) {
   HfOptions uzawa;
   uzawa.method = HfMethod::uzawa;
   EXPECT_THROW(solve(disk("none", {{"arc_edges", "20"}}), {1, 0.05, 0}, uzawa), Error);
+  HfOptions newton;
+  newton.nonlinear.method = NonlinearMethod::newton;
+  EXPECT_THROW(solve(disk("coulomb", {{"arc_edges", "20"}}), {1, 0.05, 0}, newton), Error);
+  EXPECT_THROW(solve(disk("none", {{"arc_edges", "20"}, {"normal", "body"}}), {1, 0.05, 0}, newton),
+               Error);
   HfOptions few;
   few.nonlinear.max_steps = 2;
   try {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -84,6 +85,39 @@ TEST(LargeDeformationsOfTwo, OneSolveIsTheSameOnAnyNumberOfRanks) {
   const HfSolution own = HighFidelity(problem, {}).solve({0.8});
   EXPECT_LT((all.u - own.u).norm(), 1e-9 * own.u.norm());
   EXPECT_LT((all.lambda - own.lambda).norm(), 1e-9 * own.lambda.norm());
+}
+
+/// A lower disk so small that contact comes to the end of its arc.
+Scene small_lower_disk(const std::string &initial_gap) {
+  Scene scene = disks("0.1", {{"initial_gap", initial_gap}, {"arc_edges", "70"}});
+  scene.parameters.all[0].lower = 0.5;
+  return scene;
+}
+
+TEST(LargeDeformationsOfTwo, ContactAtTheEndOfTheLowerArcIsCounted) {
+  EXPECT_EQ(*solve(small_lower_disk("-0.1"), {0.5}).outputs.ends_in_contact, 0);
+  EXPECT_EQ(*solve(small_lower_disk("-0.17"), {0.5}).outputs.ends_in_contact, 1);
+}
+
+TEST(LargeDeformationsOfTwo, OfEqualDisksTheInterfaceIsFlat) {
+  Problem problem(PETSC_COMM_WORLD, disks("0.09"), {});
+  const HfSolution s = HighFidelity(problem, {}).solve({1});
+  const ContactInterface &interface = *problem.contact().interfaces.front();
+  const InterfaceMesh &mesh = interface.mesh();
+  std::vector<double> heights;
+  for (Index i = 0; i < mesh.parts[0]; ++i) { // vertices of the upper arc, then the middles
+    const auto node = static_cast<std::size_t>(i);
+    const Index edges = s.lambda.size(), edge = i <= edges ? std::min(i, edges - 1) : i - edges - 1;
+    const bool carries = s.lambda[edge] > 0 && (i > edges || i == 0 || s.lambda[i - 1] > 0);
+    if (!carries) continue;
+    const Point motion = problem.scene().motion({1}, mesh.points[node]);
+    const Point x = problem.scene().map({1}, mesh.points[node]);
+    const int dof = mesh.dofs[2 * node + 1];
+    ASSERT_GE(dof, 0);
+    heights.push_back(x[1] + motion[1] + s.states.back()[dof]);
+  }
+  EXPECT_GT(heights.size(), 80U);
+  EXPECT_LT(std::ranges::max(heights) - std::ranges::min(heights), 1e-5);
 }
 
 /// Two blocks, all turned by 30 degrees; in the reference the upper one stands 0.3 m aside, and

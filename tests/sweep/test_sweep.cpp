@@ -127,6 +127,30 @@ TEST_F(SweepTest, SameSamplesForAnyGroups) {
   }
 }
 
+// Read again from their files, too.
+TEST_F(SweepTest, SamplesTellTheirLoadStepsAndTheEndsOfContact) {
+  Scene scene = make_scene("rigid_disk",
+                           {{"friction", "none"}, {"kinematics", "large"}, {"arc_edges", "20"}});
+  scene.parameters.free = {0, 1, 5};
+  const std::vector<Mu> set{{1, 0.05, 0}, {0.7, 0.35, 0.3}, {1, 0.2, 0.1}};
+  HfOptions options;
+  options.nonlinear.method = NonlinearMethod::newton;
+  options.nonlinear.max_steps = 6;
+  const Groups groups(PETSC_COMM_WORLD, 1);
+  Problem problem(groups.comm(), scene, {});
+  for (const int reused : {0, 3}) {
+    const Sweep result =
+        run_sweep(PETSC_COMM_WORLD, groups, problem, options, set, directory / "large");
+    EXPECT_EQ(result.report.reused, reused);
+    ASSERT_EQ(result.samples.size(), 3U) << result.report.failed.front().second;
+    for (const Sample &sample : result.samples) {
+      const bool deep = sample.mu == set[1];
+      EXPECT_EQ(*sample.outputs.load_steps, deep ? 8 : 0);
+      EXPECT_EQ(*sample.outputs.ends_in_contact, deep ? 1 : 0);
+    }
+  }
+}
+
 TEST_F(SweepTest, FieldsAreReadFromTheirFilesWhenAsked) {
   const Sweep held = sweep(five);
   const Groups groups(PETSC_COMM_WORLD, 1);

@@ -46,6 +46,11 @@ Vector undeformed(const Contact &contact, const Scene &scene, const FullMu &mu);
 /// The laws of all multipliers at mu. Throws failure for a bound that is negative.
 NodeLaws laws_at(const Contact &contact, const FullMu &mu);
 
+/// Why an iteration with these multipliers failed: `reason`, unless contact has come to the end of
+/// its boundary, which is then said first. `operators`: of a state.
+std::string failure_at(const Contact &contact, const FullMu &mu, const ContactOperators &operators,
+                       const Vector &lambda, const std::string &reason);
+
 /// Fills the outputs of contact: with several interfaces those that are sums or maxima over them.
 /// See ContactInterface::outputs.
 void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOperators &operators,

@@ -69,7 +69,9 @@ struct ContactOperators {
   SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
   Vector nodal_gap;
   std::vector<Index> uncovered; ///< multipliers that do not face a partner everywhere
-  ContactState state;           ///< where they were evaluated, if the interface follows it
+  /// Of two meshes: the slave edge that each master vertex faces, -1 or their number beyond them.
+  std::vector<Index> segments;
+  ContactState state; ///< where they were evaluated, if the interface follows it
 };
 
 /// The derivative of B(s)^T lambda by the state s, at the columns: -(S^T E + E^T S).

@@ -40,6 +40,9 @@ struct Outputs {
   /// Largest relative errors of the reduced model over its validation set (not of this answer).
   std::optional<double> expected_error_u, expected_error_lambda;
   std::optional<double> iterations;
+  /// Large deformations: load steps that the answer took, where steps from its start failed; else
+  /// 0.
+  std::optional<double> load_steps;
   /// Large deformations: the change in the last step over that in the one before.
   std::optional<double> contraction;
   std::optional<double> seconds;
@@ -77,11 +80,14 @@ std::string resolution_warning(const Outputs &outputs);
 
 /// The warnings of several answers.
 struct ResolutionTally {
-  long answers = 0; ///< with a warning
+  long all = 0;     ///< answers
+  long at_ends = 0; ///< where contact reaches the end of its boundary
+  long coarse = 0;  ///< others with a warning
   std::string first;
   void add(const Outputs &outputs);
-  /// One line, where there is a warning.
-  void print(std::ostream &out) const;
+  /// One line for those at the ends, one for the others, where there are any. `answers`: what they
+  /// are called.
+  void print(std::ostream &out, const char *answers = "answers") const;
 };
 
 /// Whether a table of rbvi can have a column of this name beside the parameters.

@@ -31,6 +31,8 @@ struct ReducedSolution {
   double energy = 0;        ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
   double kkt_residual = 0;  ///< see kkt_residual(); on a support that of the laws at all nodes
   int iterations = 0;       ///< active-set updates, or Newton steps
+  /// Where contact follows the displacement: as in Outputs.
+  std::optional<double> load_steps{}, contraction{};
 };
 
 /// Answers queries on a model that it does not own; keeps the last active set as the next start.

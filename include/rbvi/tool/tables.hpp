@@ -43,7 +43,8 @@ std::vector<double> column(const std::vector<Row> &rows, Value Row::*member) {
 void write_sample_table(const std::filesystem::path &path, const ParameterSpace &space,
                         const std::vector<Sample> &samples);
 
-/// One line where samples rest on few nodes (resolution_warning).
-void warn_of_resolution(const std::vector<Sample> &samples, std::ostream &out);
+/// What the samples of a sweep have in common: a line each where some took load steps, touch an end
+/// of the contact boundary, or rest on few nodes (ResolutionTally).
+void tell_of_samples(const std::vector<Sample> &samples, std::ostream &out);
 
 } // namespace rbvi

@@ -1,6 +1,7 @@
 #include "facing.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"
 
@@ -113,6 +114,14 @@ double Projection::abscissa_of(Index master_vertex, Index &from) const {
   return static_cast<double>(from) + s;
 }
 
+std::vector<Index> Projection::segments() const {
+  constexpr double round_off = 1e-8;
+  std::vector<Index> edges;
+  for (const double cut : cuts_)
+    edges.push_back(static_cast<Index>(std::floor(cut + round_off)));
+  return edges;
+}
+
 /// Newton's method for (y - y(t)) x nu(t) = 0, from where the point is between the cuts.
 Facing Projection::facing(Index slave_edge, double s, Index master_edge) const {
   constexpr double round_off = 1e-13, settled = 1e-8; // what is left is the square of the last step
@@ -142,7 +151,10 @@ Facing Projection::facing(Index slave_edge, double s, Index master_edge) const {
     result.curvature = -(tau[0] * turn[0] + tau[1] * turn[1]) / (length * stretch);
     return result;
   }
-  throw failure("a point of the upper contact curve has no projection onto the lower one");
+  throw failure("the bodies do not face each other at (" + short_number(y[0]) + ", " +
+                short_number(y[1]) +
+                ") of the upper contact curve, which has no projection onto the lower one there: "
+                "try a smaller indentation, or more -nonlinear_load_steps");
 }
 
 std::vector<Facing> Projection::gauss_points() const {

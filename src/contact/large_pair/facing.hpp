@@ -66,6 +66,8 @@ public:
   std::vector<Facing> gauss_points() const;
   /// The slave vertices that have a partner; weight: their number.
   std::vector<Facing> vertices() const;
+  /// The slave edge that each master vertex faces, as ContactOperators::segments.
+  std::vector<Index> segments() const;
 
 private:
   Facing facing(Index slave_edge, double s, Index master_edge) const;

@@ -12,6 +12,13 @@ namespace rbvi {
 
 namespace {
 
+constexpr double round_off = 1e-9; ///< of the weight of a multiplier
+
+/// Whether a multiplier has no partner somewhere.
+bool is_partial(double weight, double whole) {
+  return !(weight > (1 - round_off) * whole);
+}
+
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 class LargePairInterface : public ContactInterface {
@@ -40,7 +47,11 @@ private:
   /// The multipliers of a point, and their values there.
   std::array<std::pair<Index, double>, 2> multipliers(const Facing &point) const;
   double length(const FullMu &mu, Index slave_edge) const;
-  MirroredEnds mirrored() const;
+  /// The integral of each multiplier's function over the whole slave curve.
+  Vector whole_weights(const FullMu &mu) const;
+  MirroredEnds mirrored(bool of_master = true) const;
+  double ends_in_contact(const FullMu &mu, const Vector &weights, const Vector &lambda,
+                         double least) const;
   /// Adds factor * direction . (v(x) - v(xi)) to a row.
   void add_difference(const Curves &now, const Facing &point, const Point &direction, double factor,
                       Index row, Triplets &entries) const;
@@ -84,13 +95,44 @@ LargePairInterface::Curves LargePairInterface::curves(const FullMu &mu, const Co
   return {{{nodes.begin(), master}, mesh_.degree}, {{master, nodes.end()}, mesh_.degree}};
 }
 
-/// Ends of the master curve that move vertically alone.
-MirroredEnds LargePairInterface::mirrored() const {
-  const auto on_axis = [this](Index vertex) {
-    const auto node = static_cast<std::size_t>(mesh_.parts[0] + vertex);
+Vector LargePairInterface::whole_weights(const FullMu &mu) const {
+  Vector whole = Vector::Zero(dual_.nodes());
+  const Index edges = vertex_count(mesh_.parts[0], mesh_.degree) - 1;
+  for (Index e = 0; e < edges; ++e)
+    for (const auto &[row, value] : multipliers({e, 0, 0.5, 0, 0, {}, 0, 0}))
+      if (row >= 0) whole[row] += value * length(mu, e);
+  return whole;
+}
+
+/// Ends of a curve that move vertically alone.
+MirroredEnds LargePairInterface::mirrored(bool of_master) const {
+  const auto on_axis = [&](Index vertex) {
+    const auto node = static_cast<std::size_t>((of_master ? mesh_.parts[0] : 0) + vertex);
     return mesh_.dofs[2 * node] < 0 && mesh_.dofs[2 * node + 1] >= 0;
   };
-  return {on_axis(0), on_axis(vertex_count(mesh_.parts[1], mesh_.degree) - 1)};
+  return {on_axis(0), on_axis(vertex_count(mesh_.parts[of_master ? 1 : 0], mesh_.degree) - 1)};
+}
+
+/// An end is where the slave curve has one off the axis, or where nothing faces it from there on:
+/// the last multiplier with a partner, and those before it that do not have one everywhere.
+double LargePairInterface::ends_in_contact(const FullMu &mu, const Vector &weights,
+                                           const Vector &lambda, double least) const {
+  const Vector whole = whole_weights(mu);
+  const Index count = whole.size();
+  const MirroredEnds axis = mirrored(false);
+  const auto carries_from = [&](Index first, Index step) {
+    Index row = first;
+    while (row >= 0 && row < count && !(weights[row] > round_off * whole[row]))
+      row += step;
+    const bool on_axis = row == first && (step > 0 ? axis.first : axis.last);
+    if (on_axis || row < 0 || row >= count) return false;
+    do {
+      if (lambda[row] > least) return true;
+      row += step;
+    } while (row >= 0 && row < count && is_partial(weights[row], whole[row]));
+    return false;
+  };
+  return (carries_from(0, 1) ? 1.0 : 0.0) + (carries_from(count - 1, -1) ? 1.0 : 0.0);
 }
 
 std::array<std::pair<Index, double>, 2> LargePairInterface::multipliers(const Facing &point) const {
@@ -147,9 +189,10 @@ void LargePairInterface::assemble(const FullMu &mu, const ContactState &state, c
                                   ContactOperators &operators) {
   const Curves rest = curves(mu, state, false), now = curves(mu, state, true);
   const Projection projection(now.slave, now.master, mirrored());
+  const std::vector<Facing> points = projection.gauss_points();
   Triplets entries;
   operators.g = operators.weights = Vector::Zero(dual_.nodes());
-  for (const Facing &p : projection.gauss_points()) {
+  for (const Facing &p : points) {
     const Point x = rest.slave.at(p.slave_edge, p.s), xi = rest.master.at(p.master_edge, p.t);
     const double gap = p.normal[0] * (x[0] - xi[0]) + p.normal[1] * (x[1] - xi[1]);
     const double weight = p.weight * length(mu, p.slave_edge);
@@ -164,12 +207,10 @@ void LargePairInterface::assemble(const FullMu &mu, const ContactState &state, c
   operators.b.setFromTriplets(entries.begin(), entries.end());
   set_nodal(projection, rest, now, operators);
   operators.uncovered.clear();
-  Vector whole = Vector::Zero(dual_.nodes());
-  for (Index e = 0; e < now.slave.edges(); ++e)
-    for (const auto &[row, value] : multipliers({e, 0, 0.5, 0, 0, {}, 0, 0}))
-      if (row >= 0) whole[row] += value * length(mu, e);
+  const Vector whole = whole_weights(mu);
   for (Index row = 0; row < dual_.nodes(); ++row)
-    if (!(operators.weights[row] > (1 - 1e-9) * whole[row])) operators.uncovered.push_back(row);
+    if (is_partial(operators.weights[row], whole[row])) operators.uncovered.push_back(row);
+  operators.segments = projection.segments();
   operators.state = state;
 }
 
@@ -211,6 +252,7 @@ void LargePairInterface::outputs(const FullMu &mu, const ContactOperators &opera
       if (row >= 0)
         vertical += p.weight * length(mu, p.slave_edge) * value * lambda[row] * p.normal[1];
   outputs.reaction = scene_.mirror_images * vertical;
+  outputs.ends_in_contact = ends_in_contact(mu, operators.weights, lambda, least);
 }
 
 Grid LargePairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {

@@ -121,6 +121,14 @@ Iterate LinearisedContact::iterate(Vector x) const {
   return result;
 }
 
+std::vector<Index> LinearisedContact::facing(const std::vector<Index> &active) const {
+  std::vector<Index> result;
+  std::ranges::copy_if(active, std::back_inserter(result), [this](Index row) {
+    return static_cast<bool>(SparseMatrix::InnerIterator(at_.b, row));
+  });
+  return result;
+}
+
 Iterate LinearisedContact::solve(const Iterate &start) {
   const auto source = [this](const std::vector<Index> &which) { return columns(which); };
   if (contact_.laws.has_tangents()) {
@@ -131,7 +139,7 @@ Iterate LinearisedContact::solve(const Iterate &start) {
     result.active = std::move(found.active);
     return result;
   }
-  LcpResult found = solve_lcp(source, q_, start.active);
+  LcpResult found = solve_lcp(source, q_, facing(start.active));
   if (!found.converged) throw failure(found.reason);
   Iterate result = iterate(std::move(found.x));
   result.active = std::move(found.active);
@@ -171,7 +179,7 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
   Matrix local(std::ssize(dofs), std::ssize(dofs)); // C on these dofs
   for (std::size_t k = 0; k < dofs.size(); ++k)
     local.col(static_cast<Index>(k)) = contact_.compliance.column(dofs[k])(dofs);
-  std::vector<Index> active = start.active;
+  std::vector<Index> active = facing(start.active);
   for (int set = 0; set < most_sets; ++set) {
     std::vector<Index> fresh;
     std::copy_if(active.begin(), active.end(), std::back_inserter(fresh),

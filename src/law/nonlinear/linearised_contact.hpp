@@ -29,7 +29,11 @@ public:
   /// linear systems, relative. None where the active sets do not settle.
   std::optional<Iterate> solve_with_curvature(const Iterate &start, double tolerance);
 
+  const std::vector<Index> &segments() const { return at_.segments; }
+
 private:
+  /// Of these, those with an entry in B: the others face nothing.
+  std::vector<Index> facing(const std::vector<Index> &active) const;
   Vector diagonal() const;
   /// Makes the columns of C B^T of these multipliers.
   void move(const std::vector<Index> &which);

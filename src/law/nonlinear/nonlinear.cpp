@@ -28,19 +28,24 @@ double violation(const NodeLaws &laws, const Vector &x, const Vector &start) {
   return size > 0 ? largest / size : largest;
 }
 
+/// Said where the segments of the last step were not those of the one before. B and g are
+/// continuous as a vertex passes another, so that nothing has to hold them.
+const char *moving_segments(const NonlinearResult &result) {
+  return result.segments_moved == result.steps && result.steps > 0
+             ? ", while vertices of the master pass those of the slave"
+             : "";
+}
+
 class Iteration {
 public:
   Iteration(const NonlinearContact &contact, const NonlinearOptions &options)
       : contact_(contact), options_(options), method_(options.method) {
-    const bool newton = contact.curvature && !contact.laws.has_tangents();
-    const NonlinearMethod whole = newton ? NonlinearMethod::newton : NonlinearMethod::kacanov;
-    if (method_ == NonlinearMethod::automatic) method_ = NonlinearMethod::nodal;
-    if (method_ == NonlinearMethod::newton && !newton) method_ = NonlinearMethod::kacanov;
-    if (method_ == NonlinearMethod::nodal && contact.nodal)
-      nodal_.emplace(contact, !options.economical);
-    else if (method_ == NonlinearMethod::nodal)
-      method_ = whole;
-    fallback_ = whole;
+    has_newton_ = contact.curvature && !contact.laws.has_tangents();
+    fallback_ = has_newton_ ? NonlinearMethod::newton : NonlinearMethod::kacanov;
+    check_method();
+    if (method_ == NonlinearMethod::automatic)
+      method_ = contact.nodal ? NonlinearMethod::nodal : fallback_;
+    if (method_ == NonlinearMethod::nodal) nodal_.emplace(contact, !options.economical);
   }
   /// At the solution, where the last step was one between nodes.
   const NodalCondition *condition() const { return nodal_ ? &nodal_->condition() : nullptr; }
@@ -59,19 +64,51 @@ public:
 
 private:
   bool is_complete(Iterate &iterate, double part, bool predicted);
-  Iterate step(const Vector &state, const Iterate &last, double change, double part);
+  void check_method() const;
+  std::string advice() const;
+  Iterate step(const Vector &state, const Iterate &last, double change, double part,
+               NonlinearResult &result);
   void measure(const Iterate &next, const Vector &state, const Vector &reaction,
                const Vector &last_x, double part, NonlinearResult &result) const;
 
   const NonlinearContact &contact_;
   const NonlinearOptions &options_;
   NonlinearMethod method_, fallback_;
+  bool has_newton_;
   std::optional<NodalSteps> nodal_;
+  std::vector<Index> segments_; ///< of the last step
 };
 
-Iterate Iteration::step(const Vector &state, const Iterate &last, double change, double part) {
+void Iteration::check_method() const {
+  if (method_ == NonlinearMethod::newton && !has_newton_)
+    throw bad_input(std::string("-nonlinear_method newton is for contact ") +
+                    (contact_.curvature ? "without friction"
+                                        : "with the normal of the rigid surface (-normal rigid)") +
+                    ": leave it out" + (contact_.nodal ? " (nodal)" : "") +
+                    ", or use anderson or kacanov");
+  if (method_ == NonlinearMethod::nodal && !contact_.nodal)
+    throw bad_input("-nonlinear_method nodal is for contact with the normal of a rigid surface: "
+                    "leave it out" +
+                    std::string(has_newton_ ? " (newton)" : "") + ", or use anderson or kacanov");
+}
+
+/// What else to try.
+std::string Iteration::advice() const {
+  const bool newton = has_newton_ && method_ != NonlinearMethod::newton,
+             anderson = method_ != NonlinearMethod::anderson;
+  return std::string("try ") + (newton || anderson ? "-nonlinear_method " : "") +
+         (anderson ? "anderson" : "") + (newton && anderson ? " or " : "") +
+         (newton ? "newton" : "") + (newton || anderson ? ", " : "") +
+         "more -nonlinear_max_steps, or a smaller load";
+}
+
+Iterate Iteration::step(const Vector &state, const Iterate &last, double change, double part,
+                        NonlinearResult &result) {
   if (nodal_ && last.x.size() > 0 && part == 1) return nodal_->step(state, last, change);
   LinearisedContact linearised(contact_, state, part);
+  if (!segments_.empty() && segments_ != linearised.segments())
+    result.segments_moved = result.steps + 1;
+  segments_ = linearised.segments();
   if (method_ == NonlinearMethod::newton && last.x.size() > 0 && !last.active.empty()) {
     // As exact as the next change, which is of second order, makes worth while.
     const double tolerance = std::clamp(0.1 * change, 1e-12, 1e-2);
@@ -121,7 +158,7 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
   int since_best = 0;
   for (int k = 0; k < options_.max_steps; ++k) {
     const Vector last_x = iterate.x;
-    iterate = step(state, iterate, k == 0 ? 1 : last, part);
+    iterate = step(state, iterate, k == 0 ? 1 : last, part, result);
     ++result.steps;
     result.iterates.push_back(state);
     measure(iterate, state, reaction, last_x, part, result);
@@ -159,8 +196,7 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
                   std::to_string(result.steps) + " steps they change u by " +
                   short_number(result.change_u) + " and the multipliers by " +
                   short_number(result.change_x) + ", contraction " + short_number(result.rate) +
-                  ": try -nonlinear_method anderson (or newton), more -nonlinear_max_steps, or a "
-                  "smaller load";
+                  moving_segments(result) + ": " + advice();
   return false;
 }
 
@@ -237,13 +273,16 @@ NonlinearResult solve_nonlinear(const NonlinearContact &contact, const Nonlinear
     from_rest = result.reason;
     attempt([&] { return in_load_steps(contact, options, iteration, iterate, result); });
   }
-  if (!result.converged) return result;
+  if (!result.converged) {
+    result.last_x = std::move(iterate.x);
+    return result;
+  }
   result.reason = std::to_string(result.steps) + " steps";
   if (result.load_steps > 0)
     result.reason += " in " + std::to_string(result.load_steps) +
                      " load steps, as without them it failed (" + from_rest + ")";
   result.reason += ", last change " + short_number(std::max(result.change_u, result.change_x)) +
-                   ", contraction " + short_number(result.rate);
+                   ", contraction " + short_number(result.rate) + moving_segments(result);
   finish(contact, iteration.condition(), std::move(iterate), result);
   return result;
 }

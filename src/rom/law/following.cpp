@@ -29,6 +29,9 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   if (compliance_->set(term_coefficients(all_parameters, {})) && nodal_compliance_)
     nodal_compliance_->forget();
   stiffness_.set(all_parameters);
+  const auto at_nodes = [this](const Vector &x) {
+    return nodal_is_identity_ || x.size() == 0 ? x : Vector(nodal_.transpose() * x);
+  };
   Vector load; // half response to it
   NonlinearContact problem{[&](const Vector &state, Linearised &linearised) {
                              assemble(contact_, all_parameters, {state}, answer.contact);
@@ -36,6 +39,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
                                linearised = {answer.contact.b, answer.contact.g};
                              else
                                linearised = {nodal_ * answer.contact.b, nodal_ * answer.contact.g};
+                             linearised.segments = answer.contact.segments;
                            },
                            {},
                            *compliance_,
@@ -45,8 +49,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
                            w_product_};
   if (has_curvature(contact_))
     problem.curvature = [&](const Vector &state, const Vector &x) -> CurvatureRows {
-      Curvature rows = curvature(contact_, all_parameters, {state},
-                                 nodal_is_identity_ ? x : Vector(nodal_.transpose() * x));
+      Curvature rows = curvature(contact_, all_parameters, {state}, at_nodes(x));
       return {std::move(rows.s), std::move(rows.e)};
     };
   if (nodal_compliance_)
@@ -61,19 +64,21 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   if (!problem.nodal && problem.curvature && !problem.laws.has_tangents())
     options.tolerance = 1e-8; // the change after it is of second order
   NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
-  if (!found.converged) throw failure(found.reason);
+  if (!found.converged)
+    throw failure(
+        failure_at(contact_, all_parameters, answer.contact, at_nodes(found.last_x), found.reason));
   if (!(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: reduce again with more training parameters");
-  assemble_nodal(contact_, all_parameters, {found.state},
-                 nodal_is_identity_ ? found.x : Vector(nodal_.transpose() * found.x),
-                 answer.contact);
+  assemble_nodal(contact_, all_parameters, {found.state}, at_nodes(found.x), answer.contact);
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = moved_by(answer.reaction);
   if (load.size() > 0) answer.u += stiffness_.transposed_half_response(load);
   answer.residual = found.residual;
   answer.iterations = found.steps;
+  answer.load_steps = found.load_steps;
+  answer.contraction = found.rate;
   answer.x = found.x;
   answer.start = found.start;
   last_state_ = found.state;

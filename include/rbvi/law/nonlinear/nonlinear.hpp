@@ -21,6 +21,7 @@ namespace rbvi {
 struct Linearised {
   SparseMatrix b;
   Vector g;
+  std::vector<Index> segments{}; ///< of two meshes: what faces what (ContactOperators::segments)
 };
 
 /// K = -(S^T E + E^T S).
@@ -51,9 +52,9 @@ enum class NonlinearMethod {
   automatic, ///< nodal where contact offers it; else, and where that fails, newton where there is a
              ///< curvature and no friction, else kacanov
   kacanov,
-  newton,
+  newton,   ///< where there is a curvature and no friction
   anderson, ///< Kacanov's iteration, accelerated with three earlier states
-  nodal     ///< with the tangent between nodes: nodal.hpp
+  nodal     ///< with the tangent between nodes, where contact offers it: nodal.hpp
 };
 
 /// "auto", "kacanov", "newton", "anderson", "nodal".
@@ -83,6 +84,7 @@ struct NonlinearResult {
   std::vector<Vector> iterates; ///< the states at which the condition was linearised, in order
   int steps = 0;                ///< linearisations
   int load_steps = 0;           ///< 0: from the start at once
+  int segments_moved = 0;       ///< the last step with other segments than the one before; 0: none
   /// (A.8) of the last step: the energy norm of the change of u over that of u - u_0, and the norm
   /// of the change of x in W over that of x.
   double change_u = 0, change_x = 0;
@@ -90,12 +92,14 @@ struct NonlinearResult {
   /// |x - P(x - w / H_jj)| over max |x|, P the projection of the laws.
   double residual = 0;
   double rate = 0; ///< contraction: the change of the last step over that of the one before
+  Vector last_x;   ///< not converged: x of the last step; empty: there is none
   bool converged = false;
   std::string reason; ///< why it stopped; not converged: what to try
 };
 
 /// Where steps from `start` fail, once more from the undeformed body in load steps: a part of the
-/// motion and of the loads after the other. Never throws for a condition or a law that fails.
+/// motion and of the loads after the other. Never throws for a condition or a law that fails;
+/// throws bad_input for a method that this contact has not.
 NonlinearResult solve_nonlinear(const NonlinearContact &contact, const NonlinearStart &start,
                                 const NonlinearOptions &options = {});
 

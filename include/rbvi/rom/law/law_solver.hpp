@@ -19,6 +19,8 @@ struct LawAnswer {
   double residual =
       0; ///< largest relative violation of the laws, at all nodes where they are known
   int iterations = 0;
+  /// Where contact follows the displacement: as in Outputs.
+  std::optional<double> load_steps{}, contraction{};
   Vector start; ///< for a nearby query, as FrictionResult::start; empty where none is known
   ContactOperators contact; ///< at mu, where they do not separate
 };
