@@ -368,7 +368,7 @@ void command_verify(const ToolOptions &given) {
     if (rank_of(world) != 0) return;
     sweep_up(options.out);
     make_directory(out);
-    for (const char *of_another_model : {"infsup.csv", "stability.csv"})
+    for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
     check_errors(model, problem, truths, options, out);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);

@@ -91,7 +91,7 @@ def pressures(study, directory):
                                   "pressure (Pa), Coulomb 0.2", r"$\lambda_\tau$ (Pa)")):
         axis.set_title(title, loc="left")
         axis.set_xlabel("x (m)")
-        axis.set_xlim(-0.4, 0.4)
+        axis.set_xlim(-0.5, 0.5)
     axes[0].legend(fontsize=8)
     save(figure, directory, "pressures.png")
 
