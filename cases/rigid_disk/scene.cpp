@@ -257,13 +257,13 @@ ContactRecipe following_contact(const SceneOptions &options, const Friction &fri
 }
 
 /// Contact on the undeformed body.
-ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction) {
+ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction, bool wide) {
   const std::string &choice = options.at("normal");
   if (choice == "body")
     throw bad_input("-normal body is that of the deformed body: use it with -kinematics large");
   const Named<PointMap> normal = choice == "rigid" ? rigid_normals() : radial_normals();
-  const Support support{"contact", normal, gap_of(options, normal), friction,
-                        options.at("lumped") == "yes"};
+  const Support support{
+      "contact", normal, gap_of(options, normal), friction, options.at("lumped") == "yes", wide};
   if (support.lumped && asks_for_nitsche(options))
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   return support_contact(support, options);
@@ -277,11 +277,11 @@ Scene make(const SceneOptions &options) {
   scene.degree = options.at("degree") == "1" ? 1 : 2;
   const Friction friction = friction_of(options);
   const bool nitsche = asks_for_nitsche(options), large = options.at("kinematics") == "large";
-  scene.contacts = {large ? following_contact(options, friction)
-                          : contact_at_rest(options, friction)};
-  scene.material = ring_and_core({{"young", {young}}});
   const std::string &arc = options.at("contact_arc");
   const bool wide = arc == "auto" ? large : arc == "wide";
+  scene.contacts = {large ? following_contact(options, friction)
+                          : contact_at_rest(options, friction, wide)};
+  scene.material = ring_and_core({{"young", {young}}});
   scene.parameters = parameters(friction.law, nitsche, large ? 0.2 : wide ? 0.14 : 0.09, young);
   if (!large) scene.check_parameters = wide ? wide_check() : narrow_check();
   scene.training = "grid:61";

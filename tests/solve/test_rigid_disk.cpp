@@ -240,7 +240,16 @@ TEST(RigidDisk, ContactOfTheUndeformedBodyFitsTheWideArc) {
       const Mu deepest = with_radius(radius, 0.2, 0.2 * radius);
       EXPECT_THROW(narrow.check_parameters(expand(narrow.parameters, deepest)), Error);
       EXPECT_NO_THROW(wide.check_parameters(expand(wide.parameters, deepest)));
-      EXPECT_LT(*solve(wide, deepest).outputs.contact_half_width, 0.95 * radius * M_PI / 4);
+      const HfSolution ends = solve(wide, deepest);
+      EXPECT_LT(*ends.outputs.contact_half_width, 0.95 * radius * M_PI / 4);
+      const double pressed = ends.lambda[0] > 0 ? 2 : 0; // of a mirrored answer
+      EXPECT_EQ(*ends.outputs.ends_in_contact, pressed);
+      // Along the radial normal the rigid disk is near again on the sides of a body that is not
+      // small beside it.
+      const bool near = normal == std::string("radial") && radius > 0.7;
+      EXPECT_EQ(pressed, near ? 2 : 0);
+      const Mu shallower = with_radius(radius, 0.2, 0.14 * radius);
+      EXPECT_EQ(*solve(wide, shallower).outputs.ends_in_contact, 0);
       const Mu deeper = with_radius(radius, 0.2, 0.21 * radius);
       EXPECT_THROW(wide.check_parameters(expand(wide.parameters, deeper)), Error);
     }
