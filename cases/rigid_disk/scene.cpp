@@ -11,7 +11,8 @@
 // finer curve by default.
 //
 // Large deformations (Niakh 2022, appendix A): the condition is that of the deformed body on a
-// wider arc, within 45 degrees; the elasticity stays linear. By either method.
+// wider arc, within 45 degrees; the elasticity stays linear. By either method. Contact of the
+// undeformed body can be posed on that arc, too.
 #include "scene.hpp"
 
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
@@ -31,8 +32,11 @@ namespace {
 
 constexpr double initial_gap = 0.001, core_radius = 0.6;
 constexpr int nitsche_edges = 316; // 2.5 mm, the mesh of the published study
-/// Indentation over the radius: from there on contact reaches the ends of the arc.
-constexpr double deepest = 0.13;
+/// Half of the contact arc: the angle from its lowest point.
+constexpr double narrow_arc = std::numbers::pi / 8, wide_arc = std::numbers::pi / 4;
+/// Indentation over the radius: from there on contact of the undeformed body reaches the ends of
+/// the arc.
+constexpr double deepest_narrow = 0.13, deepest_wide = 0.2;
 
 /// Positions of the parameters.
 enum Position { radius, indentation, friction, core_stiffness, poisson_ratio, offset };
@@ -127,10 +131,10 @@ Friction friction_of(const SceneOptions &options) {
   return result;
 }
 
-ParameterSpace parameters(FrictionLaw law, bool nitsche, bool large, double young) {
+ParameterSpace parameters(FrictionLaw law, bool nitsche, double indented, double young) {
   ParameterSpace space =
       all_free({{"radius", "m", 0.7, 1.3, 1, {0.1, 10}},
-                {"indentation", "m", 0.01, large ? 0.2 : 0.09, 0.09, {0, 1.3}},
+                {"indentation", "m", 0.01, indented, 0.09, {0, 1.3}},
                 {"friction_coefficient", "", 0, 0.5, nitsche ? 0.1 : 0.2, friction_range},
                 {"core_stiffness", "", 0.2, 5, 1, {1e-3, 1e3}},
                 {"poisson_ratio", "", 0.2, 0.45, 0.35, poisson_range},
@@ -141,12 +145,12 @@ ParameterSpace parameters(FrictionLaw law, bool nitsche, bool large, double youn
   return space;
 }
 
-MeshRecipe mesh(int edges, bool large) {
+MeshRecipe mesh(int edges, bool wide) {
   constexpr double pi = std::numbers::pi, down = -pi / 2;
-  const double half_angle = large ? pi / 4 : pi / 8;
+  const double half_angle = wide ? wide_arc : narrow_arc;
   const Point centre{0, 0, 0};
   MeshRecipe recipe{
-      large ? "wide_half_disc" : "half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+      wide ? "wide_half_disc" : "half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
   recipe.facts = {{"", "the half y <= 0 of the disk of radius 1 m about the origin",
                    common_part(disk(centre, 1), box({-1, -1, 0}, {1, 0, 0})), pi / 2},
                   {"core", "the half disk of radius 0.6 m about the origin",
@@ -171,12 +175,20 @@ int arc_edges(const SceneOptions &options) {
 }
 
 /// Throws bad_input unless the indentation all[1] is small enough beside the radius all[0] for
-/// contact to stay on the arc.
-void check_indentation(const FullMu &all) {
+/// contact to stay on the arc: at most `deepest` times the radius.
+void check_indentation(const FullMu &all, double deepest, const std::string &advice) {
   if (all[indentation] > deepest * all[radius] * (1 + 1e-12))
     throw bad_input("an indentation of " + short_number(all[indentation]) + " is above " +
                     short_number(deepest) + " of the radius " + short_number(all[radius]) +
-                    ": contact would reach the ends of the arc");
+                    ": contact would reach the ends of the arc" + advice);
+}
+
+void check_on_narrow_arc(const FullMu &all) {
+  check_indentation(all, deepest_narrow, " (-contact_arc wide goes further)");
+}
+
+void check_on_wide_arc(const FullMu &all) {
+  check_indentation(all, deepest_wide, "");
 }
 
 bool in_core(const Point &centre) {
@@ -185,7 +197,7 @@ bool in_core(const Point &centre) {
 
 /// A = lambda A_lambda + shear A_shear on the ring and, times the core's stiffness, on the core; a
 /// similarity leaves a plane stiffness as it is.
-Sum stiffness(double young) {
+Sum stiffness(double young, int degree) {
   const Coordinate near_half{logarithm_to_half(), exponential_to_half()};
   const Factor lambda{
       "lambda", lame_lambda(young, poisson_ratio), {poisson_ratio}, {{poisson_ratio, near_half}}};
@@ -194,11 +206,11 @@ Sum stiffness(double young) {
                     parameter(core_stiffness),
                     {core_stiffness},
                     {{core_stiffness, {logarithm(), exponential()}}}};
-  const auto part_of_body = [](bool inside, const Lame &material) {
+  const auto part_of_body = [degree](bool inside, const Lame &material) {
     const auto inside_or_out = [=](const FullMu &, const Point &centre) {
       return in_core(centre) == inside ? material : Lame{0, 0};
     };
-    return elasticity("", Named<Material>(inside_or_out), 2);
+    return elasticity("", Named<Material>(inside_or_out), degree);
   };
   const Lame of_lambda{1, 0}, of_shear{0, 1};
   return {exact_term(part_of_body(false, of_lambda), {lambda}),
@@ -224,7 +236,8 @@ const auto pushed_down =
       return Point{0, -mu[indentation], 0};
     });
 
-const auto indentation_check = plain<Check>("rigid_disk/indentation", 1, check_indentation);
+const auto narrow_check = plain<Check>("rigid_disk/indentation", 1, check_on_narrow_arc);
+const auto wide_check = plain<Check>("rigid_disk/indentation_on_wide_arc", 1, check_on_wide_arc);
 
 /// Contact that follows the displacement.
 ContactRecipe following_contact(const SceneOptions &options, const Friction &friction) {
@@ -244,13 +257,13 @@ ContactRecipe following_contact(const SceneOptions &options, const Friction &fri
 }
 
 /// Contact on the undeformed body.
-ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction) {
+ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction, bool wide) {
   const std::string &choice = options.at("normal");
   if (choice == "body")
     throw bad_input("-normal body is that of the deformed body: use it with -kinematics large");
   const Named<PointMap> normal = choice == "rigid" ? rigid_normals() : radial_normals();
-  const Support support{"contact", normal, gap_of(options, normal), friction,
-                        options.at("lumped") == "yes"};
+  const Support support{
+      "contact", normal, gap_of(options, normal), friction, options.at("lumped") == "yes", wide};
   if (support.lumped && asks_for_nitsche(options))
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   return support_contact(support, options);
@@ -261,25 +274,27 @@ Scene make(const SceneOptions &options) {
   const int edges = arc_edges(options);
   const double young = number_in(options, "young");
   scene.components = 2;
-  scene.degree = 2;
+  scene.degree = options.at("degree") == "1" ? 1 : 2;
   const Friction friction = friction_of(options);
   const bool nitsche = asks_for_nitsche(options), large = options.at("kinematics") == "large";
+  const std::string &arc = options.at("contact_arc");
+  const bool wide = arc == "auto" ? large : arc == "wide";
   scene.contacts = {large ? following_contact(options, friction)
-                          : contact_at_rest(options, friction)};
+                          : contact_at_rest(options, friction, wide)};
   scene.material = ring_and_core({{"young", {young}}});
-  scene.parameters = parameters(friction.law, nitsche, large, young);
-  if (!large) scene.check_parameters = indentation_check();
+  scene.parameters = parameters(friction.law, nitsche, large ? 0.2 : wide ? 0.14 : 0.09, young);
+  if (!large) scene.check_parameters = wide ? wide_check() : narrow_check();
   scene.training = "grid:61";
   scene.validation = "random:30:1";
-  scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges, large);
+  scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges, wide);
   scene.map = scaled();
   scene.snap = [](const Point &x) -> Point { return {x[0] / norm(x), x[1] / norm(x), 0}; };
   scene.fixed = {{"top", {}}};
   scene.motion = pushed_down();
-  scene.a = stiffness(young);
+  scene.a = stiffness(young, scene.degree);
   scene.symmetric = true;
   scene.skewed_by = offset;
-  scene.v_product = {exact_term(h1_product(1, 2, 2))};
+  scene.v_product = {exact_term(h1_product(1, 2, scene.degree))};
   return scene;
 }
 
@@ -294,7 +309,7 @@ SceneEntry rigid_disk() {
        {"arc", "contact"}},
       {"kinematics",
        "small",
-       "contact of the undeformed body, or (large) where the body now is, on a wider arc",
+       "contact of the undeformed body, or (large) where the body now is",
        {"small", "large"}},
       {"normal",
        "auto",
@@ -310,10 +325,16 @@ SceneEntry rigid_disk() {
        "arc",
        "the gap is measured from the exact arc, or from the straight edges of the mesh",
        {"arc", "edges"}},
+      {"contact_arc",
+       "auto",
+       "contact within 22.5 degrees of the lowest point (narrow; auto with -kinematics small), or "
+       "within 45 (wide; auto with large)",
+       {"auto", "narrow", "wide"}},
+      {"degree", "2", "of the displacement", {"1", "2"}},
       {"arc_edges",
        "0",
-       "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316, with "
-       "-kinematics large 200 by multipliers",
+       "edges of the contact arc, an even number; 0: 100, with Nitsche's method 316, on the wide "
+       "arc 200 by multipliers",
        {},
        {0, 10000},
        true},
@@ -326,7 +347,7 @@ SceneEntry rigid_disk() {
           options,
           make,
           {surfaces, points_on_arc, radial_normals, rigid_normals, gaps("closest"), gaps("ray"),
-           gaps("vertical"), ring_and_core, scaled, pushed_down, indentation_check}};
+           gaps("vertical"), ring_and_core, scaled, pushed_down, narrow_check, wide_check}};
 }
 
 } // namespace rbvi

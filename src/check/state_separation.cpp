@@ -1,8 +1,10 @@
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/eim.hpp"
+#include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace rbvi {
 
@@ -43,10 +45,10 @@ std::vector<EntryKey> keys_of(const Contact &contact, const ParameterSpace &spac
 
 } // namespace
 
-SeparationErrors state_separation_errors(const Contact &contact, const ParameterSpace &space,
-                                         const std::vector<ContactPoint> &training,
-                                         const std::vector<ContactPoint> &validation,
-                                         double tolerance) {
+StateSeparation separation_over_states(const Contact &contact, const ParameterSpace &space,
+                                       const std::vector<ContactPoint> &training,
+                                       const std::vector<ContactPoint> &validation,
+                                       double tolerance) {
   ContactOperators op;
   const std::vector<EntryKey> keys = keys_of(contact, space, training, op);
   const Matrix values = entries_at(contact, space, training, keys, op);
@@ -64,7 +66,9 @@ SeparationErrors state_separation_errors(const Contact &contact, const Parameter
     left -= functions.col(j) * theta.row(j);
     errors.validation.push_back(left.cwiseAbs().maxCoeff() / scale);
   }
-  return errors;
+  const Vector singular = singular_values(values);
+  return {std::move(errors),
+          static_cast<int>((singular.array() > tolerance * singular[0]).count())};
 }
 
 } // namespace rbvi

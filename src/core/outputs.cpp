@@ -33,7 +33,7 @@ const std::vector<OutputColumn> &output_columns() {
        "nodes (-multiplier p0: pairs of edges) with pressure"},
       {"stick_nodes", &Outputs::stick_nodes, check, "those of them below the bound of friction"},
       {"ends_in_contact", &Outputs::ends_in_contact, check,
-       "large deformations: ends of the contact boundary with pressure"},
+       "large deformations, or -contact_arc wide: ends of the contact boundary with pressure"},
       {"kkt_residual", &Outputs::kkt_residual, check,
        "residual of the problem that was solved, relative"},
       {"quadrature_residual", &Outputs::quadrature_residual, check,

@@ -222,9 +222,13 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
   constexpr double of_states = 1e-6;
   std::vector<SeparationErrors> separated = separation_errors(problem, model, validation);
   const bool follows = follows_state(problem.contact());
-  if (follows)
-    separated.push_back(state_separation_errors(problem.contact(), problem.scene().parameters,
-                                                training, states, of_states));
+  int svd_rank = 0;
+  if (follows) {
+    StateSeparation found = separation_over_states(problem.contact(), problem.scene().parameters,
+                                                   training, states, of_states);
+    svd_rank = found.svd_rank;
+    separated.push_back(std::move(found.errors));
+  }
   collectively(problem.comm(), [&] {
     if (rank_of(problem.comm()) != 0) return;
     std::ostringstream text;
@@ -245,10 +249,11 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
                 line.empty() ? "none" : line.c_str());
     if (follows)
       std::printf("B over (mu, step), were it interpolated: %td terms leave %s of %zu training and "
-                  "%s of %zu validation states\n",
+                  "%s of %zu validation states; its rank by SVD at %s: %d\n",
                   std::ssize(separated.back().training) - 1,
                   short_number(separated.back().training.back()).c_str(), training.size(),
-                  short_number(separated.back().validation.back()).c_str(), states.size());
+                  short_number(separated.back().validation.back()).c_str(), states.size(),
+                  short_number(of_states).c_str(), svd_rank);
   });
 }
 
@@ -363,7 +368,7 @@ void command_verify(const ToolOptions &given) {
     if (rank_of(world) != 0) return;
     sweep_up(options.out);
     make_directory(out);
-    for (const char *of_another_model : {"infsup.csv", "stability.csv"})
+    for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
     check_errors(model, problem, truths, options, out);
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);

@@ -37,8 +37,8 @@ std::vector<double> steps_of(const std::vector<ContactPoint> &set) {
   return steps;
 }
 
-void report_constants(const fs::path &path, const ParameterSpace &space,
-                      const std::vector<ContactPoint> &set, const std::vector<InfSup> &constants) {
+void write_constants(const fs::path &path, const ParameterSpace &space,
+                     const std::vector<ContactPoint> &set, const std::vector<InfSup> &constants) {
   Table table;
   std::vector<Mu> mu;
   for (const ContactPoint &at : set)
@@ -51,6 +51,18 @@ void report_constants(const fs::path &path, const ParameterSpace &space,
   table.add("beta_off", column(constants, &InfSup::off));
   table.add("c_hf", column(constants, &InfSup::c_hf));
   table.write(path);
+}
+
+/// The smallest beta_off / beta_on.
+double least_share(const std::vector<InfSup> &constants) {
+  double share = std::numeric_limits<double>::infinity();
+  for (const InfSup &c : constants)
+    share = std::min(share, c.off / c.on);
+  return share;
+}
+
+/// Of the validation set.
+void report_constants(const std::vector<ContactPoint> &set, const std::vector<InfSup> &constants) {
   double ratio = std::numeric_limits<double>::infinity();
   for (const InfSup &c : constants)
     ratio = std::min(ratio, c.hf / c.c_hf);
@@ -127,6 +139,10 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
   const std::vector<InfSup> constants = infsup_over(world, problem, check, validation, scaled);
   std::vector<ContactPoint> all = training;
   all.insert(all.end(), validation.begin(), validation.end());
+  // Where there is a B for every step, the supremizers are chosen over the pairs of training.
+  const bool follows = training.front().state.displacement.size() > 0;
+  const std::vector<InfSup> of_training =
+      follows ? infsup_over(world, problem, check, training, scaled) : std::vector<InfSup>{};
   const BoundCheck bound = check_bound(world, problem, check, all);
   // Where b is only scaled every mu has the same ratios.
   const std::vector<ContactPoint> different =
@@ -138,7 +154,16 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
   const int fewest = fewest_supremizers(world, problem, check, different, 0.9);
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
-    report_constants(out / "infsup.csv", problem.scene().parameters, validation, constants);
+    const ParameterSpace &space = problem.scene().parameters;
+    write_constants(out / "infsup.csv", space, validation, constants);
+    report_constants(validation, constants);
+    if (follows) {
+      write_constants(out / "infsup_training.csv", space, training, of_training);
+      std::printf("  beta_off / beta_on at least %.3f over %zu of training, %.3f over %zu of "
+                  "validation\n",
+                  least_share(of_training), of_training.size(), least_share(constants),
+                  constants.size());
+    }
     write_stability(out / "stability.csv", rows);
     report_steps(rows);
     std::printf("  beta_off over its bound sqrt(1 - sigma^2) beta_on: at least %.6f, %d exceptions "

@@ -106,6 +106,8 @@ TEST_P(BadInput, RangesOfValidity) {
           {membrane + "-load 1e300", "option load is 1e+300: its range of validity"},
           {disk + "-indentation 5", "option -indentation is 5: its range of validity"},
           {disk + "-indentation 0.05,1", "contact would reach the ends of the arc"},
+          {disk + "-indentation 0.1", "(-contact_arc wide goes further)"},
+          {disk + "-contact_arc wide -indentation 0.2", "is above 0.2 of the radius 0.7"},
           {disk + "-poisson_ratio 0.7", "range of validity is [-0.99, 0.499]"},
           {disk + "-poisson_ratio 0.2,0.5", "range of validity is [-0.99, 0.499]"},
           {disk + "-friction_coefficient -0.3", "range of validity is [0, 5]"},

@@ -2,6 +2,7 @@
 // parameters that they have not seen; stability over all pairs of a parameter and a step.
 #include "reduced.hpp"
 
+#include "rbvi/check/separation_errors.hpp"
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/online.hpp"
@@ -66,6 +67,14 @@ TEST(LargeModel, TheLawAtEveryNodeIsExact) {
   }
 }
 
+TEST(LargeModel, WithDisplacementsOfDegreeOne) {
+  Reduced r(
+      large_disk("coulomb", "radius,indentation,offset", {{"arc_edges", "40"}, {"degree", "1"}}),
+      "grid:3,3,3");
+  r.reduce(by(MultiplierReduction::automatic));
+  expect_errors(r, "random:8:3", 1e-6, 1e-9);
+}
+
 TEST(LargeModel, WhereTheStiffnessVariesToo) {
   Reduced r(large_disk("none", "indentation,core_stiffness", {{"arc_edges", "40"}}), "grid:3,4");
   r.reduce(by(MultiplierReduction::condensed));
@@ -98,6 +107,28 @@ TEST(LargeModel, APairIsStableAlongTheIterations) {
   const ModelErrors again = r.errors_at(r.samples);
   EXPECT_EQ(again.failed, 0);
   EXPECT_LE(again.u.maxCoeff(), 1e-4);
+}
+
+/// No sum of terms is shorter than the rank; over the states that it comes from the validation's
+/// error is the training's.
+TEST(LargeModel, InterpolationOverStatesTakesAtLeastTheRank) {
+  Reduced r(large_disk("none", "indentation", {{"arc_edges", "24"}}), "grid:5");
+  const std::vector<ContactPoint> points = contact_points(r.samples);
+  const auto over = [&](const std::vector<ContactPoint> &training, double tolerance) {
+    return separation_over_states(r.problem.contact(), r.problem.scene().parameters, training,
+                                  points, tolerance);
+  };
+  EXPECT_EQ(over({points.back()}, 1e-6).svd_rank, 1);
+  int before = 0;
+  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+    SCOPED_TRACE(tolerance);
+    const auto [errors, rank] = over(points, tolerance);
+    EXPECT_GT(rank, before);
+    EXPECT_LE(rank, std::ssize(errors.training) - 1);
+    EXPECT_LE(errors.training.back(), tolerance);
+    EXPECT_NEAR(errors.validation.back(), errors.training.back(), 1e-10);
+    before = rank;
+  }
 }
 
 TEST(LargeModel, OnlineEnrichmentFollowsTheState) {

@@ -79,6 +79,14 @@ TEST(CondensedModel, AnswersNormalsOfTheRigidDisk) {
   expect_condensed(disk("radius", {{"normal", "rigid"}}), "grid:21", 1e-4);
 }
 
+TEST(CondensedModel, AnswersWithDisplacementsOfDegreeOne) {
+  expect_condensed(disk("radius", {{"degree", "1"}}), "grid:13");
+}
+
+TEST(CondensedModel, AnswersOnTheWideArc) {
+  expect_condensed(disk("radius,indentation", {{"contact_arc", "wide"}}), "random:30:1");
+}
+
 /// With few samples the multipliers are as good as with many: nothing of them is learnt.
 TEST(CondensedModel, NeedsNoSnapshotOfTheMultipliers) {
   Reduced r(disk("radius"), "grid:3");

@@ -223,6 +223,39 @@ TEST(RigidDisk, OneSolveIsTheSameOnAnyNumberOfRanks) {
   EXPECT_LE((a.lambda - b.lambda).norm(), 1e-10 * b.lambda.norm());
 }
 
+// The same contact on twice the arc; there it goes deeper, and stays off the ends to where the
+// scene says that it would reach them.
+TEST(RigidDisk, ContactOfTheUndeformedBodyFitsTheWideArc) {
+  const Scene narrow = disk(small);
+  for (const char *normal : {"radial", "rigid"}) {
+    SCOPED_TRACE(normal);
+    const Scene wide = disk({{"contact_arc", "wide"}, {"arc_edges", "80"}, {"normal", normal}});
+    const HfSolution on_narrow = solve(disk(small_with("normal", normal)), with_radius(1));
+    const HfSolution on_wide = solve(wide, with_radius(1));
+    EXPECT_NEAR(*on_wide.outputs.energy, *on_narrow.outputs.energy,
+                1e-3 * *on_narrow.outputs.energy);
+    EXPECT_NEAR(*on_wide.outputs.normal_force, *on_narrow.outputs.normal_force,
+                1e-3 * *on_narrow.outputs.normal_force);
+    for (const double radius : {0.7, 1.0, 1.3}) {
+      const Mu deepest = with_radius(radius, 0.2, 0.2 * radius);
+      EXPECT_THROW(narrow.check_parameters(expand(narrow.parameters, deepest)), Error);
+      EXPECT_NO_THROW(wide.check_parameters(expand(wide.parameters, deepest)));
+      const HfSolution ends = solve(wide, deepest);
+      EXPECT_LT(*ends.outputs.contact_half_width, 0.95 * radius * M_PI / 4);
+      const double pressed = ends.lambda[0] > 0 ? 2 : 0; // of a mirrored answer
+      EXPECT_EQ(*ends.outputs.ends_in_contact, pressed);
+      // Along the radial normal the rigid disk is near again on the sides of a body that is not
+      // small beside it.
+      const bool near = normal == std::string("radial") && radius > 0.7;
+      EXPECT_EQ(pressed, near ? 2 : 0);
+      const Mu shallower = with_radius(radius, 0.2, 0.14 * radius);
+      EXPECT_EQ(*solve(wide, shallower).outputs.ends_in_contact, 0);
+      const Mu deeper = with_radius(radius, 0.2, 0.21 * radius);
+      EXPECT_THROW(wide.check_parameters(expand(wide.parameters, deeper)), Error);
+    }
+  }
+}
+
 TEST(RigidDisk, BadInputIsRefused) {
   EXPECT_THROW(make_scene("rigid_disk", {{"young", "0"}}), Error);
   EXPECT_THROW(Problem(PETSC_COMM_WORLD, disk({{"arc_edges", "7"}}), {}), Error);

@@ -21,14 +21,17 @@ from study_tools import markdown, rows_of, short, study_main, summary, table
 
 CASE = Path(__file__).resolve().parents[1] / "large.yaml"
 DEPTHS = ("0.01", "0.03", "0.05", "0.07", "0.09", "0.11", "0.13", "0.15", "0.175", "0.2")
-DEEPEST_SMALL = 0.13  # beyond, contact of the undeformed body would reach the ends of its arc
 OFFSETS = ("0", "0.1")
 INITIAL_GAP = 0.001
-KINDS = {  # half as many edges on half the arc
-    "radial": ["-kinematics", "small", "-normal", "radial", "-arc_edges", "100"],
-    "rigid": ["-kinematics", "small", "-normal", "rigid", "-arc_edges", "100"],
+UNDEFORMED = ["-kinematics", "small", "-contact_arc", "wide"]  # on the same mesh
+KINDS = {
+    "radial": [*UNDEFORMED, "-normal", "radial"],
+    "rigid": [*UNDEFORMED, "-normal", "rigid"],
     "large": [],
 }
+EDGE_DEPTHS = (0.06, 0.17)  # from there on, until the edge of contact has passed one edge of the arc
+EDGES, LEVELS = 100, (0, 1, 2)  # of the arc, and meshes refined as often
+PLACES = 12  # of the edge of contact in an edge of the arc
 METHODS = ("newton", "kacanov", "anderson", "nodal")
 VARIANTS = {"none": ["-friction", "none"], "coulomb": ["-friction", "coulomb"],
             "small": ["-friction", "none", "-arc_edges", "100"]}
@@ -58,14 +61,19 @@ def solve_all(study):
     jobs = {}
     for d in DEPTHS:
         for kind, options in KINDS.items():
-            if kind == "large" or float(d) <= DEEPEST_SMALL:
-                jobs["forces", kind, d] = (f"{kind}_{d}", [*at(d), *options], True)
+            jobs["forces", kind, d] = (f"{kind}_{d}", [*at(d), *options], True)
         jobs["coulomb", d] = (f"coulomb_{d}", at(d, "0", "coulomb"), True)
         for offset in OFFSETS:
             for method in METHODS:
                 jobs["steps", method, d, offset] = (
                     f"{method}_{d}_{offset}", [*at(d, offset), "-nonlinear_method", method,
                                                "-nonlinear_tolerance", "1e-8"], method == "newton")
+    for first in EDGE_DEPTHS:
+        for level in LEVELS:
+            for place in range(PLACES):
+                d = f"{first + np.pi / 2 / EDGES / 2**level * place / PLACES:.6g}"
+                jobs["edge", first, level, place] = (f"edge_{level}_{d}", [
+                    *at(d), "-arc_edges", f"{EDGES}", "-mesh_refine", f"{level}"])
     with ThreadPoolExecutor(2) as pool:
         started = {key: pool.submit(study.solve, *job) for key, job in jobs.items()}
         return {key: future.result() for key, future in started.items()}
@@ -78,9 +86,6 @@ def forces(study, answers):
         row = [d, f"{large['energy']:.6g}", f"{large['normal_force']:.6f}",
                short(penetration(study, f"large_{d}") / float(d))]
         for kind in ("radial", "rigid"):
-            if ("forces", kind, d) not in answers:
-                row += ["", ""]
-                continue
             force = answers["forces", kind, d]["normal_force"]
             row += [f"{force:.6f}, {100 * (force / large['normal_force'] - 1):+.2f} %",
                     short(penetration(study, f"{kind}_{d}") / float(d))]
@@ -89,6 +94,31 @@ def forces(study, answers):
                     ["d", "energy, deformed", "normal force", "penetration over d",
                      "normal force, radial normal", "penetration over d",
                      "normal force, rigid normal", "penetration over d"], rows)
+
+
+def deepest_nodes(answers):
+    """The largest penetration of a node over all places of the edge of contact in an edge of the
+    arc: by level, for each of EDGE_DEPTHS."""
+    return {first: [max(answers["edge", first, level, place]["max_penetration"]
+                        for place in range(PLACES)) for level in LEVELS]
+            for first in EDGE_DEPTHS}
+
+
+def orders(deepest):
+    """By how much it falls where edges are half as long, and over all levels."""
+    return [*(np.log2(a / b) for a, b in zip(deepest, deepest[1:])),
+            np.log2(deepest[0] / deepest[-1]) / (len(deepest) - 1)]
+
+
+def penetration_orders(answers):
+    rows = [[f"{first}", *(short(value) for value in deepest),
+             *(f"{order:.2f}" for order in orders(deepest))]
+            for first, deepest in deepest_nodes(answers).items()]
+    steps = [f"order {a} to {b}" for a, b in zip(LEVELS, LEVELS[1:])]
+    return markdown("Largest penetration of a node where the body now is, while the edge of contact "
+                    "passes one edge of the arc, R = 1, without friction",
+                    ["d from", *(f"refined {level} times (m)" for level in LEVELS), *steps,
+                     "order over all"], rows)
 
 
 def steps(answers):
@@ -173,7 +203,8 @@ def all_runs(study):
 def work(study):
     answers, runs = solve_all(study), all_runs(study)
     from large_study_figures import draw_all
-    return ([forces(study, answers), steps(answers), stability(runs), models(runs), sizes(runs)],
+    return ([forces(study, answers), penetration_orders(answers), steps(answers),
+             stability(runs), models(runs), sizes(runs)],
             lambda directory: draw_all(study, answers, runs, directory))
 
 

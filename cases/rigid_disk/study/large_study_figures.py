@@ -6,8 +6,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from figure_tools import BLUE, GREEN, GREY, ORANGE, log_axis, plt, read_grid, save
-from large_study import (CONES, DEPTHS, INITIAL_GAP, KINDS, METHODS, OFFSETS, error_map,
-                         penetration)
+from large_study import (CONES, DEPTHS, EDGES, INITIAL_GAP, KINDS, LEVELS, METHODS, OFFSETS,
+                         deepest_nodes, error_map, penetration)
 from solution_figures import draw_bodies
 from study_tools import table
 
@@ -42,14 +42,13 @@ def deformed(study, directory):
 
 def forces(study, answers, directory):
     """What contact of the undeformed body misses: in force, and by penetration."""
-    figure, axes = plt.subplots(1, 3, figsize=(13, 3.6), constrained_layout=True)
+    figure, axes = plt.subplots(1, 4, figsize=(16, 3.6), constrained_layout=True)
+    d = np.array([float(depth) for depth in DEPTHS])
+    large = np.array([answers["forces", "large", depth]["normal_force"] for depth in DEPTHS])
     for kind in KINDS:
         name, colour, style = STYLES[kind]
-        depths = [d for d in DEPTHS if ("forces", kind, d) in answers]
-        d = np.array([float(depth) for depth in depths])
-        force = np.array([answers["forces", kind, depth]["normal_force"] for depth in depths])
-        large = np.array([answers["forces", "large", depth]["normal_force"] for depth in depths])
-        deepest = np.array([penetration(study, f"{kind}_{depth}") for depth in depths])
+        force = np.array([answers["forces", kind, depth]["normal_force"] for depth in DEPTHS])
+        deepest = np.array([penetration(study, f"{kind}_{depth}") for depth in DEPTHS])
         axes[0].plot(d, force, style, color=colour, label=name)
         if kind != "large":
             axes[1].plot(d, np.abs(force / large - 1), style, color=colour)
@@ -60,7 +59,19 @@ def forces(study, answers, directory):
     log_axis(axes[1], "indentation d (m)", "", "normal force, relative difference")
     log_axis(axes[2], "indentation d (m)", "", "largest penetration over d")
     axes[2].set_ylim(SHALLOWEST, 0.1)
+    edge_order(answers, axes[3])
     save(figure, directory, "forces.png")
+
+
+def edge_order(answers, axis):
+    """The largest penetration of a node beside the edge of contact, over the length of edges."""
+    h = np.pi / 2 / EDGES / 2.0**np.array(LEVELS)
+    for (first, deepest), style in zip(deepest_nodes(answers).items(), ("o-", "s--")):
+        axis.plot(h, deepest, style, color=BLUE, label=f"deformed body, d from {first} m")
+    axis.plot(h, 0.7 * deepest[0] * (h / h[0])**1.5, ":", color=GREY, label="slope 1.5")
+    log_axis(axis, "length of edges (m)", "", "largest penetration (m), over places of the edge")
+    axis.set_xscale("log")
+    axis.legend(fontsize=8)
 
 
 def pressures(study, directory):
@@ -80,7 +91,7 @@ def pressures(study, directory):
                                   "pressure (Pa), Coulomb 0.2", r"$\lambda_\tau$ (Pa)")):
         axis.set_title(title, loc="left")
         axis.set_xlabel("x (m)")
-        axis.set_xlim(-0.4, 0.4)
+        axis.set_xlim(-0.5, 0.5)
     axes[0].legend(fontsize=8)
     save(figure, directory, "pressures.png")
 

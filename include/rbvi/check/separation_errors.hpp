@@ -24,12 +24,19 @@ struct SeparationErrors {
 std::vector<SeparationErrors> separation_errors(Problem &problem, const ReducedModel &model,
                                                 const std::vector<Mu> &validation);
 
+struct StateSeparation {
+  SeparationErrors errors;
+  /// Singular values of the training states' B, as columns of entries, above the tolerance times
+  /// the largest: as many terms would do, were every entry of B known at a query.
+  int svd_rank;
+};
+
 /// What empirical interpolation of B over (mu, state) would leave, where contact follows the
 /// displacement: how many terms `tolerance` takes on the training states, and what they leave on
 /// the others. A comparison: models assemble B at every state. Serial; neither set is empty.
-SeparationErrors state_separation_errors(const Contact &contact, const ParameterSpace &space,
-                                         const std::vector<ContactPoint> &training,
-                                         const std::vector<ContactPoint> &validation,
-                                         double tolerance);
+StateSeparation separation_over_states(const Contact &contact, const ParameterSpace &space,
+                                       const std::vector<ContactPoint> &training,
+                                       const std::vector<ContactPoint> &validation,
+                                       double tolerance);
 
 } // namespace rbvi

@@ -114,7 +114,7 @@ void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
   support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
                    mapped(dual_.vertices, Eigen::all)},
                   outputs);
-  if (follows_state())
+  if (counts_ends())
     outputs.ends_in_contact =
         (lambda[0] > 0 ? 1.0 : 0.0) + (lambda[dual_.nodes() - 1] > 0 ? 1.0 : 0.0);
 }

@@ -28,6 +28,7 @@ protected:
                   const Point &x) const override {
     return support_.normal(mu, x);
   }
+  bool counts_ends() const override { return support_.counts_ends; }
 
 private:
   Support support_;
@@ -91,14 +92,18 @@ Record record_of(const Support &support) {
                 {{"lumped", {support.lumped ? 1.0 : 0.0}}},
                 {{"boundary", support.boundary}},
                 {{"normal", support.normal.record}, {"gap", support.gap.record}}};
+  if (support.counts_ends) record.numbers["counts_ends"] = {1};
   add_friction(support.friction, record);
   return record;
 }
 
 Support support_in(const Record &record) {
-  return {text(record, "boundary"), made<PointMap>(part(record, "normal")),
-          made<PointValue>(part(record, "gap")), friction_in(record),
-          number(record, "lumped") != 0};
+  return {text(record, "boundary"),
+          made<PointMap>(part(record, "normal")),
+          made<PointValue>(part(record, "gap")),
+          friction_in(record),
+          number(record, "lumped") != 0,
+          record.numbers.contains("counts_ends")};
 }
 
 } // namespace rbvi

@@ -45,6 +45,8 @@ protected:
   /// Its normal alone.
   virtual Point normal_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
                           const Point &x) const = 0;
+  /// Whether outputs say if contact reaches the ends of the curve.
+  virtual bool counts_ends() const { return follows_state(); }
   const std::vector<TracePoint> &points() const { return points_; }
 
 private:

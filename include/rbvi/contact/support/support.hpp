@@ -24,6 +24,8 @@ struct Support {
   Named<PointValue> gap;
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
+  /// Outputs count the ends in contact: beside them the body would touch, too.
+  bool counts_ends = false;
 };
 
 ContactRecipe rigid_support(Support support);
