@@ -81,7 +81,7 @@ double height(const FullMu &mu, const Point &x) {
 MeshRecipe mesh(int circle_edges) {
   const Place square = box({-0.5, -0.5, 0}, {0.5, 0.5, 0});
   const double disc = std::numbers::pi * reference_radius * reference_radius;
-  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, "", circle_edges};
+  MeshRecipe recipe{"square_with_disc", {"obstacle"}, {"boundary"}, {}, circle_edges};
   recipe.facts = {{"", "the square of side 1 m about the origin", square, 1},
                   {"obstacle", "the disk of radius 0.2 m about the origin",
                    disk({0, 0, 0}, reference_radius), disc},

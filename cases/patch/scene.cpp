@@ -47,7 +47,7 @@ MeshRecipe mesh_of_two() {
   const double high = apart + height;
   const Place upper = box({0, apart, 0}, {1, high, 0}), lower = box({0, -high, 0}, {1, -apart, 0});
   MeshRecipe recipe{
-      "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}, ""};
+      "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}};
   recipe.facts = {{"", "two blocks, 1 m wide and 0.5 m high", nearest({upper, lower}), 1},
                   {"upper", "the block [0, 1] x [0.25, 0.75]", upper, 0.5},
                   {"lower", "the block [0, 1] x [-0.75, -0.25]", lower, 0.5},
@@ -61,7 +61,7 @@ MeshRecipe mesh_of_two() {
 }
 
 MeshRecipe mesh_of_one() {
-  MeshRecipe recipe{"one_block", {}, {"sides", "top", "contact"}, ""};
+  MeshRecipe recipe{"one_block", {}, {"sides", "top", "contact"}};
   recipe.facts = {
       {"", "the block [0, 1] x [0, 0.5], in metres", box({0, 0, 0}, {1, height, 0}), 0.5},
       {"sides", "the sides x = 0 and x = 1", two_sides(0), 1},

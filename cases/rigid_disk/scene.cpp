@@ -150,7 +150,7 @@ MeshRecipe mesh(int edges, bool wide) {
   const double half_angle = wide ? wide_arc : narrow_arc;
   const Point centre{0, 0, 0};
   MeshRecipe recipe{
-      wide ? "wide_half_disc" : "half_disc", {"core"}, {"top", "contact", "arc"}, "arc", edges};
+      wide ? "wide_half_disc" : "half_disc", {"core"}, {"top", "contact", "arc"}, {"arc"}, edges};
   recipe.facts = {{"", "the half y <= 0 of the disk of radius 1 m about the origin",
                    common_part(disk(centre, 1), box({-1, -1, 0}, {1, 0, 0})), pi / 2},
                   {"core", "the half disk of radius 0.6 m about the origin",

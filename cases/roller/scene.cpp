@@ -27,16 +27,21 @@ constexpr Range pushes{-0.2, 0.1}, tilts{-0.25, 0.25}; // from there on contact 
 /// Positions of the parameters.
 enum Position { top, tilt, bottom, friction };
 
-Point on_circle(const Point &x) {
-  const double scale = 1 / std::hypot(x[0], x[1]);
+Point on_circle(double radius, const Point &x) {
+  const double scale = radius / std::hypot(x[0], x[1]);
   return {scale * x[0], scale * x[1], 0};
+}
+
+/// Onto the nearer one of the two circles.
+Point on_circles(const Point &x) {
+  return on_circle(std::hypot(x[0], x[1]) < (1 + hub) / 2 ? hub : 1, x);
 }
 
 MeshRecipe mesh(int edges) {
   constexpr double pi = std::numbers::pi;
   const Point centre{0, 0, 0};
   const Place outside = [](const Point &x) { return hub - std::hypot(x[0], x[1]); };
-  MeshRecipe recipe{"annulus", {}, {"hub", "rim", "top", "bottom"}, "rim", edges};
+  MeshRecipe recipe{"annulus", {}, {"hub", "rim", "top", "bottom"}, {"hub", "rim"}, edges};
   recipe.facts = {
       {"", "the disk of radius 1 m about the origin, without its hub",
        common_part(disk(centre, 1), outside), pi * (1 - 0.9 * hub * hub)},
@@ -49,8 +54,8 @@ MeshRecipe mesh(int edges) {
   return recipe;
 }
 
-const auto rim_points =
-    plain<PointMap>("roller/rim", 1, [](const FullMu &, const Point &x) { return on_circle(x); });
+const auto rim_points = plain<PointMap>(
+    "roller/rim", 1, [](const FullMu &, const Point &x) { return on_circle(1, x); });
 
 /// A plate that touches the undeformed roller where nothing is pushed in.
 HalfPlane plate(const std::string &boundary, const Point &normal, int push) {
@@ -84,7 +89,7 @@ Scene make(const SceneOptions &options) {
   scene.validation = "random:30:1";
   scene.mesh = mesh(static_cast<int>(edges));
   scene.map = identity();
-  scene.snap = on_circle;
+  scene.snap = on_circles;
   scene.fixed = {{"hub", {}}};
   scene.contacts = {half_plane(upper), half_plane(lower)};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));

@@ -66,7 +66,7 @@ MeshRecipe mesh(int edges) {
   MeshRecipe recipe{edges == 0 ? "two_quarter_discs" : "two_graded_quarter_discs",
                     {"upper", "lower"},
                     {"axis", "top", "bottom", "slave", "master", "arc"},
-                    "arc",
+                    {"arc"},
                     edges};
   std::vector<MeshFact> &facts = recipe.facts = body_facts(1);
   for (MeshFact &fact : body_facts(-1))

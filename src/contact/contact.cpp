@@ -58,12 +58,6 @@ void stack_nodal(const std::vector<ContactOperators> &all, ContactOperators &ope
     if (of_one.state.displacement.size() > 0) operators.state = of_one.state;
 }
 
-bool by_multipliers(const Scene &scene) {
-  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
-    return contact.formulation == Formulation::mixed;
-  });
-}
-
 /// Throws bad_input where Nitsche's method would need the stress of imposed values.
 void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
   if (recipe.formulation == Formulation::nitsche &&
@@ -72,6 +66,22 @@ void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
         "displacements are imposed on a cell beside the contact curve '" +
         recipe.entities.parts.front() +
         "', which Nitsche's method does not take: use multipliers (-formulation mixed)");
+}
+
+/// What to throw for Nitsche's method beside a further interface.
+Error several_by_nitsche(const Scene &scene) {
+  const auto boundary = [&](Formulation formulation) {
+    const auto found = std::ranges::find(scene.contacts, formulation, &ContactRecipe::formulation);
+    return "'" + found->entities.parts.front() + "'";
+  };
+  const std::string has = "scene " + scene.name + " has ";
+  if (by_nitsche(scene))
+    return bad_input(has + std::to_string(scene.contacts.size()) +
+                     " contact interfaces by Nitsche's method, which is for a single one: use "
+                     "multipliers");
+  return bad_input(has + "contact by Nitsche's method on " + boundary(Formulation::nitsche) +
+                   " and by multipliers on " + boundary(Formulation::mixed) +
+                   ": use multipliers on both");
 }
 
 } // namespace
@@ -87,9 +97,7 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
   if (meshes.empty() || meshes.size() != scene.contacts.size())
     throw bad_input("scene " + scene.name + " has " + std::to_string(scene.contacts.size()) +
                     " contact interfaces, on " + std::to_string(meshes.size()) + " meshes");
-  if (meshes.size() > 1 && !by_multipliers(scene))
-    throw bad_input("scene " + scene.name + " has " + std::to_string(meshes.size()) +
-                    " contact interfaces: Nitsche's method is for a single one");
+  if (meshes.size() > 1 && !has_multipliers(scene)) throw several_by_nitsche(scene);
   Contact contact;
   std::vector<SparseMatrix> grams;
   contact.first_row.push_back(0);

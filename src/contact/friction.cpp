@@ -17,6 +17,14 @@ FrictionBound friction_bound(const Friction &friction, const FullMu &all_paramet
   return bound;
 }
 
+void add_friction(const Friction &friction, ContactRecipe &recipe) {
+  recipe.friction = friction.law;
+  if (friction.law == FrictionLaw::none) return;
+  recipe.coefficients.push_back(
+      {friction.law == FrictionLaw::coulomb ? "coefficient of friction" : "threshold of friction",
+       friction.value});
+}
+
 void add_friction(const Friction &friction, Record &record) {
   if (friction.law == FrictionLaw::none) return;
   Record &part = record.parts["friction"];

@@ -19,6 +19,12 @@ bool by_nitsche(const Scene &scene) {
   });
 }
 
+bool has_multipliers(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
+    return contact.formulation == Formulation::mixed;
+  });
+}
+
 bool separable_contact(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, &ContactRecipe::separable);
 }

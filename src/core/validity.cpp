@@ -20,13 +20,15 @@ std::string bound(double value) {
   return shortest_number(std::strtod(formatted("%.12g", value).c_str(), nullptr));
 }
 
-/// Throws bad_input where a coefficient of a, f or of an imposed displacement is not finite.
+/// Throws bad_input where a coefficient of a, f, an imposed displacement or a contact interface is
+/// not finite.
 void check_all_coefficients(const Scene &scene, const FullMu &all) {
   for (const Sum *sum : {&scene.a, &scene.f})
     check_coefficients(*sum, scene.parameters, all);
   for (const FixedBoundary &boundary : scene.fixed)
     for (const ImposedTerm &value : boundary.values)
       if (value.theta) check_coefficients({exact_term({}, *value.theta)}, scene.parameters, all);
+  check_contacts(scene, all);
 }
 
 } // namespace
@@ -46,6 +48,14 @@ void check_range(const Range &range, double value, const std::string &what) {
                     describe(range));
 }
 
+void check_contacts(const Scene &scene, const FullMu &all) {
+  for (const ContactRecipe &contact : scene.contacts)
+    for (const ContactCoefficient &coefficient : contact.coefficients)
+      if (!std::isfinite(coefficient.value(all)))
+        throw bad_input("the " + coefficient.name + " on '" + contact.entities.parts.front() +
+                        "' is not finite at " + describe(scene.parameters, all));
+}
+
 void check_together(const Scene &scene, const FullMu &all) {
   if (scene.check_parameters) scene.check_parameters(all);
   check_all_coefficients(scene, all);
@@ -58,7 +68,11 @@ void check_set(const Scene &scene, const std::vector<Mu> &set) {
 
 void check_query(const Scene &scene, const Mu &mu, bool allow_outside) {
   check_mu(scene.parameters, mu, allow_outside);
-  if (allow_outside) check_together(scene, expand(scene.parameters, mu));
+  const FullMu all = expand(scene.parameters, mu);
+  if (allow_outside)
+    check_together(scene, all);
+  else
+    check_contacts(scene, all);
 }
 
 void check_box(const Scene &scene) {

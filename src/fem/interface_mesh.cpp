@@ -2,6 +2,7 @@
 
 #include "curve_nodes.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/gather.hpp"
 
@@ -191,17 +192,30 @@ std::vector<int> imposed_at(const Mesh &mesh, const Dofs &dofs,
   return {found.begin(), found.end()};
 }
 
+/// What to throw for a displacement that two interfaces constrain.
+Error shared_displacement(const ContactRecipe &one, const ContactRecipe &other, const Point &at,
+                          int component) {
+  const auto name = [](const ContactRecipe &contact) {
+    return "'" + contact.entities.parts.front() + "'";
+  };
+  return bad_input("the contact interfaces on " + name(one) + " and " + name(other) +
+                   " both constrain the displacement along " + "xyz"[component] + " at (" +
+                   short_number(at[0]) + ", " + short_number(at[1]) + ", " + short_number(at[2]) +
+                   "): give them boundaries without common nodes, or fix the displacement there");
+}
+
 } // namespace
 
 InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene &scene) {
   InterfacePlaces places;
   std::map<PetscInt, int> column; // natural dof -> contact dof
+  std::vector<std::size_t> first; // contact dofs before each interface
   std::vector<PetscInt> &natural_dofs = places.natural_dofs;
+  const auto components = static_cast<std::size_t>(dofs.components);
   for (const ContactRecipe &contact : scene.contacts) {
     Found found = find_interface(mesh, dofs, scene, contact.entities);
-    const std::size_t of_others = natural_dofs.size();
+    first.push_back(natural_dofs.size());
     for (std::size_t i = 0; i < found.free.size(); ++i) {
-      const auto components = static_cast<std::size_t>(dofs.components);
       const PetscInt natural =
           found.natural[i / components] * dofs.components + static_cast<PetscInt>(i % components);
       if (!found.free[i]) {
@@ -209,9 +223,12 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
         continue;
       }
       const auto [at, is_new] = column.emplace(natural, static_cast<int>(natural_dofs.size()));
-      if (!is_new && static_cast<std::size_t>(at->second) < of_others)
-        throw bad_input("two contact interfaces constrain the same displacement, on '" +
-                        contact.entities.parts.front() + "'");
+      if (const auto dof = static_cast<std::size_t>(at->second); !is_new && dof < first.back()) {
+        const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
+        throw shared_displacement(scene.contacts[static_cast<std::size_t>(other)], contact,
+                                  found.mesh.points[i / components],
+                                  static_cast<int>(i % components));
+      }
       if (is_new) natural_dofs.push_back(natural);
       found.mesh.dofs.push_back(at->second);
     }

@@ -173,10 +173,11 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
     for (std::size_t v = 0; v < on_curve.size(); ++v)
       on_curve[v] = on_curve[v] || on_rim_of_region[v];
   }
-  if (mesh.boundary.contains(scene.mesh.curved))
-    for (const auto &facet : mesh.boundary.at(scene.mesh.curved))
-      for (int i = 0; i < mesh.dim; ++i)
-        on_curve[at(facet[at(i)])] = true;
+  for (const std::string &curved : scene.mesh.curved)
+    if (const auto facets = mesh.boundary.find(curved); facets != mesh.boundary.end())
+      for (const auto &facet : facets->second)
+        for (int i = 0; i < mesh.dim; ++i)
+          on_curve[at(facet[at(i)])] = true;
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (on_curve[v]) mesh.points[v] = scene.snap(mesh.points[v]);
 }

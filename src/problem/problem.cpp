@@ -1,6 +1,7 @@
 #include "rbvi/problem/problem.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -72,6 +73,7 @@ void Problem::assemble_split(ContactRows rows) {
 
 const Operators &Problem::assemble(const Mu &mu, ContactRows rows) {
   const FullMu all = expand(scene_->parameters, mu);
+  check_contacts(*scene_, all);
   if (imposes_values(*scene_)) check_imposed(*scene_, all, mesh_, dofs_);
   operators_.mu = all;
   bool any_split = false;

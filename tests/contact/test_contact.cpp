@@ -182,8 +182,13 @@ TEST(Contact, LawsAreThoseOfEachInterface) {
 
 TEST(Contact, NitschesMethodIsForASingleInterface) {
   Stack stack;
-  stack.scene.contacts[0] = nitsche_support({}, 10);
-  EXPECT_TRUE(refuses("for a single one", [&] { make_contact(stack.scene, stack.meshes); }));
+  stack.scene.contacts[0] = nitsche_support({"above", {}, {}}, 10);
+  const auto refused = [&](const std::string &says) {
+    return refuses(says, [&] { make_contact(stack.scene, stack.meshes); });
+  };
+  EXPECT_TRUE(refused("by Nitsche's method on 'above' and by multipliers on 'slave'"));
+  stack.scene.contacts[1] = stack.scene.contacts[0];
+  EXPECT_TRUE(refused("2 contact interfaces by Nitsche's method, which is for a single one"));
 }
 
 TEST(Contact, NeedsAMeshForEveryRecipe) {

@@ -45,7 +45,6 @@ TEST_P(MakeMesh, TotalsAndFingerprintDoNotDependOnRanks) {
 TEST(CountNodes, IsThatOfTheMesh) {
   for (const SceneEntry &entry : scene_catalogue())
     for (const int refine : {0, 1}) {
-      if (refine == 1 && entry.name == "roller") continue; // its hub is refused when refined
       Scene scene = make_scene(entry.name);
       for (scene.degree = 1; scene.degree <= 2; ++scene.degree)
         EXPECT_EQ(count_nodes(PETSC_COMM_WORLD, scene, {"", refine}),

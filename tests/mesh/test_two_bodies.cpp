@@ -31,7 +31,7 @@ Scene two_discs_scene() {
   scene.mesh = {"two_quarter_discs",
                 {"upper", "lower"},
                 {"axis", "top", "bottom", "slave", "master", "arc"},
-                "arc"};
+                {"arc"}};
   scene.snap = onto_circle;
   return scene;
 }
@@ -40,8 +40,7 @@ Scene two_blocks_scene() {
   Scene scene;
   scene.name = "two_blocks";
   scene.components = 2;
-  scene.mesh = {
-      "two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}, ""};
+  scene.mesh = {"two_blocks", {"upper", "lower"}, {"sides", "top", "bottom", "slave", "master"}};
   return scene;
 }
 
@@ -164,7 +163,7 @@ TEST(TwoQuarterDiscs, RefinementFollowsTheCircles) {
 
 TEST(TwoQuarterDiscs, WithoutACurvedBoundaryNothingIsMoved) {
   Scene scene = two_discs_scene();
-  scene.mesh.curved = "";
+  scene.mesh.curved.clear();
   const SerialMesh fine = refined(two_quarter_discs());
   SerialMesh mesh = fine;
   snap_curves(mesh, scene);
@@ -300,7 +299,7 @@ TEST(TwoBodiesCounts, MakeMeshRefinesAndSnaps) {
 
 TEST(TwoBodiesLabels, ASceneNamesThoseThatItNeeds) {
   Scene scene = two_discs_scene();
-  scene.mesh = {"two_quarter_discs", {"upper"}, {"top", "arc"}, "arc"};
+  scene.mesh = {"two_quarter_discs", {"upper"}, {"top", "arc"}, {"arc"}};
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
   EXPECT_EQ(mesh.region.size(), 1u);
   EXPECT_EQ(mesh.boundary.size(), 2u);

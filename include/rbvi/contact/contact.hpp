@@ -17,8 +17,8 @@ struct Contact {
 };
 
 /// `meshes`: of each contact of the scene, with the columns of the problem. `scene` must outlive
-/// it. Throws bad_input where a mesh does not suit its recipe, and for friction or Nitsche's method
-/// beside a further interface.
+/// it. Throws bad_input where a mesh does not suit its recipe, and for Nitsche's method beside a
+/// further interface.
 Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes);
 
 /// The operators of all interfaces together.

@@ -18,6 +18,9 @@ struct Friction {
 /// The bound at one mu. Throws failure, naming the value, for a negative one.
 FrictionBound friction_bound(const Friction &friction, const FullMu &all_parameters);
 
+/// Gives a recipe the law, and the bound among its coefficients.
+void add_friction(const Friction &friction, ContactRecipe &recipe);
+
 /// What files store of it, as the part "friction" of a record; none without friction.
 void add_friction(const Friction &friction, Record &record);
 Friction friction_in(const Record &record);

@@ -11,6 +11,7 @@
 
 namespace rbvi {
 
+struct FullMu;
 struct Scene;
 struct InterfaceMesh;
 class ContactInterface;
@@ -37,6 +38,12 @@ struct InterfaceEntities {
   bool partly_fixed = false;
 };
 
+/// A function of the parameters alone that an interface or its law is made of.
+struct ContactCoefficient {
+  std::string name; ///< "position of the half-plane", "coefficient of friction"
+  std::function<double(const FullMu &mu)> value;
+};
+
 struct ContactRecipe {
   InterfaceEntities entities;
   Formulation formulation = Formulation::mixed;
@@ -51,6 +58,8 @@ struct ContactRecipe {
   bool follows_state = false;
   /// A reduced model keeps a multiplier at every node, unless asked otherwise: the law is exact.
   bool keeps_nodes = false;
+  /// Refused where they are not finite, before anything is solved (core/validity.hpp).
+  std::vector<ContactCoefficient> coefficients{};
   /// `scene` must outlive the interface. Throws bad_input where the mesh does not suit it.
   std::function<std::unique_ptr<ContactInterface>(const Scene &scene, InterfaceMesh mesh)> make;
   /// What files store of it, without its entities: they have its mesh.
@@ -67,6 +76,8 @@ struct ContactKind {
 /// Whether some interface has friction; whether all are by Nitsche's method, separable, ...
 bool has_friction(const Scene &scene);
 bool by_nitsche(const Scene &scene);
+/// Whether multipliers hold contact in all of them, B u <= g: there are laws, cones, supremizers.
+bool has_multipliers(const Scene &scene);
 bool separable_contact(const Scene &scene);
 /// Whether some interface follows the state.
 bool follows_state(const Scene &scene);

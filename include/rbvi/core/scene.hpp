@@ -45,8 +45,8 @@ struct MeshRecipe {
   std::string generator; ///< "square_with_disc", "two_quarter_discs", "two_blocks", "half_disc"...
   std::vector<std::string> regions;
   std::vector<std::string> boundaries;
-  /// Boundary whose refined vertices Scene::snap brings back onto its curve.
-  std::string curved = "";
+  /// Boundaries whose refined vertices Scene::snap brings back onto their curves.
+  std::vector<std::string> curved{};
   /// Edges of the contact boundary where the generator lets them be chosen; 0: its default.
   int edges = 0;
   std::vector<MeshFact> facts{}; ///< what a mesh must be beside the names above
@@ -89,8 +89,8 @@ struct Scene {
 
   /// h(mu), from the reference to the mapped domain.
   Named<PointMap> map;
-  /// Brings a refined vertex of the interface of the contact region, or of the curved boundary,
-  /// back onto the exact curve.
+  /// Brings a refined vertex of the interface of the contact region, or of a curved boundary,
+  /// back onto the exact curve, the nearest one where there are several.
   std::function<Point(const Point &)> snap;
 
   std::vector<FixedBoundary> fixed;

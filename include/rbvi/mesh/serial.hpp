@@ -22,7 +22,7 @@ SerialMesh refined(const SerialMesh &mesh);
 std::int64_t nodes_when_refined(const SerialMesh &mesh, int times, int degree);
 
 /// Moves by Scene::snap the vertices that the scene's contact region shares with the rest, and
-/// those of the boundary that its recipe names as curved; onto its circle those of the rim of its
+/// those of the boundaries that its recipe names as curved; onto its circle those of the rim of its
 /// inclusion.
 void snap_curves(SerialMesh &mesh, const Scene &scene);
 

@@ -77,7 +77,8 @@ public:
 
   /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
   /// only where the parameters that they depend on have changed. Throws failure if a cell is
-  /// inverted, bad_input for a coefficient that is not finite.
+  /// inverted, bad_input for a coefficient that is not finite, and for imposed displacements that
+  /// are not or contradict each other.
   const Operators &assemble(const Mu &mu, ContactRows rows = ContactRows::all);
   /// Not collective: the contact operators alone, all rows of B, G, weights and the nodal
   /// constraint.

@@ -1,6 +1,7 @@
 #include "rbvi/contact/half_plane/half_plane.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <cmath>
 
@@ -47,9 +48,17 @@ HalfPlane half_plane_in(const Record &record) {
 } // namespace
 
 ContactRecipe half_plane(HalfPlane plane) {
+  const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
+  if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
+    throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
+                    short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
+                    short_number(plane.normal[2]) +
+                    "): give one of length 1 in the plane of x and y");
   Support support{plane.boundary, {}, {}, plane.friction, plane.lumped};
   support.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
   ContactRecipe recipe = rigid_support(support);
+  recipe.coefficients.push_back({"position of the half-plane", plane.position});
+  if (plane.tilt) recipe.coefficients.push_back({"tilt of the half-plane", plane.tilt});
   recipe.make = [plane, support](const Scene &scene, InterfaceMesh mesh) {
     Support placed = support;
     placed.gap = [plane, &scene](const FullMu &mu, const Point &x) {

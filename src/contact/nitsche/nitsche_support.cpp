@@ -95,7 +95,7 @@ ContactRecipe nitsche_contact(const std::string &name, Faced faced, double gamma
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::cells_beside, {faced.boundary}};
   recipe.formulation = Formulation::nitsche;
-  recipe.friction = faced.friction.law;
+  add_friction(faced.friction, recipe);
   recipe.separable = false;
   recipe.make = [faced, gamma0, facing](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<NitscheInterface>(scene, std::move(mesh), faced.friction,

@@ -71,7 +71,7 @@ Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface
 ContactRecipe rigid_support(Support support) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::curves, {support.boundary}};
-  recipe.friction = support.friction.law;
+  add_friction(support.friction, recipe);
   recipe.nodal = support.lumped;
   recipe.keeps_nodes = true;
   recipe.make = [support](const Scene &scene, InterfaceMesh mesh) {

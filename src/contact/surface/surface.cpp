@@ -290,7 +290,7 @@ RigidSurface surface_in(const Record &record) {
 ContactRecipe rigid_surface(RigidSurface surface) {
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::curves, {surface.boundary}};
-  recipe.friction = surface.friction.law;
+  add_friction(surface.friction, recipe);
   recipe.separable = false;
   recipe.follows_state = true;
   recipe.keeps_nodes = true;

@@ -22,6 +22,7 @@ struct HalfPlane {
   bool lumped = false; ///< vertex quadrature
 };
 
+/// Throws bad_input for a normal whose length is not 1.
 ContactRecipe half_plane(HalfPlane plane);
 
 /// "half_plane" in files.
