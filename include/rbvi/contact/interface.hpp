@@ -55,11 +55,14 @@ struct DualSpace {
   Index size() const { return nodes() * components; }
 };
 
-/// What the condition may depend on beside mu: where the bodies are now. Small deformations ignore
-/// it.
+/// What the condition may depend on beside mu: where the bodies are now, which small deformations
+/// ignore, and how far they have slipped before.
 struct ContactState {
   /// At the columns of B, beside the motion of the scene and the imposed values; empty: zero.
   Vector displacement{};
+  /// The history of friction (contact/history.hpp), of all interfaces: what stacks their operators
+  /// takes it into g, an interface does not. Empty: they were at rest.
+  Vector slip{};
 };
 
 struct ContactOperators {
