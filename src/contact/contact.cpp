@@ -194,7 +194,10 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
   NodeLaws laws;
   for (const auto &interface : contact.interfaces) {
     const DualSpace &dual = interface->dual();
-    append(uniform_laws(dual.nodes(), dual.components, interface->bound(mu)), laws);
+    NodeLaws own = uniform_laws(dual.nodes(), dual.components, interface->bound(mu));
+    for (const Index node : interface->partly_fixed())
+      own.bound[static_cast<std::size_t>(node)] = {};
+    append(own, laws);
   }
   return laws;
 }

@@ -107,6 +107,9 @@ public:
 
   const InterfaceMesh &mesh() const { return mesh_; }
   const DualSpace &dual() const { return dual_; }
+  /// Dual nodes that are fixed in some directions, as on an axis of symmetry: they carry no
+  /// tangential traction, which for a symmetric answer is zero there.
+  std::vector<Index> partly_fixed() const;
 
   /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone. Rows of dual nodes
   /// that are not wanted may be left zero.
