@@ -1,5 +1,6 @@
 #include "rbvi/contact/contact.hpp"
 
+#include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -114,12 +115,16 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
 
 void assemble(const Contact &contact, const FullMu &mu, const ContactState &state,
               ContactOperators &operators) {
-  if (contact.interfaces.size() == 1)
-    return contact.interfaces.front()->assemble_all(mu, state, operators);
-  std::vector<ContactOperators> all(contact.interfaces.size());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    contact.interfaces[i]->assemble_all(mu, state, all[i]);
-  stack(contact, all, operators);
+  if (contact.interfaces.size() == 1) {
+    contact.interfaces.front()->assemble_all(mu, state, operators);
+  } else {
+    std::vector<ContactOperators> all(contact.interfaces.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      contact.interfaces[i]->assemble_all(mu, state, all[i]);
+    stack(contact, all, operators);
+  }
+  if (state.slip.size() > 0)
+    operators.g += added_by_history(contact, state.slip, operators.weights);
 }
 
 void stack(const Contact &contact, const std::vector<ContactOperators> &all,
@@ -201,7 +206,10 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
   NodeLaws laws;
   for (const auto &interface : contact.interfaces) {
     const DualSpace &dual = interface->dual();
-    append(uniform_laws(dual.nodes(), dual.components, interface->bound(mu)), laws);
+    NodeLaws own = uniform_laws(dual.nodes(), dual.components, interface->bound(mu));
+    for (const Index node : interface->partly_fixed())
+      own.bound[static_cast<std::size_t>(node)] = {};
+    append(own, laws);
   }
   return laws;
 }

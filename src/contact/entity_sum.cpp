@@ -1,6 +1,7 @@
 #include "rbvi/contact/entity_sum.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/imposed.hpp"
 
@@ -271,6 +272,7 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &state, const Want
     add_weights(mu, e, cell, values, operators.weights);
   });
   set_constraints(mu, mapped, state, wanted, operators);
+  check_partly_fixed(wanted, operators);
   if (follows_state()) operators.state = state;
   for (Index i = 0; i < dual_.nodes() && !wanted.empty(); ++i) {
     if (is_wanted(wanted, i)) continue; // else some of its entities were left out
@@ -278,6 +280,18 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &state, const Want
     operators.g[i] = operators.weights[i] = 0;
     operators.g.segment(dual_.nodes() + i * tangents, tangents).setZero();
   }
+}
+
+void EntitySum::check_partly_fixed(const WantedNodes &wanted,
+                                   const ContactOperators &operators) const {
+  constexpr double along = 1e-6; // of a unit normal
+  for (const Index node : partly_fixed())
+    if (is_wanted(wanted, node) && !(operators.nodal_b.row(node).norm() > along)) {
+      const Point &x = dual_.points[static_cast<std::size_t>(node)];
+      throw bad_input("the displacement is fixed along the normal of contact at " +
+                      short_number(x[0]) + " " + short_number(x[1]) +
+                      ", where contact cannot move it: fix it in all directions there");
+    }
 }
 
 void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &state, const Vector &lambda,

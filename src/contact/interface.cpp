@@ -50,6 +50,17 @@ PointConstraint ContactInterface::constraint_at(const FullMu &, const Point &, c
   throw failure("this kind of contact has no constraint at single points");
 }
 
+std::vector<Index> ContactInterface::partly_fixed() const {
+  std::vector<Index> nodes;
+  if (mesh_.components == 1) return nodes;
+  for (std::size_t k = 0; k < dual_.vertices.size(); ++k) {
+    const auto first = mesh_.dofs.begin() + dual_.vertices[k] * mesh_.components;
+    if (std::any_of(first, first + mesh_.components, [](int dof) { return dof < 0; }))
+      nodes.push_back(static_cast<Index>(k));
+  }
+  return nodes;
+}
+
 Curvature ContactInterface::curvature(const FullMu &, const ContactState &, const Vector &) const {
   throw failure("this kind of contact has no curvature");
 }

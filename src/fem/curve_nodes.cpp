@@ -33,7 +33,7 @@ void check_curve(const std::vector<CurveNode> &nodes, PetscInt vertices, const s
 } // namespace
 
 std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary,
-                                    const std::vector<int> &components, FixedNodes allowed) {
+                                    const std::vector<int> &components, bool may_be_fixed) {
   const std::vector<bool> &on_curve = mesh.boundary.at(boundary);
   std::vector<PetscInt> numbers, fixed;
   std::vector<double> coordinates;
@@ -47,15 +47,10 @@ std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const st
   fixed = gather_all(mesh.comm, fixed, MPIU_INT);
   coordinates = gather_all(mesh.comm, coordinates, MPI_DOUBLE);
   std::vector<CurveNode> nodes;
-  PetscInt all = 0;
-  for (const int c : components)
-    all |= PetscInt(1) << c;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (fixed[i] != 0 && allowed != FixedNodes::any &&
-        !(allowed == FixedNodes::whole && fixed[i] == all))
-      throw bad_input("the displacement is fixed on the contact curve '" + boundary + "'" +
-                      (fixed[i] != all ? " in some of its directions" : "") +
-                      ": contact cannot move it");
+    if (fixed[i] != 0 && !may_be_fixed)
+      throw bad_input("the displacement is fixed on the contact curve '" + boundary +
+                      "': contact cannot move it");
     nodes.push_back({numbers[i],
                      {coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]},
                      fixed[i]});

@@ -14,17 +14,11 @@ struct CurveNode {
   PetscInt fixed; ///< bit c: component c is, of those asked for
 };
 
-/// What may be fixed of the nodes.
-enum class FixedNodes {
-  none,
-  whole, ///< all components of a node, or none
-  any
-};
-
 /// Everybody's owned nodes on a boundary: vertices and then middles of edges, each by increasing x.
-/// `components`: those that contact moves. Throws bad_input where there are fewer than 2 vertices,
-/// two nodes have the same x, or nodes are fixed that may not be. Collective.
+/// `components`: those that contact moves; `may_be_fixed`: at some nodes. Throws bad_input where
+/// there are fewer than 2 vertices, two nodes have the same x, or one is fixed that may not be.
+/// Collective.
 std::vector<CurveNode> gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary,
-                                    const std::vector<int> &components, FixedNodes allowed);
+                                    const std::vector<int> &components, bool may_be_fixed);
 
 } // namespace rbvi

@@ -132,18 +132,15 @@ void add_edges(int first, int nodes, int degree, std::vector<int> &entities) {
 Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
                   const std::function<Point(const Point &)> &snap) {
   std::vector<int> components = entities.components;
-  const FixedNodes allowed = entities.partly_fixed ? FixedNodes::any
-                             : components.empty()
-                                 ? FixedNodes::whole // functions at fixed nodes are modified
-                                 : FixedNodes::none;
-  if (components.empty()) {
+  const bool sees_all = components.empty(); // then it takes fixed nodes into account
+  if (sees_all) {
     components.resize(static_cast<std::size_t>(dofs.components));
     std::iota(components.begin(), components.end(), 0);
   }
   Found found;
   found.mesh.per_entity = mesh.degree + 1;
   for (const std::string &name : entities.parts) {
-    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components, allowed);
+    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components, sees_all);
     add_edges(static_cast<int>(found.natural.size()), static_cast<int>(nodes.size()), mesh.degree,
               found.mesh.entities);
     found.mesh.parts.push_back(static_cast<int>(nodes.size()));

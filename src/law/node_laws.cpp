@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 
 #include <cmath>
+#include <string>
 
 namespace rbvi {
 
@@ -11,6 +12,23 @@ void FrictionBound::check() const {
   const bool valid =
       std::isfinite(coefficient) && std::isfinite(threshold) && coefficient >= 0 && threshold >= 0;
   if (!valid) throw bad_input("the coefficient and the threshold of friction must not be negative");
+}
+
+std::vector<FrictionBound> bounds_per_node(const std::vector<FrictionBound> &bounds, Index nodes) {
+  if (bounds.size() != 1 && bounds.size() != at(nodes))
+    throw failure("laws of contact: " + std::to_string(bounds.size()) +
+                  " bounds of friction instead of " + std::to_string(nodes));
+  for (const FrictionBound &bound : bounds)
+    bound.check();
+  return bounds.size() == 1 ? std::vector(at(nodes), bounds.front()) : bounds;
+}
+
+std::vector<FrictionBound> bounds_at(const std::vector<FrictionBound> &bounds,
+                                     const std::vector<Index> &nodes) {
+  std::vector<FrictionBound> result;
+  for (const Index j : nodes)
+    result.push_back(bounds[at(j)]);
+  return result;
 }
 
 Vector values_of(const FrictionBound &bound, const Vector &normal) {

@@ -12,14 +12,15 @@ namespace rbvi {
 
 namespace {
 
-/// None without friction.
-std::vector<FrictionBound> bounds_at(const Scene &scene, const Contact &contact,
-                                     const std::vector<Mu> &set) {
-  std::vector<FrictionBound> bounds;
-  if (!has_friction(scene)) return bounds;
+/// Of the columns of the nodal dual basis, at every mu.
+std::vector<NodeLaws> laws_at(const Problem &problem, const Matrix &nodal,
+                              const std::vector<Mu> &set) {
+  const ColumnLaws columns = laws_of_columns(problem.contact(), nodal);
+  std::vector<NodeLaws> laws;
   for (const Mu &mu : set)
-    bounds.push_back(contact.interfaces.front()->bound(expand(scene.parameters, mu)));
-  return bounds;
+    laws.push_back(
+        rbvi::laws_at(columns, problem.contact(), expand(problem.scene().parameters, mu)));
+  return laws;
 }
 
 } // namespace
@@ -41,17 +42,11 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
                     "collocated, cones or joint");
   if (reduction == MultiplierReduction::condensed) return;
   if (follows_state(scene) && keeps_law(reduction))
-    throw bad_input("contact that follows the displacement is reduced by -multiplier_reduction "
-                    "condensed, or without friction by cone");
+    throw bad_input(
+        "H of contact that follows the displacement changes with every step, so that it "
+        "has no terms on fewer functions: use -multiplier_reduction condensed, or "
+        "without friction cone");
   if (!keeps_law(reduction)) return;
-  if (scene.contacts.size() > 1)
-    throw bad_input("several contact interfaces have laws of their own: use -multiplier_reduction "
-                    "condensed, or cone without friction");
-  if (!separable_contact(scene))
-    throw bad_input("B of this contact does not separate: use -multiplier_reduction cone or "
-                    "condensed");
-  if (!has_friction(scene) && reduction != MultiplierReduction::collocated)
-    throw bad_input("the scene has no friction: use -multiplier_reduction condensed or collocated");
   if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
     throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
                     "-multiplier_reduction " +
@@ -102,7 +97,7 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
     const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
     bases.multipliers =
         make_multiplier_basis(nodal_coefficients(nodal, multipliers), w,
-                              bounds_at(scene, problem.contact(), training), choice, options.cone);
+                              laws_at(problem, nodal, training), choice, options.cone);
   }
   if (!will_run(stages, stage::pga)) return bases;
   std::vector<ContactPoint> points = contact_points(samples);
@@ -145,7 +140,9 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
   const Scene &scene = problem.scene();
   NodalLaw &law = *model.law;
   LawSolver solver(model, problem.scene(), problem.contact());
-  const Index nodes = law.normal;
+  const Index normal = law.normal, tangential = model.generators - normal;
+  const std::vector<Index> nodes =
+      nodes_with_tangent(laws_of_columns(problem.contact(), model.dual_basis).laws);
   const Matrix &nodal = model.dual_basis;
   const Matrix coefficients = nodal_coefficients(nodal, multipliers_of(samples));
   std::vector<GcnsSample> problems;
@@ -154,12 +151,16 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
     LawAnswer unused;
     const BodyAtMu body = solver.body_at(all, unused);
     CollocatedProblem reduced = collocated_problem(law.basis, body);
-    problems.push_back({std::move(reduced.h), std::move(reduced.q), body.bound,
-                        coefficients.col(static_cast<Index>(p)).tail(nodes)});
+    problems.push_back({std::move(reduced.h), std::move(reduced.q),
+                        bounds_at(body.laws.bound, nodes),
+                        coefficients.col(static_cast<Index>(p)).tail(tangential)});
   }
   const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
-  Gcns selected = select_collocation_nodes(problems, law.basis.normal, law.basis.tangential,
-                                           w.block(nodes, nodes, nodes, nodes), options);
+  Gcns selected =
+      select_collocation_nodes(problems, law.basis.normal(nodes, Eigen::all), law.basis.tangential,
+                               w.block(normal, normal, tangential, tangential), options);
+  for (int &node : selected.nodes)
+    node = static_cast<int>(nodes[static_cast<std::size_t>(node)]);
   law.basis.nodes = selected.nodes;
   return selected;
 }

@@ -321,10 +321,11 @@ void reduce_pair(Problem &problem, const std::vector<Sample> &samples, ReduceOpt
   result.ring = pair.ring;
 }
 
-/// The published reduction interpolates B^n and B^tau apart. The others see B in the condensed
-/// operator alone, which grows with the square of the number of its terms.
-std::optional<RowOptions> rows_apart(const ReduceOptions &options) {
-  if (options.multipliers.reduction != MultiplierReduction::collocated) return std::nullopt;
+/// The published reduction, of one interface, interpolates B^n and B^tau apart. The others see B in
+/// the condensed operator alone, which grows with the square of the number of its terms.
+std::optional<RowOptions> rows_apart(const Scene &scene, const ReduceOptions &options) {
+  if (options.multipliers.reduction != MultiplierReduction::collocated || scene.contacts.size() > 1)
+    return std::nullopt;
   RowOptions apart{options.eim, options.eim};
   apart.normal.tolerance = options.eim_normal.value_or(options.eim.tolerance);
   apart.tangential.tolerance = options.eim_tangential.value_or(options.eim.tolerance);
@@ -369,7 +370,7 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   Reduction result;
   result.stages = reduction_stages(problem.scene(), options);
   result.affine = timed(result.stages, stage::interpolation, [&] {
-    return separate(problem, training, options.eim, rows_apart(options));
+    return separate(problem, training, options.eim, rows_apart(problem.scene(), options));
   });
   if (by_nitsche(problem.scene()))
     reduce_nitsche(problem, samples, options, result);

@@ -1,5 +1,6 @@
 #include "rbvi/problem/problem.hpp"
 
+#include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
@@ -54,7 +55,7 @@ bool Problem::is_split(std::size_t interface) const {
 }
 
 /// Each rank the rows that it owns, then, where all are wanted, those of the others.
-void Problem::assemble_split(ContactRows rows) {
+void Problem::assemble_split(ContactRows rows, const Vector &slip) {
   const DualLayout &layout = dual_layout();
   std::vector<ContactOperators> all(contact_.interfaces.size());
   collectively(comm(), [&] {
@@ -69,9 +70,10 @@ void Problem::assemble_split(ContactRows rows) {
     static_cast<ContactOperators &>(operators_) = std::move(all.front());
   else
     stack(contact_, all, operators_);
+  if (slip.size() > 0) operators_.g += added_by_history(contact_, slip, operators_.weights);
 }
 
-const Operators &Problem::assemble(const Mu &mu, ContactRows rows) {
+const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector &slip) {
   const FullMu all = expand(scene_->parameters, mu);
   check_contacts(*scene_, all);
   if (imposes_values(*scene_)) check_imposed(*scene_, all, mesh_, dofs_);
@@ -80,9 +82,9 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows) {
   for (std::size_t i = 0; i < contact_.interfaces.size(); ++i)
     any_split = any_split || is_split(i);
   if (any_split)
-    assemble_split(rows);
+    assemble_split(rows, slip);
   else
-    assemble_contact(mu, operators_);
+    assemble_contact(mu, operators_, {{}, slip});
   const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
   if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
     map_cells(*scene_, all, mesh_, cells_);

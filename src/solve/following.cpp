@@ -1,3 +1,4 @@
+#include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -35,13 +36,13 @@ Vector free_displacement(KSP ksp, const Trace &trace, Vec f) {
 } // namespace
 
 MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compliance, Operators &op,
-                             const NonlinearStart &start, const NonlinearOptions &options,
-                             NonlinearResult &steps) {
+                             const Vector &slip, const NonlinearStart &start,
+                             const NonlinearOptions &options, NonlinearResult &steps) {
   const Contact &contact = problem.contact();
   SolvedColumns columns(ksp, problem.trace(), op.a, compliance);
   ContactOperators at_state;
   NonlinearContact nonlinear{[&](const Vector &state, Linearised &linearised) {
-                               assemble(contact, op.mu, {state}, at_state);
+                               assemble(contact, op.mu, {state, slip}, at_state);
                                linearised = {at_state.b, at_state.g, at_state.segments};
                              },
                              {},
@@ -57,12 +58,13 @@ MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compli
     };
   if (const ContactInterface *nodal = nodal_interface(contact)) {
     if (!compliance.nodal) compliance.nodal.emplace(nodal->averages());
-    nonlinear.nodal.emplace(NodalContact{nodal->nodal_at(op.mu), *compliance.nodal});
+    nonlinear.nodal.emplace(
+        NodalContact{nodal_with_history(contact, op.mu, slip, op.weights), *compliance.nodal});
   }
   steps = solve_nonlinear(nonlinear, start, options);
   if (!steps.converged)
     throw failure(failure_at(contact, op.mu, at_state, steps.last_x, steps.reason));
-  assemble(contact, op.mu, {steps.state}, op);
+  assemble(contact, op.mu, {steps.state, slip}, op);
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.u.put()));
   result.lambda = steps.x;

@@ -1,5 +1,6 @@
 #include "rbvi/solve/high_fidelity.hpp"
 
+#include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
@@ -51,6 +52,14 @@ Outputs measure(const Problem &problem, const Operators &op, const Vector &weigh
   of_outputs.state = op.state;
   contact_outputs(problem.contact(), op.mu, of_outputs, result.lambda, 0, outputs);
   return outputs;
+}
+
+/// The history of friction that a solution leaves, all rows of B on this rank.
+Vector slip_left(const Problem &problem, const Operators &op, const Vector &before,
+                 const MethodResult &result) {
+  if (tangential_size(problem.contact()) == 0) return {};
+  return slip_of(problem.contact(), op.b * restrict_to(problem.trace(), result.u.get()) - op.g,
+                 op.weights, before);
 }
 
 /// Where a few dozen accelerated Uzawa steps see contact: far cheaper than the columns of all
@@ -198,7 +207,8 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
   return std::nullopt;
 }
 
-MethodResult HighFidelity::run_active_set(const Mu &mu, const Operators &op, HfSolution &solution) {
+MethodResult HighFidelity::run_active_set(const Mu &mu, const Operators &op, const Vector &slip,
+                                          HfSolution &solution) {
   std::string complaint;
   std::optional<MethodResult> eliminated;
   if (grids_) eliminated = run_eliminated(mu, op, complaint);
@@ -207,10 +217,11 @@ MethodResult HighFidelity::run_active_set(const Mu &mu, const Operators &op, HfS
   if (!result.converged) return result;
   solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
   solution.outputs = measure(problem_, op, op.weights, result, solution);
+  solution.slip = slip_left(problem_, op, slip, result);
   return result;
 }
 
-MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
+MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest, const Vector &slip,
                                          HfSolution &solution) {
   NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), at_rest.mu), {}};
   if (!solved_.empty()) start = {nearest(mu)->state, nearest(mu)->start.lambda};
@@ -218,17 +229,19 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
   Operators op = at_rest;
   NonlinearResult steps;
   MethodResult result = solve_following(ksp_.get(), problem_, compliance_ ? *compliance_ : own, op,
-                                        start, options_.nonlinear, steps);
+                                        slip, start, options_.nonlinear, steps);
   solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
   solution.outputs = measure(problem_, op, op.weights, result, solution);
   solution.outputs.load_steps = steps.load_steps;
+  solution.slip = slip_left(problem_, op, slip, result);
   solution.outputs.contraction = steps.rate;
   solution.states = std::move(steps.iterates);
   solution.states.push_back(std::move(steps.state));
   return result;
 }
 
-MethodResult HighFidelity::run_over_ranks(const Operators &op, HfSolution &solution) {
+MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &slip,
+                                          HfSolution &solution) {
   const DualLayout &layout = problem_.dual_layout();
   const DistributedContact contact = distribute(layout, op, op.laws);
   if (!w_product_) w_product_ = distribute(layout, problem_.w_product());
@@ -242,6 +255,12 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, HfSolution &solut
   solution.kkt = kkt_residual(contact, op, result.u.get(), lambda.get());
   const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
   solution.outputs = measure(problem_, op, weights, result, solution);
+  if (tangential_size(problem_.contact()) == 0) return result;
+  Handle<Vec> excess;
+  RBVI_CALL(VecDuplicate(contact.g.get(), excess.put()));
+  RBVI_CALL(MatMult(contact.b.get(), result.u.get(), excess.get()));
+  RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
+  solution.slip = slip_of(problem_.contact(), on_every_rank(layout, excess.get()), weights, slip);
   return result;
 }
 
@@ -276,13 +295,16 @@ void HighFidelity::complete_compliance(Mat a) {
     compliance_->require_all(problem_.trace(), a);
 }
 
-HfSolution HighFidelity::solve(const Mu &mu) {
+HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
+  check_history(problem_.contact(), slip);
+  if (nitsche_ && slip.size() > 0)
+    throw bad_input("a history of friction is for multipliers: use -formulation mixed");
   const double start = MPI_Wtime();
   if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
   ++solves_;
   const bool condensed = options_.method == HfMethod::active_set;
   const Operators &op =
-      problem_.assemble(mu, condensed || nitsche_ ? ContactRows::all : ContactRows::own);
+      problem_.assemble(mu, condensed || nitsche_ ? ContactRows::all : ContactRows::own, slip);
   if (nitsche_) {
     HfSolution solution = solve_nitsche(mu, op);
     solution.outputs.seconds = MPI_Wtime() - start;
@@ -292,9 +314,9 @@ HfSolution HighFidelity::solve(const Mu &mu) {
   HfSolution solution;
   const bool follows = follows_state(problem_.contact());
   if (condensed) complete_compliance(op.a);
-  const MethodResult result = follows     ? run_following(mu, op, solution)
-                              : condensed ? run_active_set(mu, op, solution)
-                                          : run_over_ranks(op, solution);
+  const MethodResult result = follows     ? run_following(mu, op, slip, solution)
+                              : condensed ? run_active_set(mu, op, slip, solution)
+                                          : run_over_ranks(op, slip, solution);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
   solution.u = whole_displacement(problem_, mu, result.u.get());

@@ -25,6 +25,18 @@ ReduceOptions condensed_law(double eim = 1e-4) {
   return options;
 }
 
+/// All modes and generators that the samples give.
+ReduceOptions functions_of(MultiplierReduction reduction, bool exact) {
+  ReduceOptions options;
+  options.multipliers.reduction = reduction;
+  options.multipliers.exact = exact;
+  options.multipliers.tangential = 1e-8;
+  options.pod.tolerance = 1e-8;
+  options.cone.tolerance = 1e-4;
+  options.cone.type = ConeType::mcpg;
+  return options;
+}
+
 struct Largest {
   double u, lambda, tangential, energy;
 };
@@ -128,6 +140,75 @@ TEST(Reductions, CollocationServesAnObstacle) {
   const Largest errors = errors_of(r, "random:6:3");
   EXPECT_LE(errors.u, 1e-4);
   EXPECT_LE(errors.lambda, 1e-4);
+}
+
+/// Two interfaces in one problem, the lower one with friction or neither, by reductions that once
+/// were those of a single support. The functions hold all training samples.
+TEST(Reductions, ServeSeveralInterfacesWithLawsOfTheirOwn) {
+  for (const char *friction : {"none", "coulomb"}) {
+    Scene scene = make_scene("roller", {{"arc_edges", "16"}, {"friction", friction}});
+    scene.parameters = free_only(scene.parameters, "top");
+    Reduced r(scene, "grid:25");
+    for (const MultiplierReduction reduction :
+         {MultiplierReduction::collocated, MultiplierReduction::cones, MultiplierReduction::joint})
+      for (const bool exact : {true, false}) {
+        SCOPED_TRACE(multiplier_reduction_names()[static_cast<std::size_t>(reduction)] +
+                     std::string(", friction ") + friction + (exact ? ", mended" : ""));
+        r.reduce(functions_of(reduction, exact));
+        EXPECT_LT(r.model.law->basis.normal.cols(), r.model.law->normal);
+        const Largest errors = errors_of(r, "random:6:3");
+        EXPECT_LE(errors.u, exact ? 1e-5 : 1e-3);
+        EXPECT_LE(errors.lambda, exact ? 1e-5 : 5e-3);
+        EXPECT_LE(errors.tangential, exact ? 1e-5 : 1e-2);
+        EXPECT_LE(errors.energy, exact ? 1e-6 : 1e-3);
+      }
+  }
+}
+
+/// Two bodies, B evaluated at each mu: it is exact, without interpolation.
+TEST(Reductions, ServeTwoBodies) {
+  Reduced r(make_scene("two_disks", {{"arc_edges", "24"}}), "grid:25");
+  for (const MultiplierReduction reduction :
+       {MultiplierReduction::collocated, MultiplierReduction::cones, MultiplierReduction::joint})
+    for (const bool exact : {true, false}) {
+      SCOPED_TRACE(multiplier_reduction_names()[static_cast<std::size_t>(reduction)] +
+                   (exact ? ", mended" : ""));
+      r.reduce(functions_of(reduction, exact));
+      EXPECT_EQ(r.model.b.size(), 0);
+      EXPECT_TRUE(r.model.evaluates_contact());
+      const Largest errors = errors_of(r, "random:6:3");
+      EXPECT_LE(errors.u, 5e-3);
+      EXPECT_LE(errors.lambda, exact ? 1e-3 : 5e-2);
+      EXPECT_LE(errors.energy, 1e-3);
+    }
+}
+
+TEST(Reductions, CollocationOfTwoBodiesReturnsItsTrainingSamples) {
+  Reduced r(make_scene("two_disks", {{"arc_edges", "24"}}), "grid:9");
+  ReduceOptions options = everything();
+  options.multipliers.reduction = MultiplierReduction::collocated;
+  options.multipliers.exact = false;
+  options.cone.type = ConeType::mcpg;
+  r.reduce(options);
+  EXPECT_GT(r.model.supremizers, 0);
+  EXPECT_EQ(r.model.law->condensed.terms.size(), 0);
+  const ModelErrors errors = r.errors_at(r.samples);
+  EXPECT_EQ(errors.failed, 0);
+  EXPECT_LE(errors.u.maxCoeff(), 1e-8);
+  EXPECT_LE(errors.lambda.maxCoeff(), 1e-6);
+}
+
+TEST(Reductions, ContactThatFollowsTheDisplacementHasNoFixedOperator) {
+  const Scene scene = make_scene("two_disks", {{"kinematics", "large"}});
+  ReduceOptions options;
+  options.multipliers.reduction = MultiplierReduction::collocated;
+  try {
+    check_reduction(scene, options);
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_NE(std::string(error.what()).find("changes with every step"), std::string::npos);
+  }
 }
 
 /// What makes a model answer without the code of its scene.

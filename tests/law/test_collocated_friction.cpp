@@ -18,11 +18,16 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+const FrictionBound &bound_at(const CollocatedProblem &p, Index node) {
+  return p.bounds.size() == 1 ? p.bounds.front() : p.bounds[static_cast<std::size_t>(node)];
+}
+
 Vector bounds_of(const CollocatedProblem &p, const Vector &x) {
   const Vector pressure = p.normal_rows * x.head(p.normal_rows.cols());
-  return pressure.unaryExpr([&p](double value) {
-    const bool held = value > 0 || !p.bound.only_in_contact;
-    return p.bound.coefficient * value + (held ? p.bound.threshold : 0);
+  return Vector::NullaryExpr(pressure.size(), [&](Index j) {
+    const FrictionBound &bound = bound_at(p, j);
+    const bool held = pressure[j] > 0 || !bound.only_in_contact;
+    return bound.coefficient * pressure[j] + (held ? bound.threshold : 0);
   });
 }
 
@@ -83,7 +88,7 @@ CollocatedProblem random_problem(Random &random, Index generators, Index modes, 
           random.vector(n),
           random.matrix(nodes, generators).cwiseMax(0),
           random.matrix(nodes, modes),
-          {}};
+          {FrictionBound{}}};
 }
 
 /// A round punch on a half-plane of m nodes, pushed along it.
@@ -93,7 +98,7 @@ CollocatedProblem punch(Index m, double radius, double slide, double coupling = 
                       Vector(2 * m),
                       Matrix::Identity(m, m),
                       Matrix::Identity(m, m),
-                      {}};
+                      {FrictionBound{}}};
   for (Index i = 0; i < m; ++i) {
     const double u = (static_cast<double>(i) - 0.45 * size) / radius;
     p.q[i] = u * u - 1;
@@ -125,9 +130,9 @@ std::vector<Vector> brute_force(const CollocatedProblem &p) {
         system(r + s + j, r + s + j) = 1;
         continue;
       }
-      system.row(r + s + j) << -side * p.bound.coefficient * p.normal_rows.row(j),
+      system.row(r + s + j) << -side * bound_at(p, j).coefficient * p.normal_rows.row(j),
           p.tangential_rows.row(j), Vector::Zero(m).transpose();
-      right[r + s + j] = side * p.bound.threshold;
+      right[r + s + j] = side * bound_at(p, j).threshold;
     }
     Vector x = system.completeOrthogonalDecomposition().solve(right).head(r + s);
     for (Index i = 0; i < r; ++i)
@@ -148,7 +153,7 @@ TEST(CollocatedFriction, LawsHoldForRandomProblems) {
   for (int k = 0; k < 200; ++k) {
     CollocatedProblem p = random_problem(random, 1 + k % 9, 1 + (k / 3) % 7, k % 12);
     for (const FrictionBound &bound : all_bounds) {
-      p.bound = bound;
+      p.bounds = {bound};
       // Where the bound jumps at the first pressure, a problem need not have a solution.
       if (!bound.only_in_contact) expect_solved(p);
     }
@@ -160,7 +165,7 @@ TEST(CollocatedFriction, IsTheOneThatTryingAllSetsFinds) {
   for (int k = 0; k < 20; ++k) {
     CollocatedProblem p = random_problem(random, 3, 1 + k % 3, 3);
     for (const FrictionBound &bound : all_bounds) {
-      p.bound = bound;
+      p.bounds = {bound};
       if (bound.only_in_contact || bound.threshold == 0) continue;
       const std::vector<Vector> found = brute_force(p);
       ASSERT_FALSE(found.empty());
@@ -171,13 +176,29 @@ TEST(CollocatedFriction, IsTheOneThatTryingAllSetsFinds) {
   }
 }
 
+/// Nodes of interfaces that have laws of their own.
+TEST(CollocatedFriction, EveryNodeHasABoundOfItsOwn) {
+  Random random(11);
+  for (int k = 0; k < 20; ++k) {
+    CollocatedProblem p = random_problem(random, 3, 1 + k % 3, 3);
+    p.bounds = {{0.2, 0.1, false}, {0, 0.3, false}, {0.4, 0.02 * k, false}};
+    const Vector x = expect_solved(p).x;
+    for (const Vector &other : brute_force(p))
+      EXPECT_LT(distance(x, other), 1e-10);
+    p.bounds.assign(3, {0.2, 0.1, false});
+    const Vector alike = expect_solved(p).x;
+    p.bounds.resize(1);
+    EXPECT_EQ(alike, expect_solved(p).x);
+  }
+}
+
 TEST(CollocatedFriction, NodalBasesGiveTheFullProblem) {
   for (const double slide : {0.0, 0.1, 0.6})
     for (const double radius : {3.0, 8.0, 14.0})
       for (const FrictionBound &bound : all_bounds) {
         if (bound.coefficient == 0 && bound.threshold == 0) continue;
         CollocatedProblem p = punch(40, radius, slide);
-        p.bound = bound;
+        p.bounds = {bound};
         const FrictionResult full = solve_friction(columns_of(p.h), p.q, 2, bound);
         ASSERT_TRUE(full.converged) << full.reason;
         EXPECT_LT(distance(expect_solved(p).x, full.x), 1e-10);
@@ -187,7 +208,7 @@ TEST(CollocatedFriction, NodalBasesGiveTheFullProblem) {
 TEST(CollocatedFriction, WithoutNodesTheTractionIsFree) {
   Random random(3);
   CollocatedProblem p = random_problem(random, 4, 3, 0);
-  p.bound.coefficient = 0.3;
+  p.bounds = {{0.3, 0, false}};
   const CollocatedResult result = expect_solved(p);
   EXPECT_LT(result.w.tail(3).norm(), 1e-13 * p.q.norm());
 }
@@ -206,10 +227,10 @@ TEST(CollocatedFriction, GeneratorsOrModesAlone) {
   Random random(5);
   for (const FrictionBound &bound : all_bounds) {
     CollocatedProblem p = random_problem(random, 4, 0, 3);
-    p.bound = bound;
+    p.bounds = {bound};
     expect_solved(p);
     p = random_problem(random, 0, 4, 6);
-    p.bound = bound;
+    p.bounds = {bound};
     expect_solved(p);
   }
 }
@@ -218,7 +239,7 @@ TEST(CollocatedFriction, MoreBoundsThanModes) {
   Random random(6);
   for (int k = 0; k < 40; ++k) {
     CollocatedProblem p = random_problem(random, 5, 3, 6);
-    p.bound = {0.3, k % 2 == 0 ? 0.0 : 0.05, false};
+    p.bounds = {{0.3, k % 2 == 0 ? 0.0 : 0.05, false}};
     CollocatedProblem twice = p;
     twice.normal_rows = p.normal_rows.replicate(3, 1);
     twice.tangential_rows = p.tangential_rows.replicate(3, 1);
@@ -230,7 +251,7 @@ TEST(CollocatedFriction, MoreBoundsThanModes) {
 TEST(CollocatedFriction, ModesThatVanishAtANodeAreNotHeldThere) {
   Random random(7);
   CollocatedProblem p = random_problem(random, 4, 3, 5);
-  p.bound.coefficient = 0.3;
+  p.bounds = {{0.3, 0, false}};
   const Vector x = expect_solved(p).x;
   p.normal_rows.conservativeResize(7, Eigen::NoChange);
   p.tangential_rows.conservativeResize(7, Eigen::NoChange);
@@ -244,7 +265,7 @@ TEST(CollocatedFriction, WarmIsColdAndFaster) {
   Vector last;
   for (int k = 0; k < 60; ++k) {
     CollocatedProblem p = punch(30, 4 + 0.1 * k, 0.3);
-    p.bound.coefficient = 0.3;
+    p.bounds = {{0.3, 0, false}};
     const CollocatedResult first = expect_solved(p), second = expect_solved(p, last);
     EXPECT_LT(distance(second.x, first.x), 1e-10);
     EXPECT_LE(expect_solved(p, first.x).iterations, 1);
@@ -274,9 +295,11 @@ TEST(CollocatedFriction, SteepDependenceOnTheBoundsAtTheEdgeOfContact) {
   basis.bottomRightCorner(m, modes) = thin_svd(tractions).left.leftCols(modes);
   for (double radius = 4.3; radius < 26; radius += 0.4) {
     const CollocatedProblem full = punch(m, radius, 0.3, 0.8);
-    const CollocatedProblem p{basis.transpose() * full.h * basis, basis.transpose() * full.q,
-                              basis.topLeftCorner(m, generators), basis.bottomRightCorner(m, modes),
-                              bound};
+    const CollocatedProblem p{basis.transpose() * full.h * basis,
+                              basis.transpose() * full.q,
+                              basis.topLeftCorner(m, generators),
+                              basis.bottomRightCorner(m, modes),
+                              {bound}};
     EXPECT_LT(expect_solved(p).iterations, 40) << radius;
   }
 }
@@ -285,14 +308,14 @@ TEST(CollocatedFriction, DoesNotDependOnUnits) {
   Random random(8);
   for (int k = 0; k < 20; ++k) {
     CollocatedProblem p = random_problem(random, 5, 4, 7);
-    p.bound = {0.3, 0.05, false};
+    p.bounds = {{0.3, 0.05, false}};
     const Vector x = expect_solved(p).x;
     const Vector unit = random.vector(9).unaryExpr([](double v) { return std::pow(10, 6 * v); });
     CollocatedProblem other{1e9 * unit.asDiagonal() * p.h * unit.asDiagonal(),
                             1e9 * 1e-4 * unit.cwiseProduct(p.q),
                             p.normal_rows * unit.head(5).asDiagonal(),
                             p.tangential_rows * unit.tail(4).asDiagonal(),
-                            {0.3, 0.05 * 1e-4, false}};
+                            {{0.3, 0.05 * 1e-4, false}}};
     EXPECT_LT(distance(1e4 * unit.cwiseProduct(expect_solved(other).x), x), 1e-10);
   }
 }
@@ -303,9 +326,9 @@ TEST(CollocatedFriction, ThresholdsInContactOnly) {
                       Vector{{1, -1, -3, -3}},
                       Matrix::Identity(2, 2),
                       Matrix::Identity(2, 2),
-                      {0.5, 1, true}};
+                      {{0.5, 1, true}}};
   EXPECT_LT((expect_solved(p).x - Vector{{0, 1, 0, 1.5}}).norm(), 1e-14);
-  p.bound.only_in_contact = false;
+  p.bounds.front().only_in_contact = false;
   EXPECT_LT((expect_solved(p).x - Vector{{0, 1, 1, 1.5}}).norm(), 1e-14);
 }
 
@@ -327,7 +350,10 @@ TEST(CollocatedFriction, SaysWhatIsWrongWithTheInput) {
   bad.h.row(1) = bad.h.row(0);
   EXPECT_THROW(solve_collocated(bad), Error);
   bad = good;
-  bad.bound.threshold = -1;
+  bad.bounds = std::vector<FrictionBound>(3);
+  EXPECT_THROW(solve_collocated(bad), Error);
+  bad = good;
+  bad.bounds.front().threshold = -1;
   try {
     solve_collocated(bad);
     FAIL();

@@ -60,7 +60,7 @@ LeastSquaresProblem reduced(const Matrix &h, const Vector &q, const Matrix &basi
           .slip = q(shifted),
           .gap_scale = diagonal(nodes),
           .slip_scale = diagonal(shifted),
-          .bound = bound};
+          .bounds = {bound}};
 }
 
 std::vector<NodeState> node_states(const LeastSquaresResult &result) {
@@ -308,6 +308,27 @@ TEST(LeastSquaresFriction, EndsForBasesThatHoldNothing) {
   EXPECT_GT(alternate, 10);
 }
 
+/// Nodes of interfaces that have laws of their own, some of them without friction.
+TEST(LeastSquaresFriction, EveryNodeHasABoundOfItsOwn) {
+  Random random(12);
+  for (int k = 0; k < 40; ++k) {
+    const Index m = 2 + k % 8, n = 2 * m;
+    const Matrix b = random.matrix(n, n), h = b * b.transpose() + 0.5 * Matrix::Identity(n, n);
+    const Vector q = random.vector(n);
+    NodeLaws laws = uniform_laws(m, 2, {});
+    for (Index i = 0; i < m; ++i)
+      laws.bound[static_cast<std::size_t>(i)] = {i % 3 == 0 ? 0.0 : 0.2, i % 3 == 2 ? 0.1 : 0.0,
+                                                 false};
+    const FrictionResult expected = solve_friction(columns_of(h), q, laws);
+    if (!expected.converged) continue;
+    LeastSquaresProblem p = reduced(h, q, Matrix::Identity(n, n), all_nodes(m), {});
+    p.bounds = laws.bound;
+    const LeastSquaresResult result = solve_least_squares(p);
+    EXPECT_TRUE(result.converged) << result.reason;
+    EXPECT_LT((result.y - expected.x).norm(), 1e-10 * (1 + expected.x.norm()));
+  }
+}
+
 TEST(LeastSquaresFriction, RefusesBadInput) {
   const Matrix h = half_plane(5);
   const LeastSquaresProblem good =
@@ -334,11 +355,12 @@ TEST(LeastSquaresFriction, RefusesBadInput) {
   EXPECT_EQ(status([&](P &p) { p.normal(1, 1) = nan; }), Status::failed);
   EXPECT_EQ(status([&](P &p) { p.gap[1] = nan; }), Status::failed);
   EXPECT_EQ(status([](P &p) { p.gap_scale[1] = 0; }), Status::failed);
-  EXPECT_EQ(status([](P &p) { p.bound.coefficient = -1; }), Status::bad_input);
-  EXPECT_EQ(status([&](P &p) { p.bound.threshold = nan; }), Status::bad_input);
+  EXPECT_EQ(status([](P &p) { p.bounds.front().coefficient = -1; }), Status::bad_input);
+  EXPECT_EQ(status([&](P &p) { p.bounds.front().threshold = nan; }), Status::bad_input);
+  EXPECT_EQ(status([](P &p) { p.bounds.resize(3); }), Status::failed);
   // Two equations for three modes.
   EXPECT_EQ(status([&](P &p) {
-              p = reduced(h, Vector::Ones(10), Matrix::Identity(10, 3), {2}, p.bound);
+              p = reduced(h, Vector::Ones(10), Matrix::Identity(10, 3), {2}, p.bounds.front());
             }),
             Status::failed);
 }

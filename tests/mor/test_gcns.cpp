@@ -58,7 +58,7 @@ struct Reduced {
     for (std::size_t k = 0; k < p.gaps.size(); ++k)
       samples.push_back({basis.transpose() * p.h * basis,
                          basis.transpose() * p.gaps[k],
-                         {coefficient, 0, false},
+                         {{coefficient, 0, false}},
                          p.tractions.col(static_cast<Index>(k))});
   }
   Gcns select(const GcnsOptions &options = {}) const {
@@ -66,7 +66,7 @@ struct Reduced {
   }
   CollocatedResult solve(std::size_t sample, const std::vector<int> &nodes) const {
     return solve_collocated({samples[sample].h, samples[sample].q, normal(nodes, Eigen::all),
-                             tangential(nodes, Eigen::all), samples[sample].bound});
+                             tangential(nodes, Eigen::all), samples[sample].bounds});
   }
   /// e_GCNS of these nodes, and the largest violation at them.
   std::pair<double, double> measure(const std::vector<int> &nodes) const {
@@ -75,7 +75,7 @@ struct Reduced {
       const Vector x = solve(k, nodes).x;
       const Vector traction = tangential * x.tail(tangential.cols());
       const Vector pressure = normal * x.head(normal.cols());
-      const Vector excess = traction.cwiseAbs() - samples[k].bound.coefficient * pressure;
+      const Vector excess = traction.cwiseAbs() - samples[k].bounds.front().coefficient * pressure;
       error =
           std::max(error, (samples[k].tangential - traction).norm() / samples[k].tangential.norm());
       for (const int j : nodes)

@@ -5,9 +5,12 @@
 #include "block_on_support.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/support/support.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/element/facet_forms.hpp"
 
 #include <gtest/gtest.h>
+
+#include <sstream>
 
 namespace rbvi {
 namespace {
@@ -123,6 +126,103 @@ TEST(FixedNodes, ABlockBetweenWallsRestsOnAFloor) {
         const double finer = *solve(scene, mu, "", 1).solution.outputs.normal_force;
         EXPECT_NEAR(finer, *s.outputs.normal_force, 0.1 * finer);
       }
+}
+
+/// The left half of a block, or all of it, whose top is pushed down onto a floor: on the axis the
+/// half moves up and down alone.
+Scene pressed(const std::string &degree, bool friction, bool lumped, bool half) {
+  Scene scene = held_block(degree, friction, lumped);
+  scene.mesh.facts.clear(); // it is half as wide
+  scene.motion = [](const FullMu &mu, const Point &) { return Point{0, -mu[0], 0}; };
+  scene.fixed = {{"top", {}}};
+  if (half) scene.fixed.push_back({"sides", {0}});
+  scene.f.clear();
+  return scene;
+}
+
+/// Triangles of [0, 1] x [0, 0.5], mirrored about x = 0.5, or of the left half alone; `sides` is
+/// its right side.
+std::string rectangle(bool half) {
+  const int columns = half ? 8 : 16, rows = 8;
+  std::ostringstream nodes, cells;
+  const auto number = [&](int i, int j) { return 1 + i * (rows + 1) + j; };
+  int count = 0;
+  for (int i = 0; i <= columns; ++i)
+    for (int j = 0; j <= rows; ++j)
+      nodes << number(i, j) << ' ' << i / 16.0 << ' ' << 0.5 * j / rows << " 0\n";
+  const auto triangle = [&](int a, int b, int c) {
+    cells << ++count << " 2 2 1 1 " << a << ' ' << b << ' ' << c << '\n';
+  };
+  const auto edge = [&](int of, int a, int b) {
+    cells << ++count << " 1 2 " << of << ' ' << of << ' ' << a << ' ' << b << '\n';
+  };
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const int a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1),
+                d = number(i, j + 1);
+      if (i < 8) {
+        triangle(a, b, c);
+        triangle(a, c, d);
+      } else {
+        triangle(a, b, d);
+        triangle(b, c, d);
+      }
+    }
+  for (int i = 0; i < columns; ++i) {
+    edge(3, number(i, rows), number(i + 1, rows));
+    edge(4, number(i, 0), number(i + 1, 0));
+  }
+  for (int j = 0; j < rows; ++j) // the axis of the half
+    edge(2, number(columns, j), number(columns, j + 1));
+  std::ostringstream text;
+  text << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 2 \"sides\"\n1 3 "
+          "\"top\"\n1 4 \"contact\"\n$EndPhysicalNames\n$Nodes\n"
+       << number(columns, rows) << '\n'
+       << nodes.str() << "$EndNodes\n$Elements\n"
+       << count << '\n'
+       << cells.str() << "$EndElements\n";
+  return text.str();
+}
+
+TEST(FixedNodes, HalfOfASymmetricBodyAnswersAsTheWhole) {
+  const Mu mu{0.05, 0.02, 0.2};
+  for (const std::string degree : {"1", "2"})
+    for (const bool friction : {false, true})
+      for (const bool lumped : {false, true}) {
+        SCOPED_TRACE("degree " + degree + (friction ? ", friction" : "") +
+                     (lumped ? ", lumped" : ""));
+        const auto answer = [&](bool is_half, HfMethod method = HfMethod::active_set) {
+          const TemporaryFile file(rectangle(is_half));
+          return solve(pressed(degree, friction, lumped, is_half), mu, file.name(), 0, method);
+        };
+        const Solved half = answer(true), whole = answer(false);
+        const Index nodes = std::ssize(half.nodes), all = std::ssize(whole.nodes);
+        ASSERT_EQ(all, 2 * nodes - 1);
+        EXPECT_LE(half.solution.kkt.largest(), 1e-11);
+        const Vector &one = half.solution.lambda, &other = whole.solution.lambda;
+        EXPECT_LE((one.head(nodes) - other.head(nodes)).norm(), 1e-9 * one.norm());
+        EXPECT_NEAR(2 * *half.solution.outputs.normal_force, *whole.solution.outputs.normal_force,
+                    1e-9);
+        if (!friction) continue;
+        EXPECT_LE((one.tail(nodes) - other.segment(all, nodes)).norm(), 1e-9 * one.norm());
+        EXPECT_GT(one.tail(nodes).norm(), 0.01 * one.norm());
+        EXPECT_EQ(one[2 * nodes - 1], 0) << "no traction on the axis";
+        const Solved steps = answer(true, HfMethod::uzawa);
+        EXPECT_LE((steps.solution.lambda - one).norm(), 1e-4 * one.norm());
+      }
+}
+
+TEST(FixedNodes, ANodeThatCannotMoveAlongItsNormalIsRefused) {
+  const TemporaryFile file(rectangle(true));
+  Scene scene = pressed("1", false, false, true);
+  scene.fixed = {{"sides", {1}}, {"top", {}}};
+  try {
+    solve(scene, {0.05, 0.02, 0.2}, file.name());
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_NE(std::string(error.what()).find("fixed along the normal"), std::string::npos);
+  }
 }
 
 } // namespace

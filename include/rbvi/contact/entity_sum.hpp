@@ -77,6 +77,8 @@ private:
   void visit_entities(const FullMu &mu, const std::vector<Point> &mapped,
                       const std::vector<bool> &entities, Visit &&visit) const;
   void check_lengths(const FullMu &mu, const std::vector<Point> &mapped) const;
+  /// Throws bad_input where a node cannot move along its normal.
+  void check_partly_fixed(const WantedNodes &wanted, const ContactOperators &operators) const;
   void add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
                    Vector &weights) const;
 

@@ -55,11 +55,14 @@ struct DualSpace {
   Index size() const { return nodes() * components; }
 };
 
-/// What the condition may depend on beside mu: where the bodies are now. Small deformations ignore
-/// it.
+/// What the condition may depend on beside mu: where the bodies are now, which small deformations
+/// ignore, and how far they have slipped before.
 struct ContactState {
   /// At the columns of B, beside the motion of the scene and the imposed values; empty: zero.
   Vector displacement{};
+  /// The history of friction (contact/history.hpp), of all interfaces: what stacks their operators
+  /// takes it into g, an interface does not. Empty: they were at rest.
+  Vector slip{};
 };
 
 struct ContactOperators {
@@ -106,6 +109,9 @@ public:
 
   const InterfaceMesh &mesh() const { return mesh_; }
   const DualSpace &dual() const { return dual_; }
+  /// Dual nodes that are fixed in some directions, as on an axis of symmetry: they carry no
+  /// tangential traction, which for a symmetric answer is zero there.
+  std::vector<Index> partly_fixed() const;
 
   /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone. Rows of dual nodes
   /// that are not wanted may be left zero.

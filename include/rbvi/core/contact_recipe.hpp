@@ -34,8 +34,6 @@ struct InterfaceEntities {
   std::vector<std::string> parts;
   std::vector<int> components{}; ///< of the displacement that its kernels see; empty: all
   bool snapped = false;          ///< Scene::snap brings the middles of edges onto the curves
-  /// Curves: nodes may be fixed in some directions, as on an axis of symmetry.
-  bool partly_fixed = false;
 };
 
 /// A function of the parameters alone that an interface or its law is made of.

@@ -30,6 +30,14 @@ struct FrictionBound {
   void check() const;
 };
 
+/// One bound for each of so many nodes, from as many, or from one that is that of all. Throws
+/// failure for another number, bad_input for a bound that is negative.
+std::vector<FrictionBound> bounds_per_node(const std::vector<FrictionBound> &bounds, Index nodes);
+
+/// Those of some nodes.
+std::vector<FrictionBound> bounds_at(const std::vector<FrictionBound> &bounds,
+                                     const std::vector<Index> &nodes);
+
 /// s of each of these normal multipliers.
 Vector values_of(const FrictionBound &bound, const Vector &normal);
 

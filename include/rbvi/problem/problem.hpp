@@ -78,8 +78,9 @@ public:
   /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
   /// only where the parameters that they depend on have changed. Throws failure if a cell is
   /// inverted, bad_input for a coefficient that is not finite, and for imposed displacements that
-  /// are not or contradict each other.
-  const Operators &assemble(const Mu &mu, ContactRows rows = ContactRows::all);
+  /// are not or contradict each other. `slip`: the history of friction (contact/history.hpp).
+  const Operators &assemble(const Mu &mu, ContactRows rows = ContactRows::all,
+                            const Vector &slip = {});
   /// Not collective: the contact operators alone, all rows of B, G, weights and the nodal
   /// constraint.
   void assemble_contact(const Mu &mu, Operators &operators, const ContactState &state = {});
@@ -100,7 +101,7 @@ public:
 
 private:
   bool is_split(std::size_t interface) const;
-  void assemble_split(ContactRows rows);
+  void assemble_split(ContactRows rows, const Vector &slip);
 
   Scene given_; ///< without the loads of imposed values
   MeshOptions mesh_options_;

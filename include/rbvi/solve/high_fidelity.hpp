@@ -62,9 +62,10 @@ struct KktResidual {
 };
 
 struct HfSolution {
-  Vector u;                  ///< all dofs in natural order, on every rank; without the motion,
-                             ///< with the values that boundaries impose
-  Vector lambda;             ///< dual dofs
+  Vector u;      ///< all dofs in natural order, on every rank; without the motion,
+                 ///< with the values that boundaries impose
+  Vector lambda; ///< dual dofs
+  Vector slip; ///< the history of friction that it leaves (contact/history.hpp); empty without any
   std::vector<Index> active; ///< normal multipliers in contact
   KktResidual kkt;
   Outputs outputs;
@@ -98,8 +99,10 @@ public:
   HighFidelity(Problem &problem, const HfOptions &options);
   ~HighFidelity();
   /// Collective. `mu`: the free parameters. Throws failure, saying what to try, if the method does
-  /// not converge; throws bad_input for `vi` on a scene without vertex quadrature.
-  HfSolution solve(const Mu &mu);
+  /// not converge; throws bad_input for `vi` on a scene without vertex quadrature. `slip`: the
+  /// history of friction that the step starts from, HfSolution::slip of the step before; throws
+  /// bad_input where it does not fit, and by Nitsche's method.
+  HfSolution solve(const Mu &mu, const Vector &slip = {});
   /// Where A is the same for all mu and several groups of ranks are to solve at those of `set`: the
   /// columns of A^-1 at the nodes that the undeformed bodies do not keep apart there, each group
   /// its share. Does nothing where solves do not keep columns. Collective on all groups.
@@ -119,12 +122,14 @@ private:
   Start nearest_start(const Mu &mu, const Operators &op);
   /// All columns of the compliance at once, where that takes less than those that are needed.
   void complete_compliance(Mat a);
-  MethodResult run_following(const Mu &mu, const Operators &op, HfSolution &solution);
-  MethodResult run_active_set(const Mu &mu, const Operators &op, HfSolution &solution);
+  MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip,
+                             HfSolution &solution);
+  MethodResult run_active_set(const Mu &mu, const Operators &op, const Vector &slip,
+                              HfSolution &solution);
   MethodResult run_condensed(const Mu &mu, const Operators &op);
   std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op,
                                              std::string &complaint);
-  MethodResult run_over_ranks(const Operators &op, HfSolution &solution);
+  MethodResult run_over_ranks(const Operators &op, const Vector &slip, HfSolution &solution);
   Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);
 

@@ -72,10 +72,11 @@ MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start
 
 /// Contact that follows the displacement: Kacanov's or Newton's iteration on the condensed problem,
 /// every step on every rank. `op`: at mu; its contact operators become those of the solution.
-/// `steps` tells how it went. Throws failure where it does not converge. Collective.
+/// `steps` tells how it went; `slip`: the history of friction. Throws failure where it does not
+/// converge. Collective.
 MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compliance, Operators &op,
-                             const NonlinearStart &start, const NonlinearOptions &options,
-                             NonlinearResult &steps);
+                             const Vector &slip, const NonlinearStart &start,
+                             const NonlinearOptions &options, NonlinearResult &steps);
 
 /// `f`: the load; `w_product`: over the ranks. Collective.
 MethodResult solve_uzawa(KSP ksp, const DualLayout &layout, const DistributedContact &contact,

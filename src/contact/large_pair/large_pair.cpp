@@ -283,7 +283,7 @@ Grid LargePairInterface::fields(const FullMu &mu, const Vector &u, const Vector 
 
 ContactRecipe deformed_bodies(LargePair pair) {
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {}, true, true};
+  recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {}, true};
   recipe.separable = false;
   recipe.follows_state = true;
   recipe.keeps_nodes = true;

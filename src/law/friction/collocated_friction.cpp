@@ -25,7 +25,7 @@ void check(const CollocatedProblem &p, const Vector &start) {
   const bool finite = p.h.allFinite() && p.q.allFinite() && p.normal_rows.allFinite() &&
                       p.tangential_rows.allFinite() && start.allFinite();
   if (!finite) throw failure("collocated friction: the problem or the first guess is not finite");
-  p.bound.check();
+  bounds_per_node(p.bounds, p.normal_rows.rows());
   if (p.normal_rows.size() > 0 &&
       p.normal_rows.minCoeff() < -accuracy * p.normal_rows.cwiseAbs().maxCoeff())
     throw failure("collocated friction: a row of N has a negative entry: clip the generators");
@@ -167,11 +167,12 @@ private:
 
   /// Nodes whose bound is zero whatever the pressures of the free generators.
   std::vector<char> zero_bounds(const ActiveSets &sets) const {
-    std::vector<char> closed(at(p_.nodes()), p_.bound.threshold_at(0) == 0);
-    const bool idle = p_.bound.coefficient == 0 && p_.bound.threshold == 0;
-    for (Index i = 0; i < p_.generators() && !idle; ++i)
-      for (Index j = 0; j < p_.nodes() && sets.free[at(i)] != 0; ++j)
-        if (p_.normal(j, i) > 0) closed[at(j)] = 0;
+    std::vector<char> closed(at(p_.nodes()));
+    for (Index j = 0; j < p_.nodes(); ++j) {
+      closed[at(j)] = p_.bound[at(j)].threshold_at(0) == 0;
+      for (Index i = 0; i < p_.generators() && p_.bound[at(j)].carries_traction(true); ++i)
+        if (sets.free[at(i)] != 0 && p_.normal(j, i) > 0) closed[at(j)] = 0;
+    }
     return closed;
   }
 

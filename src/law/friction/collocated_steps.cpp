@@ -35,12 +35,12 @@ Point newton_step(const ScaledProblem &p, const ActiveSets &sets) {
     double reach = 0; // largest entry of the free generators: in contact by these sets
     for (Index i = 0; i < pressures; ++i) {
       const double value = p.normal(j, unknowns[at(i)]);
-      system(n + k, i) = -p.bound.coefficient * value / size;
+      system(n + k, i) = -p.bound[at(j)].coefficient * value / size;
       reach = std::max(reach, value);
     }
     system.row(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j);
     system.col(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j).transpose();
-    right[n + k] = p.bound.threshold_at(reach) / size;
+    right[n + k] = p.bound[at(j)].threshold_at(reach) / size;
   }
   Vector solution(n + m);
   if (n + m > 0) {
@@ -131,7 +131,7 @@ ScaledProblem scaled(const CollocatedProblem &p) {
           .h = unit.asDiagonal() * p.h * unit.asDiagonal(),
           .normal = p.normal_rows(kept, Eigen::all) * unit.head(r).asDiagonal(),
           .tangential = rows(kept, Eigen::all),
-          .bound = p.bound};
+          .bound = bounds_at(bounds_per_node(p.bounds, rows.rows()), kept)};
 }
 
 ZeroBoundElimination::ZeroBoundElimination(const ScaledProblem &p, const std::vector<char> &closed)
@@ -166,6 +166,7 @@ void ZeroBoundElimination::eliminate() {
     nodes.push_back(nodes_[at(j)]);
   nodes_ = std::move(nodes);
   reduced_.normal = p_.normal(nodes_, Eigen::all);
+  reduced_.bound = bounds_at(p_.bound, nodes_);
 }
 
 Point ZeroBoundElimination::newton(const ActiveSets &sets) const {

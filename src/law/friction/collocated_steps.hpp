@@ -31,7 +31,7 @@ Error not_positive_definite();
 struct ScaledProblem {
   Vector unit, q, size;
   Matrix h, normal, tangential;
-  FrictionBound bound;
+  std::vector<FrictionBound> bound; ///< of each node
 
   Index nodes() const { return tangential.rows(); }
   Index generators() const { return normal.cols(); }
@@ -39,8 +39,8 @@ struct ScaledProblem {
 
   /// s = c N a + t
   Vector bounds(const Vector &x) const {
-    const Vector pressure = normal * x.head(generators());
-    return pressure.unaryExpr([this](double value) { return bound.value(value); });
+    const Vector p = normal * x.head(generators());
+    return Vector::NullaryExpr(nodes(), [&](Index j) { return bound[at(j)].value(p[j]); });
   }
 };
 

@@ -28,7 +28,8 @@ struct Values {
 /// The problem in units in which H has a unit diagonal: sqrt(H_jj) x, w / sqrt(H_jj).
 class Equations {
 public:
-  explicit Equations(const LeastSquaresProblem &problem) : bound_(problem.bound) {
+  explicit Equations(const LeastSquaresProblem &problem)
+      : bound_(bounds_per_node(problem.bounds, problem.gap.size())) {
     const Vector n = problem.gap_scale.cwiseSqrt(), t = problem.slip_scale.cwiseSqrt();
     normal_ = n.asDiagonal() * problem.normal;
     tangential_ = t.asDiagonal() * problem.tangential;
@@ -36,8 +37,12 @@ public:
     slip_rows_ = t.cwiseInverse().asDiagonal() * problem.slip_rows;
     gap_ = problem.gap.cwiseQuotient(n);
     slip_ = problem.slip.cwiseQuotient(t);
-    slope_ = bound_.coefficient * t.cwiseQuotient(n);
-    threshold_ = bound_.threshold * t;
+    slope_ = t.cwiseQuotient(n);
+    threshold_ = t;
+    for (Index j = 0; j < nodes(); ++j) {
+      slope_[j] *= law(j).coefficient;
+      threshold_[j] *= law(j).threshold;
+    }
     matrix_.resize(2 * nodes(), modes());
     right_.resize(2 * nodes());
   }
@@ -48,10 +53,10 @@ public:
   double largest_load() const {
     return nodes() > 0 ? std::max(gap_.cwiseAbs().maxCoeff(), slip_.cwiseAbs().maxCoeff()) : 0.0;
   }
-  const FrictionBound &law() const { return bound_; }
-  Tangent tangent(const SlipState &state) const {
+  const FrictionBound &law(Index j) const { return bound_[at(j)]; }
+  Tangent tangent(Index j, const SlipState &state) const {
     const bool together = state.state != NodeState::open;
-    if (!bound_.carries_traction(together)) return Tangent::none;
+    if (!law(j).carries_traction(together)) return Tangent::none;
     const bool sticks = together ? state.state == NodeState::stick : state.direction == 0;
     return sticks ? Tangent::stick : Tangent::slip;
   }
@@ -96,7 +101,7 @@ private:
     Vector open(m), stick(m), force(m), pressure(m);
     for (Index j = 0; j < m; ++j) {
       const SlipState &state = states[at(j)];
-      const Tangent kind = tangent(state);
+      const Tangent kind = tangent(j, state);
       const double sign = kind == Tangent::slip ? state.direction : 0;
       const bool apart = state.state == NodeState::open;
       open[j] = apart ? 1 : 0;
@@ -116,7 +121,7 @@ private:
     }
   }
 
-  FrictionBound bound_;
+  std::vector<FrictionBound> bound_; ///< of each node
   Matrix normal_, tangential_, gap_rows_, slip_rows_;
   Vector gap_, slip_, slope_, threshold_;
   Matrix matrix_;
@@ -155,7 +160,7 @@ private:
     const bool before = states_[at(j)].state != NodeState::open;
     const double y = v_.x_n[j] - v_.w_n[j];
     double edge = v_.noise_n[j];
-    if (before) edge = equations_.law().jumps() ? 0 : -edge;
+    if (before) edge = equations_.law(j).jumps() ? 0 : -edge;
     const bool result = y > edge;
     if (result != before) raise(verdict_.change[j], y);
     return result;
@@ -163,11 +168,11 @@ private:
 
   void tangential(Index j, bool together) {
     const SlipState &now = states_[at(j)];
-    const Tangent kind = equations_.tangent(now);
+    const Tangent kind = equations_.tangent(j, now);
     const double x = v_.x_t[j], w = v_.w_t[j], bound = equations_.bound(j, v_.x_n[j]);
     SlipState &next = verdict_.next[at(j)];
     next = {together ? NodeState::slip : NodeState::open, 0};
-    if (equations_.law().carries_traction(together)) {
+    if (equations_.law(j).carries_traction(together)) {
       raise(verdict_.violation, x - std::clamp(x - w, -bound, bound));
       next.direction = direction(j, kind, now.direction, bound);
       if (together && next.direction == 0) next.state = NodeState::stick;
@@ -241,13 +246,14 @@ public:
 
   /// As the solver would write them.
   std::vector<SlipState> usual(std::vector<SlipState> states) const {
-    for (SlipState &state : states) {
+    for (Index j = 0; j < equations_.nodes(); ++j) {
+      SlipState &state = states[at(j)];
       const bool together = state.state != NodeState::open;
       state.direction = std::clamp(state.direction, -1, 1);
-      if (!equations_.law().carries_traction(together) || state.state == NodeState::stick)
+      if (!equations_.law(j).carries_traction(together) || state.state == NodeState::stick)
         state.direction = 0;
       if (!together) continue;
-      if (!equations_.law().carries_traction(true))
+      if (!equations_.law(j).carries_traction(true))
         state.state = NodeState::slip;
       else if (state.direction == 0)
         state.state = NodeState::stick;
@@ -346,7 +352,7 @@ void check(const LeastSquaresProblem &p, const std::vector<SlipState> &start) {
   if (!start.empty() && start.size() != at(nodes))
     throw failure("least squares: the first guess has " + std::to_string(start.size()) +
                   " states instead of " + std::to_string(nodes));
-  p.bound.check();
+  bounds_per_node(p.bounds, nodes);
 }
 
 } // namespace

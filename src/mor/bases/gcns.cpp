@@ -41,8 +41,10 @@ public:
             const SparseMatrix &product)
       : samples_(samples), normal_(normal), tangential_(tangential), product_(product),
         starts_(samples.size()), taken_(static_cast<std::size_t>(normal.rows()), 0) {
-    for (const GcnsSample &sample : samples)
+    for (const GcnsSample &sample : samples) {
       sizes_.push_back(norm(sample.tangential));
+      bounds_.push_back(bounds_per_node(sample.bounds, normal.rows()));
+    }
     const double largest = *std::max_element(sizes_.begin(), sizes_.end());
     if (!(largest > 0))
       throw failure("GCNS: all tangential multipliers are zero: leave out the friction");
@@ -95,11 +97,13 @@ private:
     std::vector<Answer> answers;
     for (std::size_t k = 0; k < samples_.size(); ++k) {
       const GcnsSample &sample = samples_[k];
+      std::vector<FrictionBound> bounds =
+          bounds_at(bounds_[k], {result_.nodes.begin(), result_.nodes.end()});
       const CollocatedProblem problem{.h = sample.h,
                                       .q = sample.q,
                                       .normal_rows = normal_(result_.nodes, Eigen::all),
                                       .tangential_rows = tangential_(result_.nodes, Eigen::all),
-                                      .bound = sample.bound};
+                                      .bounds = std::move(bounds)};
       CollocatedResult solved = solve_collocated(problem, starts_[k]);
       if (!solved.converged && starts_[k].size() > 0) solved = solve_collocated(problem);
       if (!solved.converged) {
@@ -108,19 +112,18 @@ private:
         if (result_.error.empty()) throw failure("GCNS: " + result_.reason);
         return {};
       }
-      answers.push_back(answer(sample, solved.x));
+      answers.push_back(answer(sample, bounds_[k], solved.x));
       starts_[k] = std::move(solved.x);
     }
     return answers;
   }
 
-  Answer answer(const GcnsSample &sample, const Vector &x) const {
+  Answer answer(const GcnsSample &sample, const std::vector<FrictionBound> &bounds,
+                const Vector &x) const {
     const Vector pressure = normal_ * x.head(normal_.cols());
     const Vector traction = tangential_ * x.tail(tangential_.cols());
-    const FrictionBound &bound = sample.bound;
-    const Vector s = pressure.unaryExpr([&bound](double p) {
-      const bool held = p > 0 || !bound.only_in_contact;
-      return bound.coefficient * std::max(p, 0.0) + (held ? bound.threshold : 0.0);
+    const Vector s = Vector::NullaryExpr(pressure.size(), [&](Index j) {
+      return bounds[static_cast<std::size_t>(j)].value(pressure[j]);
     });
     Answer result;
     result.error = norm(sample.tangential - traction);
@@ -166,8 +169,9 @@ private:
   const std::vector<GcnsSample> &samples_;
   const Matrix &normal_, &tangential_;
   const SparseMatrix &product_;
-  std::vector<double> sizes_;  ///< |lambda_tau|
-  std::vector<Vector> starts_; ///< solutions of the step before
+  std::vector<double> sizes_;                      ///< |lambda_tau|
+  std::vector<std::vector<FrictionBound>> bounds_; ///< of each sample, per node
+  std::vector<Vector> starts_;                     ///< solutions of the step before
   std::vector<char> taken_;
   Gcns result_;
 };

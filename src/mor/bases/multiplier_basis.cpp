@@ -17,13 +17,14 @@ SparseMatrix block(const SparseMatrix &product, Index first, Index count) {
 }
 
 /// s(lambda_n) - |lambda_tau| of each snapshot; round-off below zero removed.
-Matrix left_to_bound(const Matrix &normal, const Matrix &tangential,
-                     const std::vector<FrictionBound> &bounds) {
-  Matrix left(normal.rows(), normal.cols());
-  for (Index p = 0; p < left.cols(); ++p)
-    left.col(p) = (values_of(bounds[static_cast<std::size_t>(p)], normal.col(p)) -
-                   tangential.col(p).cwiseAbs())
-                      .cwiseMax(0);
+Matrix left_to_bound(const Matrix &coefficients, const Matrix &tangential,
+                     const std::vector<NodeLaws> &laws) {
+  const std::vector<Index> nodes = nodes_with_tangent(laws.front());
+  Matrix left(tangential.rows(), tangential.cols());
+  for (Index p = 0; p < left.cols(); ++p) {
+    const Vector bounds = bounds_of(laws[static_cast<std::size_t>(p)], coefficients.col(p));
+    left.col(p) = (bounds(nodes) - tangential.col(p).cwiseAbs()).cwiseMax(0);
+  }
   const double largest = left.maxCoeff();
   return (left.array() > 1e-12 * largest).select(left, 0);
 }
@@ -71,15 +72,15 @@ DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, doubl
 }
 
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMatrix &product,
-                                      const std::vector<FrictionBound> &bounds,
+                                      const std::vector<NodeLaws> &laws,
                                       const MultiplierOptions &options,
                                       const ConeOptions &cone_options) {
   MultiplierBases bases;
   if (options.reduction == MultiplierReduction::condensed) return bases;
-  const bool friction = !bounds.empty();
-  const Index nodes = friction ? coefficients.rows() / 2 : coefficients.rows();
+  const bool friction = laws.front().has_tangents();
+  const Index nodes = laws.front().nodes(), tangents = coefficients.rows() - nodes;
   const Matrix normal = coefficients.topRows(nodes);
-  const Matrix tangential = coefficients.bottomRows(coefficients.rows() - nodes);
+  const Matrix tangential = coefficients.bottomRows(tangents);
   if (friction && (tangential.array() == 0).all())
     throw failure("no snapshot has a tangential stress: use -multiplier_reduction condensed");
   MultiplierBasis &basis = bases.basis;
@@ -87,20 +88,25 @@ MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMa
     const DenseModes modes = dense_pod(coefficients, product, options.tangential);
     bases.tangential = modes.error;
     basis.normal = modes.columns.topRows(nodes);
-    basis.tangential = modes.columns.bottomRows(nodes);
+    basis.tangential = modes.columns.bottomRows(tangents);
     const Index count = std::min(nodes, modes.columns.cols() + options.extra_nodes);
-    basis.nodes = pivot_nodes(modes.columns, static_cast<int>(count));
+    Matrix values = Matrix::Zero(2 * nodes, modes.columns.cols()); // of lambda_n, lambda_tau
+    values.topRows(nodes) = basis.normal;
+    const std::vector<Index> with_tangent = nodes_with_tangent(laws.front());
+    for (std::size_t k = 0; k < with_tangent.size(); ++k)
+      values.row(nodes + with_tangent[k]) = basis.tangential.row(static_cast<Index>(k));
+    basis.nodes = pivot_nodes(values, static_cast<int>(count));
     return bases;
   }
   const Cone cone = build_cone(normal, block(product, 0, nodes), cone_options);
   basis.normal = cone.basis.generators;
   bases.normal = cone.history;
   if (!friction) return bases;
-  const SparseMatrix product_t = block(product, nodes, nodes);
+  const SparseMatrix product_t = block(product, nodes, tangents);
   if (options.reduction == MultiplierReduction::cones) {
     basis.slip = slip_directions(tangential);
     const Cone left =
-        build_cone(left_to_bound(normal, tangential, bounds), product_t, cone_options);
+        build_cone(left_to_bound(coefficients, tangential, laws), product_t, cone_options);
     basis.tangential = left.basis.generators;
     bases.left_to_bound = left.history;
     return bases;

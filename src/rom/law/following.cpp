@@ -45,7 +45,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
                            *compliance_,
                            Vector::Zero(compliance_->size()),
                            undeformed(contact_, scene_, all_parameters),
-                           laws_at(all_parameters),
+                           laws_at(columns_, contact_, all_parameters),
                            w_product_};
   if (has_curvature(contact_))
     problem.curvature = [&](const Vector &state, const Vector &x) -> CurvatureRows {

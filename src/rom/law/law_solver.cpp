@@ -22,21 +22,22 @@ constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at 
 } // namespace
 
 LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact)
-    : model_(model), scene_(scene), contact_(contact), stiffness_(model, scene) {
+    : model_(model), scene_(scene), contact_(contact),
+      columns_(laws_of_columns(contact, model.dual_basis)), stiffness_(model, scene) {
   if (!model.law) throw bad_input("the model has no law of contact at nodes");
-  if (model.law->reduction != MultiplierReduction::condensed) law_.emplace(*model.law);
+  if (model.law->reduction != MultiplierReduction::condensed)
+    law_.emplace(*model.law, columns_, !model.evaluates_contact());
   samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
-  set_laws();
   edge_ = edge_of_nodes(contact, model.dual_basis);
   if (model.evaluates_contact()) {
     const std::vector<int> &dofs = model.law->condensed.dofs;
     nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
-    trace_ = model.contact_trace(dofs, Eigen::all);
+    trace_ = dofs.empty() ? model.contact_trace : Matrix(model.contact_trace(dofs, Eigen::all));
     unit_loads_ = stiffness_.turned(trace_.transpose());
     place_.assign(static_cast<std::size_t>(model.contact_trace.rows()), -1);
     for (std::size_t k = 0; k < dofs.size(); ++k)
       place_[static_cast<std::size_t>(dofs[k])] = static_cast<int>(k);
-    compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
+    if (!dofs.empty()) compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
   }
   if (!follows_state(contact)) return;
   if (law_)
@@ -48,27 +49,6 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
 }
 
 LawSolver::~LawSolver() = default;
-
-/// A column of the dual basis is a node, or a pair of mirror images, of one interface: x_n of all
-/// come first, then x_tau in the same order.
-void LawSolver::set_laws() {
-  const std::size_t interfaces = contact_.interfaces.size();
-  std::vector<std::vector<Index>> normal(interfaces), tangent(interfaces);
-  for (Index column = 0; column < model_.generators; ++column) {
-    Index row = 0;
-    model_.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
-    const DualRow of = dual_row(contact_, row);
-    (of.normal ? normal : tangent)[of.interface].push_back(column);
-  }
-  laws_.rows = model_.generators;
-  for (std::size_t i = 0; i < interfaces; ++i)
-    for (std::size_t k = 0; k < normal[i].size(); ++k) {
-      laws_.normal.push_back(normal[i][k]);
-      laws_.tangent.push_back(tangent[i].empty() ? -1 : tangent[i].at(k));
-      interface_of_.push_back(static_cast<int>(i));
-    }
-  laws_.bound.resize(laws_.normal.size());
-}
 
 SparseMatrix LawSolver::known_columns(const SparseMatrix &b) const {
   if (trace_.rows() == b.cols()) return b;
@@ -94,16 +74,6 @@ void LawSolver::check_edge(const Vector &x) const {
     if (x[column] != 0)
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
-}
-
-NodeLaws LawSolver::laws_at(const FullMu &all_parameters) const {
-  NodeLaws laws = laws_;
-  for (std::size_t i = 0; i < contact_.interfaces.size(); ++i) {
-    const FrictionBound bound = contact_.interfaces[i]->bound(all_parameters);
-    for (std::size_t k = 0; k < laws.bound.size(); ++k)
-      if (interface_of_[k] == static_cast<int>(i)) laws.bound[k] = bound;
-  }
-  return laws;
 }
 
 /// The free parameters as parts of the box.
@@ -158,9 +128,10 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, con
   }
   const Vector &theta_b = answer.theta_b;
   if (law.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
-  if (model_.evaluates_contact() && model_.f.size() > 0)
+  const bool with_b = law.reduction == MultiplierReduction::collocated || model_.f.size() > 0;
+  if (with_b && model_.evaluates_contact())
     body.b = body.b_contact * trace_;
-  else if (law.reduction == MultiplierReduction::collocated || model_.f.size() > 0)
+  else if (with_b)
     body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
   stiffness_.set(all_parameters);
   if (model_.online_enriched)
@@ -171,7 +142,7 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, con
     body.load = stiffness_.half_response(load_at(all_parameters));
     body.q -= stiffness_.half_response(body.b.transpose()).transpose() * body.load;
   }
-  body.bound = contact_.interfaces.front()->bound(all_parameters);
+  body.laws = rbvi::laws_at(columns_, contact_, all_parameters);
   return body;
 }
 
@@ -195,6 +166,16 @@ Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Inde
   return body.b_contact * moved;
 }
 
+Matrix LawSolver::condensed_product(const BodyAtMu &body, const Matrix &x) {
+  const Matrix loads = body.b_contact.transpose() * x;
+  Matrix moved = Matrix::Zero(loads.rows(), loads.cols());
+  compliance_->set(body.terms);
+  for (Index k = 0; k < loads.cols(); ++k)
+    for (Index dof = 0; dof < loads.rows(); ++dof)
+      if (loads(dof, k) != 0) compliance_->add(dof, loads(dof, k), moved.col(k));
+  return body.b_contact * moved;
+}
+
 LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) {
   std::vector<Index> all(static_cast<std::size_t>(model_.generators));
   std::iota(all.begin(), all.end(), 0);
@@ -215,7 +196,8 @@ bool LawSolver::solve_reduced_law(const BodyAtMu &body, LawAnswer &answer) {
   const bool checks = model_.law->condensed.terms.size() > 0;
   const bool mends = model_.law->mended && checks;
   try {
-    ReducedLawAnswer reduced = law_->solve(body);
+    ReducedLawAnswer reduced =
+        law_->solve(body, [&](const Matrix &x) { return condensed_product(body, x); });
     answer.x = std::move(reduced.x);
     answer.residual = reduced.residual;
     answer.iterations = reduced.iterations;
@@ -226,8 +208,7 @@ bool LawSolver::solve_reduced_law(const BodyAtMu &body, LawAnswer &answer) {
   if (!checks) return true;
   AtAllNodes nodes = at_all_nodes(body, answer.x);
   answer.energy = 0.5 * (answer.x.dot(nodes.w - body.q) - body.load.squaredNorm());
-  answer.residual =
-      natural_residual(answer.x, nodes.w, nodes.diagonal, model_.law->normal, body.bound);
+  answer.residual = natural_residual(answer.x, nodes.w, nodes.diagonal, body.laws);
   answer.start = std::move(nodes.start);
   return !mends || answer.residual <= mended_above;
 }
@@ -242,7 +223,7 @@ void LawSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters, La
                      : start_at(parts_of_box(scene_.parameters, all_parameters));
   for (Index i = 0; i < body.b_contact.rows() && start.size() > 0; ++i)
     if (body.b_contact.row(i).norm() == 0) start[i] = std::min(start[i], 0.0); // faces no partner
-  FrictionResult found = solve_friction(columns, body.q, laws_at(all_parameters), start);
+  FrictionResult found = solve_friction(columns, body.q, body.laws, start);
   if (!found.converged || !(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);

@@ -160,13 +160,11 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
   }
   if (law.reduction != MultiplierReduction::condensed) {
     const MultiplierBasis &basis = law.basis;
-    require(m == 2 * law.normal || law.reduction == MultiplierReduction::collocated,
-            "law/basis is for contact with friction");
     require_shape(basis.normal, law.normal, basis.normal.cols(), "law/basis/normal");
     require_shape(basis.tangential, m - law.normal, basis.tangential.cols(),
                   "law/basis/tangential");
     if (law.reduction == MultiplierReduction::cones)
-      require_shape(basis.slip, law.normal, 1, "law/basis/slip");
+      require_shape(basis.slip, m - law.normal, 1, "law/basis/slip");
     require_indices(basis.nodes, law.normal, "law/basis/nodes");
   }
   const int apart = law.apart.normal, all = model.b.size();

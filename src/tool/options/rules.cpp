@@ -26,6 +26,9 @@ void check_rows_apart(const Scene &scene, const ReduceOptions &reduce) {
   if (reduce.multipliers.reduction != MultiplierReduction::collocated)
     throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for "
                     "-multiplier_reduction collocated: use -eim_tolerance");
+  if (scene.contacts.size() > 1)
+    throw bad_input("-eim_normal_tolerance and -eim_tangential_tolerance are for a single contact "
+                    "interface: use -eim_tolerance");
   if (reduce.eim_tangential && !has_friction(scene))
     throw bad_input("-eim_tangential_tolerance is for contact with friction, which this scene has "
                     "not");

@@ -2,8 +2,8 @@
 // alone (Niakh 2022, (3.52), (3.54)): find x = (a, b) with w = H x + q and
 //
 //   a >= 0,   w_n >= 0,   a . w_n = 0
-//   |(T b)_j| <= s_j = c (N a)_j + t   at every collocation node j
-//                                      (only in contact: t = 0 where (N a)_j = 0)
+//   |(T b)_j| <= s_j = c_j (N a)_j + t_j   at every collocation node j
+//                                      (only in contact: t_j = 0 where (N a)_j = 0)
 //   w_t . (b' - b) >= 0   for every b' that meets these bounds
 //
 // H = B A^-1 B^T on the reduced pair, symmetric positive definite. a: R coefficients of the cone of
@@ -20,7 +20,7 @@ struct CollocatedProblem {
   Matrix h;                            ///< (R + S) x (R + S)
   Vector q;                            ///< R + S
   Matrix normal_rows, tangential_rows; ///< N: nodes x R, entries >= 0; T: nodes x S
-  FrictionBound bound;
+  std::vector<FrictionBound> bounds;   ///< of each node; a single one: of all
 };
 
 struct CollocatedResult {

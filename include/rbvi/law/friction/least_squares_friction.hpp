@@ -2,7 +2,7 @@
 // equations at collocation nodes: with x = (N y, T y) at node j and w = (W y + q)_j the law says
 //
 //   apart:            x_n = 0, x_tau = 0
-//   together:         w_n = 0   and   sticking: w_tau = 0,   slipping: x_tau = s (c x_n + t)
+//   together:         w_n = 0   and   sticking: w_tau = 0,   slipping: x_tau = s (c_j x_n + t_j)
 //
 // (s = -1 or 1, against w_tau). In a basis that holds the solution the equations of the true states
 // agree; with more of them than modes the least-squares solution averages what the basis misses.
@@ -15,11 +15,11 @@ namespace rbvi {
 
 /// Rows at the collocation nodes (J of them), columns: k modes.
 struct LeastSquaresProblem {
-  Matrix normal, tangential;    ///< N, T: J x k
-  Matrix gap_rows, slip_rows;   ///< W: J x k each
-  Vector gap, slip;             ///< q: J each
-  Vector gap_scale, slip_scale; ///< diagonal of H at the nodes: makes both kinds of rows alike
-  FrictionBound bound;
+  Matrix normal, tangential;         ///< N, T: J x k
+  Matrix gap_rows, slip_rows;        ///< W: J x k each
+  Vector gap, slip;                  ///< q: J each
+  Vector gap_scale, slip_scale;      ///< diagonal of H at the nodes: makes both kinds of rows alike
+  std::vector<FrictionBound> bounds; ///< of each node; a single one: of all
 };
 
 /// State of a node and the direction of its slip (x_tau = direction * bound). Sticking: direction

@@ -13,8 +13,8 @@ namespace rbvi {
 struct GcnsSample {
   Matrix h;
   Vector q;
-  FrictionBound bound;
-  Vector tangential; ///< lambda_tau, high-fidelity, at all nodes
+  std::vector<FrictionBound> bounds; ///< of each node; a single one: of all
+  Vector tangential;                 ///< lambda_tau, high-fidelity, at all nodes
 };
 
 struct GcnsOptions {

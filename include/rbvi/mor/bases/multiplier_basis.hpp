@@ -1,6 +1,6 @@
 // Functions that the multipliers of contact with friction are combined from (Niakh 2022, 3.3.2, and
-// two others), in coefficients of the nodal dual basis: m = 2 k of them, k for lambda_n and k for
-// lambda_tau (without friction k, for collocated alone). Serial and dense.
+// two others), in coefficients of the nodal dual basis: m of them, k for lambda_n and the rest for
+// lambda_tau, of the interfaces with friction alone. Serial and dense.
 //
 //   collocated   mCPG (or another cone) of lambda_n, POD of lambda_tau
 //   cones        a cone of lambda_n, and one of what is left to the bound of friction
@@ -39,12 +39,12 @@ struct DenseModes {
 /// QR, then SVD of the small factor. Throws failure where all snapshots are zero.
 DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, double tolerance);
 
-/// `coefficients`: m x P; `product`: m x m, its blocks of lambda_n and lambda_tau; `bounds`: of
-/// each snapshot, empty without friction: then m = k, and collocated has a cone of lambda_n alone.
+/// `coefficients`: m x P; `product`: m x m, its blocks of lambda_n and lambda_tau; `laws`: of each
+/// snapshot. Without friction m = k: cones of lambda_n alone, and modes of it for joint.
 /// Throws failure where the snapshots do not slip at all or, for cones, in two directions at one
 /// node; bad_input for cones of type hybrid, which has functions of either sign.
 MultiplierBases make_multiplier_basis(const Matrix &coefficients, const SparseMatrix &product,
-                                      const std::vector<FrictionBound> &bounds,
+                                      const std::vector<NodeLaws> &laws,
                                       const MultiplierOptions &options, const ConeOptions &cone);
 
 } // namespace rbvi

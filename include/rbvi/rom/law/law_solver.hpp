@@ -52,6 +52,8 @@ private:
   AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x);
   /// H(:, which), m x which.size().
   Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which);
+  /// H X where B does not separate, m x columns of X.
+  Matrix condensed_product(const BodyAtMu &body, const Matrix &x);
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
   bool solve_reduced_law(const BodyAtMu &body, LawAnswer &answer);
   void solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer);
@@ -69,17 +71,14 @@ private:
   const Scene &scene_;
   const Contact &contact_;
   std::optional<ReducedLaw> law_;
-  void set_laws();
   /// The columns of B that the condensed operator knows. Throws failure where it meets others.
   SparseMatrix known_columns(const SparseMatrix &b) const;
   void check_edge(const Vector &x) const;
-  NodeLaws laws_at(const FullMu &all_parameters) const;
 
-  std::vector<int> interface_of_; ///< of each node of laws_
-  NodeLaws laws_;                 ///< of the columns of the dual basis, without bounds
-  SparseMatrix nodal_;            ///< the dual basis transposed, where b does not separate
+  ColumnLaws columns_;      ///< of the dual basis
+  SparseMatrix nodal_;      ///< the dual basis transposed, where b does not separate
   std::vector<int> place_;  ///< of each contact dof in CondensedOperator::dofs; -1: it is not there
-  Matrix trace_;            ///< the primal basis at these dofs
+  Matrix trace_;            ///< the primal basis at these dofs, without an operator at all
   Matrix unit_loads_;       ///< of a unit force at each of these dofs: ReducedStiffness::turned
   std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
   Matrix samples_;          ///< where the starts are, as parts of the box

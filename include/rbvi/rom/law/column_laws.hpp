@@ -1,0 +1,25 @@
+// The laws of contact of the columns of a nodal dual basis. A column is a node, or a pair of mirror
+// images, of one interface: x_n of all interfaces come first, then x_tau in the same order; an
+// interface without friction has none.
+#pragma once
+
+#include "rbvi/contact/contact.hpp"
+
+namespace rbvi {
+
+struct ColumnLaws {
+  NodeLaws laws;                   ///< without bounds
+  std::vector<int> interface_of;   ///< of each node
+  std::vector<bool> without_bound; ///< ContactInterface::partly_fixed
+};
+
+/// `dual_basis`: dual size x columns.
+ColumnLaws laws_of_columns(const Contact &contact, const Matrix &dual_basis);
+
+/// With the bounds at mu. Throws failure for a bound that is negative.
+NodeLaws laws_at(const ColumnLaws &columns, const Contact &contact, const FullMu &mu);
+
+/// The node of each tangential multiplier.
+std::vector<Index> nodes_with_tangent(const NodeLaws &laws);
+
+} // namespace rbvi
