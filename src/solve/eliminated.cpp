@@ -7,7 +7,6 @@
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <string_view>
 

@@ -256,8 +256,7 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &sli
   const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
   solution.outputs = measure(problem_, op, weights, result, solution);
   if (tangential_size(problem_.contact()) == 0) return result;
-  Handle<Vec> excess;
-  RBVI_CALL(VecDuplicate(contact.g.get(), excess.put()));
+  const Handle<Vec> excess = like(contact.g.get());
   RBVI_CALL(MatMult(contact.b.get(), result.u.get(), excess.get()));
   RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
   solution.slip = slip_of(problem_.contact(), on_every_rank(layout, excess.get()), weights, slip);
