@@ -216,7 +216,7 @@ std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sampl
       solve_linear(ksp.get(), op.f, u.get());
       const double middle = MPI_Wtime();
       NonlinearResult steps;
-      solve_following(ksp.get(), problem, kept, op, start, options, steps);
+      solve_following(ksp.get(), problem, kept, op, {}, start, options, steps);
       linear.push_back(middle - begin);
       result.push_back(std::max(0.0, MPI_Wtime() - middle - linear.back()));
     }

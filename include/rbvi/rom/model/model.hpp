@@ -121,11 +121,12 @@ enum class MultiplierReduction {
 /// "auto", "cone", "condensed", "collocated", "cones", "joint".
 const std::vector<std::string> &multiplier_reduction_names();
 
-/// The functions of these reductions by their coefficients in the nodal dual basis, k nodes.
+/// The functions of these reductions by their coefficients in the nodal dual basis: k nodes, t of
+/// them of interfaces with friction.
 struct MultiplierBasis {
   Matrix normal;          ///< k x R: a cone; joint: k x modes
-  Matrix tangential;      ///< collocated: k x S modes; cones: k x M, a cone; joint: k x modes
-  Vector slip;            ///< cones: k, the direction of the slip at each node, -1 or 1
+  Matrix tangential;      ///< collocated: t x S modes; cones: t x M, a cone; joint: t x modes
+  Vector slip;            ///< cones: t, the direction of the slip at each node, -1 or 1
   std::vector<int> nodes; ///< collocated, joint: the collocation nodes
 };
 
