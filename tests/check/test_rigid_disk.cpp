@@ -313,8 +313,6 @@ TEST(MultiplierReductions, CollocatedOrCondensedWithALoad) {
 }
 
 TEST(MultiplierReductions, RefuseWhatTheyCannotDo) {
-  Reduced r(disk("radius", {{"friction", "none"}}), "grid:3");
-  EXPECT_THROW(r.reduce(with(MultiplierReduction::joint)), Error);
   Reduced s(disk("radius"), "grid:3");
   ReduceOptions hybrid = with(MultiplierReduction::cones);
   hybrid.cone.type = ConeType::hybrid;

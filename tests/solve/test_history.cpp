@@ -144,7 +144,7 @@ TEST(History, TheWayBackIsAnotherOne) {
 TEST(History, NoneAndZeroAreTheSameToTheLastBit) {
   for (const char *kinematics : {"small", "large"}) {
     const Scene scene = small_disk(kinematics, "coulomb");
-    Problem problem(PETSC_COMM_WORLD, scene, {});
+    Problem problem(PETSC_COMM_SELF, scene, {}); // over ranks solves differ by round-off
     const HfSolution without = HighFidelity(problem, {}).solve(middle(scene));
     const HfSolution with =
         HighFidelity(problem, {}).solve(middle(scene), Vector::Zero(without.slip.size()));
