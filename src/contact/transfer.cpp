@@ -136,47 +136,44 @@ public:
   /// least outside of, there at a point of its boundary. Empty where there is no entity.
   Weights linear(const Point &x, const std::vector<Neighbour> &near) const {
     constexpr double vanishing = 1e-8;
-    Barycentric best;
+    Eigen::Vector3d best;
     const std::vector<Index> *chosen = nullptr;
     for (const Neighbour &neighbour : near)
       for (const std::vector<Index> &entity : around_[static_cast<std::size_t>(neighbour.point)]) {
         if (chosen != nullptr && best.minCoeff() >= 0) break;
-        const Barycentric weights = barycentric(x, entity);
+        const Eigen::Vector3d weights = barycentric(x, entity);
         if (chosen != nullptr && !(weights.minCoeff() > best.minCoeff())) continue;
         best = weights;
         chosen = &entity;
       }
     Weights result;
     if (chosen == nullptr) return result;
-    best = (best.array() > vanishing).select(best, 0.0);
-    best /= best.sum();
-    for (Index k = 0; k < best.size(); ++k)
-      if (best[k] > 0) result.emplace_back((*chosen)[static_cast<std::size_t>(k)], best[k]);
+    double sum = 0;
+    for (std::size_t k = 0; k < chosen->size(); ++k)
+      if (const double weight = best[static_cast<Index>(k)]; weight > vanishing)
+        sum += result.emplace_back((*chosen)[k], weight).second;
+    for (auto &[node, weight] : result)
+      weight /= sum;
     return result;
   }
 
 private:
-  using Barycentric = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>; // no entity has more nodes
   Eigen::Vector3d point(Index node) const {
     return Eigen::Vector3d::Map(dual_.points[static_cast<std::size_t>(node)].data());
   }
-  /// Of the projection of x onto the line or plane of the entity.
-  Barycentric barycentric(const Point &x, const std::vector<Index> &entity) const {
+  /// Of the projection of x onto the line or plane of the entity; the third is 1 on an edge.
+  Eigen::Vector3d barycentric(const Point &x, const std::vector<Index> &entity) const {
     const Eigen::Vector3d first = point(entity[0]), side = point(entity[1]) - first;
     const Eigen::Vector3d from = Eigen::Vector3d::Map(x.data()) - first;
     const double square = side.squaredNorm(), along = side.dot(from) / square;
-    Barycentric weights(std::ssize(entity));
-    if (entity.size() == 2) {
-      weights << 1 - along, along;
-      return weights;
-    }
+    if (entity.size() == 2) return {1 - along, along, 1};
     // The part of the other side, and of x, across the first one.
     const Eigen::Vector3d other = point(entity[2]) - first;
     const double skew = side.dot(other) / square;
     const Eigen::Vector3d across = other - skew * side;
     const double height = across.dot(from) / across.squaredNorm();
-    weights << 1 - (along - skew * height) - height, along - skew * height, height;
-    return weights;
+    const double second = along - skew * height;
+    return {1 - second - height, second, height};
   }
 
   const DualSpace &dual_;
