@@ -138,9 +138,10 @@ Scene make(const SceneOptions &options) {
   };
   scene.fixed = {{"boundary", {}, frame()}};
   scene.contacts = {obstacle({"obstacle", obstacle_height(), lumped})};
+  const std::vector<int> on_disc{0, 1, 2}; // radius and centre: the map of the domain
   const double load = number_in(options, "load");
-  scene.a = {mapped_term(laplace("", scene.degree))};
-  if (load != 0) scene.f = {mapped_term(constant_load("", load, scene.degree))};
+  scene.a = {mapped_term(laplace("", scene.degree), on_disc)};
+  if (load != 0) scene.f = {mapped_term(constant_load("", load, scene.degree), on_disc)};
   scene.v_product = {exact_term(h1_product(1, 1, scene.degree))};
   return scene;
 }

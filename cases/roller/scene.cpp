@@ -85,7 +85,7 @@ Scene make(const SceneOptions &options) {
                                {"bottom", "m", 0.02, 0.05, 0.03, pushes},
                                {"friction_coefficient", "", 0, 0.5, 0.3, friction_range}});
   scene.parameters.free = {top, tilt};
-  scene.training = "grid:9,9";
+  scene.training = "grid:11,11";
   scene.validation = "random:30:1";
   scene.mesh = mesh(static_cast<int>(edges));
   scene.map = identity();

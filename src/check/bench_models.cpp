@@ -51,7 +51,7 @@ void store(const ModelErrors &errors, BenchRow &row) {
 std::vector<std::pair<int, int>> pairs_of(const ReducedModel &model) {
   std::vector<std::pair<int, int>> pairs;
   for (const auto &[n, r] : {std::pair{5, 10}, {10, 20}, {19, 50}, {51, 70}}) {
-    const bool whole = model.free_modes > 0 || model.law || model.nitsche;
+    const bool whole = model.free_modes > 0 || model.law;
     const int generators = whole ? model.generators : std::min(r, model.generators);
     if (n < model.modes) pairs.emplace_back(n, generators);
   }

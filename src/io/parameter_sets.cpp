@@ -33,11 +33,18 @@ double at_fraction(const Parameter &p, double t) {
   return t >= 1 ? p.upper : std::fma(t, p.upper - p.lower, p.lower);
 }
 
+/// "9,9" for two parameters.
+std::string example_counts(const ParameterSpace &space) {
+  return joined(std::vector<std::string>(static_cast<std::size_t>(space.size()), "9"), ",");
+}
+
 Generator grid(const ParameterSpace &space, const std::string &text) {
   const std::vector<std::string> entries = split(text, ',');
   if (static_cast<int>(entries.size()) != space.size())
-    throw bad_input("grid:" + text + " has " + std::to_string(entries.size()) + " counts for " +
-                    std::to_string(space.size()) + " free parameters (" + names_of(space) + ")");
+    throw bad_input("grid:" + text + " has " + counted(std::ssize(entries), "count") + " for " +
+                    counted(space.size(), "free parameter") + " (" + names_of(space) +
+                    "): give one for each, grid:" + example_counts(space) +
+                    ", or a number of random ones, random:60");
   std::vector<int> counts;
   double total = 1;
   for (int i = 0; i < space.size(); ++i) {

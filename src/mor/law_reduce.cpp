@@ -36,7 +36,7 @@ bool keeps_law(MultiplierReduction reduction) {
 
 void check_reduction(const Scene &scene, const ReduceOptions &options) {
   const MultiplierReduction reduction = reduction_of(scene, options.multipliers.reduction);
-  if (by_nitsche(scene)) return;
+  if (!has_multipliers(scene)) return;
   if (reduction == MultiplierReduction::cone && has_friction(scene))
     throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
                     "collocated, cones or joint");

@@ -159,7 +159,7 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   model.modes = bases.modes;
   model.supremizers = bases.supremizers + bases.responses;
   model.online_enriched = bases.online_enriched;
-  model.dual_basis = by_nitsche(scene)             ? Matrix(problem.dual_size(), 0)
+  model.dual_basis = !has_multipliers(scene)       ? Matrix(problem.dual_size(), 0)
                      : bases.nodal_dual.size() > 0 ? bases.nodal_dual
                                                    : bases.cone.all();
   model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
@@ -224,7 +224,7 @@ void project_exact(Problem &problem, const std::vector<Sample> &samples,
   std::vector<Mu> set;
   for (const int p : affine.a.snapshots)
     set.push_back(samples[static_cast<std::size_t>(p)].mu);
-  if (!model.law && !model.nitsche && !model.online_enriched)
+  if (model.generators > 0 && !model.law && !model.online_enriched)
     model.a_change = stiffness_change(problem, affine.a, set, basis);
   model.a.reduced.setZero(n * (n + 1) / 2, model.a_change.rank() > 0 ? 1 : model.a.size());
   if (model.a_change.rank() > 0) {
@@ -244,8 +244,7 @@ void project_exact(Problem &problem, const std::vector<Sample> &samples,
 void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
   constexpr Index large = 100000;
   constexpr int layers = 2;
-  if (model.law || model.nitsche || model.b.size() == 0 || model.contact_trace.size() < large)
-    return;
+  if (model.law || model.b.size() == 0 || model.contact_trace.size() < large) return;
   const auto nonzero = [](const auto &row) { return (row.array() != 0).any(); };
   std::vector<bool> near(static_cast<std::size_t>(model.dual_basis.rows()));
   for (Index row = 0; row < model.dual_basis.rows(); ++row)

@@ -43,7 +43,7 @@ bool has_mapped_terms(const Sum &sum) {
 
 StageRow interpolation_row(const Scene &scene, const ReduceOptions &options,
                            const Reduction *made) {
-  const bool apart = !separable_contact(scene), evaluated = apart && !by_nitsche(scene);
+  const bool apart = !separable_contact(scene), evaluated = apart && has_multipliers(scene);
   const bool a = has_mapped_terms(scene.a), f = has_mapped_terms(scene.f);
   const std::string assembled = evaluated ? "; B, G are assembled exactly online" : "";
   const std::string exact =
@@ -247,7 +247,7 @@ StageTable reduction_stages(const Scene &of, const ReduceOptions &options, const
     add_supremizer_rows(scene, options, made, rows);
     rows.push_back(sweep_of_supremizers_row(scene, options, made));
   }
-  if (!by_nitsche(scene) && !has_friction(scene))
+  if (has_multipliers(scene) && !has_friction(scene))
     rows.push_back({StageName("tangential multipliers"), "the scene has no friction", skipped});
   rows.push_back({stage::projection, "the separated operators onto the bases"});
   rows.push_back({stage::self_check, self_check_text(made)});

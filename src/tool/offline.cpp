@@ -1,6 +1,7 @@
 // rbvi offline: from a case file to a model file.
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/element/imposed.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
@@ -27,12 +28,21 @@ namespace {
 void print_solve_plan(MPI_Comm world, const Grouping &grouping, const Groups &groups,
                       const ToolOptions &options, std::size_t samples) {
   if (rank_of(world) == 0) std::printf("%s\n", grouping.text.c_str());
-  if (options.hf.method != HfMethod::active_set || by_nitsche(options.scene)) return;
+  if (options.hf.method != HfMethod::active_set || !has_multipliers(options.scene)) return;
   const Workspace work(world, groups, options);
   HfOptions hf = options.hf;
   hf.samples = static_cast<int>(samples) / groups.count();
   if (rank_of(world) == 0)
     std::printf("Contact is %s\n", contact_cost_text(work.group_problem(), hf).c_str());
+}
+
+/// Throws bad_input where displacements that the scene imposes at some training parameter are not
+/// finite or contradict each other. Collective on the problem's ranks.
+void check_imposed_at(const Problem &problem, const std::vector<Mu> &training) {
+  const Scene &scene = problem.scene();
+  if (!imposes_values(scene)) return;
+  for (const Mu &mu : training)
+    check_imposed(scene, expand(scene.parameters, mu), problem.mesh(), problem.dofs());
 }
 
 /// Where the model has samples, and where it was to have them.
@@ -59,6 +69,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
   StageTable before = preparation_stages(options, training.size(), groups);
   StageTable after = closing_stages();
   Workspace work = timed(before, stage::mesh, [&] { return Workspace(world, groups, options); });
+  check_imposed_at(work.group_problem(), training);
   Sweep sweep = timed(before, stage::snapshots, [&] {
     return run_sweep(
         world, groups, work.group_problem(), options.hf, training, options.out / "samples",

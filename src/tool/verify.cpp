@@ -57,9 +57,9 @@ std::vector<int> sizes_up_to(int last, const std::vector<int> &wanted) {
   return sizes;
 }
 
-/// The N of the error map: a model of Nitsche's method has no second size.
+/// The N of the error map: without multipliers there is no second size.
 std::vector<int> mode_counts(const ReducedModel &model) {
-  if (model.nitsche) return {5, 10, 15, 20, 30, 40, 50};
+  if (model.generators == 0) return {5, 10, 15, 20, 30, 40, 50};
   return {10, 19, 51};
 }
 
@@ -69,7 +69,7 @@ std::vector<int> generator_counts(const ReducedModel &model) {
   if (type != model.settings.end() && (type->second == "nodal" || type->second == "nmf"))
     return {model.generators};
   const int cone = model.generators - model.free_modes;
-  if (model.law || model.nitsche) return {model.generators};
+  if (model.law) return {model.generators};
   if (model.free_modes > 0) return sizes_up_to(model.generators, {cone, cone + 4, cone + 8});
   return sizes_up_to(model.generators, {20, 50, 70, 100});
 }

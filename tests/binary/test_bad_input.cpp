@@ -82,7 +82,9 @@ TEST_P(BadInput, ScenesAndOptions) {
        {"bench -case case.yaml -bench_growth 1,0 -out run", "give rising numbers"},
        {"bench -case case.yaml -bench_growth 0 -sweep_ranks_per_solve 3 -out run", "that divides"},
        {"bench -case case.yaml -bench_growth 0", "use -out"},
-       {"offline -case case.yaml -train grid:2,2 -out run", "2 counts for 3"},
+       {"offline -case case.yaml -train grid:2,2 -out run",
+        "2 counts for 3 free parameters (radius,center_x,center_y): give one for each, "
+        "grid:9,9,9, or a number of random ones, random:60"},
        {"offline -case case.yaml -radius 0.24,0.16 -out run", "the lower bound comes first"},
        {"offline -case case.yaml -radius 0.2,0.2 -out run", "both bounds are the same"},
        {"offline -case case.yaml -radius 0.2 -out run", "3 counts for 2 free parameters"},

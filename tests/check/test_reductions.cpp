@@ -2,6 +2,7 @@
 // on supports, with loads; and models of scenes that no catalogue has.
 #include "reduced.hpp"
 
+#include "rbvi/check/stability_report.hpp"
 #include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
@@ -126,6 +127,23 @@ TEST(Reductions, AConeWithSupremizersServesASupportWithoutFriction) {
   EXPECT_LE(errors.u, 1e-5);
   EXPECT_LE(errors.lambda, 1e-4);
   EXPECT_LE(errors.energy, 1e-6);
+}
+
+/// A plate above and one below share modes, a cone for each, and supremizers of both together.
+TEST(Reductions, AConeForEachOfTwoInterfacesMeetsItsTargets) {
+  const Scene scene = make_scene("roller", {{"friction", "none"}});
+  Reduced r(scene, scene.training);
+  ReduceOptions options;
+  options.multipliers.reduction = MultiplierReduction::cone;
+  r.reduce(options);
+  const Largest errors = errors_of(r, scene.validation);
+  EXPECT_LE(errors.u, 1e-5);
+  EXPECT_LE(errors.lambda, 1e-4);
+  const std::vector<Mu> unseen = parse_set(scene.parameters, "random:6:1");
+  for (const InfSup &at :
+       infsup_over(PETSC_COMM_WORLD, r.problem, make_stability_check(r.problem, r.model),
+                   at_rest(unseen), r.model.b.size() == 1))
+    EXPECT_GE(at.off, 0.9 * at.on);
 }
 
 TEST(Reductions, CollocationServesAnObstacle) {

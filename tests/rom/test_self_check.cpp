@@ -63,5 +63,19 @@ TEST(SelfCheck, SaysWhatHasNoAnswer) {
   EXPECT_TRUE(contains(printed(rough, model), "residuals above 1e-10"));
 }
 
+/// Where something is not finite between the training parameters the rest of the box has answers.
+TEST(SelfCheck, CountsBadInputAmongWhatHasNoAnswer) {
+  const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
+  Scene scene = scene_of(model);
+  const Mu second = parse_set(model.parameters, "random:2:17")[1];
+  scene.contacts.front().coefficients = {
+      {"height", [second](const FullMu &mu) { return 1 / (mu[0] - second[0]); }}};
+  const SelfCheck check = self_check(model, scene, 10);
+  EXPECT_EQ(check.unanswered, 1);
+  EXPECT_EQ(check.unanswered_at, second);
+  EXPECT_TRUE(contains(check.reason, "the height on 'obstacle' is not finite at")) << check.reason;
+  EXPECT_LE(check.residual.value, 1e-10);
+}
+
 } // namespace
 } // namespace rbvi

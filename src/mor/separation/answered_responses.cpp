@@ -25,8 +25,7 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver
       const LawAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
       answers.col(static_cast<Index>(p)) =
           !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.x);
-    } catch (const Error &error) { // the self-check tells of such mu
-      if (error.status() == Status::bad_input) throw;
+    } catch (const Error &) { // the self-check tells of such mu
     }
   });
   over_ranks(problem.comm(), MPI_SUM, answers);

@@ -285,7 +285,7 @@ const std::vector<std::string> &curve_rule_names() {
 }
 
 ReducedModel leading(const ReducedModel &model, int n, int r) {
-  if (n < 1 || n > model.primal_size() || (r < 1 && !model.nitsche) || r > model.generators)
+  if (n < 1 || n > model.primal_size() || r < std::min(1, model.generators) || r > model.generators)
     throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
                     " dual functions in a model of " + std::to_string(model.primal_size()) +
                     " and " + std::to_string(model.generators));

@@ -26,14 +26,14 @@ bool is_ineffective(const std::string &name) {
 /// Whether there is a reduced pair of spaces.
 bool has_pair(const ToolOptions &options) {
   const MultiplierReduction reduction = options.reduce.multipliers.reduction;
-  return !by_nitsche(options.scene) &&
+  return has_multipliers(options.scene) &&
          (reduction == MultiplierReduction::cone || reduction == MultiplierReduction::collocated);
 }
 
 /// Why a run makes no supremizers; "" where it does.
 std::string without_supremizers(const ToolOptions &options) {
   const Scene &scene = options.scene;
-  if (by_nitsche(scene)) return "Nitsche's method has no multipliers to make supremizers for";
+  if (!has_multipliers(scene)) return "Nitsche's method has no multipliers to make supremizers for";
   if (options.reduce.enrichment == Enrichment::decorrelated)
     return "-pga_enrichment decorrelated makes no supremizers";
   if (!has_pair(options)) return "-multiplier_reduction cone and collocated alone make supremizers";

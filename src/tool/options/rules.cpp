@@ -36,13 +36,13 @@ void check_rows_apart(const Scene &scene, const ReduceOptions &reduce) {
 
 /// Throws bad_input for options of a formulation that the scene has not.
 void check_formulation(const Scene &scene) {
-  if (by_nitsche(scene) && is_given("hf_method"))
+  if (!has_multipliers(scene) && is_given("hf_method"))
     throw bad_input("-hf_method is for the mixed formulation: Nitsche's method has "
                     "-nitsche_snes_type");
-  if (by_nitsche(scene) && is_given("hf_contact"))
+  if (!has_multipliers(scene) && is_given("hf_contact"))
     throw bad_input("-hf_contact is for the mixed formulation: Nitsche's method has no "
                     "multipliers");
-  if (by_nitsche(scene) && is_given("multiplier_reduction"))
+  if (!has_multipliers(scene) && is_given("multiplier_reduction"))
     throw bad_input("-multiplier_reduction is for the mixed formulation: Nitsche's method has no "
                     "multipliers");
   if (!by_nitsche(scene) && is_given("nitsche_quadrature"))
@@ -52,7 +52,7 @@ void check_formulation(const Scene &scene) {
 /// Throws bad_input for options of a dual basis and of its supremizers where the scene keeps every
 /// node by default. Who asks for that, maybe beside a case file with such options, means it.
 void check_dual_basis(const ToolOptions &options) {
-  if (by_nitsche(options.scene) || is_given("multiplier_reduction") ||
+  if (!has_multipliers(options.scene) || is_given("multiplier_reduction") ||
       options.reduce.multipliers.reduction != MultiplierReduction::condensed)
     return;
   for (const Option &option : tool_options())
@@ -67,7 +67,7 @@ void check_dual_basis(const ToolOptions &options) {
 void check_cone_level(const ToolOptions &options) {
   const ConeOptions &cone = options.reduce.cone;
   if (cone.level == 0) return;
-  if (by_nitsche(options.scene))
+  if (!has_multipliers(options.scene))
     throw bad_input("-cone_level is for the mixed formulation: Nitsche's method has no "
                     "multipliers");
   const bool law = keeps_law(options.reduce.multipliers.reduction);

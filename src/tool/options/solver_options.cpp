@@ -1,8 +1,8 @@
 #include "database.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
+#include "rbvi/solve/methods.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <algorithm>
@@ -43,10 +43,10 @@ void check_solver_of(const std::string &name, const Scene &scene, const HfOption
       throw bad_input("-" + name + " has no effect: " + option.instead);
   if (name.starts_with("nitsche_") && !by_nitsche(scene))
     throw bad_input("-" + name + " is for Nitsche's method: set -formulation nitsche");
-  if (name.starts_with("hf_") && by_nitsche(scene))
+  if (name.starts_with("hf_") && !has_multipliers(scene))
     throw bad_input("-" + name + " is for the mixed formulation: Nitsche's method has -nitsche_" +
                     name.substr(3));
-  if (name.starts_with("vi_") && (by_nitsche(scene) || options.method != HfMethod::vi))
+  if (name.starts_with("vi_") && (!has_multipliers(scene) || options.method != HfMethod::vi))
     throw bad_input("-" + name + " is for -hf_method vi");
 }
 

@@ -31,7 +31,7 @@ bool with_nitsche(const ToolOptions &options) {
 }
 
 bool mixed(const ToolOptions &options) {
-  return !by_nitsche(options.scene);
+  return has_multipliers(options.scene);
 }
 
 bool with_law(const ToolOptions &options) {

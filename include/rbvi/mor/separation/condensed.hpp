@@ -66,7 +66,7 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
 /// snapshots makes it where active sets are new. Of the first A all are taken (down to a remainder
 /// of 1e-8 of their norm), of the others what is left above options.responses. Where all loads join
 /// and A is a sum of more than two exact terms, there are fewer factorisations: the responses are
-/// appended until they are there to 1e-6 for all multipliers like `multipliers` (coefficients of
+/// appended until they are there to 3e-7 for all multipliers like `multipliers` (coefficients of
 /// the loads x samples), and Galerkin's method in modes and responses gives the values of H.
 Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
                       const FullMu &all_parameters, const CondensedOptions &options,

@@ -1,0 +1,122 @@
+// Offline runs of scenes that make no sense somewhere: refused before anything is written where
+// training parameters are concerned, and counted by the self-check where only queries are.
+#include "../core/refuses.hpp"
+#include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/tool/offline_run.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+namespace rbvi {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `inside` where down is between 0.031 and 0.034: between the training parameters 0.01, 0.02, ...
+double between_samples(const FullMu &mu, double inside, double elsewhere) {
+  return mu[0] > 0.031 && mu[0] < 0.034 ? inside : elsewhere;
+}
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// A block that is pushed down onto a half-plane by its top, which goes aside as well.
+Scene pushed_block() {
+  Scene scene = make_scene("patch", {{"bodies", "one"}, {"friction", "none"}});
+  const Lame material = lame(15, 0.3);
+  scene.parameters = all_free({{"down", "m", 0.01, 0.05, 0.03}, {"aside", "m", -0.02, 0.02, 0}});
+  scene.check_parameters = {};
+  scene.motion = nullptr;
+  scene.f.clear();
+  scene.a = {exact_term(elasticity("", material, scene.degree))};
+  scene.v_product = {exact_term(h1_product(1, 2, scene.degree))};
+  scene.fixed = {{"top", {}, {{[](const FullMu &mu, const Point &) {
+                    return Point{mu[1], -mu[0], 0};
+                  }}}}};
+  scene.contacts = {half_plane({"contact", {0, -1, 0}, {0, 0, 0}, constant(0)})};
+  return scene;
+}
+
+struct Offline : testing::Test {
+  ToolOptions options;
+  void SetUp() override {
+    int id = static_cast<int>(::getpid());
+    MPI_Bcast(&id, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+    options.out = fs::path(testing::TempDir()) / ("rbvi_offline_" + std::to_string(id));
+    options.train = "grid:5,3";
+    options.scene = pushed_block();
+    options.reduce.multipliers.reduction = MultiplierReduction::condensed;
+  }
+  void TearDown() override {
+    MPI_Barrier(PETSC_COMM_WORLD);
+    if (rank_of(PETSC_COMM_WORLD) == 0) fs::remove_all(options.out);
+  }
+  OfflineRun run() const {
+    return run_offline(PETSC_COMM_WORLD, Groups(PETSC_COMM_WORLD, 1), options,
+                       checked_training(options));
+  }
+  void expect_refused(const std::string &part) const {
+    EXPECT_TRUE(refuses(part, [&] { run(); }));
+    MPI_Barrier(PETSC_COMM_WORLD);
+    EXPECT_FALSE(fs::exists(options.out)) << "something was written";
+  }
+  /// The model is made, and says that some queries have no answer and why.
+  void expect_unanswered(const std::string &part) const {
+    const OfflineRun made = run();
+    EXPECT_EQ(made.sweep.samples.size(), 15U);
+    if (rank_of(PETSC_COMM_WORLD) != 0) return;
+    const SelfCheck &check = made.model.self_check;
+    EXPECT_GT(check.unanswered, 0);
+    EXPECT_LT(check.unanswered, check.queries / 4);
+    EXPECT_NE(check.reason.find(part), std::string::npos) << check.reason;
+    EXPECT_TRUE(fs::exists(options.out / "model.h5"));
+  }
+};
+
+TEST_F(Offline, CountsQueriesAtWhichACoefficientIsNotFinite) {
+  options.scene.a.front().theta = {
+      {"stiffness", [](const FullMu &mu) { return between_samples(mu, nan, 1); }, {0}}};
+  expect_unanswered("the coefficient stiffness is not finite at down=0.03");
+}
+
+TEST_F(Offline, CountsQueriesAtWhichAHalfPlaneIsNowhere) {
+  HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, {}};
+  plane.position = [](const FullMu &mu) { return between_samples(mu, nan, 0); };
+  options.scene.contacts = {half_plane(plane)};
+  expect_unanswered("the position of the half-plane on 'contact' is not finite at down=0.03");
+}
+
+TEST_F(Offline, RefusesTrainingParametersAtWhichSomethingIsNotFinite) {
+  options.train = "grid:6,3"; // one of them is 0.034
+  const auto broken = [](const FullMu &mu) { return mu[0] > 0.033 && mu[0] < 0.035 ? nan : 0.3; };
+  const std::string where = " is not finite at down=0.034";
+  options.scene.a.front().theta = {{"stiffness", broken, {0}}};
+  expect_refused("the coefficient stiffness" + where);
+  options.scene = pushed_block();
+  HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, constant(0)};
+  plane.friction = {FrictionLaw::coulomb, broken};
+  options.scene.contacts = {half_plane(plane)};
+  expect_refused("the coefficient of friction on 'contact'" + where);
+  options.scene = pushed_block();
+  options.scene.fixed.front().values = {{[broken](const FullMu &mu, const Point &) {
+    return Point{0, -broken(mu), 0};
+  }}};
+  expect_refused("at down=0.034");
+}
+
+/// Top and sides agree in most of the box.
+TEST_F(Offline, RefusesImposedDisplacementsThatContradictAtATrainingParameter) {
+  options.scene.fixed.push_back({"sides", {0}, {{[](const FullMu &mu, const Point &) {
+                                   return Point{mu[1] + (mu[0] > 0.045 ? 1e-3 : 0), 0, 0};
+                                 }}}});
+  options.scene.contacts.front().entities.components = {1}; // x is imposed at the ends
+  expect_refused("impose different displacements");
+}
+
+} // namespace
+} // namespace rbvi
