@@ -136,7 +136,7 @@ public:
   /// least outside of, there at a point of its boundary. Empty where there is no entity.
   Weights linear(const Point &x, const std::vector<Neighbour> &near) const {
     constexpr double vanishing = 1e-8;
-    Eigen::Vector3d best;
+    Eigen::Vector3d best = Eigen::Vector3d::Zero();
     const std::vector<Index> *chosen = nullptr;
     for (const Neighbour &neighbour : near)
       for (const std::vector<Index> &entity : around_[static_cast<std::size_t>(neighbour.point)]) {
