@@ -248,7 +248,7 @@ TEST(RigidDisk, ContactOfTheUndeformedBodyFitsTheWideArc) {
       // small beside it.
       const bool near = normal == std::string("radial") && radius > 0.7;
       EXPECT_EQ(pressed, near ? 2 : 0);
-      const Mu shallower = with_radius(radius, 0.2, 0.14 * radius);
+      const Mu shallower = with_radius(radius, 0.2, 0.13 * radius);
       EXPECT_EQ(*solve(wide, shallower).outputs.ends_in_contact, 0);
       const Mu deeper = with_radius(radius, 0.2, 0.21 * radius);
       EXPECT_THROW(wide.check_parameters(expand(wide.parameters, deeper)), Error);
