@@ -54,7 +54,8 @@ enum class NonlinearMethod {
   kacanov,
   newton,   ///< where there is a curvature and no friction
   anderson, ///< Kacanov's iteration, accelerated with three earlier states
-  nodal     ///< with the tangent between nodes, where contact offers it: nodal.hpp
+  nodal     ///< with the tangent between nodes, where contact offers it: nodal.hpp; with friction
+            ///< Kacanov's, accelerated likewise
 };
 
 /// "auto", "kacanov", "newton", "anderson", "nodal".
