@@ -189,7 +189,7 @@ std::vector<Option> of_iterations() {
                "with the curvature of the condition: quadratic; without friction",
                "kacanov accelerated with three earlier states (Anderson)",
                "exact residuals, a tangent from averages at the nodes: Newton's "
-               "without friction, else Kacanov's"}),
+               "without friction, else Kacanov's, accelerated"}),
           AT(hf.nonlinear.method), "iteration of contact that follows the displacement"),
       number("nonlinear_tolerance", {1e-13, 0.1}, AT(hf.nonlinear.tolerance),
              "relative change of u and of the multipliers (A.8)"),
