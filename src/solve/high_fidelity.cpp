@@ -8,6 +8,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/eliminated.hpp"
+#include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <algorithm>
@@ -31,8 +32,7 @@ Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
 /// `weights`: of all normal multipliers.
 Outputs measure(const Problem &problem, const Operators &op, const Vector &weights,
                 const MethodResult &result, const HfSolution &solution) {
-  Handle<Vec> au;
-  RBVI_CALL(VecDuplicate(op.f, au.put()));
+  const Handle<Vec> au = like(op.f);
   RBVI_CALL(MatMult(op.a, result.u.get(), au.get()));
   PetscScalar quadratic = 0, linear = 0;
   RBVI_CALL(VecDot(au.get(), result.u.get(), &quadratic));
