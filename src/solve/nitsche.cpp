@@ -28,7 +28,7 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
   system.set(op);
   NitscheSolution result;
   const int factorised_before = system.factorisations;
-  const Handle<Vec> unknowns = like(op.f);
+  Handle<Vec> unknowns = like(op.f);
   Vec u = unknowns.get();
   const bool nested = system.law.moves() && !options_.single_loop;
   if (start != nullptr) {
