@@ -115,7 +115,7 @@ TEST(InterfaceCurve, ListsVerticesThenMiddlesAlongTheCurve) {
 
 TEST(InterfaceCurve, RefusesACurveThatIsHeld) {
   const Body disk("rigid_disk", {{"arc_edges", "20"}});
-  const Dofs held = number_dofs(disk.mesh, 2, {{"contact", {0}}});
+  const Dofs held = number_dofs(disk.mesh, 2, {{"contact", {0, 1}}});
   EXPECT_THROW(place_interfaces(disk.mesh, held, disk.scene), Error);
 }
 
