@@ -1,5 +1,6 @@
 // Displacements of degree 2: one node per vertex and edge, the same for any number of ranks, exact
 // for quadratic fields; and the contact curve of a support.
+#include "rbvi/contact/contact.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
@@ -116,7 +117,8 @@ TEST(InterfaceCurve, ListsVerticesThenMiddlesAlongTheCurve) {
 TEST(InterfaceCurve, RefusesACurveThatIsHeld) {
   const Body disk("rigid_disk", {{"arc_edges", "20"}});
   const Dofs held = number_dofs(disk.mesh, 2, {{"contact", {0, 1}}});
-  EXPECT_THROW(place_interfaces(disk.mesh, held, disk.scene), Error);
+  EXPECT_THROW(make_contact(disk.scene, place_interfaces(disk.mesh, held, disk.scene).meshes),
+               Error);
 }
 
 TEST(InterfaceCurve, IsForTwoDimensions) {
