@@ -231,8 +231,10 @@ std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sampl
   };
   add("cold", NonlinearMethod::automatic, false);
   add("warm", NonlinearMethod::automatic, true);
-  for (const auto method :
-       {NonlinearMethod::kacanov, NonlinearMethod::newton, NonlinearMethod::anderson})
+  std::vector methods{NonlinearMethod::kacanov, NonlinearMethod::anderson};
+  if (has_curvature(problem.contact()) && !has_friction(problem.scene()))
+    methods.push_back(NonlinearMethod::newton);
+  for (const auto method : methods)
     add(nonlinear_method_names()[static_cast<std::size_t>(method)] + ", cold", method, false);
   rows.push_back(timed_row("one linear solve", "this part alone", linear));
   return rows;
