@@ -2,6 +2,7 @@
 // parameters that they have not seen; stability over all pairs of a parameter and a step.
 #include "reduced.hpp"
 
+#include "rbvi/check/bench.hpp"
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
@@ -9,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <unistd.h>
 
@@ -170,6 +172,20 @@ TEST(LargeModel, AFileGivesTheSameModelWithoutTheScenesCode) {
   EXPECT_EQ(here.u, there.u);
   EXPECT_EQ(here.x, there.x);
   EXPECT_EQ(read.law->states, r.model.law->states);
+}
+
+TEST(LargeModel, IterationsAreTimedByTheMethodsThatTheLawHas) {
+  for (const std::string friction : {"none", "coulomb"}) {
+    Reduced r(large_disk(friction, "indentation", {{"arc_edges", "24"}}), "grid:2");
+    std::vector<std::string> names;
+    for (const BenchRow &row : bench_iterations(r.problem, r.samples)) {
+      names.push_back(row.method);
+      EXPECT_GE(row.median, 0);
+    }
+    const bool has_newton = std::ranges::count(names, "iteration: newton, cold") == 1;
+    EXPECT_EQ(has_newton, friction == "none");
+    EXPECT_EQ(std::ranges::count(names, "iteration: kacanov, cold"), 1);
+  }
 }
 
 TEST(LargeModel, OtherReductionsAreRefused) {
