@@ -220,8 +220,7 @@ std::string failure_at(const Contact &contact, const FullMu &mu, const ContactOp
   if (lambda.size() > 0) contact_outputs(contact, mu, operators, lambda, 0, outputs);
   if (outputs.ends_in_contact.value_or(0) == 0) return reason;
   return "contact has come to the end of its boundary: try a smaller indentation or offset, or "
-         "more "
-         "-nonlinear_load_steps (" +
+         "more -nonlinear_load_steps (" +
          reason + ")";
 }
 

@@ -180,7 +180,7 @@ TEST(LargeModel, IterationsAreTimedByTheMethodsThatTheLawHas) {
     std::vector<std::string> names;
     for (const BenchRow &row : bench_iterations(r.problem, r.samples)) {
       names.push_back(row.method);
-      EXPECT_GE(row.median, 0);
+      EXPECT_GT(row.queries, 0);
     }
     const bool has_newton = std::ranges::count(names, "iteration: newton, cold") == 1;
     EXPECT_EQ(has_newton, friction == "none");

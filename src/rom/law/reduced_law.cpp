@@ -46,12 +46,11 @@ Matrix sum_of(const std::vector<Matrix> &terms, const Vector &coefficients) {
 /// The rows of some nodes; zero where a node has none.
 Matrix tangential_rows(const Matrix &tangential, const NodeLaws &laws,
                        const std::vector<int> &nodes) {
-  Matrix rows = Matrix::Zero(std::ssize(nodes), tangential.cols());
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    if (laws.has_tangent(nodes[k]))
-      rows.row(static_cast<Index>(k)) =
-          tangential.row(laws.tangent[static_cast<std::size_t>(nodes[k])] - laws.nodes());
-  return rows;
+  std::vector<Index> rows;
+  for (const int node : nodes)
+    rows.push_back(
+        laws.has_tangent(node) ? laws.tangent[static_cast<std::size_t>(node)] - laws.nodes() : -1);
+  return with_zeros(tangential, rows);
 }
 
 /// Zero where a node has no tangential multiplier.
