@@ -65,7 +65,7 @@ BenchRow timed_row(std::string method, std::string includes, const std::vector<d
 }
 
 std::string solver_name(const Problem &problem, const HfOptions &options, bool cold) {
-  if (problem.nitsche() != nullptr) return cold ? "nitsche cold" : "nitsche warm-started";
+  if (!has_multipliers(problem.scene())) return cold ? "nitsche cold" : "nitsche warm-started";
   switch (options.method) {
   case HfMethod::active_set:
     return cold ? "active_set cold" : "active_set warm-started";

@@ -36,8 +36,7 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   result.a.reduced.resize(k * (k + 1) / 2, model.a.reduced.cols());
   for (Index q = 0; q < model.a.reduced.cols(); ++q)
     result.a.reduced.col(q) = congruence(model.a.reduced.col(q), c);
-  if (model.a_change.rank() > 0)
-    result.a_change.range = c.transpose() * model.a_change.range;
+  if (model.a_change.rank() > 0) result.a_change.range = c.transpose() * model.a_change.range;
   result.b.reduced.resize(r * k, model.b.size());
   for (Index q = 0; q < model.b.size(); ++q)
     result.b.reduced.col(q) = (model.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
@@ -204,7 +203,7 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       errors.tangential[p] =
           relative(part_norm(w_product, difference, normal, rest), truths.tangential_norm[p]);
   }
-  if (model.nitsche)
+  if (!model.has_multipliers())
     add_stress_floors(model, truths.coordinates.topRows(k), truths, w_product, errors);
   else
     errors.lambda_floor = multiplier_floor(model, truths, w_product);

@@ -76,7 +76,7 @@ Error several_by_nitsche(const Scene &scene) {
     return "'" + found->entities.parts.front() + "'";
   };
   const std::string has = "scene " + scene.name + " has ";
-  if (by_nitsche(scene))
+  if (std::ranges::count(scene.contacts, Formulation::mixed, &ContactRecipe::formulation) == 0)
     return bad_input(has + std::to_string(scene.contacts.size()) +
                      " contact interfaces by Nitsche's method, which is for a single one: use "
                      "multipliers");

@@ -13,12 +13,6 @@ bool has_friction(const Scene &scene) {
   });
 }
 
-bool by_nitsche(const Scene &scene) {
-  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
-    return contact.formulation == Formulation::nitsche;
-  });
-}
-
 bool has_multipliers(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
     return contact.formulation == Formulation::mixed;

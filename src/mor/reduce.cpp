@@ -184,34 +184,6 @@ ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
 
 namespace {
 
-/// The coefficients of each sample in the modes, n x P.
-Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &samples,
-                       const LinearBasis &modes) {
-  Matrix result(modes.size(), static_cast<Index>(samples.size()));
-  for (std::size_t p = 0; p < samples.size(); ++p)
-    RBVI_CALL(BVDotVec(modes.columns.get(),
-                       from_natural(problem.dofs(), displacement(problem.comm(), samples[p])).get(),
-                       result.col(static_cast<Index>(p)).data()));
-  return result;
-}
-
-void add_histories(const CurveReport &curve,
-                   std::map<std::string, std::vector<double>> &histories) {
-  histories["curve/points"] = {curve.points.begin(), curve.points.end()};
-  histories["curve/error"] = curve.error;
-  if (curve.states == 0) return;
-  histories["curve/states"] = {static_cast<double>(curve.states)};
-  constexpr std::array operators{"contact_matrix", "contact_vector", "friction_matrix",
-                                 "friction_vector"};
-  for (std::size_t k = 0; k < operators.size(); ++k) {
-    const std::string name = std::string("curve/") + operators[k];
-    const EimErrors &errors = curve.eim_errors[k];
-    if (!errors.training.empty()) histories[name] = errors.training;
-    if (!errors.validation.empty()) histories[name + "_validation"] = errors.validation;
-    if (!errors.converged.empty()) histories[name + "_converged"] = errors.converged;
-  }
-}
-
 /// What a self-check found, on every rank.
 struct Checked {
   int unanswered = 0;
@@ -230,24 +202,6 @@ Checked check_answers(const Problem &problem, ReducedModel &model, StageTable &s
   });
   MPI_Bcast(found.data(), 2, MPI_INT, 0, problem.comm());
   return {found[0], found[1] != 0};
-}
-
-/// Modes alone, then the curve.
-void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
-                    const ReduceOptions &options, Reduction &result) {
-  add_modes(problem, samples, options.pod, result.bases, result.stages);
-  result.model = timed(result.stages, stage::projection,
-                       [&] { return project(problem, samples, result.affine, result.bases); });
-  {
-    const Stage stage(result.stages, stage::contact_curve);
-    const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
-    Matrix coefficients;
-    if (options.curve.rule == CurveRule::interpolated || problem.nitsche()->facing.follows_state)
-      coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
-    result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
-    add_histories(result.curve, result.model.histories);
-  }
-  check_answers(problem, result.model, result.stages);
 }
 
 void add_collocation(Problem &problem, const std::vector<Sample> &samples,
@@ -372,12 +326,14 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples, const Red
   result.affine = timed(result.stages, stage::interpolation, [&] {
     return separate(problem, training, options.eim, rows_apart(problem.scene(), options));
   });
-  if (by_nitsche(problem.scene()))
+  if (!has_multipliers(problem.scene())) {
     reduce_nitsche(problem, samples, options, result);
-  else if (keeps_law(options.multipliers.reduction))
+    check_answers(problem, result.model, result.stages);
+  } else if (keeps_law(options.multipliers.reduction)) {
     reduce_law(problem, samples, options, result);
-  else
+  } else {
     reduce_pair(problem, samples, options, result);
+  }
   result.stages =
       finished_stages(result.stages, reduction_stages(problem.scene(), options, &result));
   return result;

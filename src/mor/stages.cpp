@@ -2,7 +2,6 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
-#include "rbvi/rom/print.hpp"
 
 #include <algorithm>
 
@@ -214,7 +213,7 @@ void add_curve_rows(const ReduceOptions &options, const Reduction *made, StageTa
                      : rule == CurveRule::empirical ? "few Gauss points, non-negative weights"
                                                     : "EIM over (mu, Newton step)";
   if (made != nullptr) {
-    what = describe_curve(*made->model.nitsche, made->model.interfaces.front().mesh.count());
+    what = describe_curve(made->model);
     if (rule == CurveRule::empirical) what += ", error " + short_number(made->curve.error.back());
     if (rule == CurveRule::interpolated)
       what += ", of " + std::to_string(made->curve.states) + " states";
@@ -238,7 +237,7 @@ StageTable reduction_stages(const Scene &of, const ReduceOptions &options, const
   StageTable rows{interpolation_row(scene, options, made)};
   if (scene.f.empty()) rows.push_back({StageName("load vector"), "the scene has no load", skipped});
   rows.push_back(pod_row(options, made));
-  if (by_nitsche(scene)) {
+  if (!has_multipliers(scene)) {
     add_curve_rows(options, made, rows);
   } else if (keeps_law(reduction_of(scene, options.multipliers.reduction))) {
     add_law_rows(scene, options, made, rows);

@@ -60,11 +60,11 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
   check_imposed_by(model, scene_);
   check_terms_of(model.imposed_energy, imposed_energy_, scene_.parameters, "the imposed energy");
   if (contact_.dual_size() != model.dual_basis.rows() ||
-      by_nitsche(scene_) != model.nitsche.has_value() ||
-      (model.evaluates_contact() == separable_contact(scene_) && !model.nitsche))
+      has_multipliers(scene_) != model.has_multipliers() ||
+      (model.evaluates_contact() == separable_contact(scene_) && model.has_multipliers()))
     throw bad_input("the contact of the model does not fit its scene in this build");
-  if (model.nitsche) {
-    nitsche_ = std::make_unique<ReducedNitsche>(model, *contact_.interfaces.front()->nitsche());
+  if (!model.has_multipliers()) {
+    nitsche_ = std::make_unique<ReducedNitsche>(model, curve_of(contact_));
     return;
   }
   trace_.emplace(model, contact_);

@@ -74,9 +74,9 @@ void print_law(std::ostream &out, const NodalLaw &law, int multipliers) {
   out << '\n';
 }
 
-void print_curve(std::ostream &out, const NitscheModel &nitsche, Index edges) {
-  label(out, "contact curve") << describe_curve(nitsche, edges) << '\n';
-  label(out, "terms of a_gamma - a") << nitsche.consistency.size() << '\n';
+void print_nitsche(std::ostream &out, const ReducedModel &model) {
+  label(out, "contact curve") << describe_curve(model) << '\n';
+  label(out, "terms of a_gamma - a") << consistency_terms(model) << '\n';
 }
 
 /// "140", of each boundary: "281 + 281".
@@ -103,18 +103,6 @@ void print_failed(std::ostream &out, const ReducedModel &model) {
 
 } // namespace
 
-std::string describe_curve(const NitscheModel &nitsche, Index edges) {
-  const auto number = [](auto size) { return std::to_string(size); };
-  if (nitsche.rule == CurveRule::interpolated)
-    return "terms: B^n " + number(nitsche.contact_matrix.size()) + ", Theta^n " +
-           number(nitsche.contact_vector.size()) + ", B^tau " +
-           number(nitsche.friction_matrix.size()) + ", Theta^tau " +
-           number(nitsche.friction_vector.size());
-  const std::size_t all = 4 * static_cast<std::size_t>(edges);
-  const bool few = nitsche.rule == CurveRule::empirical;
-  return number(few ? nitsche.points.size() : all) + " of " + number(all) + " Gauss points";
-}
-
 void print_expected_errors(std::ostream &out, const ReducedModel &model) {
   label(out, "expected error") << validation(expected_errors(model)) << '\n';
 }
@@ -130,8 +118,8 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   const bool joined = model.law && model.law->reduction != MultiplierReduction::collocated;
   label(out, joined ? "responses" : "supremizers")
       << model.supremizers << (model.online_enriched ? " (the space is made online)" : "") << '\n';
-  if (model.nitsche)
-    print_curve(out, *model.nitsche, model.interfaces.front().mesh.count());
+  if (!model.has_multipliers())
+    print_nitsche(out, model);
   else if (model.law)
     print_law(out, *model.law, model.generators);
   else
@@ -139,7 +127,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
   print_terms(out, "a", model.a);
   print_terms(out, "f", model.f);
-  if (model.nitsche) {
+  if (!model.has_multipliers()) {
     label(out, "b, g") << "none: Nitsche's method\n";
   } else if (model.evaluates_contact()) {
     label(out, "b, g") << "assembled for each mu on " << nodes_of_interfaces(model)

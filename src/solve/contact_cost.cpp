@@ -62,7 +62,7 @@ bool takes_complement(const Problem &problem, double columns) {
 
 bool eliminates(const Problem &problem, const HfOptions &options) {
   if (options.method != HfMethod::active_set || follows_state(problem.contact()) ||
-      problem.nitsche() != nullptr)
+      !has_multipliers(problem.scene()))
     return false;
   if (options.contact != HfContact::automatic) return options.contact == HfContact::eliminated;
   if (problem.dofs().total_free < small) return false;

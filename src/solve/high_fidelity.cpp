@@ -2,7 +2,6 @@
 
 #include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/par/collective.hpp"
@@ -21,13 +20,6 @@ namespace rbvi {
 namespace {
 
 constexpr double largest_residual = 1e-10; ///< KKT, of an active-set method
-
-/// At all dofs in natural order, the imposed values among them. Collective.
-Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
-  Vector whole = to_natural(problem.dofs(), u);
-  if (imposes_values(problem.scene())) whole += problem.imposed_displacement(mu);
-  return whole;
-}
 
 /// `weights`: of all normal multipliers.
 Outputs measure(const Problem &problem, const Operators &op, const Vector &weights,
@@ -78,6 +70,12 @@ Start rough_start(KSP ksp, Problem &problem, const Operators &op) {
 
 } // namespace
 
+Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
+  Vector whole = to_natural(problem.dofs(), u);
+  if (imposes_values(problem.scene())) whole += problem.imposed_displacement(mu);
+  return whole;
+}
+
 std::vector<Index> in_contact(const NodeLaws &laws, const Vector &lambda) {
   std::vector<Index> nodes;
   for (Index i = 0; i < laws.nodes(); ++i)
@@ -101,7 +99,7 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     throw bad_input("-hf_method " + hf_method_names()[static_cast<std::size_t>(options.method)] +
                     " is for small deformations: leave it out, or use -kinematics small");
   if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
-  if (problem.nitsche()) {
+  if (!has_multipliers(problem.scene())) {
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
     return;
   }
@@ -140,43 +138,6 @@ Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
   const bool columns_are_kept = part_ || (compliance_ && compliance_->count() > 0);
   if (solved_.empty()) return columns_are_kept ? Start{} : rough_start(ksp_.get(), problem_, op);
   return nearest(mu)->start;
-}
-
-Matrix HighFidelity::predicted_pressures(const Mu &mu) const {
-  const ParameterSpace &space = problem_.scene().parameters;
-  const auto count = static_cast<Index>(solved_.size());
-  Matrix pressures(solved_.front().pressures.size(), count), points(space.size(), count);
-  for (Index p = 0; p < count; ++p) {
-    const Solved &solved = solved_[static_cast<std::size_t>(p)];
-    pressures.col(p) = solved.pressures.reshaped();
-    points.col(p) = parts_of_box(space, expand(space, solved.mu));
-  }
-  return local_fit(pressures, points, parts_of_box(space, expand(space, mu)))
-      .reshaped(pressures.rows() / 2, 2);
-}
-
-HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
-  NitscheStart start{};
-  if (!solved_.empty()) start = {nearest(mu)->u.get(), predicted_pressures(mu)};
-  NitscheSolution found = nitsche_->solve(op, solved_.empty() ? nullptr : &start);
-  const Scene &scene = problem_.scene();
-  const NitscheCurve &curve = *problem_.nitsche();
-  const CurveFields fields = nitsche_fields(curve, op.mu, found.layer);
-  HfSolution solution;
-  solution.u = whole_displacement(problem_, mu, found.u.get());
-  solution.lambda = nitsche_multiplier(fields, curve.friction());
-  nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells, found.layer), found.pressures, fields,
-                  nitsche_law(curve, op.mu), solution.outputs);
-  if (curve.facing.follows_state) solution.outputs.ends_in_contact = ends_in_contact(fields);
-  solution.kkt.stationarity = found.residual;
-  solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
-  solution.outputs.kkt_residual = found.residual;
-  solution.outputs.iterations = solution.iterations = found.iterations;
-  solution.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
-                    std::to_string(found.outer_iterations) + " loops, " +
-                    std::to_string(found.factorisations) + " factorisations";
-  solved_.push_back({mu, {}, std::move(found.u), std::move(found.pressures)});
-  return solution;
 }
 
 MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op) {

@@ -317,7 +317,7 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
       free += (free.empty() ? "" : ",") + parameter.name;
   }
   settings["parameters"] = free;
-  if (by_nitsche(scene)) {
+  if (!has_multipliers(scene)) {
     settings["nitsche_bounds"] = options.nitsche.nonpenetration ? "nonpenetration" : "none";
     return settings;
   }

@@ -107,7 +107,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   HfOptions hf = options.hf;
   hf.method = HfMethod::active_set;
   rows.push_back(bench_solver(problem, hf, truths, truths.size(), false));
-  if (problem.nitsche() != nullptr) {
+  if (!has_multipliers(problem.scene())) {
     rows.push_back(bench_solver(problem, hf, truths, few, true));
     return rows;
   }

@@ -33,7 +33,7 @@ StageRow snapshot_row(std::size_t training, const Groups &groups, const SweepRep
 
 /// What of the solves is done once for all mu.
 std::string factorisation_text(const ToolOptions &options) {
-  if (by_nitsche(options.scene))
+  if (!has_multipliers(options.scene))
     return "one serves many Newton steps, as long as conjugate gradients need few iterations";
   if (constant_stiffness(options.scene))
     return "A does not depend on mu: one for the sweep, one condensed operator";

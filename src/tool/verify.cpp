@@ -90,7 +90,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   const int rank = rank_of(world), ranks = ranks_of(world);
   const auto count = static_cast<int>(pairs.size());
   const bool friction = truths.tangential_norm.size() > 0;
-  const bool stresses = friction && model.nitsche;
+  const bool stresses = friction && !model.has_multipliers();
   Matrix rows = Matrix::Zero(count, stresses ? 15 : friction ? 14 : 13);
   collectively(world, [&] {
     for (int k = rank; k < count; k += ranks) {
@@ -261,10 +261,6 @@ std::string reduction_name(const NodalLaw &law) {
   return multiplier_reduction_names()[static_cast<std::size_t>(law.reduction)];
 }
 
-std::string nitsche_name(const NitscheModel &nitsche) {
-  return "nitsche " + curve_rule_names()[static_cast<std::size_t>(nitsche.rule)];
-}
-
 const char *kind_name(OutputKind kind) {
   return kind == OutputKind::quantity  ? "quantity"
          : kind == OutputKind::measure ? "measure"
@@ -315,7 +311,7 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
       model.supremizers == 0
           ? whole
           : model_errors(leading(model, model.modes, model.generators), {}, truths, w);
-  const std::string name = model.nitsche            ? nitsche_name(*model.nitsche)
+  const std::string name = !model.has_multipliers() ? nitsche_name(model)
                            : model.law              ? reduction_name(*model.law)
                            : model.supremizers == 0 ? "decorrelated"
                            : model.online_enriched  ? "online-enriched"

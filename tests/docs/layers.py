@@ -6,9 +6,8 @@ A layer is src/NAME with include/rbvi/NAME; a room is one folder of a layer with
   include layers of the online program alone.
 - Rooms do not include each other in a circle.
 - No layer asks which kind of contact it has: outside of the layer contact and of the scenes, no file
-  includes a folder of it or casts to one of its classes. Nitsche's method has solvers of its own,
-  in files and rooms of that name; elsewhere a line that asks for it is counted, and NITSCHE says how
-  many a file has, no more and no fewer.
+  includes a folder of it or casts to one of its classes. Nitsche's method has files and rooms of
+  that name; elsewhere no line asks for it, but for what contact has (has_multipliers, ...).
 - A room of src has fewer than 2000 lines, a file of code at most 400, a function at most 60 unless
   it is a table of data. Functions are found by the indentation that clang-format gives them.
 """
@@ -19,32 +18,9 @@ from collections import defaultdict
 from pathlib import Path
 
 MOST_OF_ROOM, MOST_OF_FILE, MOST_OF_FUNCTION = 2000, 400, 60
-# Lines that ask whether contact is by Nitsche's method, outside of src/contact and of files of that
-# name: where models are made, stored and answered by another formulation.
-NITSCHE_LINE = re.compile(r"\bby_nitsche\(|[.>]nitsche\b|\bnitsche\(\)|\bFormulation::")
-NITSCHE = {
-    "include/rbvi/core/contact_recipe.hpp": 2,
-    "include/rbvi/problem/problem.hpp": 1,
-    "src/check/bench.cpp": 1,
-    "src/check/errors.cpp": 1,
-    "src/mor/reduce.cpp": 2,
-    "src/mor/separation/curve_quadrature.cpp": 6,
-    "src/mor/separation/layer_interpolation.cpp": 4,
-    "src/mor/stages.cpp": 2,
-    "src/rom/model/model.cpp": 6,
-    "src/rom/model/model_file.cpp": 2,
-    "src/rom/online.cpp": 4,
-    "src/rom/print.cpp": 3,
-    "src/solve/contact_cost.cpp": 1,
-    "src/solve/high_fidelity.cpp": 3,
-    "src/sweep/sweep.cpp": 2,
-    "src/tool/bench.cpp": 1,
-    "src/tool/options/rules.cpp": 1,
-    "src/tool/options/solver_options.cpp": 1,
-    "src/tool/options/table.cpp": 3,
-    "src/tool/stages.cpp": 1,
-    "src/tool/verify.cpp": 2,
-}
+# A line that asks whether contact is by Nitsche's method; options of that method are data.
+NITSCHE_LINE = re.compile(r"\bby_nitsche\(|(?<!options)(?<!hf)[.>]nitsche\b|\bnitsche\(\)(?! \{)|"
+                          r"[=!]= *Formulation::")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 TYPE = re.compile(r"(template\s*<.*?>\s*)?(struct|class|union|enum)\b")
 TABLE = re.compile(r"static const(expr)? .*\{|return \{")
@@ -126,26 +102,17 @@ def check_kinds(root):
     return wrong
 
 
-def nitsche_lines(root):
-    """Of each file, how many of its lines of code ask for Nitsche's method."""
-    counts = {}
+def check_nitsche(root):
+    """Lines of code that ask for Nitsche's method where they should ask for what contact has."""
+    wrong = []
     for path in sources(root, ["src", "include/rbvi"]):
-        if "nitsche" in path.name or room_of(path, root).split("/")[0] == "contact":
+        if "nitsche" in path.as_posix() or room_of(path, root).split("/")[0] == "contact":
             continue
         code = [line.split("//")[0] for line in path.read_text(encoding="utf-8").splitlines()]
-        count = sum(1 for line in code if NITSCHE_LINE.search(line))
-        if count:
-            counts[str(path.relative_to(root))] = count
-    return counts
-
-
-def check_nitsche(root):
-    counts = nitsche_lines(root)
-    return [f"{name} asks for Nitsche's method in {counts.get(name, 0)} lines, NITSCHE says "
-            f"{NITSCHE.get(name, 0)}: ask for what contact declares (has_multipliers, ...) instead, "
-            "or correct the table where it asks less often"
-            for name in sorted(counts | NITSCHE)
-            if counts.get(name, 0) != NITSCHE.get(name, 0)]
+        wrong += [f"{path.relative_to(root)}:{number} asks for Nitsche's method: ask for what contact "
+                  "has (has_multipliers, follows_state, ...), or do it in a file of that name"
+                  for number, line in enumerate(code, 1) if NITSCHE_LINE.search(line)]
+    return wrong
 
 
 def reachable(edges, start):

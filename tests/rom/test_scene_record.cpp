@@ -87,7 +87,7 @@ TEST(SceneRecord, FunctionsMadeAgainAreTheSame) {
     }
     EXPECT_EQ(again.symmetric, scene.symmetric);
     EXPECT_EQ(again.mirror_images, scene.mirror_images);
-    EXPECT_EQ(by_nitsche(again), by_nitsche(scene));
+    EXPECT_EQ(has_multipliers(again), has_multipliers(scene));
     EXPECT_EQ(has_friction(again), has_friction(scene));
     EXPECT_EQ(separable_contact(again), separable_contact(scene));
     EXPECT_EQ(keeps_nodes(again), keeps_nodes(scene));

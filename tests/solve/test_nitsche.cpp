@@ -144,7 +144,7 @@ TEST(NitscheDisk, TheErrorOfTheContactLawIsOfFirstOrderInTheEdges) {
 double functional(Problem &problem, NitscheSolver &solver, const Mu &mu) {
   const Operators &op = problem.assemble(mu);
   const NitscheSolution s = solver.solve(op);
-  const NitscheCurve &curve = *problem.nitsche();
+  const NitscheCurve &curve = curve_of(problem.contact());
   const auto faces = nitsche_faces(curve, op.mu, curve.cells);
   const auto blocks = nitsche_consistency(faces, false);
   double consistency = 0;

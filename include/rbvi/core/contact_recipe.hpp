@@ -71,10 +71,10 @@ struct ContactKind {
   std::function<ContactRecipe(const Record &)> make;
 };
 
-/// Whether some interface has friction; whether all are by Nitsche's method, separable, ...
+/// Whether some interface has friction.
 bool has_friction(const Scene &scene);
-bool by_nitsche(const Scene &scene);
 /// Whether multipliers hold contact in all of them, B u <= g: there are laws, cones, supremizers.
+/// Otherwise Nitsche's method does.
 bool has_multipliers(const Scene &scene);
 bool separable_contact(const Scene &scene);
 /// Whether some interface follows the state.

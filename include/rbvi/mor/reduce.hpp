@@ -5,9 +5,9 @@
 #include "rbvi/mor/bases/gcns.hpp"
 #include "rbvi/mor/bases/multiplier_basis.hpp"
 #include "rbvi/mor/bases/pod.hpp"
+#include "rbvi/mor/nitsche/curve_quadrature.hpp"
 #include "rbvi/mor/separation/affine.hpp"
 #include "rbvi/mor/separation/condensed.hpp"
-#include "rbvi/mor/separation/curve_quadrature.hpp"
 #include "rbvi/mor/stability/stability.hpp"
 #include "rbvi/par/stage.hpp"
 #include "rbvi/sweep/sweep.hpp"
@@ -99,6 +99,10 @@ Reduction reduce(Problem &problem, const std::vector<Sample> &samples,
 ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &samples,
                              const ReduceOptions &options, const AffineOperators &affine,
                              StageTable &stages);
+
+/// The model of Nitsche's method. Collective.
+void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
+                    const ReduceOptions &options, Reduction &result);
 
 /// A reduced pair of spaces: POD, the dual basis, supremizers. `b_is_scaled`: b depends on mu by a
 /// factor only, so one training mu serves the supremizers. Collective.

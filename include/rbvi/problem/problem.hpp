@@ -72,8 +72,6 @@ public:
   const Contact &contact() const { return contact_; }
   const Trace &trace() const { return places_.trace; }
   Index dual_size() const { return contact_.dual_size(); }
-  /// Nitsche's method: the terms along the contact curve; null: by multipliers.
-  const NitscheCurve *nitsche() const { return contact_.interfaces.front()->nitsche(); }
 
   /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
   /// only where the parameters that they depend on have changed. Throws failure if a cell is

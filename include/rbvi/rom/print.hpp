@@ -16,9 +16,6 @@ void print_model(std::ostream &out, const ReducedModel &model);
 /// One line: the errors measured over the validation set, or that none were.
 void print_expected_errors(std::ostream &out, const ReducedModel &model);
 
-/// How a model of Nitsche's method integrates over the contact curve: "78 of 1264 Gauss points".
-std::string describe_curve(const NitscheModel &nitsche, Index edges);
-
 /// "wrote run/x/u.vtu, run/x/u_contact.vtu": files or directories, one line.
 void print_written(std::ostream &out, const std::vector<std::filesystem::path> &paths);
 

@@ -1,6 +1,6 @@
 // High-fidelity solvers at one mu. One result type. Scenes with Nitsche's method:
-// solve/nitsche.hpp; the multipliers are then minus the stress at the vertices of the curve. The
-// mixed problem: three methods that agree,
+// solve/nitsche/nitsche.hpp; the multipliers are then minus the stress at the vertices of the
+// curve. The mixed problem: three methods that agree,
 //
 //   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column,
 //               with B on every rank: the truth
@@ -20,7 +20,7 @@
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/par/groups.hpp"
 #include "rbvi/problem/problem.hpp"
-#include "rbvi/solve/nitsche.hpp"
+#include "rbvi/solve/nitsche/nitsche.hpp"
 
 #include <memory>
 #include <optional>
@@ -52,12 +52,13 @@ struct HfOptions {
 
 /// Relative residuals of the optimality system.
 struct KktResidual {
-  double stationarity = 0;    ///< |A u + B^T l - F| / (|F| + |B^T l|)
-  double feasibility = 0;     ///< max (B u - G)_+ / weight, over max |G| / weight; normal rows
-  double complementarity = 0; ///< sum |l (B u - G)| / (|l| |G|)
+  double stationarity = 0; ///< |A u + B^T l - F| / (|F| + |B^T l|)
+  double feasibility = 0;  ///< max (B u - G)_+ / weight, over max s / weight; normal rows, of which
+                           ///< s = max(|G|, |B u|, 1e-3 weight max |u|); tangential: |G|, |B u|
+  double complementarity = 0; ///< sum |l (B u - G)| / (|l| |s|)
   double sign = 0;            ///< -min l / max |l|, l the normal multipliers
   double friction = 0; ///< max (|l_tau| - bound)_+ / max |l|, sum (bound |slip| - l_tau . slip)
-                       ///< over |l| |G|: the larger
+                       ///< over |l| |s|: the larger
   double largest() const;
 };
 

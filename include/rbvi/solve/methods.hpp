@@ -25,6 +25,9 @@ struct MethodResult {
   std::string reason;
 };
 
+/// At all dofs in natural order, the imposed values among them. Collective.
+Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u);
+
 /// F - B^T lambda. Collective.
 Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda);
 

@@ -1,5 +1,6 @@
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
 
+#include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/curve.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
@@ -108,6 +109,12 @@ ContactRecipe nitsche_contact(const std::string &name, Faced faced, double gamma
 }
 
 } // namespace
+
+const NitscheCurve &curve_of(const Contact &contact) {
+  const NitscheCurve *curve = contact.interfaces.front()->nitsche();
+  if (curve == nullptr) throw failure("the scene has contact by multipliers, not a curve");
+  return *curve;
+}
 
 NitscheFacing facing_support(const Scene &scene, Support support) {
   return {[&scene, support = std::move(support)](const FullMu &mu, const Point &x, const Point &) {

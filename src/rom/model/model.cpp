@@ -1,5 +1,7 @@
 #include "rbvi/rom/model/model.hpp"
 
+#include "checks.hpp"
+#include "nitsche_part.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/lagrange.hpp"
@@ -14,40 +16,11 @@ namespace rbvi {
 
 namespace {
 
-/// Offset of column j of a packed lower triangle of order n.
-Index packed_column(Index n, Index j) {
-  return j * n - j * (j - 1) / 2;
-}
-
-Matrix leading_triangle(const Matrix &packed, Index n, Index size) {
-  Matrix result(size * (size + 1) / 2, packed.cols());
-  for (Index j = 0; j < size; ++j)
-    result.middleRows(packed_column(size, j), size - j) =
-        packed.middleRows(packed_column(n, j), size - j);
-  return result;
-}
-
 Matrix leading_block(const Matrix &packed, Index rows, Index r, Index n) {
   Matrix result(r * n, packed.cols());
   for (Index j = 0; j < n; ++j)
     result.middleRows(j * r, r) = packed.middleRows(j * rows, r);
   return result;
-}
-
-void require(bool holds, const std::string &what) {
-  if (!holds) throw failure("the reduced model is inconsistent: " + what);
-}
-
-void require_shape(const Matrix &matrix, Index rows, Index cols, const std::string &name) {
-  require(matrix.rows() == rows && matrix.cols() == cols,
-          name + " is " + std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) +
-              " instead of " + std::to_string(rows) + " x " + std::to_string(cols));
-  require(matrix.allFinite(), name + " has an entry that is not finite");
-}
-
-void require_indices(const std::vector<int> &indices, Index bound, const std::string &name) {
-  require(std::all_of(indices.begin(), indices.end(), [&](int i) { return i >= 0 && i < bound; }),
-          name + " points outside 0.." + std::to_string(bound - 1));
 }
 
 /// `samples`: of how many meshes the entries are; `columns`: of `reduced`.
@@ -84,7 +57,7 @@ void check_terms(const AffineTerms &terms, Index rows, Index columns, int dim, s
 void check_change(const ReducedModel &model) {
   const StiffnessChange &change = model.a_change;
   const Index rank = change.rank(), terms = rank > 0 ? model.a.size() : 0;
-  require(rank == 0 || !(model.law || model.nitsche || model.online_enriched),
+  require(rank == 0 || !(model.law || !model.has_multipliers() || model.online_enriched),
           "a/range is for a pair of spaces");
   require_shape(change.scales, terms, 1, "a/scales");
   require_shape(change.range, rank > 0 ? model.primal_size() : change.range.rows(), rank,
@@ -177,61 +150,6 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
     require_shape(law.states, model.contact_trace.rows(), law.starts.cols(), "law/states");
 }
 
-/// `entries`: of the reduced operator.
-void check_layer_terms(const LayerTerms &terms, Index entries, Index dofs,
-                       const std::string &name) {
-  require_shape(terms.interpolation, terms.size(), terms.size(), name + "/interpolation");
-  require_shape(terms.reduced, terms.size() == 0 ? terms.reduced.rows() : entries, terms.size(),
-                name + "/reduced");
-  require(static_cast<Index>(terms.rows.size()) == terms.size() &&
-              (terms.columns.empty() || terms.columns.size() == terms.rows.size()),
-          name + "/rows does not fit");
-  require_indices(terms.rows, dofs, name + "/rows");
-  require_indices(terms.columns, dofs, name + "/columns");
-}
-
-void check_nitsche(const ReducedModel &model, const NitscheModel &nitsche) {
-  const Index cells = model.interfaces.front().mesh.count(), n = model.primal_size(),
-              packed = n * (n + 1) / 2, dofs = model.contact_trace.rows();
-  check_layer_terms(nitsche.consistency, packed, dofs, "nitsche/consistency");
-  check_layer_terms(nitsche.contact_matrix, packed, dofs, "nitsche/contact_matrix");
-  check_layer_terms(nitsche.contact_vector, n, dofs, "nitsche/contact_vector");
-  check_layer_terms(nitsche.friction_matrix, packed, dofs, "nitsche/friction_matrix");
-  check_layer_terms(nitsche.friction_vector, n, dofs, "nitsche/friction_vector");
-  require(nitsche.rule >= CurveRule::empirical && nitsche.rule <= CurveRule::interpolated,
-          "nitsche/rule is none that this build has");
-  require_indices(nitsche.points, 4 * cells, "nitsche/points");
-  require(std::is_sorted(nitsche.points.begin(), nitsche.points.end()),
-          "nitsche/points are not in order");
-  require_shape(nitsche.factors, static_cast<Index>(nitsche.points.size()), 1, "nitsche/factors");
-  require(nitsche.rule != CurveRule::interpolated || nitsche.starts.rows() == n,
-          "nitsche/starts does not fit");
-  require_shape(nitsche.starts_mu, model.parameters.size(), nitsche.starts.cols(),
-                "nitsche/starts_mu");
-  if (nitsche.states.size() > 0)
-    require_shape(nitsche.states, n, nitsche.starts.cols(), "nitsche/states");
-}
-
-/// The terms of the first `size` of n columns.
-LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
-  LayerTerms result = terms;
-  if (terms.size() == 0) return result;
-  result.reduced = terms.columns.empty() ? Matrix(terms.reduced.topRows(size))
-                                         : leading_triangle(terms.reduced, n, size);
-  return result;
-}
-
-NitscheModel leading_curve(const NitscheModel &nitsche, Index n, Index size) {
-  NitscheModel result = nitsche;
-  if (nitsche.rule == CurveRule::interpolated) result.starts = nitsche.starts.topRows(size);
-  if (nitsche.states.size() > 0) result.states = nitsche.states.topRows(size);
-  for (LayerTerms NitscheModel::*terms :
-       {&NitscheModel::consistency, &NitscheModel::contact_matrix, &NitscheModel::contact_vector,
-        &NitscheModel::friction_matrix, &NitscheModel::friction_vector})
-    result.*terms = leading_terms(nitsche.*terms, n, size);
-  return result;
-}
-
 } // namespace
 
 void check_model(const ReducedModel &model) {
@@ -240,10 +158,10 @@ void check_model(const ReducedModel &model) {
   const Index n = model.primal_size(), r = model.generators, dual = model.dual_basis.rows(),
               contact = model.contact_dofs();
   require(dim == 2 || dim == 3, "interfaces have neither 2 nor 3 dimensions");
-  require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || model.nitsche),
+  require(model.modes > 0 && model.supremizers >= 0 && (r > 0 || !model.has_multipliers()),
           "it has no modes or no generators");
   require(model.a.size() > 0, "a has no terms");
-  require(model.b.size() > 0 ? !model.nitsche : model.g.size() == 0,
+  require(model.b.size() > 0 ? model.has_multipliers() : model.g.size() == 0,
           "g has terms and b has not, or Nitsche's method has some");
   const std::size_t interfaces = model.interfaces.size();
   for (const InterfaceModel &interface : model.interfaces)
@@ -256,11 +174,11 @@ void check_model(const ReducedModel &model) {
   check_terms(model.g, r, model.g.size(), dim, interfaces, "g");
   check_terms(model.imposed_energy, 1, model.imposed_energy.size(), dim, 1, "imposed_energy");
   if (model.law) check_law(model, *model.law);
-  if (model.nitsche) check_nitsche(model, *model.nitsche);
+  check_nitsche(model);
   require_shape(model.dual_basis, dual, r, "contact/dual_basis");
   require(model.free_modes >= 0 && model.free_modes <= r, "size/free_modes does not fit");
   const bool partial = !model.trace_dofs.empty();
-  require(!partial || !(model.law || model.nitsche || model.evaluates_contact()),
+  require(!partial || !(model.law || !model.has_multipliers() || model.evaluates_contact()),
           "contact/trace_dofs is for a pair of spaces");
   require(std::ranges::is_sorted(model.trace_dofs), "contact/trace_dofs does not rise");
   require_indices(model.trace_dofs, contact, "contact/trace_dofs");
@@ -279,11 +197,6 @@ const std::vector<std::string> &multiplier_reduction_names() {
   return names;
 }
 
-const std::vector<std::string> &curve_rule_names() {
-  static const std::vector<std::string> names{"empirical", "full", "interpolated"};
-  return names;
-}
-
 ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (n < 1 || n > model.primal_size() || r < std::min(1, model.generators) || r > model.generators)
     throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
@@ -298,13 +211,13 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   result.generators = r;
   result.free_modes = std::max(0, r - (model.generators - model.free_modes));
   if (model.a_change.rank() > 0) result.a_change.range = model.a_change.range.topRows(n);
-  result.a.reduced = leading_triangle(model.a.reduced, model.primal_size(), n);
+  result.a.reduced = leading_triangles(model.a.reduced, model.primal_size(), n);
   if (model.b.size() > 0) result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
   if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);
   if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
   result.dual_basis = model.dual_basis.leftCols(r);
   result.contact_trace = model.contact_trace.leftCols(n);
-  if (model.nitsche) result.nitsche = leading_curve(*model.nitsche, model.primal_size(), n);
+  keep_leading_nitsche(model, n, result);
   if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
   if (n != model.primal_size()) result.fields_key.clear();
   if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};

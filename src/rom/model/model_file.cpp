@@ -1,5 +1,6 @@
 // model.h5: its data sets are listed in LAYOUT.md beside this file.
 #include "model_fields.hpp"
+#include "nitsche_part.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
@@ -237,57 +238,6 @@ std::optional<NodalLaw> read_law(const H5Reader &file) {
   return law;
 }
 
-struct NamedTerms {
-  const char *name;
-  LayerTerms NitscheModel::*terms;
-};
-constexpr NamedTerms layer_terms[] = {{"nitsche/consistency", &NitscheModel::consistency},
-                                      {"nitsche/contact_matrix", &NitscheModel::contact_matrix},
-                                      {"nitsche/contact_vector", &NitscheModel::contact_vector},
-                                      {"nitsche/friction_matrix", &NitscheModel::friction_matrix},
-                                      {"nitsche/friction_vector", &NitscheModel::friction_vector}};
-
-void write_nitsche(H5Writer &file, const std::optional<NitscheModel> &nitsche) {
-  file.write("nitsche/rule", nitsche ? static_cast<int>(nitsche->rule) : -1);
-  if (!nitsche) return;
-  file.write("nitsche/points", nitsche->points);
-  file.write("nitsche/factors", nitsche->factors);
-  file.write("nitsche/starts", nitsche->starts);
-  file.write("nitsche/starts_mu", nitsche->starts_mu);
-  file.write("nitsche/states", nitsche->states);
-  for (const auto &[name, member] : layer_terms) {
-    const LayerTerms &terms = (*nitsche).*member;
-    const std::string group = name;
-    file.write(group + "/reduced", terms.reduced);
-    file.write(group + "/interpolation", terms.interpolation);
-    file.write(group + "/rows", terms.rows);
-    file.write(group + "/columns", terms.columns);
-    file.write(group + "/error", terms.error);
-  }
-}
-
-std::optional<NitscheModel> read_nitsche(const H5Reader &file) {
-  NitscheModel nitsche;
-  const int rule = file.integer("nitsche/rule");
-  if (rule < 0) return std::nullopt;
-  nitsche.rule = static_cast<CurveRule>(rule);
-  nitsche.points = file.ints("nitsche/points");
-  nitsche.factors = file.vector("nitsche/factors");
-  nitsche.starts = file.matrix("nitsche/starts");
-  nitsche.starts_mu = file.matrix("nitsche/starts_mu");
-  nitsche.states = file.matrix("nitsche/states");
-  for (const auto &[name, member] : layer_terms) {
-    LayerTerms &terms = nitsche.*member;
-    const std::string group = name;
-    terms.reduced = file.matrix(group + "/reduced");
-    terms.interpolation = file.matrix(group + "/interpolation");
-    terms.rows = file.ints(group + "/rows");
-    terms.columns = file.ints(group + "/columns");
-    terms.error = file.number(group + "/error");
-  }
-  return nitsche;
-}
-
 void write_contact(H5Writer &file, const ReducedModel &model) {
   write_interfaces(file, model.interfaces);
   file.write("contact/dual_basis", model.dual_basis);
@@ -324,7 +274,7 @@ ReducedModel read_members(const H5Reader &file) {
   model.g = read_terms(file, "g");
   model.imposed_energy = read_terms(file, "imposed_energy");
   model.law = read_law(file);
-  model.nitsche = read_nitsche(file);
+  read_nitsche(file, model);
   read_contact(file, model);
   read_history(file, model);
   return model;
@@ -356,7 +306,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   write_terms(file, "g", model.g);
   write_terms(file, "imposed_energy", model.imposed_energy);
   write_law(file, model.law);
-  write_nitsche(file, model.nitsche);
+  write_nitsche(file, model);
   write_contact(file, model);
   file.write("fields/key", key_of_fields(model));
   write_history(file, model);

@@ -21,7 +21,20 @@ template <class Visit> void visit_triangles(const std::vector<int> &blocks, Visi
   }
 }
 
+/// Offset of column j of a packed lower triangle of order n.
+Index packed_column(Index n, Index j) {
+  return j * n - j * (j - 1) / 2;
+}
+
 } // namespace
+
+Matrix leading_triangles(const Matrix &packed, Index n, Index size) {
+  Matrix result(size * (size + 1) / 2, packed.cols());
+  for (Index j = 0; j < size; ++j)
+    result.middleRows(packed_column(size, j), size - j) =
+        packed.middleRows(packed_column(n, j), size - j);
+  return result;
+}
 
 std::vector<int> diagonal_blocks(const Matrix &squares) {
   const auto n = static_cast<Index>(std::lround(std::sqrt(static_cast<double>(squares.rows()))));

@@ -45,7 +45,7 @@ void check_formulation(const Scene &scene) {
   if (!has_multipliers(scene) && is_given("multiplier_reduction"))
     throw bad_input("-multiplier_reduction is for the mixed formulation: Nitsche's method has no "
                     "multipliers");
-  if (!by_nitsche(scene) && is_given("nitsche_quadrature"))
+  if (has_multipliers(scene) && is_given("nitsche_quadrature"))
     throw bad_input("-nitsche_quadrature is for Nitsche's method: set -formulation nitsche");
 }
 

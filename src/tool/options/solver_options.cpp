@@ -41,7 +41,7 @@ void check_solver_of(const std::string &name, const Scene &scene, const HfOption
   for (const Ineffective &option : ineffective)
     if (name.starts_with(option.name))
       throw bad_input("-" + name + " has no effect: " + option.instead);
-  if (name.starts_with("nitsche_") && !by_nitsche(scene))
+  if (name.starts_with("nitsche_") && has_multipliers(scene))
     throw bad_input("-" + name + " is for Nitsche's method: set -formulation nitsche");
   if (name.starts_with("hf_") && !has_multipliers(scene))
     throw bad_input("-" + name + " is for the mixed formulation: Nitsche's method has -nitsche_" +

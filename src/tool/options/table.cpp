@@ -26,12 +26,12 @@ bool always(const ToolOptions & /*options*/) {
   return true;
 }
 
-bool with_nitsche(const ToolOptions &options) {
-  return by_nitsche(options.scene);
-}
-
 bool mixed(const ToolOptions &options) {
   return has_multipliers(options.scene);
+}
+
+bool not_mixed(const ToolOptions &options) {
+  return !mixed(options);
 }
 
 bool with_law(const ToolOptions &options) {
@@ -334,7 +334,7 @@ std::vector<Option> of_nitsche() {
              {{"none", "Newton's method"},
               {"nonpenetration", "SNES keeps the nodes' normal displacements below the gap"}},
              AT(hf.nitsche.nonpenetration), "bounds on the displacement"),
-      kept(with_nitsche,
+      kept(not_mixed,
            choice("nitsche_quadrature",
                   choices(curve_rule_names(),
                           {"at few Gauss points of the curve, with non-negative weights found by "

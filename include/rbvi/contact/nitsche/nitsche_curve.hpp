@@ -18,6 +18,8 @@
 
 namespace rbvi {
 
+struct Contact;
+
 /// A cell beside the curve. Its dofs, node * 2 + component, are numbered in the layer; -1: fixed,
 /// or not there (degree 1).
 struct CurveCell {
@@ -39,6 +41,10 @@ struct NitscheCurve {
   /// friction too: the whole stress does not depend on them.
   bool whole_stress() const { return friction() || facing.follows_state; }
 };
+
+/// The one of contact by Nitsche's method, which has a single interface. Throws failure where
+/// multipliers hold contact.
+const NitscheCurve &curve_of(const Contact &contact);
 
 /// What it sees at one mu. Rows of NitschePoint are for these dofs.
 struct NitscheFace {

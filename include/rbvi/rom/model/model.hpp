@@ -17,6 +17,7 @@
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
 #include "rbvi/rom/model/chebyshev.hpp"
+#include "rbvi/rom/model/nitsche_model.hpp"
 
 #include <filesystem>
 #include <map>
@@ -153,42 +154,6 @@ struct NodalLaw {
   Matrix states;    ///< contact dofs x P: their displacements, where contact follows them; or empty
 };
 
-/// How a model of Nitsche's method takes the integrals of contact and friction.
-enum class CurveRule {
-  empirical,   ///< at few Gauss points of the curve, with non-negative weights of their own
-  full,        ///< at all of them
-  interpolated ///< empirical interpolation over (mu, Newton step) (4.71)-(4.80)
-};
-
-/// "empirical", "full", "interpolated".
-const std::vector<std::string> &curve_rule_names();
-
-/// An operator on the contact dofs by empirical interpolation (B.36): sum_q theta_q (term q), with
-/// theta from J of its entries.
-struct LayerTerms {
-  Matrix reduced;                 ///< n x J, or of a matrix: a packed lower triangle by columns x J
-  Matrix interpolation;           ///< J x J unit lower triangular
-  std::vector<int> rows, columns; ///< J contact dofs; a vector has no columns
-  double error = 0;               ///< e_EIM reached
-  Index size() const { return interpolation.rows(); }
-};
-
-/// Nitsche's method: what of the cells beside the contact curve is integrated online. Their dofs
-/// are the contact dofs.
-struct NitscheModel {
-  LayerTerms consistency; ///< a_gamma - a, a matrix
-  CurveRule rule = CurveRule::empirical;
-  std::vector<int> points;                     ///< empirical: 4 * cell + Gauss point
-  Vector factors;                              ///< empirical: of the weights of these points, > 0
-  LayerTerms contact_matrix, contact_vector;   ///< interpolated: B^n, Theta^n
-  LayerTerms friction_matrix, friction_vector; ///< interpolated: B^tau, Theta^tau
-  /// Where a query starts from: P_n, then P_tau of the training samples at the points.
-  /// Interpolated: their n coefficients.
-  Matrix starts;
-  Matrix starts_mu; ///< free parameters x P: where they are
-  Matrix states;    ///< n x P: contact that follows the displacement: their coefficients
-};
-
 /// A contact interface of the model.
 struct InterfaceModel {
   InterfaceMesh mesh;
@@ -231,9 +196,11 @@ struct ReducedModel {
   std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
   Index contact_dofs() const { return interfaces.front().mesh.columns; } ///< k
   /// B and G do not separate: they are evaluated for each mu on the interfaces.
-  bool evaluates_contact() const { return b.size() == 0 && !nitsche; }
+  bool evaluates_contact() const { return b.size() == 0 && has_multipliers(); }
   std::optional<NodalLaw> law;
-  std::optional<NitscheModel> nitsche; ///< then no multipliers: R = 0, b and g have no terms
+  std::optional<NitscheModel> nitsche;
+  /// Without: R = 0, and b and g have no terms.
+  bool has_multipliers() const { return !nitsche; }
 
   // Full order, for reconstruction; may stay in a file of their own, which may be large.
   std::string fields_key;      ///< of that file, where they are not here

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rbvi/solve/linear/local_frames.hpp"
-#include "rbvi/solve/nitsche.hpp"
+#include "rbvi/solve/nitsche/nitsche.hpp"
 
 #include <exception>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "rbvi/solve/nitsche.hpp"
+#include "rbvi/solve/nitsche/nitsche.hpp"
 
 #include "nitsche_system.hpp"
 #include "rbvi/core/error.hpp"

@@ -83,7 +83,7 @@ NitscheSystem &system_of(void *context) {
 
 NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
                              const NitscheOptions &chosen)
-    : solver(of), problem(whole), curve(*whole.nitsche()), options(chosen),
+    : solver(of), problem(whole), curve(curve_of(whole.contact())), options(chosen),
       rows(global_rows(whole.trace(), whole.dofs().first_free)) {
   if (!options.nonpenetration) return;
   if (curve.facing.follows_state)

@@ -1,4 +1,4 @@
-#include "rbvi/mor/separation/curve_quadrature.hpp"
+#include "rbvi/mor/nitsche/curve_quadrature.hpp"
 
 #include "layer_interpolation.hpp"
 #include "rbvi/core/error.hpp"
@@ -191,7 +191,7 @@ void choose_points(AllPoints &all, double tolerance, const NitscheCurve &curve,
 
 /// P_n and, with friction, P_tau of the samples at all points.
 Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) {
-  const NitscheCurve &curve = *problem.nitsche();
+  const NitscheCurve &curve = curve_of(problem.contact());
   const Index points = 4 * static_cast<Index>(curve.cells.size());
   Matrix result(curve.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p) {
@@ -208,7 +208,7 @@ Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) 
 CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model) {
-  const NitscheCurve &curve = *problem.nitsche();
+  const NitscheCurve &curve = curve_of(problem.contact());
   if (curve.facing.follows_state && options.rule == CurveRule::interpolated)
     throw bad_input("-nitsche_quadrature interpolated is for contact at rest: leave it out, or use "
                     "-kinematics small");

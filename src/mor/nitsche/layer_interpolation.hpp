@@ -1,10 +1,10 @@
 // Empirical interpolation of operators on the contact layer.
 #pragma once
 
-#include "rbvi/mor/separation/curve_quadrature.hpp"
+#include "rbvi/mor/nitsche/curve_quadrature.hpp"
 #include "rbvi/mor/separation/eim.hpp"
 #include "rbvi/rom/nitsche/layer_terms.hpp"
-#include "rbvi/solve/nitsche.hpp"
+#include "rbvi/solve/nitsche/nitsche.hpp"
 
 namespace rbvi {
 

@@ -131,7 +131,7 @@ void add_state(const LayerPattern &pattern, const std::vector<CurveCell> &cells,
 
 States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pattern,
                  const std::vector<Mu> &all_mu) {
-  const NitscheCurve &curve = *problem.nitsche();
+  const NitscheCurve &curve = curve_of(problem.contact());
   const std::vector<CurveCell> &cells = curve.cells;
   States states;
   for (const Mu &mu : all_mu) {
@@ -167,9 +167,9 @@ void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
   NitscheModel &nitsche = *model.nitsche;
   const Matrix &trace = model.contact_trace;
   // The steps as printed; with friction they can cycle without line search.
-  const bool friction = problem.nitsche()->friction();
+  const bool friction = curve_of(problem.contact()).friction();
   NitscheSolver solver(problem, {.full_steps = !friction});
-  const LayerPattern pattern(problem.nitsche()->cells);
+  const LayerPattern pattern(curve_of(problem.contact()).cells);
   const std::vector<Mu> training = parameters_of(samples);
   const States states = states_at(problem, solver, pattern, training);
   const States others = states_at(problem, solver, pattern, options.eim_validation);

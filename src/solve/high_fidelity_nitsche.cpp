@@ -1,0 +1,46 @@
+// HighFidelity by Nitsche's method.
+#include "rbvi/solve/high_fidelity.hpp"
+
+#include "rbvi/core/local_fit.hpp"
+#include "rbvi/solve/methods.hpp"
+
+namespace rbvi {
+
+Matrix HighFidelity::predicted_pressures(const Mu &mu) const {
+  const ParameterSpace &space = problem_.scene().parameters;
+  const auto count = static_cast<Index>(solved_.size());
+  Matrix pressures(solved_.front().pressures.size(), count), points(space.size(), count);
+  for (Index p = 0; p < count; ++p) {
+    const Solved &solved = solved_[static_cast<std::size_t>(p)];
+    pressures.col(p) = solved.pressures.reshaped();
+    points.col(p) = parts_of_box(space, expand(space, solved.mu));
+  }
+  return local_fit(pressures, points, parts_of_box(space, expand(space, mu)))
+      .reshaped(pressures.rows() / 2, 2);
+}
+
+HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
+  NitscheStart start{};
+  if (!solved_.empty()) start = {nearest(mu)->u.get(), predicted_pressures(mu)};
+  NitscheSolution found = nitsche_->solve(op, solved_.empty() ? nullptr : &start);
+  const Scene &scene = problem_.scene();
+  const NitscheCurve &curve = curve_of(problem_.contact());
+  const CurveFields fields = nitsche_fields(curve, op.mu, found.layer);
+  HfSolution solution;
+  solution.u = whole_displacement(problem_, mu, found.u.get());
+  solution.lambda = nitsche_multiplier(fields, curve.friction());
+  nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells, found.layer), found.pressures, fields,
+                  nitsche_law(curve, op.mu), solution.outputs);
+  if (curve.facing.follows_state) solution.outputs.ends_in_contact = ends_in_contact(fields);
+  solution.kkt.stationarity = found.residual;
+  solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
+  solution.outputs.kkt_residual = found.residual;
+  solution.outputs.iterations = solution.iterations = found.iterations;
+  solution.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
+                    std::to_string(found.outer_iterations) + " loops, " +
+                    std::to_string(found.factorisations) + " factorisations";
+  solved_.push_back({mu, {}, std::move(found.u), std::move(found.pressures)});
+  return solution;
+}
+
+} // namespace rbvi
