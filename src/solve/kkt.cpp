@@ -11,30 +11,42 @@ namespace rbvi {
 
 namespace {
 
+/// Of the largest displacement: where B u and G are both less, they may be of its round-off.
+constexpr double share_of_u = 1e-3;
+
+double largest(Vec u) {
+  PetscReal value = 0;
+  RBVI_CALL(VecNorm(u, NORM_INFINITY, &value));
+  return value;
+}
+
 double ratio(double value, double scale) {
   return scale > 0 ? value / scale : value;
 }
 
 /// What the residuals of the multipliers are made of, over some nodes or all.
 struct DualMeasures {
-  /// Largest: penetration; |G| over the weight; -l_n, |l_n| and |l|; (|l_tau| - bound)_+.
+  /// Largest: penetration; s over the weight; -l_n, |l_n| and |l|; (|l_tau| - bound)_+.
   std::array<double, 6> largest{0, 0, -std::numeric_limits<double>::infinity(), 0, 0, 0};
-  /// Sums: |l_n (B u - G)|; |l|^2; |G|^2; |bound |slip| - l_tau . slip|.
+  /// Sums: |l_n (B u - G)|; |l|^2; s^2; |bound |slip| - l_tau . slip|.
   std::array<double, 4> sums{};
 };
 
-/// `weights`: per node; `excess`: B u - G, in its tangential rows the slip.
+/// `weights`: per node; `excess`: B u - G, in its tangential rows the slip; `displacement`: the
+/// largest, of all nodes.
 DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vector &g,
-                          const Vector &lambda, const Vector &excess) {
+                          const Vector &lambda, const Vector &excess, double displacement) {
   DualMeasures result;
   auto &[penetration, gap, negative, pressure, stress, above] = result.largest;
-  auto &[idle, lambda_squared, g_squared, idle_friction] = result.sums;
+  auto &[idle, lambda_squared, terms_squared, idle_friction] = result.sums;
   const Vector bounds = bounds_of(laws, lambda);
+  Vector terms = g.cwiseAbs().cwiseMax((excess + g).cwiseAbs());
   for (Index i = 0; i < laws.nodes(); ++i) {
     const Index row = laws.normal[static_cast<std::size_t>(i)];
     if (weights[i] > 0) { // a multiplier without weight has no constraint
       penetration = std::max(penetration, excess[row] / weights[i]);
-      gap = std::max(gap, std::abs(g[row]) / weights[i]);
+      terms[row] = std::max(terms[row], share_of_u * displacement * weights[i]);
+      gap = std::max(gap, terms[row] / weights[i]);
     }
     negative = std::max(negative, -lambda[row]);
     pressure = std::max(pressure, std::abs(lambda[row]));
@@ -48,14 +60,14 @@ DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vec
   }
   stress = lambda.size() > 0 ? lambda.cwiseAbs().maxCoeff() : 0;
   lambda_squared = lambda.squaredNorm();
-  g_squared = g.squaredNorm();
+  terms_squared = terms.squaredNorm();
   return result;
 }
 
 KktResidual residual_of(const DualMeasures &dual, bool tangents) {
   const auto &[penetration, gap, negative, pressure, stress, above] = dual.largest;
-  const auto &[idle, lambda_squared, g_squared, idle_friction] = dual.sums;
-  const double scale = std::sqrt(lambda_squared) * std::sqrt(g_squared);
+  const auto &[idle, lambda_squared, terms_squared, idle_friction] = dual.sums;
+  const double scale = std::sqrt(lambda_squared) * std::sqrt(terms_squared);
   KktResidual kkt;
   kkt.feasibility = ratio(penetration, gap);
   kkt.complementarity = ratio(idle, scale);
@@ -81,8 +93,8 @@ double KktResidual::largest() const {
 
 KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
-  KktResidual kkt =
-      residual_of(measure_dual(op.laws, op.weights, op.g, lambda, excess), op.laws.has_tangents());
+  KktResidual kkt = residual_of(measure_dual(op.laws, op.weights, op.g, lambda, excess, largest(u)),
+                                op.laws.has_tangents());
   const Handle<Vec> reaction = like(op.f);
   RBVI_CALL(VecZeroEntries(reaction.get()));
   const Vector bt_lambda = op.b.transpose() * lambda;
@@ -97,8 +109,9 @@ KktResidual kkt_residual(const DistributedContact &contact, const Operators &op,
   RBVI_CALL(MatMult(contact.b.get(), u, excess.get()));
   RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
   const Vector weights = LocalValues(contact.weights.get()).get()(contact.laws.normal);
-  DualMeasures dual = measure_dual(contact.laws, weights, LocalValues(contact.g.get()).get(),
-                                   LocalValues(lambda).get(), LocalValues(excess.get()).get());
+  DualMeasures dual =
+      measure_dual(contact.laws, weights, LocalValues(contact.g.get()).get(),
+                   LocalValues(lambda).get(), LocalValues(excess.get()).get(), largest(u));
   const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(lambda));
   over_ranks(comm, MPI_MAX, dual.largest);
   over_ranks(comm, MPI_SUM, dual.sums);
