@@ -48,7 +48,7 @@ public:
     if (start.size() > 0) sets = predicted_sets(laws_, order_.inwards(Matrix(start)));
     pivoting::Policy<std::string, double> policy(/*patience=*/20);
     double accuracy = std::max(while_sets_change, options_.tolerance);
-    Point point;
+    State point;
     while (result_.iterations < options_.max_iterations) {
       ++result_.iterations;
       point = solved(sets, accuracy);
@@ -67,13 +67,13 @@ public:
   }
 
 private:
-  Point solved(const ActiveSets &sets, double accuracy) const {
+  State solved(const ActiveSets &sets, double accuracy) const {
     const SetSolution found = solve_(system_of(laws_, order_, sets, rows_), accuracy);
     return {order_.inwards(Matrix(found.x)), order_.inwards(Matrix(found.w)),
             order_.inwards(Matrix(found.terms))};
   }
 
-  FrictionResult finish(const Point &point, const ActiveSets &sets, double residual) {
+  FrictionResult finish(const State &point, const ActiveSets &sets, double residual) {
     FrictionResult result = std::move(result_);
     result.residual = residual;
     result.converged = true;

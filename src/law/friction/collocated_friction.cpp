@@ -41,7 +41,7 @@ class Judge {
 public:
   explicit Judge(const ScaledProblem &p) : p_(p) {}
 
-  void operator()(Point &point) {
+  void operator()(State &point) {
     point.residual = infinity;
     if (!point.x.allFinite() || !point.delta.allFinite()) return;
     point.w = p_.h * point.x + p_.q;
@@ -58,7 +58,7 @@ public:
     point.residual = worst_;
   }
   /// The size that a violation of the bound of node j is relative to.
-  double scale(const Point &point, Index j) const {
+  double scale(const State &point, Index j) const {
     return std::max(point.bounds[j], point.x.cwiseAbs().maxCoeff() * p_.size.maxCoeff());
   }
 
@@ -66,13 +66,13 @@ private:
   void violated(double amount, double terms) {
     if (amount > 0) worst_ = std::max(worst_, amount / terms);
   }
-  void generator(const Point &point, Index i) {
+  void generator(const State &point, Index i) {
     const double a = point.x[i], w = point.w[i], terms = point.terms[i];
     violated(-a, largest_);
     violated(-w, terms);
     if (a > 0 && w > 0) violated(smaller(a / largest_, w / terms), 1);
   }
-  void modes(const Point &point) {
+  void modes(const State &point) {
     const Index s = p_.modes();
     const Vector left = point.w.tail(s) + p_.tangential.transpose() * point.delta;
     const Vector terms =
@@ -81,7 +81,7 @@ private:
       violated(std::abs(left[k]), terms[k]);
     loads_ = s > 0 ? terms.maxCoeff() : 0;
   }
-  void node(const Point &point, Index j) {
+  void node(const State &point, Index j) {
     const double s = point.bounds[j], delta = point.delta[j], all = scale(point, j);
     violated(std::abs(point.traction[j]) - s, all);
     if (delta == 0) return;
@@ -108,12 +108,12 @@ public:
     without_bounds.size.resize(0);
     without_bounds.normal.resize(0, Eigen::NoChange);
     without_bounds.tangential.resize(0, Eigen::NoChange);
-    const Point unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
+    const State unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
     sets.side.assign(at(p_.nodes()), 0);
     iterate(sets, p_.bounds(unbounded.x));
   }
   int sweeps() const { return sweeps_; }
-  const Point &best() const { return best_; }
+  const State &best() const { return best_; }
 
 private:
   /// Sweeps with the bounds of Newton's point where that is the better one, else with those of the
@@ -127,7 +127,7 @@ private:
       std::vector<char> closed(at(p_.nodes()));
       for (Index j = 0; j < p_.nodes(); ++j)
         closed[at(j)] = s[j] == 0;
-      const Point point = judged(without(closed).frozen(s, sets));
+      const State point = judged(without(closed).frozen(s, sets));
       if (best_.residual <= round_off) return;
       const bool known = policy_.returns(sets);
       if (!known && newton(sets)) return;
@@ -148,7 +148,7 @@ private:
   bool newton(ActiveSets sets) {
     policy_.restart();
     for (;;) {
-      const Point point = judged(without(zero_bounds(sets)).newton(sets));
+      const State point = judged(without(zero_bounds(sets)).newton(sets));
       if (point.residual <= round_off) return true;
       if (point.residual == infinity) return false;
       ActiveSets next = corrected(sets, point);
@@ -176,13 +176,13 @@ private:
     return closed;
   }
 
-  Point judged(Point point) {
+  State judged(State point) {
     judge_(point);
     if (point.residual < best_.residual || best_.x.size() == 0) best_ = point;
     return point;
   }
 
-  ActiveSets corrected(ActiveSets sets, const Point &point) const {
+  ActiveSets corrected(ActiveSets sets, const State &point) const {
     for (Index i = 0; i < p_.generators(); ++i) {
       char &free = sets.free[at(i)];
       free = free != 0 ? point.x[i] > 0 : point.w[i] < -round_off * point.terms[i];
@@ -217,7 +217,7 @@ private:
   const ScaledProblem &p_;
   Judge judge_;
   std::unique_ptr<ZeroBoundElimination> elimination_;
-  Point best_;
+  State best_;
   pivoting::Policy<ActiveSets, double> policy_{/*patience=*/8};
   int sweeps_ = 0;
 };

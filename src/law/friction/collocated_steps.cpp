@@ -14,7 +14,7 @@ std::vector<Index> rows_above(const Vector &norms, double least) {
 /// Newton's step on given sets: the bounds follow the pressure,
 ///
 ///   w_free = 0,   w_tau + T^T delta = 0,   side_j (T b)_j - c (N a)_j = t at the nodes at a bound.
-Point newton_step(const ScaledProblem &p, const ActiveSets &sets) {
+State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   std::vector<Index> unknowns, held;
   for (Index i = 0; i < p.generators(); ++i)
     if (sets.free[at(i)] != 0) unknowns.push_back(i);
@@ -48,7 +48,7 @@ Point newton_step(const ScaledProblem &p, const ActiveSets &sets) {
     solution = lu.solve(right);
     solution += lu.solve(right - system * solution);
   }
-  Point point;
+  State point;
   point.x = Vector::Zero(p.q.size());
   point.delta = Vector::Zero(p.nodes());
   point.x(unknowns) = solution.head(n);
@@ -82,13 +82,13 @@ public:
         active.push_back(p_.generators() + j + (side > 0 ? 0 : p_.nodes()));
     qp_.start_from(std::move(active));
   }
-  Point solve(const Vector &s) {
+  State solve(const Vector &s) {
     const Index r = p_.generators(), m = p_.nodes();
     const Vector g = s.cwiseQuotient(p_.size);
     Vector linear(r + 2 * m);
     linear << Vector::Zero(r), g, g;
     qp_.solve(y_, c_, linear);
-    Point point;
+    State point;
     point.x = cholesky_.matrixU().solve(qp_.residual());
     point.x.head(r) = point.x.head(r).cwiseMax(0);
     for (const Index column : qp_.active())
@@ -169,16 +169,16 @@ void ZeroBoundElimination::eliminate() {
   reduced_.bound = bounds_at(p_.bound, nodes_);
 }
 
-Point ZeroBoundElimination::newton(const ActiveSets &sets) const {
+State ZeroBoundElimination::newton(const ActiveSets &sets) const {
   return lifted(newton_step(reduced_, restricted(sets)));
 }
 
-Point ZeroBoundElimination::frozen(const Vector &s, ActiveSets &sets) {
+State ZeroBoundElimination::frozen(const Vector &s, ActiveSets &sets) {
   if (!qp_) {
     qp_ = std::make_unique<FrozenBounds>(reduced_);
     qp_->start_from(restricted(sets));
   }
-  Point point = lifted(qp_->solve(s(nodes_)));
+  State point = lifted(qp_->solve(s(nodes_)));
   const ActiveSets found = qp_->sets();
   sets = ActiveSets(p_);
   sets.free = found.free;
@@ -198,9 +198,9 @@ ActiveSets ZeroBoundElimination::restricted(const ActiveSets &sets) const {
 }
 
 /// The multipliers of T_E b = 0 are those of what the others leave.
-Point ZeroBoundElimination::lifted(const Point &point) const {
+State ZeroBoundElimination::lifted(const State &point) const {
   if (zero_.empty()) return point;
-  Point full;
+  State full;
   const Index r = p_.generators(), s = p_.modes();
   full.x.resize(r + s);
   full.x << point.x.head(r), z_ * point.x.tail(z_.cols());

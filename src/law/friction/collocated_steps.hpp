@@ -58,7 +58,7 @@ struct ActiveSets {
 };
 
 /// A point and its multipliers, w_tau + T^T delta = 0; delta has the sign of T b.
-struct Point {
+struct State {
   Vector x, delta;
   Vector w, terms, bounds, traction; ///< filled by Judge: w, |H| |x| + |q|, s, T b
   double residual = infinity;
@@ -77,15 +77,15 @@ public:
   bool is(const std::vector<char> &closed) const { return closed_ == closed; }
 
   /// Newton's step on these sets; the bounds follow the pressure.
-  Point newton(const ActiveSets &sets) const;
+  State newton(const ActiveSets &sets) const;
 
   /// The solution with the bounds s; `sets`: a first guess, and on return those of the solution.
-  Point frozen(const Vector &s, ActiveSets &sets);
+  State frozen(const Vector &s, ActiveSets &sets);
 
 private:
   void eliminate();
   ActiveSets restricted(const ActiveSets &sets) const;
-  Point lifted(const Point &point) const;
+  State lifted(const State &point) const;
 
   std::vector<char> closed_;
   const ScaledProblem &p_;

@@ -61,7 +61,7 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
   if (normal.x.size() != nodes) return result; // H is not positive definite
   Vector x = Vector::Zero(q.size());
   x.head(nodes) = normal.x;
-  Point point = evaluate(h, q, std::move(x));
+  State point = evaluate(h, q, std::move(x));
   result.residual = normal_residual(normal.x, point.w, point.terms);
   result.start = smooth_start(diagonal_of(h, q.size()), laws, point);
   result.x = std::move(point.x);
@@ -82,11 +82,11 @@ public:
     if (start.size() > 0) {
       best_.x = laws_.feasible(start);
       result_.residual = std::numeric_limits<double>::infinity();
-      Point point;
+      State point;
       outcome = newton_from(laws_, sets_from(start), point);
     } else {
       prepare(laws_, Vector::Zero(q_.size()));
-      Point point = evaluate(h_, q_, Vector::Zero(q_.size()));
+      State point = evaluate(h_, q_, Vector::Zero(q_.size()));
       outcome = newton(laws_, point);
     }
     if (outcome == Outcome::cycles) outcome = backup(evaluate(h_, q_, laws_.feasible(best_.x)));
@@ -114,7 +114,7 @@ private:
     h_.require(sets.support(laws));
   }
 
-  Outcome newton(const Laws &laws, Point &point) {
+  Outcome newton(const Laws &laws, State &point) {
     const ActiveSets sets = contact_sets(laws, point.x);
     Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
     keep(laws, point, sets, verdict);
@@ -123,7 +123,7 @@ private:
 
   /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
   /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
-  Outcome newton_from(const Laws &laws, ActiveSets sets, Point &point) {
+  Outcome newton_from(const Laws &laws, ActiveSets sets, State &point) {
     pivoting::Policy<std::string, double> policy(/*patience=*/10);
     for (;;) {
       if (laws.dim == 2 && policy.returns(sets.key())) return Outcome::cycles;
@@ -152,7 +152,7 @@ private:
 
   /// The fixed point of the bounds, frozen in turn, with shorter steps where it does not contract;
   /// and Newton whenever they settle. `point` is feasible.
-  Outcome backup(Point point) {
+  Outcome backup(State point) {
     double near = 0.1, part = 1, before = std::numeric_limits<double>::infinity();
     Laws frozen = laws_;
     frozen.coefficient.setZero();
@@ -165,7 +165,7 @@ private:
       const double change = (bounds - frozen.threshold).cwiseAbs().maxCoeff();
       if (change <= near * bounds.maxCoeff()) {
         near *= 0.1;
-        Point trial = evaluate(h_, q_, laws_.feasible(point.x));
+        State trial = evaluate(h_, q_, laws_.feasible(point.x));
         const Outcome outcome = newton(laws_, trial);
         if (outcome != Outcome::cycles) return outcome;
       }
@@ -177,9 +177,9 @@ private:
     return Outcome::limit;
   }
 
-  bool solve_frozen(const Laws &frozen, double tolerance, Point &point) {
+  bool solve_frozen(const Laws &frozen, double tolerance, State &point) {
     prepare(frozen, point.x);
-    Point trial = point;
+    State trial = point;
     const Outcome outcome = newton(frozen, trial);
     if (outcome != Outcome::converged)
       return outcome != Outcome::indefinite &&
@@ -188,7 +188,7 @@ private:
     return true;
   }
 
-  void keep(const Laws &laws, const Point &point, const ActiveSets &sets, const Verdict &verdict) {
+  void keep(const Laws &laws, const State &point, const ActiveSets &sets, const Verdict &verdict) {
     if (&laws != &laws_) return;
     if (best_.x.size() > 0 && verdict.changed && verdict.residual >= result_.residual) return;
     best_ = point;
@@ -232,7 +232,7 @@ private:
   const Vector &q_;
   const Laws &laws_;
   const FrictionOptions &options_;
-  Point best_; ///< the solution, or the point of the least residual
+  State best_; ///< the solution, or the point of the least residual
   ActiveSets best_sets_;
   FrictionResult result_;
   int systems_left_; ///< linear systems

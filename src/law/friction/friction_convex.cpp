@@ -7,7 +7,7 @@ namespace rbvi::friction {
 namespace {
 
 /// Every node in turn goes to its best place along its normal, then down its tangential gradient.
-void sweep(const LazyColumns &h, const Laws &frozen, Point &point) {
+void sweep(const LazyColumns &h, const Laws &frozen, State &point) {
   const Index count = frozen.dim - 1;
   for (Index i = 0; i < frozen.nodes; ++i) {
     if (h.has(i)) {
@@ -31,7 +31,7 @@ void sweep(const LazyColumns &h, const Laws &frozen, Point &point) {
 }
 
 /// The part of the way to `aim` at which the function is least, at most 1.
-double shorten(const Point &point, const Point &aim) {
+double shorten(const State &point, const State &aim) {
   const Vector way = aim.x - point.x;
   const double slope = way.dot(point.w), curvature = way.dot(aim.w - point.w);
   if (!(slope < 0)) return 0;
@@ -41,7 +41,7 @@ double shorten(const Point &point, const Point &aim) {
 } // namespace
 
 bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolerance, int &steps,
-              Point &point) {
+              State &point) {
   ActiveSets sets = contact_sets(frozen, point.x);
   for (;;) {
     Verdict verdict = judge(diagonal_of(h, q.size()), frozen, point, sets, tolerance);
@@ -49,7 +49,7 @@ bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolera
     --steps;
     sets = std::move(verdict.next);
     h.require(sets.support(frozen));
-    Point aim;
+    State aim;
     if (newton_step(h, q, frozen, sets, aim) != Solved::yes) return false;
     aim = evaluate(h, q, frozen.feasible(std::move(aim.x)));
     const double part = shorten(point, aim);

@@ -12,6 +12,6 @@ namespace rbvi::friction {
 /// `tolerance`, relative, or `steps` linear systems are used up; takes those off `steps`. False if
 /// a system is not positive definite.
 bool minimise(LazyColumns &h, const Vector &q, const Laws &frozen, double tolerance, int &steps,
-              Point &point);
+              State &point);
 
 } // namespace rbvi::friction

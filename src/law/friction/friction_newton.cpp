@@ -59,7 +59,7 @@ Vector solve(const Matrix &matrix, const Vector &right, bool symmetric) {
 /// The verdict on a point, node by node.
 class Judge {
 public:
-  Judge(const Vector &diagonal, const Laws &laws, const Point &point, const ActiveSets &sets,
+  Judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
         double tolerance)
       : diagonal_(diagonal), laws_(laws), point_(point), sets_(sets),
         tolerance_(tolerance), verdict_{.next = ActiveSets(laws.nodes, laws.dim)} {
@@ -153,7 +153,7 @@ private:
 
   const Vector &diagonal_;
   const Laws &laws_;
-  const Point &point_;
+  const State &point_;
   const ActiveSets &sets_;
   double tolerance_;
   double largest_ = 0; ///< largest x in the scaling in which H has a unit diagonal
@@ -200,7 +200,7 @@ std::string ActiveSets::key() const {
   return result;
 }
 
-Point evaluate(const LazyColumns &h, const Vector &q, Vector x) {
+State evaluate(const LazyColumns &h, const Vector &q, Vector x) {
   std::vector<Index> support;
   for (Index j = 0; j < x.size(); ++j)
     if (x[j] != 0) support.push_back(j);
@@ -295,13 +295,13 @@ Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknow
   return x;
 }
 
-Verdict judge(const Vector &diagonal, const Laws &laws, const Point &point, const ActiveSets &sets,
+Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance) {
   return Judge(diagonal, laws, point, sets, tolerance).all();
 }
 
 Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
-                   Point &point) {
+                   State &point) {
   for (const Index j : sets.support(laws))
     if (!(h.diagonal(j) > 0)) return Solved::indefinite;
   const std::vector<Unknown> list = unknowns(laws, sets);

@@ -51,13 +51,13 @@ struct ActiveSets {
   std::string key() const;
 };
 
-struct Point {
-  Vector x, w;
+struct State {
+  Vector x, w;  ///< multipliers, H x + q
   Vector terms; ///< the sum of the sizes of the terms of every row of w
 };
 
 /// The point of x, whose support has its columns.
-Point evaluate(const LazyColumns &h, const Vector &q, Vector x);
+State evaluate(const LazyColumns &h, const Vector &q, Vector x);
 
 struct Verdict {
   ActiveSets next;      ///< the sets that x - rho w predicts
@@ -67,7 +67,7 @@ struct Verdict {
 
 /// `diagonal`: H_jj, or its size; 0: unknown, then so is x_j, but for its being zero. `sets`: of
 /// the step that gave the point (they decide where the difference is below tolerance).
-Verdict judge(const Vector &diagonal, const Laws &laws, const Point &point, const ActiveSets &sets,
+Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance);
 /// H_jj of the columns that are there, 0 elsewhere.
 Vector diagonal_of(const LazyColumns &h, Index size);
@@ -98,6 +98,6 @@ enum class Solved { yes, singular, indefinite };
 
 /// Solves the linear system of the sets, whose columns are there; otherwise `point` is unchanged.
 Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
-                   Point &point);
+                   State &point);
 
 } // namespace rbvi::friction

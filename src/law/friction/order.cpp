@@ -62,7 +62,7 @@ void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets) 
   }
 }
 
-Vector smooth_start(const Vector &diagonal, const Laws &laws, const Point &point) {
+Vector smooth_start(const Vector &diagonal, const Laws &laws, const State &point) {
   Vector result = diagonal;
   for (Index i = 0; laws.dim == 3 && i < laws.nodes; ++i)
     result.segment(laws.tangent(i), 2).setConstant(result.segment(laws.tangent(i), 2).mean());

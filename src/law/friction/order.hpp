@@ -28,6 +28,6 @@ Laws laws_of(const NodeLaws &of);
 void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets);
 
 /// FrictionResult::start. `diagonal`: H_jj, 0: unknown.
-Vector smooth_start(const Vector &diagonal, const Laws &laws, const Point &point);
+Vector smooth_start(const Vector &diagonal, const Laws &laws, const State &point);
 
 } // namespace rbvi::friction
