@@ -75,21 +75,25 @@ void NodalSteps::set_tangent(const std::vector<Index> &active) {
   if (active == active_ && are_as_before(active, tangent_at_)) return;
   active_ = active;
   tangent_at_ = here_.normal;
-  const Index n = std::ssize(active_);
+  const Index n = std::ssize(active_), first = n > 0 ? active_.front() : 0,
+              count = n > 0 ? active_.back() + 1 - first : 0;
+  const NodalCompliance &compliance = contact_.nodal->compliance;
+  Eigen::Matrix2Xd across(2, n), along = here_.normal(Eigen::all, active_);
+  for (Index a = 0; a < n; ++a)
+    across.col(a) = tangent(active_[at(a)]).normalized();
   Matrix h(n, n);
   p_.resize(n, n);
   q_.resize(n, n);
+  Eigen::Matrix2Xd under_normal(2, count), under_tau(2, count);
   for (Index b = 0; b < n; ++b) {
-    const Frame load = normal(active_[at(b)]);
-    const Frame tau = tangent(active_[at(b)]).normalized();
+    const Index node = active_[at(b)];
+    under_normal.reshaped() = compliance.moved_nodes(node, along.col(b), first, count);
+    under_tau.reshaped() = compliance.moved_nodes(node, across.col(b), first, count);
     for (Index a = 0; a < n; ++a) {
-      const Eigen::Matrix2d block =
-          contact_.nodal->compliance.block(active_[at(a)], active_[at(b)]);
-      const Frame under_normal = block * load;
-      const Frame across = tangent(active_[at(a)]).normalized();
-      h(a, b) = normal(active_[at(a)]).dot(under_normal);
-      p_(a, b) = across.dot(under_normal);
-      q_(a, b) = across.dot(block * tau);
+      const Index under = active_[at(a)] - first;
+      h(a, b) = along.col(a).dot(under_normal.col(under));
+      p_(a, b) = across.col(a).dot(under_normal.col(under));
+      q_(a, b) = across.col(a).dot(under_tau.col(under));
     }
   }
   factor_.compute(h);
@@ -134,24 +138,36 @@ Eigen::Matrix2Xd NodalSteps::newton_on_active(double tolerance, Vector &x) const
   return loads;
 }
 
+/// The first of the nodes that are near, and how many there are up to the last.
+ComplianceColumns::Range NodalSteps::near_range() const {
+  const Index nodes = contact_.laws.nodes();
+  if (near_.empty()) return {0, nodes};
+  const auto first = std::find(near_.begin(), near_.end(), true) - near_.begin();
+  const auto after = std::find(near_.rbegin(), near_.rend(), true) - near_.rbegin();
+  return {first, std::max<Index>(0, nodes - after - first)};
+}
+
 /// Active nodes that pull, and others near that overlap under `loads`.
 std::vector<Index> NodalSteps::violated(const Vector &x, const Eigen::Matrix2Xd &loads) const {
   constexpr double round_off = 1e-12;
   const NodalCompliance &compliance = contact_.nodal->compliance;
   const double largest_x = x.maxCoeff(), largest_w = here_.w.cwiseAbs().maxCoeff();
+  const auto [first, count] = near_range();
+  Eigen::Matrix2Xd moved = e_;
+  for (Index node = 0; node < loads.cols(); ++node)
+    if (loads(0, node) != 0 || loads(1, node) != 0)
+      moved.middleCols(first, count).reshaped() -=
+          compliance.moved_nodes(node, loads.col(node), first, count);
   std::vector<Index> result;
-  for (Index node = 0; node < loads.cols(); ++node) {
+  for (Index node = first; node < first + count; ++node) {
     if (!near_.empty() && !near_[at(node)]) continue;
     const Index row = contact_.laws.normal[at(node)];
     if (std::binary_search(active_.begin(), active_.end(), node)) {
       if (x[row] < -round_off * largest_x) result.push_back(node);
       continue;
     }
-    Frame moved = e_.col(node);
-    for (Index other = 0; other < loads.cols(); ++other)
-      if (loads(0, other) != 0 || loads(1, other) != 0)
-        moved -= compliance.block(node, other) * loads.col(other);
-    if (here_.w[row] - normal(node).dot(moved) < -round_off * largest_w) result.push_back(node);
+    if (here_.w[row] - normal(node).dot(moved.col(node)) < -round_off * largest_w)
+      result.push_back(node);
   }
   return result;
 }
@@ -214,11 +230,13 @@ Matrix NodalSteps::columns(const std::vector<Index> &which) {
     known_[at(row)] = true;
     const Index node = near_nodes_[at(row % count)];
     const Frame load = row < count ? normal(node) : tangent(node);
+    const Index first = near_nodes_.front(), last = near_nodes_.back();
+    const Vector moved = compliance.moved_nodes(node, load, first, last + 1 - first);
     for (Index k = 0; k < count; ++k) {
       const Index a = near_nodes_[at(k)];
-      const Frame moved = compliance.block(a, node) * load;
-      h_(k, row) = normal(a).dot(moved);
-      h_(count + k, row) = tangent(a).dot(moved);
+      const auto of_node = moved.segment<2>(2 * (a - first));
+      h_(k, row) = normal(a).dot(of_node);
+      h_(count + k, row) = tangent(a).dot(of_node);
     }
   }
   return h_(Eigen::all, which);

@@ -44,6 +44,7 @@ private:
   void set_tangent(const std::vector<Index> &active);
   /// The loads, two components a node, that a Newton step adds; changes x.
   Eigen::Matrix2Xd newton_on_active(double tolerance, Vector &x) const;
+  ComplianceColumns::Range near_range() const;
   std::vector<Index> violated(const Vector &x, const Eigen::Matrix2Xd &loads) const;
   Eigen::Matrix2Xd newton(Vector &x, double change);
   Eigen::Matrix2Xd kacanov(const Iterate &last, Iterate &next);

@@ -52,6 +52,12 @@ public:
   }
   /// C A_a^T, contact dofs x 2, of a node that was required.
   auto moved(Index node) const { return moved_.middleCols<2>(2 * node); }
+  /// What a load on node b, which was required, moves: (G_ab load) of the nodes a from `first` on,
+  /// two components each.
+  auto moved_nodes(Index b, const Eigen::Vector2d &load, Index first, Index count) const {
+    return load[0] * blocks_.col(2 * b).segment(2 * first, 2 * count) +
+           load[1] * blocks_.col(2 * b + 1).segment(2 * first, 2 * count);
+  }
   /// G_ab, b one that was required.
   Eigen::Matrix2d block(Index a, Index b) const {
     const double *at = &blocks_(2 * a, 2 * b);
