@@ -1,10 +1,13 @@
 // The assembled problem: facts of the mapped disc, and independence of the number of ranks.
+#include "../core/refuses.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/problem/problem.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace rbvi {
 namespace {
@@ -56,6 +59,26 @@ TEST(Problem, OperatorsDoNotDependOnTheNumberOfRanks) {
   world.assemble_contact(mu, op_world);
   EXPECT_EQ((op_alone.b - op_world.b).norm(), 0);
   EXPECT_EQ((op_alone.g - op_world.g).norm(), 0);
+}
+
+/// On every rank, whoever has the node.
+TEST(Problem, AGapThatIsNoNumberIsRefusedByNameAndPlace) {
+  for (const bool normal : {false, true}) {
+    Scene scene = make_scene("patch", {{"bodies", "one"}});
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    scene.contacts = {rigid_support(
+        {"contact",
+         [=](const FullMu &, const Point &x) {
+           return Point{0, normal && x[0] > 0.5 ? none : -1, 0};
+         },
+         [=](const FullMu &, const Point &x) { return !normal && x[0] > 0.5 ? none : 0; },
+         {},
+         true})};
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    const Mu mu(static_cast<std::size_t>(scene.parameters.size()), 0.1);
+    EXPECT_TRUE(refuses("the gap or the normal of contact on 'contact' is no number at the point",
+                        [&] { problem.assemble(mu); }));
+  }
 }
 
 TEST(Problem, WithoutLoadTheVectorStaysZero) {
