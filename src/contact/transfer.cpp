@@ -187,7 +187,8 @@ Index row_of(const DualSpace &dual, Index node, int c) {
 
 } // namespace
 
-SparseMatrix interpolation(const Contact &from, const Contact &to) {
+SparseMatrix interpolation(const Contact &from, const Contact &to,
+                           const std::vector<WantedNodes> &wanted) {
   if (from.interfaces.size() != to.interfaces.size())
     throw failure("multipliers can be transferred between meshes of one scene alone");
   std::vector<Eigen::Triplet<double>> entries;
@@ -197,6 +198,7 @@ SparseMatrix interpolation(const Contact &from, const Contact &to) {
     const NearestPoints nearest(coarse.points);
     const DualEntities entities(*from.interfaces[i]);
     for (Index node = 0; node < fine.nodes(); ++node) {
+      if (!wanted.empty() && !is_wanted(wanted[i], node)) continue;
       const Point &x = fine.points[static_cast<std::size_t>(node)];
       const std::vector<Neighbour> near = nearest.of(x, count);
       Weights weights;

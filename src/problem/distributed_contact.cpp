@@ -35,68 +35,35 @@ std::vector<Index> rows_of(const Contact &contact, std::size_t interface, Index 
   return rows;
 }
 
-/// This rank's `rows` of `whole`, with other numbers for its columns.
-Handle<Mat> rows_over_ranks(const DualLayout &layout, const SparseMatrix &whole,
-                            const std::vector<PetscInt> &columns, PetscInt local_columns) {
+SparseMatrix rows_at(const SparseMatrix &matrix, const std::vector<Index> &rows) {
+  SparseMatrix result(std::ssize(rows), matrix.cols());
+  for (Index k = 0; k < result.rows(); ++k) {
+    result.startVec(k);
+    for (SparseMatrix::InnerIterator entry(matrix, rows[static_cast<std::size_t>(k)]); entry;
+         ++entry)
+      result.insertBack(k, entry.col()) = entry.value();
+  }
+  result.finalize();
+  return result;
+}
+
+/// This rank's rows, with other numbers for their columns.
+Handle<Mat> matrix_of(MPI_Comm comm, const SparseMatrix &own, const std::vector<PetscInt> &columns,
+                      PetscInt local_columns) {
   std::vector<PetscInt> first{0}, column;
   std::vector<PetscScalar> value;
-  for (const Index row : layout.rows) {
-    for (SparseMatrix::InnerIterator entry(whole, row); entry; ++entry) {
+  for (Index row = 0; row < own.rows(); ++row) {
+    for (SparseMatrix::InnerIterator entry(own, row); entry; ++entry) {
       column.push_back(columns[static_cast<std::size_t>(entry.col())]);
       value.push_back(entry.value());
     }
     first.push_back(static_cast<PetscInt>(column.size()));
   }
   Handle<Mat> result;
-  RBVI_CALL(MatCreateMPIAIJWithArrays(layout.comm, static_cast<PetscInt>(layout.rows.size()),
-                                      local_columns, PETSC_DETERMINE, PETSC_DETERMINE, first.data(),
-                                      column.data(), value.data(), result.put()));
+  RBVI_CALL(MatCreateMPIAIJWithArrays(comm, static_cast<PetscInt>(own.rows()), local_columns,
+                                      PETSC_DETERMINE, PETSC_DETERMINE, first.data(), column.data(),
+                                      value.data(), result.put()));
   return result;
-}
-
-/// From this rank's values of its multipliers.
-Handle<Vec> over_ranks(const DualLayout &layout, const Vector &own) {
-  Handle<Vec> result;
-  RBVI_CALL(
-      VecCreateMPI(layout.comm, static_cast<PetscInt>(own.size()), PETSC_DETERMINE, result.put()));
-  PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetArrayWrite(result.get(), &values));
-  std::copy(own.begin(), own.end(), values);
-  RBVI_CALL(VecRestoreArrayWrite(result.get(), &values));
-  return result;
-}
-
-/// Laws of some nodes, their multipliers one node after the other.
-NodeLaws laws_of(const NodeLaws &laws, const std::vector<Index> &nodes) {
-  NodeLaws own;
-  own.tangents = laws.tangents;
-  for (const Index node : nodes) {
-    const bool with_tangent = laws.has_tangent(node);
-    own.normal.push_back(own.rows);
-    own.tangent.push_back(with_tangent ? own.rows + 1 : -1);
-    own.bound.push_back(laws.bound[static_cast<std::size_t>(node)]);
-    own.rows += 1 + (with_tangent ? laws.tangents : 0);
-  }
-  return own;
-}
-
-/// All rows, of which each rank has some, on every rank.
-SparseMatrix gathered(MPI_Comm comm, const SparseMatrix &part, const std::vector<Index> &rows) {
-  std::vector<PetscInt> places;
-  std::vector<double> values;
-  for (const Index row : rows)
-    for (SparseMatrix::InnerIterator entry(part, row); entry; ++entry) {
-      places.insert(places.end(), {static_cast<PetscInt>(row), static_cast<PetscInt>(entry.col())});
-      values.push_back(entry.value());
-    }
-  places = gather_all(comm, places, MPIU_INT);
-  values = gather_all(comm, values, MPI_DOUBLE);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t k = 0; k < values.size(); ++k)
-    entries.emplace_back(places[2 * k], places[2 * k + 1], values[k]);
-  SparseMatrix whole(part.rows(), part.cols());
-  whole.setFromTriplets(entries.begin(), entries.end());
-  return whole;
 }
 
 } // namespace
@@ -132,11 +99,62 @@ DualLayout share_dual(const Contact &contact, const InterfacePlaces &places, con
   return layout;
 }
 
+NodeLaws own_laws(const DualLayout &layout, const NodeLaws &laws) {
+  NodeLaws own;
+  own.tangents = laws.tangents;
+  for (const Index node : layout.nodes) {
+    const bool with_tangent = laws.has_tangent(node);
+    own.normal.push_back(own.rows);
+    own.tangent.push_back(with_tangent ? own.rows + 1 : -1);
+    own.bound.push_back(laws.bound[static_cast<std::size_t>(node)]);
+    own.rows += 1 + (with_tangent ? laws.tangents : 0);
+  }
+  return own;
+}
+
+SparseMatrix own_rows(const DualLayout &layout, const SparseMatrix &of_multipliers) {
+  return rows_at(of_multipliers, layout.rows);
+}
+
+Handle<Mat> distribute_rows(const DualLayout &layout, const SparseMatrix &own) {
+  return matrix_of(layout.comm, own, layout.columns, layout.local_columns);
+}
+
+Handle<Vec> distribute_values(MPI_Comm comm, const Vector &own) {
+  Handle<Vec> result;
+  RBVI_CALL(VecCreateMPI(comm, static_cast<PetscInt>(own.size()), PETSC_DETERMINE, result.put()));
+  PetscScalar *values = nullptr;
+  RBVI_CALL(VecGetArrayWrite(result.get(), &values));
+  std::copy(own.begin(), own.end(), values);
+  RBVI_CALL(VecRestoreArrayWrite(result.get(), &values));
+  return result;
+}
+
+SparseMatrix gather_rows(MPI_Comm comm, const SparseMatrix &own, const std::vector<Index> &numbers,
+                         Index all) {
+  std::vector<PetscInt> places;
+  std::vector<double> values;
+  for (Index k = 0; k < own.rows(); ++k)
+    for (SparseMatrix::InnerIterator entry(own, k); entry; ++entry) {
+      places.insert(places.end(), {static_cast<PetscInt>(numbers[static_cast<std::size_t>(k)]),
+                                   static_cast<PetscInt>(entry.col())});
+      values.push_back(entry.value());
+    }
+  places = gather_all(comm, places, MPIU_INT);
+  values = gather_all(comm, values, MPI_DOUBLE);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    entries.emplace_back(places[2 * k], places[2 * k + 1], values[k]);
+  SparseMatrix whole(all, own.cols());
+  whole.setFromTriplets(entries.begin(), entries.end());
+  return whole;
+}
+
 DistributedContact distribute(const DualLayout &layout, const ContactOperators &operators,
                               const NodeLaws &laws) {
   DistributedContact result;
-  result.laws = laws_of(laws, layout.nodes);
-  result.b = rows_over_ranks(layout, operators.b, layout.columns, layout.local_columns);
+  result.laws = own_laws(layout, laws);
+  result.b = distribute_rows(layout, own_rows(layout, operators.b));
   result.g = distribute(layout, operators.g);
   Vector weights(result.laws.rows);
   for (Index i = 0; i < result.laws.nodes(); ++i) {
@@ -146,28 +164,32 @@ DistributedContact distribute(const DualLayout &layout, const ContactOperators &
     if (result.laws.has_tangent(i))
       weights.segment(result.laws.tangent[node], result.laws.tangents).setConstant(weight);
   }
-  result.weights = over_ranks(layout, weights);
+  result.weights = distribute_values(layout.comm, weights);
   return result;
 }
 
 Handle<Mat> distribute(const DualLayout &layout, const SparseMatrix &w_product) {
-  return rows_over_ranks(layout, w_product, layout.numbers,
-                         static_cast<PetscInt>(layout.rows.size()));
+  return matrix_of(layout.comm, own_rows(layout, w_product), layout.numbers,
+                   static_cast<PetscInt>(layout.rows.size()));
 }
 
 Handle<Vec> distribute(const DualLayout &layout, const Vector &multipliers) {
-  return over_ranks(layout, multipliers(layout.rows));
+  return distribute_values(layout.comm, multipliers(layout.rows));
+}
+
+Vector on_every_rank(const DualLayout &layout, const Vector &own) {
+  Vector result = Vector::Zero(static_cast<Index>(layout.numbers.size()));
+  result(layout.rows) = own;
+  over_ranks(layout.comm, MPI_SUM, result); // exact: zero but on the owner
+  return result;
 }
 
 Vector on_every_rank(const DualLayout &layout, Vec multipliers) {
-  Vector result = Vector::Zero(static_cast<Index>(layout.numbers.size()));
   const PetscScalar *values = nullptr;
   RBVI_CALL(VecGetArrayRead(multipliers, &values));
-  for (std::size_t k = 0; k < layout.rows.size(); ++k)
-    result[layout.rows[k]] = values[k];
+  const Vector own = Eigen::Map<const Vector>(values, std::ssize(layout.rows));
   RBVI_CALL(VecRestoreArrayRead(multipliers, &values));
-  over_ranks(layout.comm, MPI_SUM, result); // exact: zero but on the owner
-  return result;
+  return on_every_rank(layout, own);
 }
 
 void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t interface,
@@ -180,8 +202,8 @@ void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t i
     for (const Index row : rows_of(contact, interface, node))
       rows.push_back(row - contact.first_row[interface]);
   }
-  operators.b = gathered(layout.comm, operators.b, rows);
-  operators.nodal_b = gathered(layout.comm, operators.nodal_b, nodes);
+  for (const auto &[matrix, of] : {std::pair{&operators.b, &rows}, {&operators.nodal_b, &nodes}})
+    *matrix = gather_rows(layout.comm, rows_at(*matrix, *of), *of, matrix->rows());
   for (Vector *values : {&operators.g, &operators.weights, &operators.nodal_gap})
     over_ranks(layout.comm, MPI_SUM, *values); // exact: zero but on the owner
 }

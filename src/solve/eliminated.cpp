@@ -1,12 +1,15 @@
 #include "rbvi/solve/eliminated.hpp"
 
+#include "linear/elimination.hpp"
 #include "linear/reduced_system.hpp"
 #include "linear/saddle_system.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
 
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -41,75 +44,141 @@ bool takes_multigrid(const Problem &problem) {
   return problem.scene().components == 1 && problem.dofs().total_free >= from;
 }
 
+/// Vertex quadrature keeps the pattern of a mass matrix.
+SparseMatrix without_zeros(SparseMatrix matrix) {
+  matrix.prune(0.0);
+  return matrix;
+}
+
 /// T^T B, or R^T B.
 SparseMatrix rows_of(const SparseMatrix &combination, const SparseMatrix &b) {
   return SparseMatrix(combination.transpose()) * b;
 }
 
+/// The multipliers, as rows of B, that constraints are those of.
+std::vector<Index> rows_of(const SetSystem &system, const DualLayout &layout) {
+  std::vector<Index> rows(at(system.r.cols()));
+  for (Index row = 0; row < system.r.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(system.r, row); entry; ++entry)
+      rows[at(entry.col())] = layout.rows[at(row)];
+  return rows;
+}
+
+Vector product(Mat matrix, Vec v, Vec scratch) {
+  RBVI_CALL(MatMult(matrix, v, scratch));
+  return LocalValues(scratch).get();
+}
+
 } // namespace
 
-Eliminated::Eliminated(const Problem &problem)
-    : problem_(problem), trace_(problem.trace()), dofs_(contact_dofs(problem.contact())),
+/// This rank's multipliers at one mu.
+struct OwnContact {
+  OwnContact(const DualLayout &layout, const Operators &op)
+      : b(without_zeros(own_rows(layout, op.b))), g(op.g(layout.rows)),
+        b_over_ranks(distribute_rows(layout, b)), sizes(distribute_rows(layout, b.cwiseAbs())),
+        x(distribute_values(layout.comm, g)) {}
+
+  SparseMatrix b; ///< own multipliers x contact dofs
+  Vector g;
+  Handle<Mat> b_over_ranks, sizes; ///< B and its |b_ij|, on the free displacement dofs
+  Handle<Vec> x;                   ///< scratch, of multipliers
+};
+
+namespace {
+
+/// f - B^T x.
+Handle<Vec> without_reaction(const OwnContact &contact, Vec f, const Vector &x) {
+  Handle<Vec> force = like(f);
+  LocalValues(contact.x.get()).get() = -x;
+  RBVI_CALL(MatMultTransposeAdd(contact.b_over_ranks.get(), contact.x.get(), f, force.get()));
+  return force;
+}
+
+/// Of B A_D^-1 B^T, A_D the diagonal of A; where B is zero its mean.
+Vector diagonal_of(const DualLayout &layout, const OwnContact &contact, Mat a, Vec scratch) {
+  const Handle<Mat> squares = distribute_rows(layout, contact.b.cwiseProduct(contact.b));
+  RBVI_CALL(MatGetDiagonal(a, scratch));
+  RBVI_CALL(VecReciprocal(scratch));
+  Vector diagonal = product(squares.get(), scratch, contact.x.get());
+  PetscScalar sum = 0;
+  PetscInt count = 0;
+  RBVI_CALL(VecSum(contact.x.get(), &sum));
+  RBVI_CALL(VecGetSize(contact.x.get(), &count));
+  for (double &value : diagonal)
+    if (!(value > 0)) value = sum / count;
+  return diagonal;
+}
+
+} // namespace
+
+Eliminated::Eliminated(Problem &problem)
+    : problem_(problem), layout_(problem.dual_layout()), dofs_(contact_dofs(problem.contact())),
       multigrid_(takes_multigrid(problem)),
       factor_(multigrid_ ? make_multigrid(problem.comm(), "hf_")
-                         : make_direct_solver(problem.comm(), "hf_")) {
-  rows_ = global_rows(trace_, problem.dofs().first_free);
+                         : make_direct_solver(problem.comm(), "hf_")) {}
+
+bool Eliminated::on_any_rank(bool here) const {
+  std::array<PetscInt, 1> flag{here ? 1 : 0};
+  over_ranks(layout_.comm, MPI_MAX, flag);
+  return flag.front() != 0;
 }
 
 /// A without the rows and columns of the pivots, ones on their diagonal.
-void Eliminated::drop_pivots(Mat a, const std::vector<PetscInt> &rows) {
+void Eliminated::drop_pivots(Mat a, const Elimination &z) {
   if (!reduced_) {
     RBVI_CALL(MatDuplicate(a, MAT_COPY_VALUES, reduced_.put()));
     RBVI_CALL(MatSetOption(reduced_.get(), MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
   } else {
     RBVI_CALL(MatCopy(a, reduced_.get(), SAME_NONZERO_PATTERN));
   }
-  RBVI_CALL(MatZeroRowsColumns(reduced_.get(), static_cast<PetscInt>(rows.size()), rows.data(), 1,
-                               nullptr, nullptr));
+  const auto &pivots = z.pivots();
+  RBVI_CALL(MatZeroRowsColumns(reduced_.get(), static_cast<PetscInt>(pivots.size()), pivots.data(),
+                               1, nullptr, nullptr));
 }
 
 /// The same with the pivots tied to other contact dofs.
-void Eliminated::tie_pivots(Mat a, const SparseMatrix &ties, const std::vector<PetscInt> &rows) {
-  const PetscInt first = problem_.dofs().first_free;
-  PetscInt local = 0;
+void Eliminated::tie_pivots(Mat a, const Elimination &z, const SparseMatrix &ties) {
+  PetscInt local = 0, first = 0;
   RBVI_CALL(MatGetLocalSize(a, &local, nullptr));
+  RBVI_CALL(MatGetOwnershipRange(a, &first, nullptr));
   Handle<Mat> tied;
-  RBVI_CALL(MatCreateAIJ(trace_.comm, local, local, PETSC_DETERMINE, PETSC_DETERMINE, 64, nullptr,
+  Handle<Vec> kept;
+  RBVI_CALL(MatCreateVecs(a, kept.put(), nullptr));
+  RBVI_CALL(VecSet(kept.get(), 1));
+  z.set_pivots(Vector::Zero(ties.rows()), kept.get());
+  RBVI_CALL(MatCreateAIJ(layout_.comm, local, local, PETSC_DETERMINE, PETSC_DETERMINE, 64, nullptr,
                          64, nullptr, tied.put()));
   RBVI_CALL(MatSetOption(tied.get(), MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
-  for (PetscInt row = first; row < first + local; ++row)
-    RBVI_CALL(MatSetValue(tied.get(), row, row, 1, INSERT_VALUES));
-  for (const PetscInt row : rows)
-    RBVI_CALL(MatSetValue(tied.get(), row, row, 0, INSERT_VALUES));
-  for (std::size_t k = 0; k < trace_.index.size(); ++k)
-    for (SparseMatrix::InnerIterator entry(ties, trace_.index[k]); entry; ++entry)
-      RBVI_CALL(MatSetValue(tied.get(), first + trace_.local_row[k], rows_[at(entry.col())],
+  {
+    LocalValues diagonal(kept.get());
+    for (PetscInt row = 0; row < local; ++row)
+      RBVI_CALL(
+          MatSetValue(tied.get(), first + row, first + row, diagonal.get()[row], INSERT_VALUES));
+  }
+  for (Index k = 0; k < ties.rows(); ++k)
+    for (SparseMatrix::InnerIterator entry(ties, k); entry; ++entry)
+      RBVI_CALL(MatSetValue(tied.get(), z.pivots()[at(k)], layout_.columns[at(entry.col())],
                             entry.value(), INSERT_VALUES));
   assemble(tied.get());
   RBVI_CALL(MatPtAP(a, tied.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, reduced_.put()));
 }
 
 /// Factorises A without the pivots, or with them tied.
-void Eliminated::precondition(const Operators &op, const Elimination &z,
-                              const std::vector<Index> &pivots) {
-  const Trace pivot_trace = part_of(trace_, pivots);
-  std::vector<PetscInt> rows;
-  for (const PetscInt row : pivot_trace.local_row)
-    rows.push_back(problem_.dofs().first_free + row);
+void Eliminated::precondition(const Operators &op, const Elimination &z) {
   const bool vectors = problem_.scene().components > 1;
-  const SparseMatrix ties = vectors && !pivots.empty() ? z.ties(trace_.size) : SparseMatrix();
-  tied_ = ties.nonZeros() > 0;
+  const SparseMatrix ties = vectors && z.count() > 0 ? z.ties() : SparseMatrix();
+  tied_ = on_any_rank(ties.nonZeros() > 0);
   if (!tied_)
-    drop_pivots(op.a, rows);
+    drop_pivots(op.a, z);
   else
-    tie_pivots(op.a, ties, rows);
+    tie_pivots(op.a, z, ties);
   // A pivot that is let go before the next factorisation is preconditioned by its own entry of A.
   const Handle<Vec> diagonal = like(op.f);
   RBVI_CALL(MatGetDiagonal(op.a, diagonal.get()));
-  LocalValues of_a(diagonal.get());
-  for (const PetscInt row : pivot_trace.local_row)
-    RBVI_CALL(MatSetValue(reduced_.get(), problem_.dofs().first_free + row,
-                          problem_.dofs().first_free + row, of_a.get()[row], INSERT_VALUES));
+  const Vector of_a = z.at_pivots(diagonal.get());
+  for (Index k = 0; k < of_a.size(); ++k)
+    RBVI_CALL(
+        MatSetValue(reduced_.get(), z.pivots()[at(k)], z.pivots()[at(k)], of_a[k], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
   if (vectors && multigrid_) {
@@ -122,40 +191,36 @@ void Eliminated::precondition(const Operators &op, const Elimination &z,
   set_operator(factor_.get(), reduced_.get(),
                problem_.scene().dim == 2 ? Ordering::minimum_fill : Ordering::automatic);
   RBVI_CALL(KSPSetUp(factor_.get()));
-  factored_ = pivots;
+  factored_ = z.pivots();
   of_another_a_ = false;
   ++factorisations_;
 }
 
-/// Sets u and returns the multipliers y. Throws failure where the equation cannot be solved.
-Vector Eliminated::eliminate(const Operators &op, const SetSystem &system, const SparseMatrix &c,
-                             Vec force, double accuracy) {
-  const std::vector<Index> pivots = choose_pivots(dofs_, system, c);
-  const Elimination z(c, pivots);
-  std::optional<Elimination> unsymmetric;
-  if (!system.symmetric) unsymmetric.emplace(rows_of(system.t, op.b), pivots);
-  const Elimination &w = unsymmetric ? *unsymmetric : z;
-  if (of_another_a_) precondition(op, z, pivots);
-  ReducedSystem reduced(trace_, op.a, z, w, pivots, factor_.get());
+/// Sets u and returns this rank's multipliers y. Throws failure where the equation cannot be
+/// solved.
+Vector Eliminated::eliminate(const Operators &op, const Elimination &z, const Elimination &w,
+                             bool symmetric, const Vector &constraint, Vec force, double accuracy) {
+  if (of_another_a_) precondition(op, z);
+  const Handle<Vec> scratch = like(op.f);
+  ReducedSystem reduced{op.a, z, w, factor_.get(), scratch.get()};
 
   // right = W^T (force - A u_0).
   const Handle<Vec> right = like(op.f), u_0 = like(op.f);
   RBVI_CALL(VecZeroEntries(u_0.get()));
-  const Vector constraint = SparseMatrix(system.r.transpose()) * op.g;
-  if (!pivots.empty()) add_extension(reduced.pivots, z.pivot_values(constraint), u_0.get());
+  if (z.count() > 0) z.extend(constraint, u_0.get());
   RBVI_CALL(MatMult(op.a, u_0.get(), right.get()));
   RBVI_CALL(VecAYPX(right.get(), -1, force));
   reduced.reduce(right.get());
 
-  set_zero(reduced.pivots, u_.get());
+  reduced.zero_pivots(u_.get());
   // Relative to the forces; those of the last sets are the best guess.
   const double forces = norm(op.f) + reaction_;
-  Krylov how{system.symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
+  Krylov how{symmetric, forces > 0 ? 1e-15 : accuracy, accuracy * forces,
              multigrid_ ? steps_worth_a_setup : steps_worth_a_factorisation};
   int steps = solve_reduced(reduced, how, right.get(), u_.get());
   if (steps > how.most_steps) {
     krylov_steps_ += how.most_steps;
-    if (pivots != factored_) precondition(op, z, pivots);
+    if (on_any_rank(z.pivots() != factored_)) precondition(op, z);
     reduced.factor = factor_.get();
     how.most_steps = most_krylov_steps;
     steps = solve_reduced(reduced, how, right.get(), u_.get());
@@ -167,71 +232,89 @@ Vector Eliminated::eliminate(const Operators &op, const SetSystem &system, const
   krylov_steps_ += steps;
   reduced.extend(u_.get());
   RBVI_CALL(VecAXPY(u_.get(), 1, u_0.get()));
-  if (pivots.empty()) return {};
+  if (z.count() == 0) return {};
 
   const Handle<Vec> residual = like(op.f);
   RBVI_CALL(MatMult(op.a, u_.get(), residual.get()));
   RBVI_CALL(VecAYPX(residual.get(), -1, force));
-  return w.multipliers(restrict_to(reduced.pivots, residual.get()));
+  return w.multipliers(residual.get());
 }
 
-SetSolution Eliminated::solve_system(const Operators &op, const SetSystem &system,
-                                     double accuracy) {
-  const SparseMatrix c = rows_of(system.r, op.b);
-  const Handle<Vec> force = reaction_rhs(trace_, op, system.fixed); // f - B^T fixed
+SetSolution Eliminated::solve_system(const Operators &op, const OwnContact &contact,
+                                     const SetSystem &system, double accuracy) {
+  const bool symmetric = !on_any_rank(!system.symmetric);
+  const SparseMatrix c = rows_of(system.r, contact.b);
+  const SparseMatrix reactions = symmetric ? SparseMatrix() : rows_of(system.t, contact.b);
+  const Vector constraint = system.r.transpose() * contact.g;
+  const Handle<Vec> force = without_reaction(contact, op.f, system.fixed);
   Vector y;
   if (complaint_.empty()) {
     try {
-      y = eliminate(op, system, c, force.get(), accuracy);
+      std::vector<Index> pivots;
+      collectively(layout_.comm,
+                   [&] { pivots = choose_pivots(dofs_, rows_of(system, layout_), c); });
+      const Elimination z(layout_, c, pivots);
+      std::optional<Elimination> unsymmetric;
+      if (!symmetric) unsymmetric.emplace(layout_, reactions, pivots);
+      y = eliminate(op, z, unsymmetric ? *unsymmetric : z, symmetric, constraint, force.get(),
+                    accuracy);
     } catch (const Error &error) { // of every rank
       complaint_ = error.what();
     }
   }
-  if (!complaint_.empty())
-    y = solve_saddle(trace_, op.a, rows_of(system.t, op.b), c, force.get(),
-                     SparseMatrix(system.r.transpose()) * op.g, u_.get());
-  const Vector u = restrict_to(trace_, u_.get());
+  if (!complaint_.empty()) {
+    const Handle<Mat> of_u = distribute_rows(layout_, c);
+    Handle<Mat> of_forces;
+    if (!symmetric) of_forces = distribute_rows(layout_, reactions);
+    y = solve_saddle(op.a, symmetric ? of_u.get() : of_forces.get(), of_u.get(), force.get(),
+                     constraint, u_.get());
+  }
   SetSolution found;
   found.x = system.fixed;
   if (y.size() > 0) found.x += system.t * y;
-  reaction_ = (op.b.transpose() * found.x).norm();
-  found.w = op.g - op.b * u;
-  found.terms = op.g.cwiseAbs() + op.b.cwiseAbs() * u.cwiseAbs();
+  const Handle<Vec> size = like(op.f);
+  LocalValues(contact.x.get()).get() = found.x;
+  RBVI_CALL(MatMultTranspose(contact.b_over_ranks.get(), contact.x.get(), size.get()));
+  reaction_ = norm(size.get());
+  found.w = contact.g - product(contact.b_over_ranks.get(), u_.get(), contact.x.get());
+  RBVI_CALL(VecCopy(u_.get(), size.get()));
+  RBVI_CALL(VecAbs(size.get()));
+  found.terms = contact.g.cwiseAbs() + product(contact.sizes.get(), size.get(), contact.x.get());
   return found;
 }
 
 MethodResult Eliminated::solve(const Operators &op, const Vector &start, double accuracy) {
-  const Handle<Vec> a_diagonal = like(op.f);
-  RBVI_CALL(MatGetDiagonal(op.a, a_diagonal.get()));
-  const Vector stiffness = restrict_to(trace_, a_diagonal.get());
-  Vector diagonal = op.b.cwiseProduct(op.b) * stiffness.cwiseInverse();
-  const double mean = diagonal.mean();
-  for (double &value : diagonal)
-    if (!(value > 0)) value = mean;
-
   complaint_.clear();
   // Ties follow B, which changes with mu.
   if (tied_ || !constant_stiffness(problem_.scene())) of_another_a_ = true;
+  MethodResult result;
+  result.u = like(op.f);
   if (!u_) {
     u_ = like(op.f);
     RBVI_CALL(VecZeroEntries(u_.get()));
   }
+  const OwnContact contact(layout_, op);
   const SetSolver solver = [&](const SetSystem &system, double of_system) {
-    return solve_system(op, system, of_system);
+    return solve_system(op, contact, system, of_system);
   };
-  FrictionResult found = solve_by_sets(solver, diagonal, op.laws, start, {.tolerance = accuracy});
-  MethodResult result;
-  result.u = like(op.f);
+  const LargestOverRanks largest = [&](Vector &values) {
+    over_ranks(layout_.comm, MPI_MAX, values);
+  };
+  const FrictionResult found = solve_by_sets(
+      solver, diagonal_of(layout_, contact, op.a, result.u.get()), own_laws(layout_, op.laws),
+      start.size() > 0 ? Vector(start(layout_.rows)) : Vector(), {.tolerance = accuracy}, largest);
   RBVI_CALL(VecCopy(u_.get(), result.u.get()));
-  result.lambda = std::move(found.x);
-  result.start = std::move(found.start);
-  result.active = std::move(found.active);
   result.iterations = found.iterations;
   result.converged = found.converged;
   result.reason = found.reason;
-  if (!found.converged)
+  if (!found.converged) {
     result.reason += ": try -hf_contact condensed, or a start closer to the solution";
-  else if (complaint_.empty())
+    return result;
+  }
+  result.lambda = on_every_rank(layout_, found.x);
+  result.start = on_every_rank(layout_, found.start);
+  result.active = in_contact(op.laws, result.lambda);
+  if (complaint_.empty())
     result.reason += ", " + std::to_string(factorisations_) + " factorisations and " +
                      std::to_string(krylov_steps_) + " Krylov steps so far";
   else
@@ -243,7 +326,8 @@ bool GridSequence::has_coarser() {
   if (!coarser_ && problem_.refinements() > 0) {
     coarser_problem_ = problem_.coarser();
     coarser_ = std::make_unique<GridSequence>(*coarser_problem_);
-    from_coarser_ = interpolation(coarser_problem_->contact(), problem_.contact());
+    from_coarser_ =
+        interpolation(coarser_problem_->contact(), problem_.contact(), problem_.dual_layout().own);
   }
   return coarser_ != nullptr;
 }
@@ -258,7 +342,7 @@ MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector
   if (start.size() > 0 && (problem_.dofs().total_free < coarser_from || !has_coarser()))
     return on_this_.solve(op, start, accuracy);
   if (!has_coarser()) return on_this_.solve(op, {}, accuracy);
-  const Operators &on_coarser = coarser_problem_->assemble(mu);
+  const Operators &on_coarser = coarser_problem_->assemble(mu, ContactRows::own);
   const MethodResult rough = coarser_->solve(mu, on_coarser, {}, enough_to_start);
   if (!rough.converged) return on_this_.solve(op, {}, accuracy);
   return on_this_.solve(op, from_coarser_ * rough.start, accuracy);

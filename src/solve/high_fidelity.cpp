@@ -140,27 +140,34 @@ Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
   return nearest(mu)->start;
 }
 
-MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op) {
+MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, const Vector &slip,
+                                         HfSolution &solution) {
   if (part_) part_->set(op);
-  return part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
-               : solve_active_set(ksp_.get(), problem_.trace(), op, nearest_start(mu, op),
-                                  compliance_.get());
+  MethodResult result = part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
+                              : solve_active_set(ksp_.get(), problem_.trace(), op,
+                                                 nearest_start(mu, op), compliance_.get());
+  if (!result.converged) return result;
+  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
+  solution.outputs = measure(problem_, op, op.weights, result, solution);
+  solution.slip = slip_left(problem_, op, slip, result);
+  return result;
 }
 
 /// Without a result where elimination does not meet the laws, which then says why in `complaint`.
 std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Operators &op,
+                                                         const Vector &slip, HfSolution &solution,
                                                          std::string &complaint) {
   try {
     const Vector start = solved_.empty() ? Vector() : nearest(mu)->start.lambda;
     MethodResult result = grids_->solve(mu, op, start);
-    if (!result.converged)
+    if (!result.converged) {
       complaint = result.reason;
-    else if (const double residual =
-                 kkt_residual(problem_.trace(), op, result.u.get(), result.lambda).largest();
-             residual > largest_residual)
-      complaint = "a KKT residual of " + short_number(residual);
-    else
-      return result;
+    } else {
+      measure_over_ranks(op, distribute(problem_.dual_layout(), op, op.laws), slip, result,
+                         solution);
+      if (solution.kkt.largest() <= largest_residual) return result;
+      complaint = "a KKT residual of " + short_number(solution.kkt.largest());
+    }
   } catch (const Error &error) { // of every rank
     complaint = error.what();
   }
@@ -168,17 +175,14 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
   return std::nullopt;
 }
 
-MethodResult HighFidelity::run_active_set(const Mu &mu, const Operators &op, const Vector &slip,
-                                          HfSolution &solution) {
+MethodResult HighFidelity::run_eliminated_or_condensed(const Mu &mu, const Operators &op,
+                                                       const Vector &slip, HfSolution &solution) {
   std::string complaint;
-  std::optional<MethodResult> eliminated;
-  if (grids_) eliminated = run_eliminated(mu, op, complaint);
-  MethodResult result = eliminated ? std::move(*eliminated) : run_condensed(mu, op);
-  if (!complaint.empty()) result.reason += ", condensed because elimination failed: " + complaint;
-  if (!result.converged) return result;
-  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
-  solution.outputs = measure(problem_, op, op.weights, result, solution);
-  solution.slip = slip_left(problem_, op, slip, result);
+  if (std::optional<MethodResult> result = run_eliminated(mu, op, slip, solution, complaint))
+    return std::move(*result);
+  MethodResult result =
+      run_condensed(mu, problem_.assemble(mu, ContactRows::all, slip), slip, solution);
+  result.reason += ", condensed because elimination failed: " + complaint;
   return result;
 }
 
@@ -201,6 +205,21 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
   return result;
 }
 
+void HighFidelity::measure_over_ranks(const Operators &op, const DistributedContact &contact,
+                                      const Vector &slip, const MethodResult &result,
+                                      HfSolution &solution) {
+  const DualLayout &layout = problem_.dual_layout();
+  const Handle<Vec> lambda = distribute(layout, result.lambda);
+  solution.kkt = kkt_residual(contact, op, result.u.get(), lambda.get());
+  const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
+  solution.outputs = measure(problem_, op, weights, result, solution);
+  if (tangential_size(problem_.contact()) == 0) return;
+  const Handle<Vec> excess = like(contact.g.get());
+  RBVI_CALL(MatMult(contact.b.get(), result.u.get(), excess.get()));
+  RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
+  solution.slip = slip_of(problem_.contact(), on_every_rank(layout, excess.get()), weights, slip);
+}
+
 MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &slip,
                                           HfSolution &solution) {
   const DualLayout &layout = problem_.dual_layout();
@@ -212,15 +231,7 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &sli
           : solve_uzawa(ksp_.get(), layout, contact, op.f, w_product_.get(), options_);
   if (!result.converged) return result;
   result.active = in_contact(op.laws, result.lambda);
-  const Handle<Vec> lambda = distribute(layout, result.lambda);
-  solution.kkt = kkt_residual(contact, op, result.u.get(), lambda.get());
-  const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
-  solution.outputs = measure(problem_, op, weights, result, solution);
-  if (tangential_size(problem_.contact()) == 0) return result;
-  const Handle<Vec> excess = like(contact.g.get());
-  RBVI_CALL(MatMult(contact.b.get(), result.u.get(), excess.get()));
-  RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
-  solution.slip = slip_of(problem_.contact(), on_every_rank(layout, excess.get()), weights, slip);
+  measure_over_ranks(op, contact, slip, result, solution);
   return result;
 }
 
@@ -262,7 +273,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   const double start = MPI_Wtime();
   if (part_fits_ && !part_ && solves_ > 0) part_ = std::make_unique<ScaledPart>(problem_);
   ++solves_;
-  const bool condensed = options_.method == HfMethod::active_set;
+  const bool by_sets = options_.method == HfMethod::active_set, condensed = by_sets && !grids_;
   const Operators &op =
       problem_.assemble(mu, condensed || nitsche_ ? ContactRows::all : ContactRows::own, slip);
   if (nitsche_) {
@@ -275,7 +286,8 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   const bool follows = follows_state(problem_.contact());
   if (condensed) complete_compliance(op.a);
   const MethodResult result = follows     ? run_following(mu, op, slip, solution)
-                              : condensed ? run_active_set(mu, op, slip, solution)
+                              : grids_    ? run_eliminated_or_condensed(mu, op, slip, solution)
+                              : condensed ? run_condensed(mu, op, slip, solution)
                                           : run_over_ranks(op, slip, solution);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
@@ -289,7 +301,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   solution.outputs.seconds = MPI_Wtime() - start;
   const double allowed =
       follows ? std::max(largest_residual, 10 * options_.nonlinear.tolerance) : largest_residual;
-  if (condensed && solution.kkt.largest() > allowed)
+  if (by_sets && solution.kkt.largest() > allowed)
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) + ", above " +
                   short_number(allowed) +
                   ": is the mesh or the parameter extreme? Try "

@@ -3,6 +3,10 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/active_sets.hpp"
 
+#include <array>
+#include <barrier>
+#include <thread>
+
 using namespace rbvi;
 
 namespace {
@@ -66,6 +70,41 @@ TEST(ActiveSets, TheSizeOfTheDiagonalDoesNotMatter) {
     ASSERT_TRUE(other.converged);
     EXPECT_LE((other.x - one.x).norm(), 1e-11 * one.x.norm());
   }
+}
+
+/// Two ranks, in threads, with the nodes of a body each: they step together, and each finds what it
+/// finds alone.
+TEST(ActiveSets, OfTwoRanksSettleTogether) {
+  const std::array<FrictionProblem, 2> bodies{punch(41, 2, 4, 0.05), punch(61, 2, 20, 0.05)};
+  const FrictionBound bound{0.3, 0, false};
+  std::array<FrictionResult, 2> found;
+  Vector shared;
+  std::barrier all_here(2);
+  const auto rank = [&](std::size_t self) {
+    const LargestOverRanks largest = [&](Vector &values) {
+      if (self == 0) shared = values;
+      all_here.arrive_and_wait();
+      if (self == 1) shared = shared.cwiseMax(values).eval();
+      all_here.arrive_and_wait();
+      values = shared;
+      all_here.arrive_and_wait();
+    };
+    const FrictionProblem &p = bodies[self];
+    found[self] = solve_by_sets(dense(p.h, p.q), p.h.diagonal(),
+                                uniform_laws(p.q.size() / 2, 2, bound), {}, {}, largest);
+  };
+  std::thread other(rank, 1);
+  rank(0);
+  other.join();
+  for (std::size_t self : {0, 1}) {
+    const FrictionProblem &p = bodies[self];
+    const FrictionResult alone = by_sets(p, uniform_laws(p.q.size() / 2, 2, bound));
+    ASSERT_TRUE(found[self].converged);
+    EXPECT_LE((found[self].x - alone.x).norm(), 1e-12 * alone.x.norm());
+    EXPECT_EQ(found[self].states, alone.states);
+    EXPECT_GE(found[self].iterations, alone.iterations);
+  }
+  EXPECT_EQ(found[0].iterations, found[1].iterations);
 }
 
 TEST(ActiveSets, OfNothingInContactAreOneSystem) {

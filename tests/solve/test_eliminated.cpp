@@ -22,16 +22,18 @@ void expect_equal(const HfSolution &found, const HfSolution &expected) {
                 1e-10 * (1 + std::abs(*(expected.outputs.*member))));
 }
 
-/// The second parameter from the sets, and with the factors, of the first.
+/// The second parameter from the sets, and with the factors, of the first. Each rank has its own
+/// rows of B alone where they are eliminated, all of them where they are condensed.
 void expect_agreement(const std::string &name, const SceneValues &values,
                       const std::vector<Mu> &set, int refine = 0) {
   if (ranks_of(PETSC_COMM_WORLD) > 1 && refine > 0) return; // one rank has seen the fine mesh
   SCOPED_TRACE(name + (values.empty() ? "" : " " + values.begin()->second));
-  Problem problem(PETSC_COMM_WORLD, make_scene(name, values), {"", refine});
+  Problem whole(PETSC_COMM_WORLD, make_scene(name, values), {"", refine});
+  Problem split(PETSC_COMM_WORLD, make_scene(name, values), {"", refine}, /*contact_gather=*/0);
   HfOptions condensed, eliminated;
   condensed.contact = HfContact::condensed;
   eliminated.contact = HfContact::eliminated;
-  HighFidelity one(problem, condensed), other(problem, eliminated);
+  HighFidelity one(whole, condensed), other(split, eliminated);
   for (const Mu &mu : set) {
     const HfSolution expected = one.solve(mu);
     expect_equal(other.solve(mu), expected);
@@ -161,7 +163,7 @@ TEST(Eliminated, WhereItFailsItsSystemsKeepTheirMultipliers) {
 }
 
 TEST(Eliminated, WhereTheyFailTooContactIsCondensedAndSaysSo) {
-  Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 1});
+  Problem problem(PETSC_COMM_WORLD, make_scene("membrane_obstacle"), {"", 1}, 0);
   ASSERT_TRUE(eliminates(problem, {}));
   const Mu mu{0.18, 0.025, -0.025};
   HfOptions condensed, forced;

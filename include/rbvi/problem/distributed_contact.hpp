@@ -31,6 +31,21 @@ struct DistributedContact {
   NodeLaws laws;       ///< of this rank's multipliers, numbered from 0
 };
 
+/// Those of this rank's multipliers, numbered from 0 in the order of the layout.
+NodeLaws own_laws(const DualLayout &layout, const NodeLaws &laws);
+
+/// This rank's rows of a matrix whose rows are those of B, in the order of the layout.
+SparseMatrix own_rows(const DualLayout &layout, const SparseMatrix &of_multipliers);
+
+/// A matrix of any number of rows, each of one rank, on contact dofs: as one on the free
+/// displacement dofs. Collective.
+Handle<Mat> distribute_rows(const DualLayout &layout, const SparseMatrix &own);
+
+/// Rows of which each rank has some, on every rank: row k of `own` is row `numbers`[k] of all.
+/// Collective.
+SparseMatrix gather_rows(MPI_Comm comm, const SparseMatrix &own, const std::vector<Index> &numbers,
+                         Index all);
+
 /// Collective. `operators`: at least the rows of this rank; `laws`: of all nodes.
 DistributedContact distribute(const DualLayout &layout, const ContactOperators &operators,
                               const NodeLaws &laws);
@@ -38,9 +53,14 @@ DistributedContact distribute(const DualLayout &layout, const ContactOperators &
 /// The Gram matrix of W, dual x dual. Collective.
 Handle<Mat> distribute(const DualLayout &layout, const SparseMatrix &w_product);
 
+/// From this rank's values of any number of rows. Collective.
+Handle<Vec> distribute_values(MPI_Comm comm, const Vector &own);
+
 /// All multipliers, from every rank onto the ranks and back. Collective.
 Handle<Vec> distribute(const DualLayout &layout, const Vector &multipliers);
 Vector on_every_rank(const DualLayout &layout, Vec multipliers);
+/// From this rank's. Collective.
+Vector on_every_rank(const DualLayout &layout, const Vector &own);
 
 /// Collective. `operators` of one interface: from this rank's rows to all of them on every rank.
 /// Its nodal constraint is one of the dual nodes (ContactInterface::can_be_split).

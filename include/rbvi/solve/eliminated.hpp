@@ -13,44 +13,51 @@
 // little. Where a constraint has no pivot or the iteration fails, the systems of that solve keep
 // their multipliers and are solved by a sparse LU factorisation each.
 //
-// Multipliers and B are on every rank, displacement dofs are distributed.
+// A rank has the multipliers, and the rows of B, of its dual nodes
+// (problem/distributed_contact.hpp).
 #pragma once
 
-#include "rbvi/contact/elimination.hpp"
+#include "rbvi/contact/pivots.hpp"
+#include "rbvi/law/friction/active_sets.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
+
+class Elimination;
+struct OwnContact;
 
 class Eliminated {
 public:
   /// `problem` must outlive it. Options of the factorisation under -hf_, of the iteration under
   /// -hf_krylov_. Collective.
-  explicit Eliminated(const Problem &problem);
+  explicit Eliminated(Problem &problem);
 
-  /// `start`: as FrictionResult::start, or empty. `accuracy`: of the systems, relative. Throws
-  /// failure, saying what to try, where one cannot be solved. Collective.
+  /// `op`: this rank's rows at least; the rows of others are not looked at. `start`: as
+  /// FrictionResult::start, of all multipliers, or empty. `accuracy`: of the systems, relative.
+  /// Throws failure, saying what to try, where one cannot be solved. Collective.
   MethodResult solve(const Operators &op, const Vector &start, double accuracy = 1e-13);
 
   int factorisations() const { return factorisations_; }
   int krylov_steps() const { return krylov_steps_; }
 
 private:
-  SetSolution solve_system(const Operators &op, const SetSystem &system, double accuracy);
-  Vector eliminate(const Operators &op, const SetSystem &system, const SparseMatrix &c, Vec force,
-                   double accuracy);
-  void drop_pivots(Mat a, const std::vector<PetscInt> &rows);
-  void tie_pivots(Mat a, const SparseMatrix &ties, const std::vector<PetscInt> &rows);
-  void precondition(const Operators &op, const Elimination &z, const std::vector<Index> &pivots);
+  SetSolution solve_system(const Operators &op, const OwnContact &contact, const SetSystem &system,
+                           double accuracy);
+  Vector eliminate(const Operators &op, const Elimination &z, const Elimination &w, bool symmetric,
+                   const Vector &constraint, Vec force, double accuracy);
+  void drop_pivots(Mat a, const Elimination &z);
+  void tie_pivots(Mat a, const Elimination &z, const SparseMatrix &ties);
+  void precondition(const Operators &op, const Elimination &z);
+  bool on_any_rank(bool here) const;
 
-  const Problem &problem_;
-  const Trace &trace_;
+  Problem &problem_;
+  const DualLayout &layout_;
   ContactDofs dofs_;
-  std::vector<PetscInt> rows_; ///< of the contact dofs in A
-  bool multigrid_;             ///< in place of a factorisation
+  bool multigrid_; ///< in place of a factorisation
   Handle<KSP> factor_;
   Handle<Mat> reduced_;              ///< what is factorised
   Handle<MatNullSpace> rigid_modes_; ///< of vectors by multigrid
-  std::vector<Index> factored_;      ///< its pivots
+  std::vector<PetscInt> factored_;   ///< its pivots, of this rank
   bool of_another_a_ = true;         ///< or of none
   bool tied_ = false;                ///< with pivots tied to other dofs
   int factorisations_ = 0, krylov_steps_ = 0;

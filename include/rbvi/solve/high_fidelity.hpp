@@ -13,7 +13,8 @@
 // Where contact follows the displacement (large deformations), active_set solves each linearised
 // problem of Kacanov's or Newton's iteration (law/nonlinear), which share the columns of A^-1.
 //
-// B, G and the multipliers of uzawa and vi are distributed over the ranks.
+// B, G and the multipliers of uzawa, vi and of active sets by elimination are distributed over the
+// ranks; the condensed problem, and with it what reductions need, has them on every rank.
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
@@ -125,12 +126,15 @@ private:
   void complete_compliance(Mat a);
   MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip,
                              HfSolution &solution);
-  MethodResult run_active_set(const Mu &mu, const Operators &op, const Vector &slip,
-                              HfSolution &solution);
-  MethodResult run_condensed(const Mu &mu, const Operators &op);
-  std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op,
-                                             std::string &complaint);
+  MethodResult run_condensed(const Mu &mu, const Operators &op, const Vector &slip,
+                             HfSolution &solution);
+  std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op, const Vector &slip,
+                                             HfSolution &solution, std::string &complaint);
+  MethodResult run_eliminated_or_condensed(const Mu &mu, const Operators &op, const Vector &slip,
+                                           HfSolution &solution);
   MethodResult run_over_ranks(const Operators &op, const Vector &slip, HfSolution &solution);
+  void measure_over_ranks(const Operators &op, const DistributedContact &contact,
+                          const Vector &slip, const MethodResult &result, HfSolution &solution);
   Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);
 

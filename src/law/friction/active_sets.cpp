@@ -39,22 +39,22 @@ SetSystem system_of(const Laws &laws, const Order &order, const ActiveSets &sets
 class Iteration {
 public:
   Iteration(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
-            const FrictionOptions &options)
+            const FrictionOptions &options, const LargestOverRanks &largest)
       : solve_(solve), order_(laws), laws_(laws_of(laws)), rows_(laws.rows),
-        diagonal_(order_.inwards(Matrix(diagonal))), options_(options) {}
+        diagonal_(order_.inwards(Matrix(diagonal))), options_(options), largest_(largest) {}
 
   FrictionResult run(const Vector &start) {
     ActiveSets sets(laws_.nodes, laws_.dim);
     if (start.size() > 0) sets = predicted_sets(laws_, order_.inwards(Matrix(start)));
-    pivoting::Policy<std::string, double> policy(/*patience=*/20);
+    pivoting::Policy<Index, double> policy(/*patience=*/20);
     double accuracy = std::max(while_sets_change, options_.tolerance);
     State point;
     while (result_.iterations < options_.max_iterations) {
       ++result_.iterations;
       point = solved(sets, accuracy);
-      Verdict verdict = judge(diagonal_, laws_, point, sets, options_.tolerance);
+      Verdict verdict = judged(point, sets);
       const bool exact = accuracy <= options_.tolerance;
-      const bool returned = verdict.changed && policy.returns(sets.key());
+      const bool returned = verdict.changed && policy.returns(number_of(sets));
       if (!verdict.changed && exact) return finish(point, sets, verdict.residual);
       // Sets that settle, or return, with an inexact solution are judged by an exact one.
       if (exact && (returned || policy.is_lost(verdict.residual))) break;
@@ -71,6 +71,33 @@ private:
     const SetSolution found = solve_(system_of(laws_, order_, sets, rows_), accuracy);
     return {order_.inwards(Matrix(found.x)), order_.inwards(Matrix(found.w)),
             order_.inwards(Matrix(found.terms))};
+  }
+
+  double largest(double value) const { return largest(Vector(Vector::Constant(1, value)))[0]; }
+  Vector largest(Vector values) const {
+    if (largest_) largest_(values);
+    return values;
+  }
+
+  /// Of all nodes, but for the next sets.
+  Verdict judged(const State &point, const ActiveSets &sets) const {
+    Verdict verdict = judge(diagonal_, laws_, point, sets, options_.tolerance,
+                            largest(largest_scaled(diagonal_, point.x)));
+    const Vector all = largest(Vector{{verdict.residual, verdict.changed ? 1.0 : 0.0}});
+    verdict.residual = all[0];
+    verdict.changed = all[1] > 0;
+    return verdict;
+  }
+
+  /// Equal for sets that are equal on all ranks.
+  Index number_of(const ActiveSets &sets) {
+    keys_.push_back(sets.key());
+    Vector differs(std::ssize(keys_));
+    for (Index k = 0; k < differs.size(); ++k)
+      differs[k] = keys_[at(k)] == keys_.back() ? 0 : 1;
+    Index first = 0;
+    largest(differs).minCoeff(&first);
+    return first;
   }
 
   FrictionResult finish(const State &point, const ActiveSets &sets, double residual) {
@@ -92,17 +119,22 @@ private:
   Index rows_;
   Vector diagonal_;
   const FrictionOptions &options_;
+  const LargestOverRanks &largest_;
+  std::vector<std::string> keys_; ///< of the sets so far
   FrictionResult result_;
 };
 
 } // namespace
 
 FrictionResult solve_by_sets(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
-                             const Vector &start, const FrictionOptions &options) {
+                             const Vector &start, const FrictionOptions &options,
+                             const LargestOverRanks &largest) {
   check(laws);
-  if (laws.friction() && laws.tangents > 1)
+  Vector in_space = Vector::Constant(1, laws.friction() && laws.tangents > 1 ? 1 : 0);
+  if (largest) largest(in_space);
+  if (in_space[0] > 0)
     throw failure("active sets without columns are for friction in two dimensions");
-  return Iteration(solve, diagonal, laws, options).run(start);
+  return Iteration(solve, diagonal, laws, options, largest).run(start);
 }
 
 } // namespace rbvi

@@ -60,12 +60,9 @@ Vector solve(const Matrix &matrix, const Vector &right, bool symmetric) {
 class Judge {
 public:
   Judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
-        double tolerance)
-      : diagonal_(diagonal), laws_(laws), point_(point), sets_(sets),
-        tolerance_(tolerance), verdict_{.next = ActiveSets(laws.nodes, laws.dim)} {
-    for (Index j = 0; j < point.x.size(); ++j)
-      if (point.x[j] != 0) largest_ = std::max(largest_, std::abs(point.x[j]) * root(j));
-  }
+        double tolerance, double largest)
+      : diagonal_(diagonal), laws_(laws), point_(point), sets_(sets), tolerance_(tolerance),
+        largest_(largest), verdict_{.next = ActiveSets(laws.nodes, laws.dim)} {}
   Verdict all() {
     for (Index i = 0; i < laws_.nodes; ++i) {
       normal(i);
@@ -155,8 +152,7 @@ private:
   const Laws &laws_;
   const State &point_;
   const ActiveSets &sets_;
-  double tolerance_;
-  double largest_ = 0; ///< largest x in the scaling in which H has a unit diagonal
+  double tolerance_, largest_;
   Verdict verdict_;
 };
 
@@ -295,9 +291,21 @@ Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknow
   return x;
 }
 
+double largest_scaled(const Vector &diagonal, const Vector &x) {
+  double largest = 0;
+  for (Index j = 0; j < x.size(); ++j)
+    if (x[j] != 0) largest = std::max(largest, std::abs(x[j]) * std::sqrt(diagonal[j]));
+  return largest;
+}
+
+Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
+              double tolerance, double largest) {
+  return Judge(diagonal, laws, point, sets, tolerance, largest).all();
+}
+
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance) {
-  return Judge(diagonal, laws, point, sets, tolerance).all();
+  return judge(diagonal, laws, point, sets, tolerance, largest_scaled(diagonal, point.x));
 }
 
 Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,

@@ -65,8 +65,13 @@ struct Verdict {
   double residual = 0;  ///< largest relative violation of the laws
 };
 
+/// The largest x in the scaling in which H has a unit diagonal.
+double largest_scaled(const Vector &diagonal, const Vector &x);
 /// `diagonal`: H_jj, or its size; 0: unknown, then so is x_j, but for its being zero. `sets`: of
-/// the step that gave the point (they decide where the difference is below tolerance).
+/// the step that gave the point (they decide where the difference is below tolerance). `largest`:
+/// largest_scaled, of all nodes.
+Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
+              double tolerance, double largest);
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance);
 /// H_jj of the columns that are there, 0 elsewhere.

@@ -8,31 +8,12 @@
 
 namespace rbvi {
 
-void set_zero(const Trace &dofs, Vec v) {
-  LocalValues values(v);
-  for (const PetscInt row : dofs.local_row)
-    values.get()[row] = 0;
-}
-
-ReducedSystem::ReducedSystem(const Trace &trace, Mat stiffness, const Elimination &of_constraints,
-                             const Elimination &of_forces, const std::vector<Index> &given_up,
-                             KSP preconditioner)
-    : a(stiffness), z(of_constraints), w(of_forces), pivots(part_of(trace, given_up)),
-      coupled_by_z(part_of(trace, z.coupled())), coupled_by_w(part_of(trace, w.coupled())),
-      factor(preconditioner) {
-  RBVI_CALL(MatCreateVecs(a, nullptr, scratch.put()));
-}
-
 void ReducedSystem::extend(Vec v) const {
-  if (pivots.size == 0) return;
-  const Vector values = z.pivot_values(Vector::Zero(pivots.size), restrict_to(coupled_by_z, v));
-  add_extension(pivots, values, v);
+  if (z.count() > 0) z.extend(Vector::Zero(z.own().rows()), v);
 }
 
 void ReducedSystem::reduce(Vec r) const {
-  if (pivots.size == 0) return;
-  add_extension(coupled_by_w, w.carried_over(restrict_to(pivots, r)), r);
-  set_zero(pivots, r);
+  if (w.count() > 0) w.reduce(r);
 }
 
 namespace {
@@ -51,9 +32,9 @@ PetscErrorCode apply_system(Mat shell, Vec v, Vec result) {
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(shell, &system));
   PetscCall(reported(PETSC_COMM_SELF, [&] {
-    RBVI_CALL(VecCopy(v, system->scratch.get()));
-    system->extend(system->scratch.get());
-    RBVI_CALL(MatMult(system->a, system->scratch.get(), result));
+    RBVI_CALL(VecCopy(v, system->scratch));
+    system->extend(system->scratch);
+    RBVI_CALL(MatMult(system->a, system->scratch, result));
     system->reduce(result);
   }));
   PetscFunctionReturn(0);
@@ -65,7 +46,7 @@ PetscErrorCode apply_preconditioner(PC pc, Vec r, Vec result) {
   PetscCall(PCShellGetContext(pc, &system));
   PetscCall(reported(PETSC_COMM_SELF, [&] {
     solve_linear(system->factor, r, result);
-    set_zero(system->pivots, result);
+    system->zero_pivots(result);
   }));
   PetscFunctionReturn(0);
 }
@@ -73,7 +54,7 @@ PetscErrorCode apply_preconditioner(PC pc, Vec r, Vec result) {
 } // namespace
 
 int solve_reduced(ReducedSystem &system, const Krylov &how, Vec right, Vec v) {
-  const MPI_Comm comm = system.pivots.comm;
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(v));
   PetscInt local = 0;
   RBVI_CALL(VecGetLocalSize(v, &local));
   Handle<Mat> shell;

@@ -2,32 +2,23 @@
 // (solve/eliminated.hpp), and its iteration.
 #pragma once
 
-#include "rbvi/contact/elimination.hpp"
-#include "rbvi/fem/trace.hpp"
+#include "elimination.hpp"
 
 namespace rbvi {
 
-/// Zero at these dofs. Not collective.
-void set_zero(const Trace &dofs, Vec v);
-
-/// W^T A Z, with a preconditioner for it.
+/// W^T A Z, with a preconditioner for it. What it refers to must outlive it.
 struct ReducedSystem {
-  /// The eliminations, of u by the constraints and of the forces by their multipliers, must outlive
-  /// it. `preconditioner`: of A, or of A without the pivots.
-  ReducedSystem(const Trace &trace, Mat stiffness, const Elimination &of_constraints,
-                const Elimination &of_forces, const std::vector<Index> &given_up,
-                KSP preconditioner);
+  Mat a;
+  const Elimination &z; ///< of the displacement by the constraints
+  const Elimination &w; ///< of the forces by the multipliers
+  KSP factor;           ///< preconditioner of A, or of A without the pivots
+  Vec scratch;          ///< a displacement
 
   /// v + what the constraints without right-hand side say of the pivots, where v is zero.
   void extend(Vec v) const;
   /// W^T r, zero at the pivots.
   void reduce(Vec r) const;
-
-  Mat a;
-  const Elimination &z, &w;
-  Trace pivots, coupled_by_z, coupled_by_w;
-  KSP factor;
-  Handle<Vec> scratch;
+  void zero_pivots(Vec v) const { z.set_pivots(Vector::Zero(std::ssize(z.pivots())), v); }
 };
 
 /// How a reduced system is solved.

@@ -5,14 +5,14 @@
 // by a sparse LU factorisation (MUMPS) that the ranks share.
 #pragma once
 
-#include "rbvi/fem/trace.hpp"
+#include "rbvi/core/dense.hpp"
+#include "rbvi/par/petsc.hpp"
 
 namespace rbvi {
 
-/// Sets u and returns y, on every rank. `w`, `c`: constraints x contact dofs, the same on every
-/// rank. Throws failure, saying what to try, where the matrix is singular or what is found does not
-/// meet the system to 1e-9. Options under hf_saddle_. Collective.
-Vector solve_saddle(const Trace &trace, Mat a, const SparseMatrix &w, const SparseMatrix &c, Vec f,
-                    const Vector &right, Vec u);
+/// Sets u and returns this rank's y. `w`, `c`: constraints x free displacement dofs; `right`: c of
+/// this rank's constraints. Throws failure, saying what to try, where the matrix is singular or
+/// what is found does not meet the system to 1e-9. Options under hf_saddle_. Collective.
+Vector solve_saddle(Mat a, Mat w, Mat c, Vec f, const Vector &right, Vec u);
 
 } // namespace rbvi

@@ -28,12 +28,17 @@ struct SetSolution {
 /// Solves one such system, `accuracy` relative.
 using SetSolver = std::function<SetSolution(const SetSystem &system, double accuracy)>;
 
+/// Where each rank has some of the nodes: makes every entry the largest of those of all ranks.
+/// Empty: all nodes are here.
+using LargestOverRanks = std::function<void(Vector &)>;
+
 /// Semismooth Newton as in solve_friction, also where there is no friction; the systems are solved
 /// as exactly as the sets need, that of the last sets to `options.tolerance`. `diagonal`: the order
 /// of magnitude of H_jj, positive, which weighs a slip against a traction; the answer does not
 /// depend on it. Where the sets return, it is not converged: nothing else is tried. Throws failure
 /// for friction in three dimensions.
 FrictionResult solve_by_sets(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
-                             const Vector &start, const FrictionOptions &options = {});
+                             const Vector &start, const FrictionOptions &options = {},
+                             const LargestOverRanks &largest = {});
 
 } // namespace rbvi

@@ -1,9 +1,8 @@
 // Active constraints that give up displacement dofs, their pivots: the contact side of
-// solve/eliminated.hpp, serial.
+// solve/eliminated.hpp, on one rank.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/law/friction/active_sets.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
@@ -20,8 +19,9 @@ struct ContactDofs {
 };
 ContactDofs contact_dofs(const Contact &contact);
 
-/// One dof of its node for each row of C, none of them twice. Throws failure where there is none.
-std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &system,
+/// One dof of its node for each row of C, none of them twice. `rows`: of B, that those of C are of.
+/// Throws failure where there is none.
+std::vector<Index> choose_pivots(const ContactDofs &dofs, const std::vector<Index> &rows,
                                  const SparseMatrix &c);
 
 /// Solves with a sparse square matrix: entry by entry where each row and column has one, as by
@@ -45,27 +45,25 @@ private:
   std::unique_ptr<Lu> lu_;
 };
 
-/// u_P = C_P^-1 (c - C_N u_N), and its transpose.
-class Elimination {
+/// C_P, the columns of the pivots, and the other columns C_N of some constraints.
+class PivotBlock {
 public:
-  /// `c`: constraints x contact dofs; `pivots`: one of these dofs for each row.
-  Elimination(const SparseMatrix &c, const std::vector<Index> &pivots);
-  /// N: the contact dofs but P that C sees.
-  const std::vector<Index> &coupled() const { return coupled_; }
-  /// C_P^-1 (right - C_N u_N).
-  Vector pivot_values(const Vector &right, const Vector &u_n) const;
-  Vector pivot_values(const Vector &right) const { return factor_.solve(right); }
-  /// C_P^-T r_P.
-  Vector multipliers(const Vector &r_p) const { return factor_.solve_transposed(r_p); }
-  /// -C_N^T C_P^-T r_P.
-  Vector carried_over(const Vector &r_p) const { return -(others_.transpose() * multipliers(r_p)); }
-  /// -C_P^-1 C_N in the rows of P without its small entries, contact dofs x contact dofs: it decays
-  /// with the distance, as the inverse of a mass matrix does.
+  /// Nothing.
+  PivotBlock() = default;
+  /// `c`: constraints x contact dofs; `pivots`: one of these dofs for each. Throws failure where
+  /// C_P is singular.
+  PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots);
+  /// C_P^-1 right.
+  Vector solve(const Vector &right) const { return factor_.solve(right); }
+  /// C_P^-T right.
+  Vector solve_transposed(const Vector &right) const { return factor_.solve_transposed(right); }
+  /// -C_P^-1 C_N without its small entries, constraints x contact dofs: it decays with the
+  /// distance, as the inverse of a mass matrix does.
   SparseMatrix ties(Index contact_dofs) const;
 
 private:
-  std::vector<Index> pivots_, coupled_;
-  SparseMatrix others_; ///< C_N, columns as in coupled_
+  std::vector<Index> coupled_; ///< contact dofs of the columns of C_N that are not zero
+  SparseMatrix others_;        ///< those columns
   SquareFactor factor_;
 };
 

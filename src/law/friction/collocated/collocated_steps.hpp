@@ -2,7 +2,7 @@
 // sets, and what is left of both where bounds are zero.
 #pragma once
 
-#include "../index.hpp"
+#include "../../index.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/collocated_friction.hpp"
 #include "rbvi/law/qp/nonnegative_qp.hpp"

@@ -1,4 +1,4 @@
-#include "rbvi/contact/elimination.hpp"
+#include "rbvi/contact/pivots.hpp"
 
 #include "rbvi/core/error.hpp"
 
@@ -56,15 +56,12 @@ ContactDofs contact_dofs(const Contact &contact) {
   return dofs;
 }
 
-std::vector<Index> choose_pivots(const ContactDofs &dofs, const SetSystem &system,
+std::vector<Index> choose_pivots(const ContactDofs &dofs, const std::vector<Index> &rows,
                                  const SparseMatrix &c) {
-  std::vector<Index> pivots(at(c.rows()), -1), row_of(at(c.rows()), -1);
-  for (Index row = 0; row < system.r.rows(); ++row)
-    for (SparseMatrix::InnerIterator entry(system.r, row); entry; ++entry)
-      row_of[at(entry.col())] = row;
+  std::vector<Index> pivots(at(c.rows()), -1);
   std::vector<char> taken(dofs.node.size(), 0);
   for (Index k = 0; k < c.rows(); ++k) {
-    const Index node = dofs.row_node[at(row_of[at(k)])];
+    const Index node = dofs.row_node[at(rows[at(k)])];
     double largest = 0;
     for (SparseMatrix::InnerIterator entry(c, k); entry; ++entry) {
       const auto dof = at(entry.col());
@@ -91,8 +88,7 @@ void SquareFactor::compute(const Eigen::SparseMatrix<double> &matrix) {
     symmetric_.reset();
   }
   lu_ = std::make_unique<Lu>(matrix);
-  if (lu_->info() != Eigen::Success)
-    throw failure("the active constraints depend on each other");
+  if (lu_->info() != Eigen::Success) throw failure("the active constraints depend on each other");
 }
 
 /// Whether there is one entry in each row and column; columns_ and values_ then hold them.
@@ -123,8 +119,7 @@ Matrix SquareFactor::solve_transposed(const Matrix &right) const {
   return symmetric_ ? Matrix(symmetric_->solve(right)) : Matrix(lu_->transpose().solve(right));
 }
 
-Elimination::Elimination(const SparseMatrix &c, const std::vector<Index> &pivots)
-    : pivots_(pivots) {
+PivotBlock::PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots) {
   std::vector<Index> position(at(c.cols()), -1), other(at(c.cols()), -1);
   for (std::size_t k = 0; k < pivots.size(); ++k)
     position[at(pivots[k])] = static_cast<Index>(k);
@@ -148,11 +143,7 @@ Elimination::Elimination(const SparseMatrix &c, const std::vector<Index> &pivots
   if (c.rows() > 0) factor_.compute(square);
 }
 
-Vector Elimination::pivot_values(const Vector &right, const Vector &coupled) const {
-  return factor_.solve(right - others_ * coupled);
-}
-
-SparseMatrix Elimination::ties(Index contact_dofs) const {
+SparseMatrix PivotBlock::ties(Index contact_dofs) const {
   constexpr double small = 1e-3;
   constexpr Index at_a_time = 64;
   const Eigen::SparseMatrix<double> columns = others_;
@@ -163,10 +154,10 @@ SparseMatrix Elimination::ties(Index contact_dofs) const {
     for (Index k = 0; k < count; ++k)
       for (Index i = 0; i < tied.rows(); ++i)
         if (std::abs(tied(i, k)) > small)
-          entries.emplace_back(static_cast<int>(pivots_[at(i)]),
-                               static_cast<int>(coupled_[at(first + k)]), -tied(i, k));
+          entries.emplace_back(static_cast<int>(i), static_cast<int>(coupled_[at(first + k)]),
+                               -tied(i, k));
   }
-  SparseMatrix result(contact_dofs, contact_dofs);
+  SparseMatrix result(others_.rows(), contact_dofs);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }

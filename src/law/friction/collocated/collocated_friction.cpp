@@ -1,6 +1,6 @@
 #include "rbvi/law/friction/collocated_friction.hpp"
 
-#include "../pivoting.hpp"
+#include "../../pivoting.hpp"
 #include "collocated_steps.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
