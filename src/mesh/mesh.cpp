@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string_view>
+#include <unordered_map>
 
 namespace rbvi {
 
@@ -31,103 +31,6 @@ struct StarForest {
   ~StarForest() { (void)PetscSFDestroy(&sf); }
 };
 
-struct Generator {
-  std::string_view name;
-  SerialMesh (*make)(const MeshRecipe &);
-  bool takes_edges = false;
-};
-
-constexpr std::array generators{
-    Generator{"square_with_disc",
-              [](const MeshRecipe &recipe) {
-                return recipe.edges == 0 ? square_with_disc() : square_with_disc(recipe.edges);
-              },
-              true},
-    Generator{"two_quarter_discs", [](const MeshRecipe &) { return two_quarter_discs(); }},
-    Generator{"two_graded_quarter_discs",
-              [](const MeshRecipe &recipe) { return two_graded_quarter_discs(recipe.edges); },
-              true},
-    Generator{"two_blocks", [](const MeshRecipe &) { return two_blocks(); }},
-    Generator{"half_disc",
-              [](const MeshRecipe &recipe) {
-                return recipe.edges == 0 ? half_disc() : half_disc(recipe.edges);
-              },
-              true},
-    Generator{"wide_half_disc",
-              [](const MeshRecipe &recipe) {
-                return recipe.edges == 0 ? wide_half_disc() : wide_half_disc(recipe.edges);
-              },
-              true},
-    Generator{"one_block", [](const MeshRecipe &) { return one_block(); }},
-    Generator{"annulus",
-              [](const MeshRecipe &recipe) {
-                return recipe.edges == 0 ? annulus() : annulus(recipe.edges);
-              },
-              true}};
-
-/// Throws bad_input if a built-in mesh lacks a name of the scene's recipe.
-void check_labels(const SerialMesh &mesh, const Scene &scene) {
-  const std::string lacks =
-      "the mesh generator '" + scene.mesh.generator + "' that scene " + scene.name + " asks for ";
-  for (const std::string &name : scene.mesh.regions)
-    if (!mesh.region.contains(name)) throw bad_input(lacks + "makes no region '" + name + "'");
-  for (const std::string &name : scene.mesh.boundaries)
-    if (!mesh.boundary.contains(name)) throw bad_input(lacks + "makes no boundary '" + name + "'");
-}
-
-/// Throws bad_input if this build does not have the scene's generator, or not with its edges.
-SerialMesh generated_mesh(const Scene &scene) {
-  std::string names;
-  for (const Generator &generator : generators) {
-    names.append(names.empty() ? "" : ", ").append(generator.name);
-    if (generator.name != scene.mesh.generator) continue;
-    if (scene.mesh.edges != 0 && !generator.takes_edges)
-      throw bad_input("scene " + scene.name + " asks for " + std::to_string(scene.mesh.edges) +
-                      " contact edges: the number of the mesh generator '" + scene.mesh.generator +
-                      "' is fixed");
-    SerialMesh mesh = generator.make(scene.mesh);
-    check_labels(mesh, scene);
-    return mesh;
-  }
-  throw bad_input("scene " + scene.name + " asks for the mesh generator '" + scene.mesh.generator +
-                  "': this build has " + names);
-}
-
-/// The given mesh refined so many times; those on the way are left in `levels`.
-SerialMesh refined_mesh(SerialMesh mesh, int times, const Scene &scene, const std::string &source,
-                        std::vector<SerialMesh> &levels) {
-  for (int level = 1; level <= times; ++level) {
-    SerialMesh finer = refined(mesh);
-    levels.push_back(std::move(mesh));
-    mesh = std::move(finer);
-    snap_curves(mesh, scene);
-    const std::string name = source + ", refined " + std::to_string(level) + " times";
-    check_volumes(mesh, name);
-    check_places(mesh, scene, name);
-  }
-  return mesh;
-}
-
-/// Leaves in `levels` those that it was refined from, where they are not known.
-SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
-                              std::vector<SerialMesh> &levels) {
-  if (options.refine < 0) throw bad_input("the number of mesh refinements is negative");
-  const std::string source =
-      options.file.empty() ? "the built-in mesh" : "mesh file '" + options.file + "'";
-  SerialMesh mesh;
-  if (options.levels) {
-    mesh = options.levels->at(static_cast<std::size_t>(options.refine));
-  } else {
-    mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
-    check_mesh(mesh, source);
-    check_facts(mesh, scene, source);
-    mesh = refined_mesh(std::move(mesh), options.refine, scene, source, levels);
-  }
-  balance_inclusion(mesh, scene);
-  check_volumes(mesh, source);
-  return mesh;
-}
-
 /// Tells the shell partitioner which cells go where; only the first rank has any.
 void prescribe_partition(DM dm, const std::vector<int> &part, int parts) {
   std::vector<PetscInt> sizes(static_cast<std::size_t>(parts), 0), order(part.size());
@@ -143,26 +46,36 @@ void prescribe_partition(DM dm, const std::vector<int> &part, int parts) {
   RBVI_CALL(PetscPartitionerShellSetPartition(partitioner, parts, sizes.data(), order.data()));
 }
 
-/// Distributes `dm` in place. Returns, for each local point, its point in the undistributed DM.
-std::vector<PetscInt> distribute(Handle<DM> &dm, const std::vector<int> &part, int parts) {
-  PetscInt begin = 0, end = 0;
-  RBVI_CALL(DMPlexGetChart(dm.get(), &begin, &end));
-  std::vector<PetscInt> original(static_cast<std::size_t>(end));
-  std::iota(original.begin(), original.end(), 0);
-  if (parts == 1) return original;
+/// What the first rank knows of every point of the undistributed DM, at the points of each rank.
+class Migration {
+public:
+  /// Distributes `dm` in place.
+  Migration(Handle<DM> &dm, const std::vector<int> &part, int parts) : distributed_(parts > 1) {
+    if (distributed_) {
+      prescribe_partition(dm.get(), part, parts);
+      Handle<DM> local;
+      RBVI_CALL(DMPlexDistribute(dm.get(), 0, &forest_.sf, local.put()));
+      dm = std::move(local);
+    }
+    PetscInt end = 0;
+    RBVI_CALL(DMPlexGetChart(dm.get(), nullptr, &end));
+    points_ = static_cast<std::size_t>(end);
+  }
+  /// `type`: MPI's of Value.
+  template <class Value>
+  std::vector<Value> arrived(const std::vector<Value> &values, MPI_Datatype type) const {
+    if (!distributed_) return values;
+    std::vector<Value> here(points_);
+    RBVI_CALL(PetscSFBcastBegin(forest_.sf, type, values.data(), here.data(), MPI_REPLACE));
+    RBVI_CALL(PetscSFBcastEnd(forest_.sf, type, values.data(), here.data(), MPI_REPLACE));
+    return here;
+  }
 
-  prescribe_partition(dm.get(), part, parts);
-  StarForest migration;
-  Handle<DM> local;
-  RBVI_CALL(DMPlexDistribute(dm.get(), 0, &migration.sf, local.put()));
-  RBVI_CALL(DMPlexGetChart(local.get(), &begin, &end));
-  std::vector<PetscInt> arrived(static_cast<std::size_t>(end), -1);
-  RBVI_CALL(
-      PetscSFBcastBegin(migration.sf, MPIU_INT, original.data(), arrived.data(), MPI_REPLACE));
-  RBVI_CALL(PetscSFBcastEnd(migration.sf, MPIU_INT, original.data(), arrived.data(), MPI_REPLACE));
-  dm = std::move(local);
-  return arrived;
-}
+private:
+  bool distributed_;
+  StarForest forest_;
+  std::size_t points_ = 0;
+};
 
 /// Edges of the undistributed mesh: its points begin .. end - 1.
 struct EdgePoints {
@@ -222,25 +135,66 @@ std::vector<bool> owned_elsewhere(const Mesh &mesh) {
   return elsewhere;
 }
 
-/// The facets of a boundary, by the vertices of each.
-std::vector<CellFacet> boundary_facets(const Mesh &mesh, const std::string &name,
-                                       const std::vector<bool> &elsewhere, PetscInt first_vertex) {
-  std::vector<CellFacet> result;
-  for (const PetscInt point : labelled_points(mesh.dm.get(), name, 1)) {
-    const PetscInt *support = nullptr;
-    RBVI_CALL(DMPlexGetSupport(mesh.dm.get(), point, &support));
-    if (elsewhere[static_cast<std::size_t>(point)]) continue;
-    const auto vertices = vertices_of(mesh.dm.get(), point);
-    const auto end = vertices.begin() + mesh.dim;
-    const auto cell = static_cast<std::size_t>(support[0]);
-    for (int facet = 0; facet <= mesh.dim; ++facet) {
-      const std::vector<int> nodes = facet_nodes(mesh.dim, 1, facet);
-      if (std::all_of(nodes.begin(), nodes.end(), [&](int i) {
-            const PetscInt vertex = mesh.cells[cell][static_cast<std::size_t>(i)] + first_vertex;
-            return std::find(vertices.begin(), end, vertex) != end;
-          }))
-        result.push_back({cell, facet});
+/// Marks of the undistributed mesh at its `points`, the cells of a region.
+std::vector<char> marked_cells(const SerialMesh &serial, const std::string &region,
+                               std::size_t points) {
+  std::vector<char> marks(points, 0);
+  if (points == 0 || !serial.region.contains(region)) return marks;
+  for (const int cell : serial.region.at(region))
+    marks[static_cast<std::size_t>(cell)] = 1;
+  return marks;
+}
+
+/// The vertices of facets, and where the DM has them their edges.
+std::vector<char> marked_nodes(DM dm, const SerialMesh &serial,
+                               const std::vector<SerialFacet> &facets, std::size_t points) {
+  std::vector<char> marks(points, 0);
+  PetscInt depth = 0;
+  RBVI_CALL(DMPlexGetDepth(dm, &depth));
+  const auto first_vertex = static_cast<PetscInt>(serial.cells.size());
+  const auto count = static_cast<std::size_t>(serial.dim);
+  for (const SerialFacet &facet : facets)
+    for (std::size_t i = 0; i < count; ++i) {
+      const PetscInt vertex = first_vertex + facet.vertices[i];
+      marks[static_cast<std::size_t>(vertex)] = 1;
+      for (std::size_t j = 0; depth > 1 && j < i; ++j) {
+        const std::array<PetscInt, 2> ends{vertex, first_vertex + facet.vertices[j]};
+        PetscInt edges = 0;
+        const PetscInt *edge = nullptr;
+        RBVI_CALL(DMPlexGetFullJoin(dm, 2, ends.data(), &edges, &edge));
+        for (PetscInt k = 0; k < edges; ++k)
+          marks[static_cast<std::size_t>(edge[k])] = 1;
+        RBVI_CALL(DMPlexRestoreJoin(dm, 2, ends.data(), &edges, &edge));
+      }
     }
+  return marks;
+}
+
+/// Facets of the first rank, on every rank.
+void share(MPI_Comm comm, std::vector<SerialFacet> &facets) {
+  auto bytes = static_cast<int>(facets.size() * sizeof(SerialFacet));
+  MPI_Bcast(&bytes, 1, MPI_INT, 0, comm);
+  facets.resize(static_cast<std::size_t>(bytes) / sizeof(SerialFacet));
+  MPI_Bcast(facets.data(), bytes, MPI_CHAR, 0, comm);
+}
+
+/// Those of this rank's cells.
+std::vector<CellFacet> own_facets(const Mesh &mesh, const std::vector<SerialFacet> &facets) {
+  std::unordered_map<PetscInt, std::size_t> cell_of;
+  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
+    cell_of.emplace(mesh.natural_cell[cell], cell);
+  std::vector<CellFacet> result;
+  for (const SerialFacet &whole : facets) {
+    const auto found = cell_of.find(whole.cell);
+    if (found == cell_of.end()) continue;
+    const auto end = whole.vertices.begin() + mesh.dim;
+    for (int facet = 0; facet <= mesh.dim; ++facet)
+      if (std::ranges::all_of(facet_nodes(mesh.dim, 1, facet), [&](int i) {
+            const int node = mesh.cells[found->second][static_cast<std::size_t>(i)];
+            const PetscInt vertex = mesh.natural_node[static_cast<std::size_t>(node)];
+            return std::find(whole.vertices.begin(), end, vertex) != end;
+          }))
+        result.push_back({found->second, facet});
   }
   return result;
 }
@@ -283,54 +237,30 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
   }
 }
 
-/// Which of these DMPlex points, of these heights, carry a label.
-std::vector<bool> marks(const Mesh &mesh, const std::string &name,
-                        std::initializer_list<PetscInt> heights,
-                        const std::vector<PetscInt> &points) {
+/// The undistributed mesh, on the first rank: elsewhere there is nothing of it.
+struct Undistributed {
+  SerialMesh mesh;
+  std::map<std::string, std::vector<SerialFacet>> facets; ///< of every boundary
+  std::size_t points = 0;                                 ///< of its DM
+  std::map<std::string, std::vector<char>> marks;         ///< per region and boundary, of them
+};
+
+/// Fills in the points and their marks. `dm`: not distributed yet.
+void mark(DM dm, const MeshRecipe &recipe, Undistributed &all) {
   PetscInt end = 0;
-  RBVI_CALL(DMPlexGetChart(mesh.dm.get(), nullptr, &end));
-  std::vector<bool> labelled(static_cast<std::size_t>(end), false), marked;
-  for (const PetscInt height : heights)
-    for (const PetscInt point : labelled_points(mesh.dm.get(), name, height))
-      labelled[static_cast<std::size_t>(point)] = true;
-  for (const PetscInt point : points)
-    marked.push_back(labelled[static_cast<std::size_t>(point)]);
-  return marked;
+  RBVI_CALL(DMPlexGetChart(dm, nullptr, &end));
+  all.points = static_cast<std::size_t>(end);
+  for (const std::string &name : recipe.regions)
+    all.marks[name] = marked_cells(all.mesh, name, all.points);
+  for (const std::string &name : recipe.boundaries)
+    all.marks[name] = marked_nodes(dm, all.mesh, all.facets[name], all.points);
 }
 
-} // namespace
-
-Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
-  const Communicator world(comm);
-  SerialMesh serial;
-  serial.dim = scene.dim;
-  std::vector<SerialMesh> levels;
-  std::vector<int> part;
-  std::string fingerprint(16, '0');
-  collectively(comm, [&] {
-    if (world.rank != 0) return;
-    serial = undistributed_mesh(scene, options, levels);
-    part = partition_cells(serial, world.size);
-    fingerprint = fingerprint_of(serial);
-  });
-
-  Mesh mesh;
-  mesh.comm = comm;
-  mesh.dim = scene.dim;
-  mesh.degree = scene.degree;
-  mesh.levels = options.levels ? options.levels
-                               : std::make_shared<const std::vector<SerialMesh>>(std::move(levels));
-  std::array<PetscInt, 2> totals{static_cast<PetscInt>(serial.points.size()),
-                                 static_cast<PetscInt>(serial.cells.size())};
-  MPI_Bcast(totals.data(), 2, MPIU_INT, 0, comm);
-  MPI_Bcast(fingerprint.data(), 16, MPI_CHAR, 0, comm);
-  mesh.total_vertices = totals[0];
-  mesh.total_cells = totals[1];
-  mesh.fingerprint = fingerprint;
-
-  mesh.dm = make_plex(comm, serial, scene.mesh);
-  const EdgePoints edges = edges_of(mesh.dm.get(), comm);
-  const std::vector<PetscInt> original = distribute(mesh.dm, part, world.size);
+void fill_nodes_and_cells(Mesh &mesh, const Migration &migration, const EdgePoints &edges,
+                          std::size_t points) {
+  std::vector<PetscInt> all(points);
+  std::iota(all.begin(), all.end(), 0);
+  const std::vector<PetscInt> original = migration.arrived(all, MPIU_INT);
   PetscInt begin = 0, end = 0;
   RBVI_CALL(DMPlexGetDepthStratum(mesh.dm.get(), 0, &begin, &end));
   fill_vertices(mesh, original, begin, end);
@@ -344,13 +274,62 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const std::vector<bool> elsewhere = owned_elsewhere(mesh);
   for (const PetscInt point : mesh.dm_point)
     mesh.owned_node.push_back(!elsewhere[static_cast<std::size_t>(point)]);
-  std::vector<PetscInt> cells(mesh.cells.size());
-  std::iota(cells.begin(), cells.end(), 0);
+}
+
+std::vector<bool> own_region(const Mesh &mesh, const std::vector<char> &marks) {
+  return {marks.begin(), marks.begin() + std::ssize(mesh.cells)}; // cells are the first points
+}
+
+std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
+  std::vector<bool> result;
+  for (const PetscInt point : mesh.dm_point)
+    result.push_back(marks[static_cast<std::size_t>(point)] != 0);
+  return result;
+}
+
+} // namespace
+
+Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
+  const Communicator world(comm);
+  Undistributed all;
+  all.mesh.dim = scene.dim;
+  std::vector<SerialMesh> levels;
+  std::vector<int> part;
+  std::string fingerprint(16, '0');
+  collectively(comm, [&] {
+    if (world.rank != 0) return;
+    all.mesh = undistributed_mesh(scene, options, levels);
+    part = partition_cells(all.mesh, world.size);
+    fingerprint = fingerprint_of(all.mesh);
+    for (const std::string &name : scene.mesh.boundaries)
+      if (all.mesh.boundary.contains(name)) all.facets[name] = facets_with_cells(all.mesh, name);
+  });
+
+  Mesh mesh;
+  mesh.comm = comm;
+  mesh.dim = scene.dim;
+  mesh.degree = scene.degree;
+  mesh.levels = options.levels ? options.levels
+                               : std::make_shared<const std::vector<SerialMesh>>(std::move(levels));
+  std::array<PetscInt, 2> totals{static_cast<PetscInt>(all.mesh.points.size()),
+                                 static_cast<PetscInt>(all.mesh.cells.size())};
+  MPI_Bcast(totals.data(), 2, MPIU_INT, 0, comm);
+  MPI_Bcast(fingerprint.data(), 16, MPI_CHAR, 0, comm);
+  mesh.total_vertices = totals[0];
+  mesh.total_cells = totals[1];
+  mesh.fingerprint = fingerprint;
+
+  mesh.dm = make_plex(comm, all.mesh, mesh.degree == 2);
+  mark(mesh.dm.get(), scene.mesh, all);
+  const EdgePoints edges = mesh.degree == 2 ? edges_of(mesh.dm.get(), comm) : EdgePoints{};
+  const Migration migration(mesh.dm, part, world.size);
+  fill_nodes_and_cells(mesh, migration, edges, all.points);
   for (const std::string &name : scene.mesh.regions)
-    mesh.region[name] = marks(mesh, name, {0}, cells);
+    mesh.region[name] = own_region(mesh, migration.arrived(all.marks[name], MPI_CHAR));
   for (const std::string &name : scene.mesh.boundaries) {
-    mesh.boundary[name] = marks(mesh, name, {mesh.dim - 1, mesh.dim}, mesh.dm_point);
-    mesh.facets[name] = boundary_facets(mesh, name, elsewhere, begin);
+    mesh.boundary[name] = at_nodes(mesh, migration.arrived(all.marks[name], MPI_CHAR));
+    share(comm, all.facets[name]);
+    mesh.facets[name] = own_facets(mesh, all.facets[name]);
   }
   return mesh;
 }

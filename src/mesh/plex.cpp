@@ -13,29 +13,6 @@ namespace rbvi {
 
 namespace {
 
-/// The whole label list of a recipe: regions, then boundaries.
-std::vector<std::string> label_names(const MeshRecipe &recipe) {
-  std::vector<std::string> names = recipe.regions;
-  names.insert(names.end(), recipe.boundaries.begin(), recipe.boundaries.end());
-  return names;
-}
-
-Handle<DM> plex_from_cells(MPI_Comm comm, const SerialMesh &mesh) {
-  const auto dim = static_cast<std::size_t>(mesh.dim);
-  std::vector<PetscInt> cells;
-  for (const auto &cell : mesh.cells)
-    cells.insert(cells.end(), cell.begin(), cell.begin() + mesh.dim + 1);
-  std::vector<PetscReal> coordinates;
-  for (const Point &x : mesh.points)
-    coordinates.insert(coordinates.end(), x.begin(), x.begin() + mesh.dim);
-  Handle<DM> dm;
-  RBVI_CALL(DMPlexCreateFromCellListPetsc(comm, mesh.dim, static_cast<PetscInt>(mesh.cells.size()),
-                                          static_cast<PetscInt>(mesh.points.size()),
-                                          static_cast<PetscInt>(dim + 1), PETSC_TRUE, cells.data(),
-                                          mesh.dim, coordinates.data(), dm.put()));
-  return dm;
-}
-
 void label_facets(DM dm, DMLabel label, const SerialMesh &mesh,
                   std::span<const std::array<int, 3>> facets) {
   const auto first = static_cast<PetscInt>(mesh.cells.size());
@@ -51,8 +28,7 @@ void label_facets(DM dm, DMLabel label, const SerialMesh &mesh,
   }
 }
 
-} // namespace
-
+/// Local points of one height that carry a label, none where there is no such label.
 std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt height) {
   DMLabel label = nullptr;
   RBVI_CALL(DMGetLabel(dm, name.c_str(), &label));
@@ -73,23 +49,22 @@ std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt h
   return points;
 }
 
-Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe) {
-  Handle<DM> dm = plex_from_cells(comm, mesh);
-  for (const std::string &name : label_names(recipe))
-    RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
-  for (const std::string &name : recipe.regions) {
-    if (!mesh.region.contains(name)) continue;
-    DMLabel label = nullptr;
-    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
-    for (const int cell : mesh.region.at(name))
-      RBVI_CALL(DMLabelSetValue(label, cell, 1));
-  }
-  for (const std::string &name : recipe.boundaries) {
-    DMLabel label = nullptr;
-    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
-    if (mesh.boundary.contains(name)) label_facets(dm.get(), label, mesh, mesh.boundary.at(name));
-    RBVI_CALL(DMPlexLabelComplete(dm.get(), label));
-  }
+} // namespace
+
+Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, bool interpolated) {
+  const auto dim = static_cast<std::size_t>(mesh.dim);
+  std::vector<PetscInt> cells;
+  for (const auto &cell : mesh.cells)
+    cells.insert(cells.end(), cell.begin(), cell.begin() + mesh.dim + 1);
+  std::vector<PetscReal> coordinates;
+  for (const Point &x : mesh.points)
+    coordinates.insert(coordinates.end(), x.begin(), x.begin() + mesh.dim);
+  Handle<DM> dm;
+  RBVI_CALL(DMPlexCreateFromCellListPetsc(comm, mesh.dim, static_cast<PetscInt>(mesh.cells.size()),
+                                          static_cast<PetscInt>(mesh.points.size()),
+                                          static_cast<PetscInt>(dim + 1),
+                                          interpolated ? PETSC_TRUE : PETSC_FALSE, cells.data(),
+                                          mesh.dim, coordinates.data(), dm.put()));
   return dm;
 }
 
@@ -137,7 +112,29 @@ void orient_cells(int dim, const std::vector<Point> &points,
   }
 }
 
-SerialMesh from_plex(DM dm, const MeshRecipe &recipe) {
+namespace {
+
+/// With a label of value 1 for each region (cells) and boundary (facets and their closure).
+Handle<DM> labelled_plex(const SerialMesh &mesh) {
+  Handle<DM> dm = make_plex(PETSC_COMM_SELF, mesh, true);
+  DMLabel label = nullptr;
+  for (const auto &[name, cells] : mesh.region) {
+    RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
+    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
+    for (const int cell : cells)
+      RBVI_CALL(DMLabelSetValue(label, cell, 1));
+  }
+  for (const auto &[name, facets] : mesh.boundary) {
+    RBVI_CALL(DMCreateLabel(dm.get(), name.c_str()));
+    RBVI_CALL(DMGetLabel(dm.get(), name.c_str(), &label));
+    label_facets(dm.get(), label, mesh, facets);
+    RBVI_CALL(DMPlexLabelComplete(dm.get(), label));
+  }
+  return dm;
+}
+
+/// The way back, with the labels that `like` has names for.
+SerialMesh from_plex(DM dm, const SerialMesh &like) {
   PetscInt dim = 0, first_cell = 0, last_cell = 0, first_vertex = 0, last_vertex = 0;
   RBVI_CALL(DMGetDimension(dm, &dim));
   RBVI_CALL(DMPlexGetHeightStratum(dm, 0, &first_cell, &last_cell));
@@ -153,10 +150,10 @@ SerialMesh from_plex(DM dm, const MeshRecipe &recipe) {
     mesh.cells.push_back(numbers);
   }
   orient_cells(mesh.dim, mesh.points, mesh.cells);
-  for (const std::string &name : recipe.regions)
+  for (const auto &[name, cells] : like.region)
     for (const PetscInt cell : labelled_points(dm, name, 0))
       mesh.region[name].push_back(static_cast<int>(cell - first_cell));
-  for (const std::string &name : recipe.boundaries)
+  for (const auto &[name, facets] : like.boundary)
     for (const PetscInt facet : labelled_points(dm, name, 1)) {
       const auto vertices = vertices_of(dm, facet);
       std::array<int, 3> numbers{-1, -1, -1};
@@ -167,17 +164,14 @@ SerialMesh from_plex(DM dm, const MeshRecipe &recipe) {
   return mesh;
 }
 
+} // namespace
+
 SerialMesh refined(const SerialMesh &mesh) {
-  MeshRecipe recipe;
-  for (const auto &[name, cells] : mesh.region)
-    recipe.regions.push_back(name);
-  for (const auto &[name, facets] : mesh.boundary)
-    recipe.boundaries.push_back(name);
-  const Handle<DM> coarse = make_plex(PETSC_COMM_SELF, mesh, recipe);
+  const Handle<DM> coarse = labelled_plex(mesh);
   Handle<DM> fine;
   RBVI_CALL(DMPlexSetRefinementUniform(coarse.get(), PETSC_TRUE));
   RBVI_CALL(DMRefine(coarse.get(), PETSC_COMM_SELF, fine.put()));
-  return from_plex(fine.get(), recipe);
+  return from_plex(fine.get(), mesh);
 }
 
 } // namespace rbvi

@@ -228,4 +228,38 @@ std::string fingerprint_of(const SerialMesh &mesh) {
   return text.data();
 }
 
+std::vector<SerialFacet> facets_with_cells(const SerialMesh &mesh, const std::string &boundary) {
+  using Vertices = std::array<int, 3>;
+  const auto sorted = [](Vertices vertices) {
+    std::ranges::sort(vertices);
+    return vertices;
+  };
+  const auto corners = static_cast<std::size_t>(mesh.dim) + 1;
+  std::vector<SerialFacet> facets;
+  std::map<Vertices, std::size_t> number;
+  std::vector<char> on_boundary(mesh.points.size(), 0);
+  for (const Vertices &vertices : mesh.boundary.at(boundary)) {
+    if (!number.emplace(sorted(vertices), facets.size()).second) continue;
+    facets.push_back({-1, vertices});
+    for (const int vertex : vertices)
+      if (vertex >= 0) on_boundary[static_cast<std::size_t>(vertex)] = 1;
+  }
+  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
+    for (std::size_t left_out = 0; left_out < corners; ++left_out) {
+      Vertices vertices{-1, -1, -1};
+      bool may_be_one = true;
+      for (std::size_t i = 0; i + 1 < corners; ++i) {
+        vertices[i] = mesh.cells[cell][i < left_out ? i : i + 1];
+        may_be_one = may_be_one && on_boundary[static_cast<std::size_t>(vertices[i])] != 0;
+      }
+      if (!may_be_one) continue;
+      const auto found = number.find(sorted(vertices));
+      if (found != number.end() && facets[found->second].cell < 0)
+        facets[found->second].cell = static_cast<int>(cell);
+    }
+  if (std::ranges::any_of(facets, [](const SerialFacet &facet) { return facet.cell < 0; }))
+    throw failure("a boundary facet is not a facet of any cell of the mesh");
+  return facets;
+}
+
 } // namespace rbvi

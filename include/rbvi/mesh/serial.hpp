@@ -14,6 +14,11 @@ namespace rbvi {
 /// bad_input (see make_mesh).
 SerialMesh read_gmsh(const std::string &file, const Scene &scene);
 
+/// The mesh that make_mesh distributes, built in or read, checked and refined. Leaves in `levels`
+/// those that it was refined from, where they are not known. Throws bad_input (see make_mesh).
+SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
+                              std::vector<SerialMesh> &levels);
+
 /// Every simplex split by DMPlex into 2^dim; regions and boundaries are inherited.
 SerialMesh refined(const SerialMesh &mesh);
 
@@ -63,17 +68,18 @@ std::string fingerprint_of(const SerialMesh &mesh);
 /// facet; the same on every run. Throws bad_input if there are fewer cells than parts.
 std::vector<int> partition_cells(const SerialMesh &mesh, int parts);
 
-/// Collective. An interpolated DMPlex that the first rank holds whole (`mesh` is read there alone):
-/// points 0 .. cells-1 are the cells in order, then the vertices in order; one label per region
-/// (cells) and boundary of the recipe (facets and their closure), with value 1; those of the
-/// mesh that the recipe does not name are left out.
-Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, const MeshRecipe &recipe);
+/// Collective. A DMPlex that the first rank holds whole (`mesh` is read there alone): points 0 ..
+/// cells-1 are the cells in order, then the vertices in order, then, where it is interpolated,
+/// edges and triangles, which takes longer than all else.
+Handle<DM> make_plex(MPI_Comm comm, const SerialMesh &mesh, bool interpolated);
 
-/// Local points of one height that carry a label of make_plex, none where there is no such label.
-std::vector<PetscInt> labelled_points(DM dm, const std::string &name, PetscInt height);
-
-/// The way back, for a DM that one process holds whole: the labels of `recipe` that it has.
-SerialMesh from_plex(DM dm, const MeshRecipe &recipe);
+/// A facet of a boundary with its cell, of two the first; `dim` vertices, the rest -1.
+struct SerialFacet {
+  int cell;
+  std::array<int, 3> vertices;
+};
+/// In the order of the boundary, each once. Throws failure for a facet of no cell.
+std::vector<SerialFacet> facets_with_cells(const SerialMesh &mesh, const std::string &boundary);
 
 /// Swaps two vertices of the cells with a negative volume: DMPlex has its own order.
 void orient_cells(int dim, const std::vector<Point> &points,
