@@ -60,7 +60,7 @@ const FullMu all{1, 0.09, 0.2, 1, 0.35, 0};
 
 TEST(ResponseSpace, HoldsTheResponsesAtUnseenParameters) {
   Problem problem(PETSC_COMM_WORLD, disk(), {});
-  const Matrix loads = unit_loads(problem, 12), weights = Matrix::Identity(12, 12);
+  const Matrix loads = unit_loads(problem, 36), weights = Matrix::Identity(36, 36);
   double before = 1;
   int points = 0;
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
@@ -84,10 +84,10 @@ TEST(ResponseSpace, DoesNotDependOnTheNumberOfRanks) {
   std::vector<ResponseSpace> spaces;
   std::vector<Matrix> found;
   for (Problem *problem : {&world, &alone}) {
-    const Matrix loads = unit_loads(*problem, 8);
+    const Matrix loads = unit_loads(*problem, 30);
     LinearBasis basis = one_mode(*problem, loads);
     spaces.push_back(
-        append_responses(*problem, loads, Matrix::Identity(8, 8), axes(), all, 1e-4, 100, basis));
+        append_responses(*problem, loads, Matrix::Identity(30, 30), axes(), all, 1e-4, 100, basis));
     found.push_back(ReducedResponses(*problem, loads, basis)
                         .compliance(expand(problem->scene().parameters, unseen.front())));
   }

@@ -22,7 +22,7 @@ namespace {
 
 /// Sums of more than two exact terms: what the responses of the body may leave, relative. The
 /// displacements of answers leave as much or somewhat more, and 1e-6 of them is wanted.
-constexpr double response_tolerance = 3e-7;
+constexpr double response_tolerance = 5e-7;
 constexpr int most_responses = 200; ///< factorisations
 /// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
 constexpr double load_tolerance = 1e-9;

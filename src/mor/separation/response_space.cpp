@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
+#include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <Eigen/Cholesky>
@@ -14,6 +15,8 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
+#include <random>
 
 namespace rbvi {
 
@@ -117,9 +120,12 @@ public:
   /// `product`, P: the basis is orthonormal in it. Collective.
   GrowingBasis(LinearBasis &basis, Mat product) : basis_(basis), product_(product) { keep_up(); }
 
-  /// Appends the directions of `fields` outside the basis that are longer than `least`; returns the
-  /// longest. Collective.
-  double append_remainder(Mat fields, double least) {
+  struct Appended {
+    double longest; ///< of the directions outside the basis
+    Index count;    ///< of those that were appended
+  };
+  /// Appends the directions of `fields` outside the basis that are longer than `least`. Collective.
+  Appended append_remainder(Mat fields, double least) {
     Matrix rest = BorrowedRows(fields).rows();
     Matrix inside = of_product_.transpose() * rest;
     over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(fields)), MPI_SUM, inside);
@@ -132,7 +138,7 @@ public:
     const Matrix directions = rest * gram.eigenvectors().rightCols(count).rowwise().reverse();
     if (count > 0) append_orthonormalised(basis_, dense_like(fields, directions).get(), 1e-10);
     keep_up();
-    return lengths.tail(1)[0];
+    return {lengths.tail(1)[0], count};
   }
 
 private:
@@ -160,10 +166,47 @@ private:
   Matrix columns_, of_product_; ///< this rank's rows of V and of P V
 };
 
+/// Fields of the body at one mu after the other. Collective.
+struct FieldSource {
+  Index count;
+  std::function<void(const Operators &)> set;
+  std::function<Handle<Mat>(const Matrix &combinations)> combined; ///< `count` x any number
+};
+
+/// The root of the sum of the squares of their sizes. Collective.
+double size_of(const FieldSource &source, Mat product) {
+  const Handle<Mat> fields = source.combined(Matrix::Identity(source.count, source.count));
+  return std::sqrt(projected(fields.get(), product, fields.get()).trace());
+}
+
+/// All of them, or random combinations that are as large as a single direction of them is.
+Matrix combinations(Index fields, Index wanted, std::mt19937 &generator) {
+  if (wanted == fields) return Matrix::Identity(fields, fields);
+  std::normal_distribution<double> normal(0, 1 / std::sqrt(static_cast<double>(wanted)));
+  return Matrix::NullaryExpr(fields, wanted, [&] { return normal(generator); });
+}
+
+/// Appends what fields have outside the basis by as many of their combinations as leave some
+/// without a direction to append (Halko, Martinsson, Tropp 2011). `expected`: directions; then
+/// those that were found. Returns the longest remainder. Collective.
+double append_by_combinations(const FieldSource &source, double least, std::mt19937 &generator,
+                              GrowingBasis &growing, Index &expected) {
+  constexpr Index more = 8, without = 4;
+  const Index wanted = std::min(source.count, expected + more);
+  double longest = 0;
+  expected = 0;
+  while (true) {
+    const Handle<Mat> fields = source.combined(combinations(source.count, wanted, generator));
+    const GrowingBasis::Appended appended = growing.append_remainder(fields.get(), least);
+    longest = std::max(longest, appended.longest);
+    expected += appended.count;
+    if (wanted == source.count || appended.count + without <= wanted) return longest;
+  }
+}
+
 /// Appends what the fields of each point of a sparse grid have outside the basis, point by point
 /// where most is expected. Collective.
-ResponseSpace append_fields(Problem &problem,
-                            const std::function<Handle<Mat>(const Operators &)> &fields_at,
+ResponseSpace append_fields(Problem &problem, const FieldSource &source,
                             const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
                             double tolerance, int most, LinearBasis &basis) {
   const std::vector<double> leja = leja_points(most);
@@ -171,7 +214,9 @@ ResponseSpace append_fields(Problem &problem,
   GrowingBasis growing(basis, problem.v_product());
   ResponseSpace result;
   SparseGrid grid;
+  std::mt19937 generator(1); // the same on every rank
   double scale = 0;
+  Index expected = source.count;
   for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
        next = grid.next()) {
     if (result.points == most)
@@ -179,11 +224,11 @@ ResponseSpace append_fields(Problem &problem,
                     " only after " + counted(most, "factorisation") +
                     ": narrow the bounds of the parameters of the stiffness");
     const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);
-    const Handle<Mat> fields = fields_at(problem.assemble(mu));
-    if (scale == 0)
-      scale = std::sqrt(projected(fields.get(), problem.v_product(), fields.get()).trace());
+    source.set(problem.assemble(mu));
+    if (scale == 0) scale = size_of(source, problem.v_product());
     if (scale == 0) return result;
-    grid.taken[next.first] = growing.append_remainder(fields.get(), tolerance * scale) / scale;
+    grid.taken[next.first] =
+        append_by_combinations(source, tolerance * scale, generator, growing, expected) / scale;
     ++result.points;
     result.left = next.second;
   }
@@ -197,12 +242,17 @@ ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matr
                                const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
                                double tolerance, int most, LinearBasis &basis) {
   const Matrix weighted = loads * weights;
-  return append_fields(
-      problem,
+  std::optional<ResponseSolver> solver;
+  const FieldSource source{
+      weighted.cols(),
       [&](const Operators &op) {
-        return ResponseSolver(op.a, problem.trace(), "hf_").fields(weighted);
+        if (solver)
+          solver->set(op.a);
+        else
+          solver.emplace(op.a, problem.trace(), "hf_");
       },
-      axes, all_parameters, tolerance, most, basis);
+      [&](const Matrix &combinations) { return solver->fields(weighted * combinations); }};
+  return append_fields(problem, source, axes, all_parameters, tolerance, most, basis);
 }
 
 ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &loads,
@@ -210,25 +260,27 @@ ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &lo
                                     const FullMu &all_parameters, double tolerance, int most,
                                     LinearBasis &basis) {
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
-  return append_fields(
-      problem,
-      [&](const Operators &op) {
-        set_operator(ksp.get(), op.a);
-        Handle<Vec> u;
-        RBVI_CALL(VecDuplicate(op.f, u.put()));
-        PetscInt rows = 0;
-        RBVI_CALL(VecGetLocalSize(op.f, &rows));
-        Matrix fields(rows, std::ssize(loads));
-        for (Index k = 0; k < fields.cols(); ++k) {
-          solve_linear(ksp.get(), loads[static_cast<std::size_t>(k)], u.get());
-          const PetscScalar *values = nullptr;
-          RBVI_CALL(VecGetArrayRead(u.get(), &values));
-          fields.col(k) = Eigen::Map<const Vector>(values, rows);
-          RBVI_CALL(VecRestoreArrayRead(u.get(), &values));
-        }
-        return dense_like(op.a, fields);
-      },
-      axes, all_parameters, tolerance, most, basis);
+  Mat a = nullptr;
+  const FieldSource source{std::ssize(loads),
+                           [&](const Operators &op) {
+                             a = op.a;
+                             set_operator(ksp.get(), a);
+                           },
+                           [&](const Matrix &combinations) {
+                             const Handle<Vec> u = like(loads.front());
+                             PetscInt rows = 0;
+                             RBVI_CALL(VecGetLocalSize(u.get(), &rows));
+                             Matrix fields(rows, std::ssize(loads));
+                             for (Index k = 0; k < fields.cols(); ++k) {
+                               solve_linear(ksp.get(), loads[static_cast<std::size_t>(k)], u.get());
+                               const PetscScalar *values = nullptr;
+                               RBVI_CALL(VecGetArrayRead(u.get(), &values));
+                               fields.col(k) = Eigen::Map<const Vector>(values, rows);
+                               RBVI_CALL(VecRestoreArrayRead(u.get(), &values));
+                             }
+                             return dense_like(a, fields * combinations);
+                           }};
+  return append_fields(problem, source, axes, all_parameters, tolerance, most, basis);
 }
 
 ReducedResponses::ReducedResponses(const Problem &problem, const Matrix &loads,

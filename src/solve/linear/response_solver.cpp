@@ -87,6 +87,20 @@ ResponseSolver::ResponseSolver(Mat a, const Trace &trace, const char *prefix, Fa
   RBVI_CALL(KSPSetUp(ksp_.get())); // here a failure is that of every rank
 }
 
+void ResponseSolver::set(Mat a) {
+  if (shared_ || ranks_of(comm_) == 1) {
+    RBVI_CALL(PetscObjectReference(reinterpret_cast<PetscObject>(a)));
+    a_ = Handle<Mat>(a);
+  } else {
+    Mat whole = a_.get();
+    RBVI_CALL(
+        MatCreateRedundantMatrix(a, ranks_of(comm_), MPI_COMM_NULL, MAT_REUSE_MATRIX, &whole));
+  }
+  RBVI_CALL(MatSetOption(a_.get(), MAT_SPD, PETSC_TRUE));
+  set_operator(ksp_.get(), a_.get(), Ordering::automatic);
+  RBVI_CALL(KSPSetUp(ksp_.get()));
+}
+
 /// A^-1 `right`, both dense with the row layout of A. Collective on its communicator.
 void ResponseSolver::solve(Mat right, Mat solution) {
   RBVI_CALL(KSPMatSolve(ksp_.get(), right, solution));

@@ -29,6 +29,9 @@ public:
   ResponseSolver(Mat a, const Trace &trace, const char *prefix,
                  Factors factors = Factors::automatic);
 
+  /// Another A with the nonzero pattern of the first: what it was ordered by is kept. Collective.
+  void set(Mat a);
+
   /// E^T A^-1 E loads, contact dofs x loads.cols(), on every rank; `loads` the same on all. Throws
   /// failure if A is singular or, with the default solver, not positive definite. Collective.
   Matrix responses(const Matrix &loads);
