@@ -7,7 +7,6 @@
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <numeric>
 
@@ -23,74 +22,111 @@ struct Found {
   std::vector<bool> free;
 };
 
-/// A cell as it travels: its number, its edge on a boundary (-1: none), its nodes, which of their
-/// components are fixed, and where they are.
-struct Record {
+/// A cell that an interface sees: its number in the undistributed mesh, its edge on a boundary (-1:
+/// none), its nodes.
+struct SeenCell {
   PetscInt number, edge;
-  std::array<PetscInt, most_nodes> nodes;
-  std::array<unsigned char, most_nodes> fixed; ///< a bit for each component
-  std::array<Point, most_nodes> points;
+  std::array<int, most_nodes> nodes;
 };
 
-Record record_of(const Mesh &mesh, const Dofs &dofs, std::size_t cell, int edge) {
-  Record record{mesh.natural_cell[cell], edge, {}, {}, {}};
-  const auto nodes = nodes_of(mesh, cell);
-  const auto components = static_cast<std::size_t>(dofs.components);
-  for (std::size_t i = 0; i < nodes.size() && nodes[i] >= 0; ++i) {
-    const auto node = static_cast<std::size_t>(nodes[i]);
-    record.nodes[i] = mesh.natural_node[node];
-    record.points[i] = mesh.points[node];
-    for (std::size_t c = 0; c < components; ++c)
-      if (dofs.free[node * components + c] < 0)
-        record.fixed[i] = static_cast<unsigned char>(record.fixed[i] | (1U << c));
-  }
-  return record;
+/// Those of all ranks; nodes by increasing natural number, `fixed` a bit for each component.
+struct SeenCells {
+  std::vector<SeenCell> cells;
+  std::vector<PetscInt> natural, fixed;
+  std::vector<Point> points;
+};
+
+/// This rank's nodes of some of its cells, each once.
+std::vector<std::size_t> nodes_of_cells(const Mesh &mesh, const std::vector<SeenCell> &mine) {
+  std::vector<bool> seen(mesh.points.size(), false);
+  for (const SeenCell &cell : mine)
+    for (std::size_t i = 0; i < cell.nodes.size() && cell.nodes[i] >= 0; ++i)
+      seen[static_cast<std::size_t>(cell.nodes[i])] = true;
+  std::vector<std::size_t> nodes;
+  for (std::size_t node = 0; node < seen.size(); ++node)
+    if (seen[node]) nodes.push_back(node);
+  return nodes;
 }
 
-std::vector<Record> on_every_rank(MPI_Comm comm, const std::vector<Record> &mine) {
-  std::vector<char> bytes(mine.size() * sizeof(Record));
-  if (!mine.empty()) std::memcpy(bytes.data(), mine.data(), bytes.size());
-  bytes = gather_all(comm, bytes, MPI_CHAR);
-  std::vector<Record> all(bytes.size() / sizeof(Record));
-  if (!all.empty()) std::memcpy(all.data(), bytes.data(), bytes.size());
+/// Fills in the nodes of all ranks; those on the border of several come from each of them.
+void gather_nodes(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine,
+                  SeenCells &all) {
+  const auto components = static_cast<std::size_t>(dofs.components);
+  std::vector<PetscInt> natural, fixed;
+  std::vector<double> x;
+  for (const std::size_t node : nodes_of_cells(mesh, mine)) {
+    natural.push_back(mesh.natural_node[node]);
+    x.insert(x.end(), mesh.points[node].begin(), mesh.points[node].end());
+    fixed.push_back(0);
+    for (std::size_t c = 0; c < components; ++c)
+      if (dofs.free[node * components + c] < 0) fixed.back() |= PetscInt{1} << c;
+  }
+  natural = gather_all(mesh.comm, natural, MPIU_INT);
+  fixed = gather_all(mesh.comm, fixed, MPIU_INT);
+  x = gather_all(mesh.comm, x, MPI_DOUBLE);
+  std::vector<std::size_t> order(natural.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t k) { return natural[k]; });
+  for (const std::size_t k : order) {
+    if (!all.natural.empty() && all.natural.back() == natural[k]) continue;
+    all.natural.push_back(natural[k]);
+    all.fixed.push_back(fixed[k]);
+    all.points.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
+  }
+}
+
+/// `mine`: with this rank's local nodes. Collective.
+SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine) {
+  SeenCells all;
+  gather_nodes(mesh, dofs, mine, all);
+  const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
+  std::vector<PetscInt> packed;
+  for (const SeenCell &cell : mine) {
+    packed.insert(packed.end(), {cell.number, cell.edge});
+    for (std::size_t i = 0; i < per_cell; ++i)
+      packed.push_back(mesh.natural_node[static_cast<std::size_t>(cell.nodes[i])]);
+  }
+  packed = gather_all(mesh.comm, packed, MPIU_INT);
+  for (std::size_t at = 0; at < packed.size(); at += 2 + per_cell) {
+    SeenCell &cell = all.cells.emplace_back(SeenCell{packed[at], packed[at + 1], {}});
+    for (std::size_t i = 0; i < per_cell; ++i)
+      cell.nodes[i] = static_cast<int>(std::ranges::lower_bound(all.natural, packed[at + 2 + i]) -
+                                       all.natural.begin());
+  }
   return all;
 }
 
-/// Cells in the order of `records`, their nodes by number.
-Found found_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<Record> &records) {
+/// Cells in their order.
+Found found_cells(const Mesh &mesh, const Dofs &dofs, SeenCells &&seen) {
   Found found;
   found.mesh.per_entity = nodes_per_cell(mesh.dim, mesh.degree);
-  const auto per_cell = static_cast<std::size_t>(found.mesh.per_entity);
-  std::map<PetscInt, std::pair<Point, unsigned>> nodes; // natural number -> where, fixed components
-  for (const Record &record : records)
-    for (std::size_t i = 0; i < per_cell; ++i)
-      nodes[record.nodes[i]] = {record.points[i], record.fixed[i]};
-  std::map<PetscInt, int> position;
-  for (const auto &[number, node] : nodes) {
-    position[number] = static_cast<int>(found.natural.size());
-    found.natural.push_back(number);
-    found.mesh.points.push_back(node.first);
+  for (const PetscInt fixed : seen.fixed)
     for (int c = 0; c < dofs.components; ++c)
-      found.free.push_back((node.second >> c & 1U) == 0);
+      found.free.push_back((fixed >> c & 1) == 0);
+  for (const SeenCell &cell : seen.cells) {
+    found.mesh.entities.insert(found.mesh.entities.end(), cell.nodes.begin(),
+                               cell.nodes.begin() + found.mesh.per_entity);
+    if (cell.edge >= 0) found.mesh.edges.push_back(static_cast<int>(cell.edge));
   }
-  for (const Record &record : records) {
-    for (std::size_t i = 0; i < per_cell; ++i)
-      found.mesh.entities.push_back(position.at(record.nodes[i]));
-    if (record.edge >= 0) found.mesh.edges.push_back(static_cast<int>(record.edge));
-  }
-  found.mesh.parts = {static_cast<int>(found.natural.size())};
+  found.mesh.parts = {static_cast<int>(seen.natural.size())};
+  found.mesh.points = std::move(seen.points);
+  found.natural = std::move(seen.natural);
   return found;
+}
+
+SeenCell seen_cell(const Mesh &mesh, std::size_t cell, int edge) {
+  return {mesh.natural_cell[cell], edge, nodes_of(mesh, cell)};
 }
 
 Found find_region(const Mesh &mesh, const Dofs &dofs, const std::string &name) {
   const std::vector<bool> &in_region = mesh.region.at(name);
-  std::vector<Record> records;
+  std::vector<SeenCell> mine;
   for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-    if (in_region[k]) records.push_back(record_of(mesh, dofs, k, -1));
-  records = on_every_rank(mesh.comm, records);
-  if (records.empty()) throw bad_input("the mesh has no cell in region '" + name + "'");
-  std::ranges::sort(records, {}, &Record::number);
-  return found_cells(mesh, dofs, records);
+    if (in_region[k]) mine.push_back(seen_cell(mesh, k, -1));
+  SeenCells seen = gather_cells(mesh, dofs, mine);
+  if (seen.cells.empty()) throw bad_input("the mesh has no cell in region '" + name + "'");
+  std::ranges::sort(seen.cells, {}, &SeenCell::number);
+  return found_cells(mesh, dofs, std::move(seen));
 }
 
 /// Local edge of a triangle whose nodes are all on the boundary; -1: none.
@@ -105,19 +141,21 @@ int edge_on(const std::vector<bool> &boundary, const std::array<int, most_nodes>
 }
 
 Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const std::string &boundary) {
-  std::vector<Record> records;
+  std::vector<SeenCell> mine;
   for (std::size_t k = 0; k < mesh.cells.size(); ++k)
     if (const int edge = edge_on(mesh.boundary.at(boundary), nodes_of(mesh, k), mesh.degree);
         edge >= 0)
-      records.push_back(record_of(mesh, dofs, k, edge));
-  records = on_every_rank(mesh.comm, records);
-  if (records.empty()) throw bad_input("no cell has an edge on the boundary '" + boundary + "'");
-  std::ranges::sort(records, {}, [](const Record &record) {
-    const auto [a, b] = simplex_edges[static_cast<std::size_t>(record.edge)];
-    return record.points[static_cast<std::size_t>(a)][0] +
-           record.points[static_cast<std::size_t>(b)][0];
+      mine.push_back(seen_cell(mesh, k, edge));
+  SeenCells seen = gather_cells(mesh, dofs, mine);
+  if (seen.cells.empty()) throw bad_input("no cell has an edge on the boundary '" + boundary + "'");
+  std::ranges::sort(seen.cells, {}, [&](const SeenCell &cell) {
+    const auto x = [&](int i) {
+      return seen.points[static_cast<std::size_t>(cell.nodes[static_cast<std::size_t>(i)])][0];
+    };
+    const auto [a, b] = simplex_edges[static_cast<std::size_t>(cell.edge)];
+    return x(a) + x(b);
   });
-  return found_cells(mesh, dofs, records);
+  return found_cells(mesh, dofs, std::move(seen));
 }
 
 /// Adds the edges of a curve whose nodes begin at `first`: vertices, then middles.
