@@ -13,16 +13,16 @@ namespace rbvi {
 
 namespace {
 
-/// Throws bad_input where B or G has an entry that is no number: a gap or a normal that is none.
-void check_numbers(const Scene &scene, const Contact &contact, const Operators &operators) {
-  const auto is_number = [&](Index row) {
-    bool numbers = !std::isnan(operators.g[row]);
+/// Throws bad_input where B or G has an entry that is not finite: so is a gap or a normal.
+void check_finite(const Scene &scene, const Contact &contact, const Operators &operators) {
+  const auto is_finite = [&](Index row) {
+    bool finite = std::isfinite(operators.g[row]);
     for (SparseMatrix::InnerIterator entry(operators.b, row); entry; ++entry)
-      numbers = numbers && !std::isnan(entry.value());
-    return numbers;
+      finite = finite && std::isfinite(entry.value());
+    return finite;
   };
   for (Index row = 0; row < operators.g.size(); ++row) {
-    if (is_number(row)) continue;
+    if (is_finite(row)) continue;
     const DualRow of = dual_row(contact, row);
     const Point &x =
         contact.interfaces[of.interface]->dual().points[static_cast<std::size_t>(of.node)];
@@ -31,7 +31,7 @@ void check_numbers(const Scene &scene, const Contact &contact, const Operators &
       where += short_number(x[static_cast<std::size_t>(k)]) + ' ';
     throw bad_input("the gap or the normal of contact on '" +
                     scene.contacts[of.interface].entities.parts.front() +
-                    "' is no number at the point " + where + "of the reference domain, " +
+                    "' is not finite at the point " + where + "of the reference domain, " +
                     describe(scene.parameters, operators.mu));
   }
 }
@@ -115,7 +115,7 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector 
     assemble_split(rows, slip);
   else
     assemble_contact(mu, operators_, {{}, slip});
-  collectively(comm(), [&] { check_numbers(*scene_, contact_, operators_); });
+  collectively(comm(), [&] { check_finite(*scene_, contact_, operators_); });
   const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
   if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
     map_cells(*scene_, all, mesh_, cells_);

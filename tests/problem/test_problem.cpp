@@ -62,21 +62,24 @@ TEST(Problem, OperatorsDoNotDependOnTheNumberOfRanks) {
 }
 
 /// On every rank, whoever has the node.
-TEST(Problem, AGapThatIsNoNumberIsRefusedByNameAndPlace) {
-  for (const bool normal : {false, true}) {
+TEST(Problem, AGapThatIsNotFiniteIsRefusedByNameAndPlace) {
+  using Limits = std::numeric_limits<double>;
+  for (const auto &[normal, none] : {std::pair{false, Limits::quiet_NaN()},
+                                     {true, Limits::quiet_NaN()},
+                                     {false, Limits::infinity()}}) {
     Scene scene = make_scene("patch", {{"bodies", "one"}});
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    scene.contacts = {rigid_support(
-        {"contact",
-         [=](const FullMu &, const Point &x) {
-           return Point{0, normal && x[0] > 0.5 ? none : -1, 0};
-         },
-         [=](const FullMu &, const Point &x) { return !normal && x[0] > 0.5 ? none : 0; },
-         {},
-         true})};
+    scene.contacts = {rigid_support({"contact",
+                                     [normal, none](const FullMu &, const Point &x) {
+                                       return Point{0, normal && x[0] > 0.5 ? none : -1, 0};
+                                     },
+                                     [normal, none](const FullMu &, const Point &x) {
+                                       return !normal && x[0] > 0.5 ? none : 0;
+                                     },
+                                     {},
+                                     true})};
     Problem problem(PETSC_COMM_WORLD, scene, {});
     const Mu mu(static_cast<std::size_t>(scene.parameters.size()), 0.1);
-    EXPECT_TRUE(refuses("the gap or the normal of contact on 'contact' is no number at the point",
+    EXPECT_TRUE(refuses("the gap or the normal of contact on 'contact' is not finite at the point",
                         [&] { problem.assemble(mu); }));
   }
 }

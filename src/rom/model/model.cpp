@@ -217,7 +217,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
   result.dual_basis = model.dual_basis.leftCols(r);
   result.contact_trace = model.contact_trace.leftCols(n);
-  keep_leading_nitsche(model, n, result);
+  keep_leading_nitsche(model.primal_size(), n, result);
   if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
   if (n != model.primal_size()) result.fields_key.clear();
   if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};

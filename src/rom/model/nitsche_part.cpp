@@ -67,10 +67,9 @@ void check_nitsche(const ReducedModel &model) {
     require_shape(nitsche.states, n, nitsche.starts.cols(), "nitsche/states");
 }
 
-void keep_leading_nitsche(const ReducedModel &model, Index size, ReducedModel &part) {
+void keep_leading_nitsche(Index n, Index size, ReducedModel &model) {
   if (!model.nitsche) return;
-  const Index n = model.primal_size();
-  NitscheModel &kept = *(part.nitsche = model.nitsche);
+  NitscheModel &kept = *model.nitsche;
   if (kept.rule == CurveRule::interpolated) kept.starts = Matrix(kept.starts.topRows(size));
   if (kept.states.size() > 0) kept.states = Matrix(kept.states.topRows(size));
   for (const auto &[name, member] : layer_terms)

@@ -10,8 +10,8 @@ namespace rbvi {
 /// Throws failure as check_model.
 void check_nitsche(const ReducedModel &model);
 
-/// What of it the model with the first `size` primal columns keeps, into `part`.
-void keep_leading_nitsche(const ReducedModel &model, Index size, ReducedModel &part);
+/// Keeps what belongs to the first `size` of n primal columns.
+void keep_leading_nitsche(Index n, Index size, ReducedModel &model);
 
 void write_nitsche(H5Writer &file, const ReducedModel &model);
 /// Throws bad_input (H5Reader).
