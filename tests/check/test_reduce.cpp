@@ -147,7 +147,7 @@ TEST_P(BothMaps, TheSharpBoundHoldsAtEveryTrainingParameter) {
   options.pod.tolerance = 1e-4;
   for (const double fraction : {0.3, 0.9}) {
     options.pga.stability = fraction;
-    Reduced r({{"disc_map", GetParam()}}, "grid:3,3,3", options);
+    Reduced r({{"disc_map", GetParam()}, {"circle_edges", "36"}}, "grid:3,3,3", options);
     const StabilityCheck check = make_stability_check(r.problem, r.model);
     for (const Sample &sample : r.samples) {
       const Matrix t =
