@@ -55,8 +55,8 @@ SparseMatrix rows_of(const SparseMatrix &combination, const SparseMatrix &b) {
   return SparseMatrix(combination.transpose()) * b;
 }
 
-/// The multipliers, as rows of B, that constraints are those of.
-std::vector<Index> rows_of(const SetSystem &system, const DualLayout &layout) {
+/// Per constraint of a system its multiplier, as a row of B.
+std::vector<Index> multipliers_of(const SetSystem &system, const DualLayout &layout) {
   std::vector<Index> rows(at(system.r.cols()));
   for (Index row = 0; row < system.r.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(system.r, row); entry; ++entry)
@@ -252,7 +252,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const OwnContact &cont
     try {
       std::vector<Index> pivots;
       collectively(layout_.comm,
-                   [&] { pivots = choose_pivots(dofs_, rows_of(system, layout_), c); });
+                   [&] { pivots = choose_pivots(dofs_, multipliers_of(system, layout_), c); });
       const Elimination z(layout_, c, pivots);
       std::optional<Elimination> unsymmetric;
       if (!symmetric) unsymmetric.emplace(layout_, reactions, pivots);
