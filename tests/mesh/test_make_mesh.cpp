@@ -1,5 +1,6 @@
 // Every test compares the mesh spread over all ranks with the same mesh made by one process.
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/facets.hpp"
 #include "triangles.hpp"
 
 #include <cmath>
@@ -87,6 +88,36 @@ TEST_P(MakeMesh, LabelsTravelWithTheMesh) {
     EXPECT_EQ(rim[v], whole_rim[at(mesh.natural_node[v])]);
     const Point &x = mesh.points[v];
     EXPECT_EQ(rim[v], std::max(std::abs(x[0]), std::abs(x[1])) > 0.5 - 1e-12);
+  }
+}
+
+/// Per natural cell: how many of its facets are on a boundary of any name, over all ranks.
+std::vector<int> facets_per_cell(const Mesh &mesh, const std::string &boundary) {
+  std::vector<int> count(at(mesh.total_cells), 0);
+  for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
+    ++count[at(mesh.natural_cell.at(cell))];
+    for (const int i : facet_nodes(mesh.dim, 1, facet))
+      EXPECT_TRUE(mesh.boundary.at(boundary)[at(mesh.cells[cell][at(i)])]) << boundary;
+  }
+  return count;
+}
+
+/// Of every scene and either degree: each facet is one rank's, with its nodes.
+TEST(MakeMeshFacets, AreThoseOfOneProcess) {
+  for (const SceneEntry &entry : scene_catalogue()) {
+    Scene scene = make_scene(entry.name);
+    std::map<std::string, std::vector<int>> of_degree_one;
+    for (scene.degree = 1; scene.degree <= 2; ++scene.degree) {
+      const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+      const Mesh alone = make_mesh(PETSC_COMM_SELF, scene, {});
+      for (const std::string &name : scene.mesh.boundaries) {
+        const std::vector<int> whole = facets_per_cell(alone, name);
+        EXPECT_EQ(summed(facets_per_cell(mesh, name), MPI_INT), whole) << entry.name << " " << name;
+        EXPECT_EQ(of_degree_one.emplace(name, whole).first->second, whole) << entry.name;
+        for (std::size_t v = 0; v < mesh.points.size(); ++v)
+          EXPECT_EQ(mesh.boundary.at(name)[v], alone.boundary.at(name)[at(mesh.natural_node[v])]);
+      }
+    }
   }
 }
 
