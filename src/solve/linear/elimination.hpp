@@ -20,7 +20,6 @@ public:
 
   Index count() const { return count_; } ///< of constraints, over all ranks
   const SparseMatrix &own() const { return own_; }
-  Mat constraints() const { return c_.get(); } ///< C, on the free displacement dofs
   /// The free displacement dofs of this rank's pivots.
   const std::vector<PetscInt> &pivots() const { return pivots_; }
 
