@@ -178,11 +178,10 @@ void share(MPI_Comm comm, std::vector<SerialFacet> &facets) {
   MPI_Bcast(facets.data(), bytes, MPI_CHAR, 0, comm);
 }
 
-/// Those of this rank's cells.
-std::vector<CellFacet> own_facets(const Mesh &mesh, const std::vector<SerialFacet> &facets) {
-  std::unordered_map<PetscInt, std::size_t> cell_of;
-  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
-    cell_of.emplace(mesh.natural_cell[cell], cell);
+/// Those of this rank's cells; `cell_of`: by natural number.
+std::vector<CellFacet> own_facets(const Mesh &mesh,
+                                  const std::unordered_map<PetscInt, std::size_t> &cell_of,
+                                  const std::vector<SerialFacet> &facets) {
   std::vector<CellFacet> result;
   for (const SerialFacet &whole : facets) {
     const auto found = cell_of.find(whole.cell);
@@ -326,10 +325,13 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   fill_nodes_and_cells(mesh, migration, edges, all.points);
   for (const std::string &name : scene.mesh.regions)
     mesh.region[name] = own_region(mesh, migration.arrived(all.marks[name], MPI_CHAR));
+  std::unordered_map<PetscInt, std::size_t> cell_of; // by natural number
+  for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
+    cell_of.emplace(mesh.natural_cell[cell], cell);
   for (const std::string &name : scene.mesh.boundaries) {
     mesh.boundary[name] = at_nodes(mesh, migration.arrived(all.marks[name], MPI_CHAR));
     share(comm, all.facets[name]);
-    mesh.facets[name] = own_facets(mesh, all.facets[name]);
+    mesh.facets[name] = own_facets(mesh, cell_of, all.facets[name]);
   }
   return mesh;
 }

@@ -173,12 +173,6 @@ struct FieldSource {
   std::function<Handle<Mat>(const Matrix &combinations)> combined; ///< `count` x any number
 };
 
-/// The root of the sum of the squares of their sizes. Collective.
-double size_of(const FieldSource &source, Mat product) {
-  const Handle<Mat> fields = source.combined(Matrix::Identity(source.count, source.count));
-  return std::sqrt(projected(fields.get(), product, fields.get()).trace());
-}
-
 /// All of them, or random combinations that are as large as a single direction of them is.
 Matrix combinations(Index fields, Index wanted, std::mt19937 &generator) {
   if (wanted == fields) return Matrix::Identity(fields, fields);
@@ -216,7 +210,7 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
   SparseGrid grid;
   std::mt19937 generator(1); // the same on every rank
   double scale = 0;
-  Index expected = source.count;
+  Index expected = 0;
   for (std::pair<MultiIndex, double> next{MultiIndex(axes.size(), 0), 1}; next.second > tolerance;
        next = grid.next()) {
     if (result.points == most)
@@ -225,10 +219,18 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
                     ": narrow the bounds of the parameters of the stiffness");
     const Mu mu = point_at(problem.scene(), axes, next.first, leja, all_parameters);
     source.set(problem.assemble(mu));
-    if (scale == 0) scale = size_of(source, problem.v_product());
-    if (scale == 0) return result;
-    grid.taken[next.first] =
-        append_by_combinations(source, tolerance * scale, generator, growing, expected) / scale;
+    double longest = 0;
+    if (scale == 0) { // at the first point all fields are wanted as they are, for their size
+      const Handle<Mat> all = source.combined(Matrix::Identity(source.count, source.count));
+      scale = std::sqrt(projected(all.get(), problem.v_product(), all.get()).trace());
+      if (scale == 0) return result;
+      const GrowingBasis::Appended first = growing.append_remainder(all.get(), tolerance * scale);
+      longest = first.longest;
+      expected = first.count;
+    } else {
+      longest = append_by_combinations(source, tolerance * scale, generator, growing, expected);
+    }
+    grid.taken[next.first] = longest / scale;
     ++result.points;
     result.left = next.second;
   }

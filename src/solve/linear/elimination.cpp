@@ -48,7 +48,7 @@ Handle<VecScatter> scatter_to_pivots(MPI_Comm comm, const std::vector<PetscInt> 
 
 Elimination::Elimination(const DualLayout &layout, const SparseMatrix &c,
                          const std::vector<Index> &pivots)
-    : comm_(layout.comm), own_(c), c_(distribute_rows(layout, c)) {
+    : comm_(layout.comm), contact_dofs_(c.cols()), c_(distribute_rows(layout, c)) {
   const auto [first, all] = first_and_all(comm_, c.rows());
   first_ = first;
   count_ = all;
@@ -57,7 +57,7 @@ Elimination::Elimination(const DualLayout &layout, const SparseMatrix &c,
   Handle<Vec> u;
   RBVI_CALL(MatCreateVecs(c_.get(), u.put(), values_.put()));
   to_pivots_ = scatter_to_pivots(comm_, pivots_, u.get(), values_.get());
-  separate_ = is_separate(layout, pivots);
+  separate_ = is_separate(layout, c, pivots);
   if (separate_) {
     collectively(comm_, [&] { block_ = PivotBlock(c, pivots); });
     return;
@@ -68,7 +68,8 @@ Elimination::Elimination(const DualLayout &layout, const SparseMatrix &c,
 }
 
 /// Whether no rank's constraints see a pivot of another.
-bool Elimination::is_separate(const DualLayout &layout, const std::vector<Index> &pivots) const {
+bool Elimination::is_separate(const DualLayout &layout, const SparseMatrix &c,
+                              const std::vector<Index> &pivots) const {
   if (ranks_of(comm_) == 1) return true;
   std::vector<PetscInt> owner(layout.columns.size(), 0);
   const auto self = static_cast<PetscInt>(rank_of(comm_) + 1);
@@ -76,8 +77,8 @@ bool Elimination::is_separate(const DualLayout &layout, const std::vector<Index>
     owner[at(dof)] = self;
   over_ranks(comm_, MPI_MAX, owner);
   std::array<PetscInt, 1> shared{0};
-  for (Index row = 0; row < own_.rows(); ++row)
-    for (SparseMatrix::InnerIterator entry(own_, row); entry; ++entry)
+  for (Index row = 0; row < c.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry)
       if (const PetscInt of = owner[at(entry.col())]; entry.value() != 0 && of != 0 && of != self)
         shared.front() = 1;
   over_ranks(comm_, MPI_MAX, shared);
@@ -124,8 +125,8 @@ void Elimination::reduce(Vec r) const {
 }
 
 SparseMatrix Elimination::ties() const {
-  const SparseMatrix all = block_.ties(own_.cols());
-  return separate_ ? all : SparseMatrix(all.middleRows(first_, own_.rows()));
+  const SparseMatrix all = block_.ties(contact_dofs_);
+  return separate_ ? all : SparseMatrix(all.middleRows(first_, std::ssize(pivots_)));
 }
 
 } // namespace rbvi

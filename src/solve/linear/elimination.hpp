@@ -19,7 +19,6 @@ public:
   Elimination(const DualLayout &layout, const SparseMatrix &c, const std::vector<Index> &pivots);
 
   Index count() const { return count_; } ///< of constraints, over all ranks
-  const SparseMatrix &own() const { return own_; }
   /// The free displacement dofs of this rank's pivots.
   const std::vector<PetscInt> &pivots() const { return pivots_; }
 
@@ -37,11 +36,12 @@ public:
   SparseMatrix ties() const;
 
 private:
-  bool is_separate(const DualLayout &layout, const std::vector<Index> &pivots) const;
+  bool is_separate(const DualLayout &layout, const SparseMatrix &c,
+                   const std::vector<Index> &pivots) const;
   template <class Solve> Vector solved(const Vector &own, Solve &&solve) const;
 
   MPI_Comm comm_;
-  SparseMatrix own_;
+  Index contact_dofs_;
   Index first_ = 0, count_ = 0; ///< of this rank's constraints among all
   Handle<Mat> c_;
   std::vector<PetscInt> pivots_;

@@ -9,7 +9,7 @@
 namespace rbvi {
 
 void ReducedSystem::extend(Vec v) const {
-  if (z.count() > 0) z.extend(Vector::Zero(z.own().rows()), v);
+  if (z.count() > 0) z.extend(Vector::Zero(std::ssize(z.pivots())), v);
 }
 
 void ReducedSystem::reduce(Vec r) const {
