@@ -82,6 +82,7 @@ def rollers():
     yield Formulation("roller", case, [], few, mu)
     yield Formulation("roller_cone", case, ["-friction", "none"], few, mu,
                       ["-multiplier_reduction", "cone"])
+    yield Formulation("roller_nitsche", case, ["-formulation", "nitsche"], few, mu)
 
 
 def patches():

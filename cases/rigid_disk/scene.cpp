@@ -264,8 +264,6 @@ ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &frict
   const Named<PointMap> normal = choice == "rigid" ? rigid_normals() : radial_normals();
   const Support support{
       "contact", normal, gap_of(options, normal), friction, options.at("lumped") == "yes", wide};
-  if (support.lumped && asks_for_nitsche(options))
-    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   return support_contact(support, options);
 }
 

@@ -5,10 +5,11 @@
 //   u . n <= 1 - push - x . n   on the arc within 45 degrees of each plate's point, n its normal,
 //
 // held by pressures lambda_n >= 0, and |lambda_tau| <= nu_F lambda_n on the lower arc, against u .
-// tau. A does not depend on mu; B of the upper plate turns with its tilt.
+// tau; or the same by Nitsche's method on both arcs. A does not depend on mu; B of the upper plate
+// turns with its tilt.
 #include "scene.hpp"
 
-#include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"
@@ -91,7 +92,7 @@ Scene make(const SceneOptions &options) {
   scene.map = identity();
   scene.snap = on_circles;
   scene.fixed = {{"hub", {}}};
-  scene.contacts = {half_plane(upper), half_plane(lower)};
+  scene.contacts = {half_plane_contact(upper, options), half_plane_contact(lower, options)};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = everywhere(material);
   scene.a = {exact_term(elasticity("", material, scene.degree))};
@@ -102,14 +103,18 @@ Scene make(const SceneOptions &options) {
 } // namespace
 
 SceneEntry roller() {
+  std::vector<SceneOption> options{
+      {"friction", "coulomb", "law of friction of the lower plate", {"none", "coulomb"}},
+      {"degree", "2", "of the displacement", {"1", "2"}},
+      {"lumped", "no", "vertex quadrature in b and g", {"no", "yes"}},
+      {"arc_edges", "0", "edges of each contact arc; 0: 48", {}, {0, 10000}, true},
+      {"young", "15", "Young's modulus in Pa", {}, young_range},
+      {"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range}};
+  for (SceneOption &option : nitsche_options())
+    options.push_back(std::move(option));
   return {"roller",
           "elastic roller on a hub between two plates, one tilted, one with friction",
-          {{"friction", "coulomb", "law of friction of the lower plate", {"none", "coulomb"}},
-           {"degree", "2", "of the displacement", {"1", "2"}},
-           {"lumped", "no", "vertex quadrature in b and g", {"no", "yes"}},
-           {"arc_edges", "0", "edges of each contact arc; 0: 48", {}, {0, 10000}, true},
-           {"young", "15", "Young's modulus in Pa", {}, young_range},
-           {"poisson_ratio", "0.35", "Poisson's ratio", {}, poisson_range}},
+          std::move(options),
           make,
           {rim_points}};
 }

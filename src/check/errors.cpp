@@ -50,18 +50,29 @@ double relative(double error, double size) {
   return size > 0 ? error / size : error;
 }
 
-/// |values(first .. first + count - 1)|_W.
-double part_norm(const SparseMatrix &w, const Vector &values, Index first, Index count) {
-  Vector part = Vector::Zero(values.size());
-  part.segment(first, count) = values.segment(first, count);
-  return std::sqrt(part.dot(w * part));
+/// 1 at the rows of normal multipliers, 0 at those of tangential ones.
+Vector normal_rows(const Contact &contact) {
+  Vector rows(contact.dual_size());
+  for (Index row = 0; row < rows.size(); ++row)
+    rows[row] = dual_row(contact, row).normal ? 1 : 0;
+  return rows;
+}
+
+/// |values|_W of the normal multipliers, and of the tangential ones.
+struct PartNorms {
+  double normal, tangential;
+};
+PartNorms part_norms(const SparseMatrix &w, const Vector &values, const Vector &normal_rows) {
+  const Vector normal = values.cwiseProduct(normal_rows), tangential = values - normal;
+  return {std::sqrt(normal.dot(w * normal)), std::sqrt(tangential.dot(w * tangential))};
 }
 
 /// Adds, for Nitsche's method, errors of the stresses of the projected displacement.
 void add_stress_floors(const ReducedModel &model, const Matrix &projections, const Truths &truths,
                        const SparseMatrix &w, ModelErrors &errors) {
   OnlineSolver solver(model);
-  const Index normal = solver.contact().nodes(), count = projections.cols();
+  const Vector normal = normal_rows(solver.contact());
+  const Index count = projections.cols();
   errors.lambda_floor.resize(count);
   errors.tangential_floor.resize(truths.tangential_norm.size());
   for (Index p = 0; p < count; ++p) {
@@ -69,10 +80,10 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
     projected.mu = expand(model.parameters, truths.mu[static_cast<std::size_t>(p)]);
     projected.u = projections.col(p);
     const Vector difference = solver.multiplier(projected) - truths.lambda.col(p);
-    errors.lambda_floor[p] = relative(part_norm(w, difference, 0, normal), truths.lambda_norm[p]);
+    const PartNorms norms = part_norms(w, difference, normal);
+    errors.lambda_floor[p] = relative(norms.normal, truths.lambda_norm[p]);
     if (errors.tangential_floor.size() > 0)
-      errors.tangential_floor[p] =
-          relative(part_norm(w, difference, normal, normal), truths.tangential_norm[p]);
+      errors.tangential_floor[p] = relative(norms.tangential, truths.tangential_norm[p]);
   }
 }
 
@@ -136,9 +147,8 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
                 Vector(count),
                 {},
                 {}};
-  const Index normal = problem.contact().nodes();
-  const Index rest = model.dual_basis.rows() - normal;
-  if (rest > 0) truths.tangential_norm.resize(count);
+  const Vector normal = normal_rows(problem.contact());
+  if (has_friction(problem.scene())) truths.tangential_norm.resize(count);
   for (Index p = 0; p < count; ++p) {
     const Sample &sample = samples[static_cast<std::size_t>(p)];
     const Handle<Vec> u = from_natural(problem.dofs(), sample.u);
@@ -152,9 +162,9 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
     truths.mu.push_back(sample.mu);
     truths.outputs.push_back(sample.outputs);
     truths.lambda.col(p) = sample.lambda;
-    truths.lambda_norm[p] = part_norm(problem.w_product(), sample.lambda, 0, normal);
-    if (rest > 0)
-      truths.tangential_norm[p] = part_norm(problem.w_product(), sample.lambda, normal, rest);
+    const PartNorms norms = part_norms(problem.w_product(), sample.lambda, normal);
+    truths.lambda_norm[p] = norms.normal;
+    if (truths.tangential_norm.size() > 0) truths.tangential_norm[p] = norms.tangential;
   }
   return truths;
 }
@@ -164,12 +174,12 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
   using Clock = std::chrono::steady_clock;
   const Index count = static_cast<Index>(truths.mu.size()), k = model.primal_size();
   OnlineSolver solver(model);
-  const Index rest = truths.tangential_norm.size() > 0 ? truths.lambda.rows() / 2 : 0;
-  const Index normal = truths.lambda.rows() - rest;
+  const bool friction = truths.tangential_norm.size() > 0;
+  const Vector normal = normal_rows(solver.contact());
   ModelErrors errors;
   errors.u.resize(count);
   errors.lambda.resize(count);
-  errors.tangential.resize(rest > 0 ? count : 0);
+  errors.tangential.resize(friction ? count : 0);
   errors.u_floor.resize(count);
   std::vector<double> seconds;
   for (Index p = 0; p < count; ++p) {
@@ -182,7 +192,7 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
     const double remainder = truths.remainder[p] * truths.remainder[p];
     errors.u_floor[p] = std::sqrt(outside.squaredNorm() + remainder) / truths.u_norm[p];
     errors.u[p] = errors.lambda[p] = std::numeric_limits<double>::infinity();
-    if (rest > 0) errors.tangential[p] = errors.u[p];
+    if (friction) errors.tangential[p] = errors.u[p];
     const auto start = Clock::now();
     const std::optional<ReducedSolution> answer = answer_at(solver, truths, p);
     if (!answer) {
@@ -198,10 +208,9 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       c.head(k) = answer->u;
     errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
     const Vector difference = solver.multiplier(*answer) - truths.lambda.col(p);
-    errors.lambda[p] = relative(part_norm(w_product, difference, 0, normal), truths.lambda_norm[p]);
-    if (rest > 0)
-      errors.tangential[p] =
-          relative(part_norm(w_product, difference, normal, rest), truths.tangential_norm[p]);
+    const PartNorms norms = part_norms(w_product, difference, normal);
+    errors.lambda[p] = relative(norms.normal, truths.lambda_norm[p]);
+    if (friction) errors.tangential[p] = relative(norms.tangential, truths.tangential_norm[p]);
   }
   if (!model.has_multipliers())
     add_stress_floors(model, truths.coordinates.topRows(k), truths, w_product, errors);

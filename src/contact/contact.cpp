@@ -69,20 +69,16 @@ void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
         "', which Nitsche's method does not take: use multipliers (-formulation mixed)");
 }
 
-/// What to throw for Nitsche's method beside a further interface.
-Error several_by_nitsche(const Scene &scene) {
-  const auto boundary = [&](Formulation formulation) {
-    const auto found = std::ranges::find(scene.contacts, formulation, &ContactRecipe::formulation);
-    return "'" + found->entities.parts.front() + "'";
+/// Throws bad_input for Nitsche's method beside multipliers.
+void check_formulations(const Scene &scene) {
+  const auto of = [&](Formulation formulation) {
+    return std::ranges::find(scene.contacts, formulation, &ContactRecipe::formulation);
   };
-  const std::string has = "scene " + scene.name + " has ";
-  if (std::ranges::count(scene.contacts, Formulation::mixed, &ContactRecipe::formulation) == 0)
-    return bad_input(has + std::to_string(scene.contacts.size()) +
-                     " contact interfaces by Nitsche's method, which is for a single one: use "
-                     "multipliers");
-  return bad_input(has + "contact by Nitsche's method on " + boundary(Formulation::nitsche) +
-                   " and by multipliers on " + boundary(Formulation::mixed) +
-                   ": use multipliers on both");
+  const auto nitsche = of(Formulation::nitsche), mixed = of(Formulation::mixed);
+  if (nitsche == scene.contacts.end() || mixed == scene.contacts.end()) return;
+  throw bad_input("scene " + scene.name + " has contact by Nitsche's method on '" +
+                  nitsche->entities.parts.front() + "' and by multipliers on '" +
+                  mixed->entities.parts.front() + "': use one of them on both");
 }
 
 } // namespace
@@ -98,7 +94,7 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
   if (meshes.empty() || meshes.size() != scene.contacts.size())
     throw bad_input("scene " + scene.name + " has " + std::to_string(scene.contacts.size()) +
                     " contact interfaces, on " + std::to_string(meshes.size()) + " meshes");
-  if (meshes.size() > 1 && !has_multipliers(scene)) throw several_by_nitsche(scene);
+  check_formulations(scene);
   Contact contact;
   std::vector<SparseMatrix> grams;
   contact.first_row.push_back(0);
@@ -228,9 +224,6 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
                      const Vector &lambda, double least, Outputs &outputs) {
   if (contact.interfaces.size() == 1)
     return contact.interfaces.front()->outputs(mu, operators, lambda, least, outputs);
-  const auto combine = [](std::optional<double> &all, const std::optional<double> &one, bool sum) {
-    if (one) all = !all ? *one : sum ? *all + *one : std::max(*all, *one);
-  };
   Index node = 0;
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
     const ContactInterface &interface = *contact.interfaces[i];
@@ -241,13 +234,7 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     Outputs one;
     interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
                       least, one);
-    for (const auto member :
-         {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
-          &Outputs::horizontal_reaction, &Outputs::contact_measure, &Outputs::contact_nodes,
-          &Outputs::stick_nodes, &Outputs::ends_in_contact})
-      combine(outputs.*member, one.*member, true);
-    for (const auto member : {&Outputs::peak_pressure, &Outputs::friction_violation})
-      combine(outputs.*member, one.*member, false);
+    add_contact(one, outputs);
   }
 }
 
@@ -259,6 +246,20 @@ DualRow dual_row(const Contact &contact, Index row) {
   const Index local = row - contact.first_row[i], tangents = dual.components - 1;
   if (local < dual.nodes()) return {i, local, true};
   return {i, (local - dual.nodes()) / tangents, false};
+}
+
+Matrix by_node(const Contact &contact, const Vector &lambda) {
+  Matrix result = Matrix::Zero(contact.nodes(), 2);
+  Index first = 0;
+  for (std::size_t i = 0; i < contact.interfaces.size(); ++i) {
+    const DualSpace &dual = contact.interfaces[i]->dual();
+    const Index nodes = dual.nodes();
+    const auto own = lambda.segment(contact.first_row[i], dual.size());
+    result.col(0).segment(first, nodes) = own.head(nodes);
+    if (dual.components == 2) result.col(1).segment(first, nodes) = own.tail(nodes);
+    first += nodes;
+  }
+  return result;
 }
 
 std::vector<Point> dual_points(const Contact &contact) {

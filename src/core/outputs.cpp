@@ -59,6 +59,23 @@ const std::vector<OutputColumn> &output_columns() {
   return columns;
 }
 
+void add_contact(const Outputs &one, Outputs &all) {
+  const auto combine = [&](std::optional<double> Outputs::*member, bool sum) {
+    std::optional<double> &total = all.*member;
+    if (const std::optional<double> &more = one.*member)
+      total = !total ? *more : sum ? *total + *more : std::max(*total, *more);
+  };
+  for (const auto member :
+       {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
+        &Outputs::horizontal_reaction, &Outputs::contact_measure, &Outputs::contact_nodes,
+        &Outputs::stick_nodes, &Outputs::ends_in_contact})
+    combine(member, true);
+  for (const auto member :
+       {&Outputs::peak_pressure, &Outputs::max_penetration, &Outputs::friction_violation,
+        &Outputs::law_error_normal, &Outputs::law_error_tangential, &Outputs::law_error_tau_over_n})
+    combine(member, false);
+}
+
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
   for (const OutputColumn &column : output_columns()) {
     const std::optional<double> value = outputs.*column.value;

@@ -227,6 +227,12 @@ std::vector<int> imposed_at(const Mesh &mesh, const Dofs &dofs,
   return {found.begin(), found.end()};
 }
 
+/// Whether it constrains displacements one by one. What sees the cells beside a curve does not, and
+/// may share them.
+bool constrains(const ContactRecipe &contact) {
+  return contact.entities.kind != InterfaceEntities::Kind::cells_beside;
+}
+
 /// What to throw for a displacement that two interfaces constrain.
 Error shared_displacement(const ContactRecipe &one, const ContactRecipe &other, const Point &at,
                           int component) {
@@ -258,7 +264,8 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
         continue;
       }
       const auto [at, is_new] = column.emplace(natural, static_cast<int>(natural_dofs.size()));
-      if (const auto dof = static_cast<std::size_t>(at->second); !is_new && dof < first.back()) {
+      if (const auto dof = static_cast<std::size_t>(at->second);
+          !is_new && dof < first.back() && constrains(contact)) {
         const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
         throw shared_displacement(scene.contacts[static_cast<std::size_t>(other)], contact,
                                   found.mesh.points[i / components],

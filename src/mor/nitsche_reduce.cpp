@@ -46,8 +46,7 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   const Stage stage(result.stages, stage::contact_curve);
   const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
   Matrix coefficients;
-  if (options.curve.rule == CurveRule::interpolated ||
-      curve_of(problem.contact()).facing.follows_state)
+  if (options.curve.rule == CurveRule::interpolated || layer_of(problem.contact()).follows_state())
     coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
   result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
   add_histories(result.curve, result.model.histories);

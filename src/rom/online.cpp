@@ -64,7 +64,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
       (model.evaluates_contact() == separable_contact(scene_) && model.has_multipliers()))
     throw bad_input("the contact of the model does not fit its scene in this build");
   if (!model.has_multipliers()) {
-    nitsche_ = std::make_unique<ReducedNitsche>(model, curve_of(contact_));
+    nitsche_ = std::make_unique<ReducedNitsche>(model, layer_of(contact_));
     return;
   }
   trace_.emplace(model, contact_);
@@ -314,8 +314,7 @@ ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
 }
 
 Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
-  if (nitsche_)
-    return nitsche_multiplier(nitsche_->fields(solution.mu, solution.u), has_friction(scene_));
+  if (nitsche_) return nitsche_->multiplier(solution.mu, solution.u);
   return law_ ? Vector(nodal_basis_ * solution.x) : Vector(model_.dual_basis * solution.x);
 }
 

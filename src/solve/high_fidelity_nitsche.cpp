@@ -24,14 +24,12 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   if (!solved_.empty()) start = {nearest(mu)->u.get(), predicted_pressures(mu)};
   NitscheSolution found = nitsche_->solve(op, solved_.empty() ? nullptr : &start);
   const Scene &scene = problem_.scene();
-  const NitscheCurve &curve = curve_of(problem_.contact());
-  const CurveFields fields = nitsche_fields(curve, op.mu, found.layer);
+  const NitscheLayer layer = layer_of(problem_.contact());
   HfSolution solution;
   solution.u = whole_displacement(problem_, mu, found.u.get());
-  solution.lambda = nitsche_multiplier(fields, curve.friction());
-  nitsche_outputs(nitsche_faces(curve, op.mu, curve.cells, found.layer), found.pressures, fields,
-                  nitsche_law(curve, op.mu), solution.outputs);
-  if (curve.facing.follows_state) solution.outputs.ends_in_contact = ends_in_contact(fields);
+  solution.lambda = nitsche_multiplier(layer, op.mu, found.layer);
+  nitsche_outputs(layer, op.mu, nitsche_faces(layer, op.mu, layer.cells, found.layer), found.layer,
+                  found.pressures, solution.outputs);
   solution.kkt.stationarity = found.residual;
   solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
   solution.outputs.kkt_residual = found.residual;

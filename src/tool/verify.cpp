@@ -131,9 +131,8 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
   const Mu &mu = truths.mu[static_cast<std::size_t>(worst)];
   OnlineSolver solver(model);
   const std::vector<Point> points = dual_points(solver.contact());
-  const auto count = static_cast<Index>(points.size());
-  const Vector reduced = solver.multiplier(solver.solve(mu, true)),
-               truth = truths.lambda.col(worst);
+  const Matrix reduced = by_node(solver.contact(), solver.multiplier(solver.solve(mu, true))),
+               truth = by_node(solver.contact(), truths.lambda.col(worst));
   Table table;
   table.add(model.parameters, std::vector<Mu>(points.size(), mu));
   for (std::size_t k = 0; k < static_cast<std::size_t>(solver.scene().dim); ++k) {
@@ -142,11 +141,11 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
       coordinates.push_back(x[k]);
     table.add(std::string(1, static_cast<char>('x' + k)), coordinates);
   }
-  table.add("high_fidelity", truth.head(count));
-  table.add("reduced", reduced.head(count));
+  table.add("high_fidelity", truth.col(0));
+  table.add("reduced", reduced.col(0));
   if (friction) {
-    table.add("high_fidelity_tangential", truth.tail(count));
-    table.add("reduced_tangential", reduced.tail(count));
+    table.add("high_fidelity_tangential", truth.col(1));
+    table.add("reduced_tangential", reduced.col(1));
   }
   table.write(path);
 }

@@ -95,6 +95,34 @@ TEST_P(NitscheLaws, EverySizeAnswersTheWholeBox) {
     }
 }
 
+/// A roller between two plates, one with friction: each rule takes the points of both arcs.
+TEST(NitscheReduced, TwoCurvesGiveTheSnapshotsBack) {
+  Scene scene = make_scene("roller", {{"formulation", "nitsche"}, {"arc_edges", "12"}});
+  scene.parameters = free_only(scene.parameters, "tilt");
+  ReducedAlone r(scene, "grid:7");
+  expect_snapshots_back(r, CurveRule::interpolated, 1e-6);
+  expect_snapshots_back(r, CurveRule::full, 1e-8);
+  EXPECT_TRUE(describe_curve(r.model) == "96 of 96 Gauss points") << describe_curve(r.model);
+  OnlineSolver whole(r.model);
+  const Sample &last = r.samples.back();
+  const Truths truths = make_truths(r.problem, r.model, {last});
+  const Index tangential = 13, normal = last.lambda.size() - tangential; // of the lower arc alone
+  Vector rubbing = last.lambda;
+  rubbing.head(normal).setZero();
+  EXPECT_NEAR(truths.tangential_norm[0], std::sqrt(rubbing.dot(r.problem.w_product() * rubbing)),
+              1e-14);
+  const Outputs outputs = whole.outputs(last.mu, whole.solve(last.mu, true));
+  EXPECT_NEAR(*outputs.normal_force, *last.outputs.normal_force, 1e-7 * *outputs.normal_force);
+  EXPECT_NEAR(*outputs.tangential_force, *last.outputs.tangential_force,
+              1e-7 * *outputs.normal_force);
+  r.reduce(with(CurveRule::empirical));
+  const auto &points = r.model.nitsche->points;
+  EXPECT_LT(points.front(), 48) << "of the upper arc";
+  EXPECT_GE(points.back(), 48) << "of the lower one";
+  EXPECT_LT(points.size(), 96u);
+  EXPECT_LE(r.errors_at(r.samples).u.maxCoeff(), 1e-6);
+}
+
 TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
   for (const char *friction : {"none", "coulomb"}) {
     SCOPED_TRACE(friction);

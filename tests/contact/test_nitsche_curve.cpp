@@ -66,8 +66,8 @@ SupportScene half_disk(int degree) {
 }
 
 /// gamma0 = 0.3.
-NitscheCurve curve_of(const SupportScene &scene, const Strip &s) {
-  return {scene, scene.support.friction, facing_support(scene, scene.support), 0.3, s.cells};
+NitscheLayer layer_of(const SupportScene &scene, const Strip &s) {
+  return {scene, {{scene.support.friction, facing_support(scene, scene.support), 0.3}}, s.cells};
 }
 
 struct Example {
@@ -76,7 +76,7 @@ struct Example {
   explicit Example(int degree) {
     const SupportScene scene = half_disk(degree);
     const Strip s = strip(degree, arc(6, 0.5));
-    faces = nitsche_faces(curve_of(scene, s), {1.1}, s.cells);
+    faces = nitsche_faces(layer_of(scene, s), {1.1}, s.cells);
     dofs = 2 * static_cast<Index>(s.nodes.size());
   }
   /// Some points are then in contact and others are not, some stick and others slip.
@@ -103,7 +103,10 @@ const NitscheLaw laws_of_tests[] = {{FrictionLaw::none, 0, false},
 
 /// The bounds of friction that a state tells.
 Vector bounds_of(const Example &e, const Vector &u, const NitscheLaw &law) {
-  return nitsche_bounds(nitsche_pressures(e.faces, u), law);
+  std::vector<NitscheFace> faces = e.faces;
+  for (NitscheFace &face : faces)
+    face.law = law;
+  return nitsche_bounds(faces, nitsche_pressures(faces, u));
 }
 
 class NitscheStrip : public ::testing::TestWithParam<int> {};
@@ -112,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Degree, NitscheStrip, ::testing::Values(1, 2));
 TEST_P(NitscheStrip, GammaIsThatOfTheMaterialAndTheReferenceEdge) {
   const Strip s = strip(GetParam(), arc(6, 0.5));
   const SupportScene scene = half_disk(GetParam());
-  const auto faces = nitsche_faces(curve_of(scene, s), {1.1}, s.cells);
+  const auto faces = nitsche_faces(layer_of(scene, s), {1.1}, s.cells);
   ASSERT_EQ(faces.size(), 6u);
   const double edge = 2 * std::sin(0.5 / 6);
   for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -180,7 +183,10 @@ TEST_P(NitscheStrip, ConsistencyIsTheHessianOfItsEnergy) {
   const Vector u = random.vector(e.dofs), v = random.vector(e.dofs);
   for (const bool friction : {false, true}) {
     const auto energy = [&](const Vector &x) { return consistency_energy(e.faces, x, friction); };
-    const auto blocks = nitsche_consistency(e.faces, friction);
+    std::vector<NitscheFace> faces = e.faces;
+    for (NitscheFace &face : faces)
+      face.whole_stress = friction;
+    const auto blocks = nitsche_consistency(faces);
     EXPECT_NEAR(u.dot(product(e.faces, blocks, v)), energy(u + v) - energy(u) - energy(v),
                 1e-12 * std::abs(energy(u)));
     EXPECT_LT(energy(u), 0);
@@ -264,19 +270,22 @@ TEST(NitscheLines, AFullStepThatIsTheMinimumIsTaken) {
 }
 
 TEST(NitscheLaws, BoundsAreThoseOfTheLaw) {
-  Matrix pressures(3, 2);
-  pressures << -2, 0.1, 0, -5, 1, 7;
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[0]).size(), 0);
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[1]), Vector::Constant(3, 0.4));
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[2]), Vector({{0.4, 0, 0}}));
-  EXPECT_EQ(nitsche_bounds(pressures, laws_of_tests[3]), Vector({{0.6, 0, 0}}));
+  const auto bounds = [](const NitscheLaw &law) {
+    return Vector({{nitsche_bound(law, -2), nitsche_bound(law, 0), nitsche_bound(law, 1)}});
+  };
+  EXPECT_EQ(bounds(laws_of_tests[0]), Vector({{-1, -1, -1}})) << "none";
+  EXPECT_EQ(bounds(laws_of_tests[1]), Vector::Constant(3, 0.4));
+  EXPECT_EQ(bounds(laws_of_tests[2]), Vector({{0.4, 0, 0}}));
+  EXPECT_EQ(bounds(laws_of_tests[3]), Vector({{0.6, 0, 0}}));
+  EXPECT_EQ(friction_term(0.3, -1, 2).energy, 0);
+  EXPECT_EQ(friction_term(0, -1, 2).curvature, 0);
 }
 
 TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
   const auto value = [](const FullMu &mu) { return mu[0]; };
   const Scene scene;
   const auto law_of = [&](const Friction &friction, const FullMu &mu) {
-    return nitsche_law({scene, friction, facing_support(scene, {}), 1, {}}, mu);
+    return NitscheCurve{friction, facing_support(scene, {}), 1}.law_at(mu);
   };
   const NitscheLaw none = law_of({FrictionLaw::none, value}, {-1});
   EXPECT_EQ(none.law, FrictionLaw::none);
@@ -313,7 +322,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
     const Eigen::Vector2d value = m * Eigen::Vector2d(x[0], x[1]);
     return Point{value[0], value[1], 0};
   };
-  const CurveFields fields = nitsche_fields(curve_of(scene, s), mu, nodal(scene, mu, s, linear));
+  const CurveFields fields = nitsche_fields(layer_of(scene, s), 0, mu, nodal(scene, mu, s, linear));
   ASSERT_EQ(fields.sigma_n.size(), 8);
   const double gamma = 0.3 * (9 + 2 * 4) / length(curve, 0);
   for (Index i = 0; i < 8; ++i) {
@@ -342,7 +351,7 @@ TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
   scene.support.normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
   const FullMu mu{1};
   const Vector u = nodal(scene, mu, s, [](const Point &x) { return Point{0, 0.1 * x[1], 0}; });
-  const CurveFields fields = nitsche_fields(curve_of(scene, s), mu, u);
+  const CurveFields fields = nitsche_fields(layer_of(scene, s), 0, mu, u);
   EXPECT_NEAR(fields.sigma_n[0], 1.7, 1e-13);
   EXPECT_NEAR(fields.sigma_n[1], (1.7 + 3.4) / 2, 1e-13);
   EXPECT_NEAR(fields.sigma_n[2], 3.4, 1e-13);
@@ -350,12 +359,98 @@ TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
               1e-12);
 }
 
-TEST(NitscheFields, TheMultiplierIsMinusTheStress) {
-  CurveFields fields;
-  fields.sigma_n = Vector({{-2, -1}});
-  fields.sigma_tau = Vector({{0.5, 0}});
-  EXPECT_EQ(nitsche_multiplier(fields, false), Vector({{2, 1}}));
-  EXPECT_EQ(nitsche_multiplier(fields, true), Vector({{2, 1, -0.5, 0}}));
+Vector stacked(const Vector &a, const Vector &b) {
+  return (Vector(a.size() + b.size()) << a, b).finished();
+}
+
+/// Two curves without common dofs, each with a law of its own, and both as one layer.
+struct TwoCurves {
+  SupportScene scene = half_disk(2);
+  Strip first = strip(2, arc(6, 0.5)), second = strip(2, arc(5, 0.4));
+  NitscheLayer one = layer_of(scene, first), other = layer_of(scene, second),
+               both{scene, one.curves, one.cells};
+  FullMu mu{1.1};
+  Vector u, v; ///< of the two curves
+
+  TwoCurves(const Friction &of_first, const Friction &of_second) {
+    one.curves.front().law = both.curves.front().law = of_first;
+    other.curves.front().law = of_second;
+    both.curves.push_back(other.curves.front());
+    const auto dofs = 2 * static_cast<int>(first.nodes.size());
+    for (CurveCell cell : other.cells) {
+      cell.curve = 1;
+      for (int &dof : cell.dofs)
+        if (dof >= 0) dof += dofs;
+      both.cells.push_back(cell);
+    }
+    Random random(41);
+    u = 0.05 * random.vector(dofs);
+    v = 0.05 * random.vector(2 * static_cast<Index>(second.nodes.size()));
+  }
+  std::vector<NitscheFace> faces(const NitscheLayer &layer) const {
+    return nitsche_faces(layer, mu, layer.cells);
+  }
+};
+
+const auto constant = [](double value) { return [=](const FullMu &) { return value; }; };
+
+TEST(NitscheCurves, TogetherAnswerAsEachByItself) {
+  for (const Friction &law : {Friction{}, Friction{FrictionLaw::tresca, constant(0.4)}}) {
+    const TwoCurves two(law, {FrictionLaw::coulomb, constant(0.3)});
+    const auto one = two.faces(two.one), other = two.faces(two.other), both = two.faces(two.both);
+    const Vector w = stacked(two.u, two.v);
+    const Matrix p = nitsche_pressures(one, two.u), q = nitsche_pressures(other, two.v),
+                 all = nitsche_pressures(both, w);
+    EXPECT_EQ(all, (Matrix(p.rows() + q.rows(), 2) << p, q).finished());
+    const Vector of_one = nitsche_bounds(one, p), of_other = nitsche_bounds(other, q),
+                 bounds = nitsche_bounds(both, all);
+    EXPECT_TRUE(bounds_move(both));
+    EXPECT_FALSE(bounds_move(one));
+    EXPECT_EQ(bounds.tail(q.rows()), of_other);
+    EXPECT_EQ(nitsche_residual(both, w, bounds), stacked(nitsche_residual(one, two.u, of_one),
+                                                         nitsche_residual(other, two.v, of_other)));
+    const double energy =
+        nitsche_energy(one, two.u, of_one) + nitsche_energy(other, two.v, of_other);
+    EXPECT_NEAR(nitsche_energy(both, w, bounds), energy, 1e-14 * energy);
+    const auto tangent = nitsche_tangent(both, all, bounds),
+               of_first = nitsche_tangent(one, p, of_one);
+    EXPECT_TRUE(std::equal(of_first.begin(), of_first.end(), tangent.begin()));
+    const auto consistency = nitsche_consistency(both), apart = nitsche_consistency(one);
+    EXPECT_TRUE(std::equal(apart.begin(), apart.end(), consistency.begin()));
+    EXPECT_EQ(nitsche_multiplier(two.both, two.mu, w),
+              stacked(nitsche_multiplier(two.one, two.mu, two.u),
+                      nitsche_multiplier(two.other, two.mu, two.v)));
+  }
+}
+
+Outputs outputs_of(const NitscheLayer &layer, const FullMu &mu, const Vector &u) {
+  Outputs outputs;
+  const auto faces = nitsche_faces(layer, mu, layer.cells);
+  nitsche_outputs(layer, mu, faces, u, nitsche_pressures(faces, u), outputs);
+  return outputs;
+}
+
+TEST(NitscheCurves, OutputsAreSumsAndMaxima) {
+  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
+  const Outputs one = outputs_of(two.one, two.mu, two.u),
+                other = outputs_of(two.other, two.mu, two.v),
+                both = outputs_of(two.both, two.mu, stacked(two.u, two.v));
+  EXPECT_NEAR(*both.normal_force, *one.normal_force + *other.normal_force, 1e-14);
+  EXPECT_NEAR(*both.reaction, *one.reaction + *other.reaction, 1e-14);
+  EXPECT_EQ(*both.contact_nodes, *one.contact_nodes + *other.contact_nodes);
+  EXPECT_EQ(*both.max_penetration, std::max(*one.max_penetration, *other.max_penetration));
+  EXPECT_EQ(*both.peak_pressure, std::max(*one.peak_pressure, *other.peak_pressure));
+  EXPECT_EQ(*both.tangential_force, *other.tangential_force);
+  EXPECT_FALSE(one.tangential_force);
+  EXPECT_FALSE(both.contact_half_width) << "there is no such thing of two curves";
+}
+
+TEST(NitscheCurves, TheMultiplierIsMinusTheStress) {
+  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
+  const CurveFields one = nitsche_fields(two.one, 0, two.mu, two.u),
+                    other = nitsche_fields(two.other, 0, two.mu, two.v);
+  EXPECT_EQ(nitsche_multiplier(two.one, two.mu, two.u), -one.sigma_n);
+  EXPECT_EQ(nitsche_multiplier(two.other, two.mu, two.v), -stacked(other.sigma_n, other.sigma_tau));
 }
 
 } // namespace

@@ -56,10 +56,12 @@ CurveFields constant_fields(Index count, double p) {
   return fields;
 }
 
-Outputs outputs_of(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+Outputs outputs_of(std::vector<NitscheFace> faces, const Matrix &pressures,
                    const CurveFields &fields, const NitscheLaw &law) {
+  for (NitscheFace &face : faces)
+    face.law = law;
   Outputs outputs;
-  nitsche_outputs(faces, pressures, fields, law, outputs);
+  nitsche_outputs(faces, pressures, fields, outputs);
   return outputs;
 }
 

@@ -121,12 +121,12 @@ TEST(NitscheSurface, TheTangentHasWhatTheAxesTurnBy) {
   SupportScene scene = scene_of(2);
   const OnOneCell on;
   scene.material = [&](const FullMu &, const Point &) { return on.material; };
-  const NitscheCurve curve{scene, {}, facing_surface(scene, {"support", disk_at}), 1, {}};
+  const NitscheLayer layer{scene, {{{}, facing_surface(scene, {"support", disk_at}), 1}}, {}};
   CurveCell beside{on.cell, 0, {}};
   for (int i = 0; i < 12; ++i)
     beside.dofs[static_cast<std::size_t>(i)] = i;
   const Vector u = on.u, d = Vector::Random(12);
-  const auto faces = nitsche_faces(curve, {1.0}, {beside}, u);
+  const auto faces = nitsche_faces(layer, {1.0}, {beside}, u);
   Matrix pressures = Matrix::Constant(4, 2, -1.0); // in contact
   pressures(2, 0) = 1;
   auto held = faces;

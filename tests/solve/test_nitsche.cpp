@@ -144,9 +144,9 @@ TEST(NitscheDisk, TheErrorOfTheContactLawIsOfFirstOrderInTheEdges) {
 double functional(Problem &problem, NitscheSolver &solver, const Mu &mu) {
   const Operators &op = problem.assemble(mu);
   const NitscheSolution s = solver.solve(op);
-  const NitscheCurve &curve = curve_of(problem.contact());
-  const auto faces = nitsche_faces(curve, op.mu, curve.cells);
-  const auto blocks = nitsche_consistency(faces, false);
+  const NitscheLayer layer = layer_of(problem.contact());
+  const auto faces = nitsche_faces(layer, op.mu, layer.cells);
+  const auto blocks = nitsche_consistency(faces);
   double consistency = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
     Eigen::Matrix<double, 12, 1> u;

@@ -1,6 +1,6 @@
 // A problem of two contact interfaces: two blocks that do not meet, each on a support of its own.
 // Together they answer as each of them does by itself.
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>
@@ -10,23 +10,39 @@
 namespace rbvi {
 namespace {
 
-/// The upper block is pressed onto a floor by the motion of its top, the lower one is below a lid
-/// that is tilted and too low for it.
-Scene blocks(bool with_floor, bool with_lid, bool lumped) {
-  Scene scene = make_scene("patch", {{"degree", lumped ? "1" : "2"}});
+/// Vertical, at the height that it allows along x.
+Support support(const std::string &boundary, double normal, double gap, double slope) {
+  return {boundary,
+          [=](const FullMu &, const Point &) {
+            return Point{0, normal, 0};
+          },
+          [=](const FullMu &, const Point &x) { return gap + slope * x[0]; }};
+}
+
+/// The upper block is pressed onto a floor by the motion of its top, ...
+Support floor_support() {
+  return support("slave", -1, 0, 0);
+}
+
+/// ... the lower one is below a lid that is tilted and too low for it.
+Support lid_support() {
+  return support("master", 1, -0.01, 0.03);
+}
+
+Scene blocks(std::vector<ContactRecipe> contacts, int degree = 2) {
+  Scene scene = make_scene("patch", {{"degree", std::to_string(degree)}});
   scene.fixed = {{"top", {}}, {"bottom", {}}};
-  const auto gap = [](double height, double slope) {
-    return [=](const FullMu &, const Point &x) { return height + slope * x[0]; };
-  };
-  const auto normal = [](double y) {
-    return [=](const FullMu &, const Point &) { return Point{0, y, 0}; };
-  };
-  scene.contacts.clear();
-  if (with_floor)
-    scene.contacts.push_back(rigid_support({"slave", normal(-1), gap(0, 0), {}, lumped}));
-  if (with_lid)
-    scene.contacts.push_back(rigid_support({"master", normal(1), gap(-0.01, 0.03), {}, lumped}));
+  scene.contacts = std::move(contacts);
   return scene;
+}
+
+Scene blocks(bool with_floor, bool with_lid, bool lumped) {
+  Support floor = floor_support(), lid = lid_support();
+  floor.lumped = lid.lumped = lumped;
+  std::vector<ContactRecipe> contacts;
+  if (with_floor) contacts.push_back(rigid_support(floor));
+  if (with_lid) contacts.push_back(rigid_support(lid));
+  return blocks(std::move(contacts), lumped ? 1 : 2);
 }
 
 HfSolution solve(const Scene &scene, const HfOptions &options = {}) {
@@ -57,6 +73,41 @@ TEST(TwoInterfaces, AnswerAsEachByItself) {
     EXPECT_NEAR(*b.peak_pressure, std::max(*f.peak_pressure, *l.peak_pressure),
                 1e-10 * *b.peak_pressure);
   }
+}
+
+/// By Nitsche's method, the floor with Coulomb friction.
+Scene blocks_by_nitsche(bool with_floor, bool with_lid) {
+  Support floor = floor_support();
+  floor.friction = {FrictionLaw::coulomb, [](const FullMu &) { return 0.3; }};
+  std::vector<ContactRecipe> contacts;
+  if (with_floor) contacts.push_back(nitsche_support(floor, 10));
+  if (with_lid) contacts.push_back(nitsche_support(lid_support(), 10));
+  return blocks(std::move(contacts));
+}
+
+TEST(TwoInterfaces, ByNitschesMethodAnswerAsEachByItself) {
+  const HfSolution floor = solve(blocks_by_nitsche(true, false)),
+                   lid = solve(blocks_by_nitsche(false, true)),
+                   both = solve(blocks_by_nitsche(true, true));
+  EXPECT_LE((both.u - floor.u - lid.u).norm(), 1e-11 * both.u.norm());
+  EXPECT_LE((both.lambda - stacked(floor.lambda, lid.lambda)).norm(), 1e-9 * both.lambda.norm());
+  const Outputs &f = floor.outputs, &l = lid.outputs, &b = both.outputs;
+  EXPECT_NEAR(*b.energy, *f.energy + *l.energy, 1e-11 * *b.energy);
+  EXPECT_NEAR(*b.normal_force, *f.normal_force + *l.normal_force, 1e-10 * *b.normal_force);
+  EXPECT_NEAR(*b.tangential_force, *f.tangential_force, 1e-9 * *b.tangential_force);
+  EXPECT_GT(*f.tangential_force, 0);
+  EXPECT_FALSE(l.tangential_force);
+}
+
+/// The normal displacement of the nodes bounded by the gap: on both.
+TEST(TwoInterfaces, ByNitschesMethodWithBoundsDoNotPenetrate) {
+  HfOptions bounded;
+  bounded.nitsche.nonpenetration = true;
+  const HfSolution free = solve(blocks_by_nitsche(true, true)),
+                   held = solve(blocks_by_nitsche(true, true), bounded);
+  EXPECT_GT(*free.outputs.max_penetration, 1e-8);
+  EXPECT_LE(*held.outputs.max_penetration, 1e-14);
+  EXPECT_LE((held.u - free.u).norm(), 1e-2 * free.u.norm());
 }
 
 /// Bounds at nodes whose normals differ from interface to interface.

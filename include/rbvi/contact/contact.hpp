@@ -17,8 +17,8 @@ struct Contact {
 };
 
 /// `meshes`: of each contact of the scene, with the columns of the problem. `scene` must outlive
-/// it. Throws bad_input where a mesh does not suit its recipe, and for Nitsche's method beside a
-/// further interface.
+/// it. Throws bad_input where a mesh does not suit its recipe, and for Nitsche's method beside
+/// multipliers.
 Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes);
 
 /// The operators of all interfaces together.
@@ -63,6 +63,10 @@ struct DualRow {
   bool normal;
 };
 DualRow dual_row(const Contact &contact, Index row);
+
+/// The multipliers of each dual node, of all interfaces: nodes x 2, normal and tangential (zero
+/// without friction).
+Matrix by_node(const Contact &contact, const Vector &lambda);
 
 /// Reference points of the dual nodes.
 std::vector<Point> dual_points(const Contact &contact);

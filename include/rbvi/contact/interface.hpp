@@ -97,7 +97,7 @@ inline bool is_wanted(const WantedNodes &wanted, Index node) {
 }
 
 class EntitySum;
-struct NitscheCurve;
+struct NitscheLayer;
 
 class ContactInterface {
 public:
@@ -163,8 +163,9 @@ public:
 
   /// Separable interfaces: this one, as the sum over its entities. Null: the others.
   virtual const EntitySum *entity_sum() const { return nullptr; }
-  /// Nitsche's method: the terms along its curve. Null: mixed interfaces.
-  virtual const NitscheCurve *nitsche() const { return nullptr; }
+  /// Nitsche's method: the terms along its curve, the only one of that layer. Null: mixed
+  /// interfaces.
+  virtual const NitscheLayer *nitsche() const { return nullptr; }
 
 protected:
   /// nodal_b and nodal_gap from constraint_at at the wanted vertices of the dual space, the imposed

@@ -48,6 +48,10 @@ struct Outputs {
   std::optional<double> seconds;
 };
 
+/// Adds the outputs of a further contact interface: sums of forces and measures, the largest of
+/// pressures and errors; the others stay as they are.
+void add_contact(const Outputs &one, Outputs &all);
+
 /// What an output is, which tells how accurate a reduced one must be.
 enum class OutputKind {
   quantity, ///< energy, forces, pressures, displacements: as accurate as the fields

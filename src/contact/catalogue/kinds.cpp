@@ -15,8 +15,9 @@ namespace rbvi {
 
 const std::vector<ContactKind> &contact_kinds() {
   static const std::vector<ContactKind> kinds{
-      obstacle_kind(),   two_bodies_kind(),    rigid_support_kind(),   nitsche_support_kind(),
-      half_plane_kind(), rigid_surface_kind(), nitsche_surface_kind(), deformed_bodies_kind()};
+      obstacle_kind(),        two_bodies_kind(),      rigid_support_kind(),
+      nitsche_support_kind(), half_plane_kind(),      nitsche_half_plane_kind(),
+      rigid_surface_kind(),   nitsche_surface_kind(), deformed_bodies_kind()};
   return kinds;
 }
 

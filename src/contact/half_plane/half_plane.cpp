@@ -30,6 +30,8 @@ Record record_of(const HalfPlane &plane) {
   return record;
 }
 
+} // namespace
+
 HalfPlane half_plane_in(const Record &record) {
   const auto point = [&](const std::string &name) -> Point {
     const std::vector<double> &x = numbers(record, name);
@@ -45,9 +47,7 @@ HalfPlane half_plane_in(const Record &record) {
   return plane;
 }
 
-} // namespace
-
-ContactRecipe half_plane(HalfPlane plane) {
+ContactRecipe half_plane(HalfPlane plane, const SupportContact &by) {
   const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
   if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
     throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
@@ -56,17 +56,17 @@ ContactRecipe half_plane(HalfPlane plane) {
                     "): give one of length 1 in the plane of x and y");
   Support support{plane.boundary, {}, {}, plane.friction, plane.lumped};
   support.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
-  ContactRecipe recipe = rigid_support(support);
+  ContactRecipe recipe = by(support);
   recipe.coefficients.push_back({"position of the half-plane", plane.position});
   if (plane.tilt) recipe.coefficients.push_back({"tilt of the half-plane", plane.tilt});
-  recipe.make = [plane, support](const Scene &scene, InterfaceMesh mesh) {
+  recipe.make = [plane, support, by](const Scene &scene, InterfaceMesh mesh) {
     Support placed = support;
     placed.gap = [plane, &scene](const FullMu &mu, const Point &x) {
       const Point n = normal_of(plane, mu),
                   at = plane.surface ? plane.surface(mu, x) : scene.map(mu, x);
       return plane.position(mu) - (at[0] - plane.pivot[0]) * n[0] - (at[1] - plane.pivot[1]) * n[1];
     };
-    return rigid_support(placed).make(scene, std::move(mesh));
+    return by(placed).make(scene, std::move(mesh));
   };
   recipe.record = record_of(plane);
   return recipe;

@@ -58,6 +58,7 @@ PointTerm contact_term(double p, double gamma) {
 }
 
 PointTerm friction_term(double p, double bound, double gamma) {
+  if (bound < 0) return {0, 0, 0};
   const double held = std::clamp(p, -bound, bound), rest = p - held;
   return {(p * p - rest * rest) / (2 * gamma), held / gamma, rest == 0 ? 1 / gamma : 0};
 }

@@ -56,8 +56,7 @@ Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Matrix &p
   at_all_points(faces, bounds,
                 [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
                   const PointTerm contact = contact_term(pressures(i, 0), face.gamma);
-                  PointTerm friction{};
-                  if (bound >= 0) friction = friction_term(pressures(i, 1), bound, face.gamma);
+                  const PointTerm friction = friction_term(pressures(i, 1), bound, face.gamma);
                   const double normal = contact.slope + contact.curvature * moved(i, 0);
                   const double tangential = friction.slope + friction.curvature * moved(i, 1);
                   if (normal == 0 && tangential == 0) return;
@@ -79,45 +78,60 @@ double edge_length(const std::array<Point, 4> &vertices, int edge) {
 
 } // namespace
 
-CurveCellAtMu curve_cell_at(const NitscheCurve &curve, const FullMu &mu, const CurveCell &beside) {
-  const Scene &scene = curve.scene;
+CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const CurveCell &beside) {
+  const Scene &scene = layer.scene;
   CurveCellAtMu result{beside.cell, scene.material(mu, reference_centre(beside.cell)), 0};
   for (std::size_t v = 0; v < 3; ++v)
     result.cell.mapped[v] = scene.map(mu, beside.cell.reference[v]);
-  result.gamma = curve.gamma0 * (result.material.lambda + 2 * result.material.shear) /
+  result.gamma = layer.curve_of(beside).gamma0 *
+                 (result.material.lambda + 2 * result.material.shear) /
                  edge_length(beside.cell.reference, beside.edge);
   return result;
 }
 
-std::vector<NitscheFace> nitsche_faces(const NitscheCurve &curve, const FullMu &mu,
+std::vector<NitscheFace> nitsche_faces(const NitscheLayer &layer, const FullMu &mu,
                                        const std::vector<CurveCell> &cells, const Vector &state) {
+  std::vector<NitscheLaw> laws;
+  for (const NitscheCurve &curve : layer.curves)
+    laws.push_back(curve.law_at(mu));
   std::vector<NitscheFace> faces;
   faces.reserve(cells.size());
   for (const CurveCell &beside : cells) {
-    const CurveCellAtMu at = curve_cell_at(curve, mu, beside);
+    const CurveCellAtMu at = curve_cell_at(layer, mu, beside);
+    const NitscheCurve &curve = layer.curve_of(beside);
     faces.push_back(
-        {nitsche_points(curve.scene, curve.facing, mu, at.cell, beside.edge, at.material), at.gamma,
-         beside.dofs});
+        {nitsche_points(layer.scene, curve.facing, mu, at.cell, beside.edge, at.material), at.gamma,
+         beside.dofs, beside.curve, laws[static_cast<std::size_t>(beside.curve)],
+         curve.friction() || curve.facing.follows_state});
   }
-  if (state.size() > 0) turn_to(curve, mu, state, faces);
+  if (state.size() > 0) turn_to(layer, mu, state, faces);
   return faces;
 }
 
-void turn_to(const NitscheCurve &curve, const FullMu &mu, const Vector &state,
+void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
              std::vector<NitscheFace> &faces) {
-  if (!curve.facing.follows_state) return;
   for (NitscheFace &face : faces) {
+    const NitscheFacing &facing = layer.curves[static_cast<std::size_t>(face.curve)].facing;
+    if (!facing.follows_state) continue;
     const Row here = local(face.dofs, state);
     for (NitschePoint &point : face.points)
-      turn_to(curve.facing, mu, here, point);
+      turn_to(facing, mu, here, point);
   }
 }
 
-NitscheLaw nitsche_law(const NitscheCurve &curve, const FullMu &mu) {
-  const Friction &friction = curve.law;
-  if (friction.law == FrictionLaw::none) return {};
-  const FrictionBound bound = friction_bound(friction, mu); // of one law
-  return {friction.law, bound.coefficient + bound.threshold, bound.only_in_contact};
+NitscheLaw NitscheCurve::law_at(const FullMu &mu) const {
+  if (!friction()) return {};
+  const FrictionBound bound = friction_bound(law, mu); // of one law
+  return {law.law, bound.coefficient + bound.threshold, bound.only_in_contact};
+}
+
+bool NitscheLayer::friction() const {
+  return std::ranges::any_of(curves, &NitscheCurve::friction);
+}
+
+bool NitscheLayer::follows_state() const {
+  return std::ranges::any_of(curves,
+                             [](const NitscheCurve &curve) { return curve.facing.follows_state; });
 }
 
 Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du) {
@@ -141,16 +155,27 @@ Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u)
   return result;
 }
 
-Vector nitsche_bounds(const Matrix &pressures, const NitscheLaw &law) {
-  if (law.law == FrictionLaw::none) return {};
-  return pressures.col(0).unaryExpr([&](double p) {
-    if (law.law == FrictionLaw::coulomb) return coulomb_bound(p, law.value);
-    return law.only_in_contact && p >= 0 ? 0.0 : law.value;
-  });
+double nitsche_bound(const NitscheLaw &law, double p_n) {
+  if (law.law == FrictionLaw::none) return -1;
+  if (law.law == FrictionLaw::coulomb) return coulomb_bound(p_n, law.value);
+  return law.only_in_contact && p_n >= 0 ? 0.0 : law.value;
 }
 
-std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces,
-                                           bool whole_stress) {
+Vector nitsche_bounds(const std::vector<NitscheFace> &faces, const Matrix &pressures) {
+  if (std::ranges::all_of(
+          faces, [](const NitscheFace &face) { return face.law.law == FrictionLaw::none; }))
+    return {};
+  Vector bounds(pressures.rows());
+  for (Index i = 0; i < bounds.size(); ++i)
+    bounds[i] = nitsche_bound(faces[static_cast<std::size_t>(i) / 4].law, pressures(i, 0));
+  return bounds;
+}
+
+bool bounds_move(const std::vector<NitscheFace> &faces) {
+  return std::ranges::any_of(faces, [](const NitscheFace &face) { return face.law.moves(); });
+}
+
+std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces) {
   std::vector<FaceBlock> blocks;
   blocks.reserve(faces.size());
   for (const NitscheFace &face : faces) {
@@ -158,7 +183,7 @@ std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces
     for (const NitschePoint &point : face.points) {
       const double factor = point.weight * consistency_term(0, face.gamma).curvature;
       add_square(block, factor, point.sigma_n);
-      if (whole_stress) add_square(block, factor, point.sigma_tau);
+      if (face.whole_stress) add_square(block, factor, point.sigma_tau);
     }
     blocks.push_back(block);
   }
@@ -171,10 +196,9 @@ double nitsche_energy(const std::vector<NitscheFace> &faces, const Vector &u,
   double energy = 0;
   at_all_points(faces, bounds,
                 [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
-                  double density = contact_term(pressures(i, 0), face.gamma).energy;
-                  if (bound >= 0)
-                    density += friction_term(pressures(i, 1), bound, face.gamma).energy;
-                  energy += point.weight * density;
+                  energy +=
+                      point.weight * (contact_term(pressures(i, 0), face.gamma).energy +
+                                      friction_term(pressures(i, 1), bound, face.gamma).energy);
                 });
   return energy;
 }
@@ -200,10 +224,9 @@ std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
         add_square(block, point.weight * contact_term(pressures(i, 0), face.gamma).curvature,
                    normal_row(point, face.gamma));
         add_square(block, turning(point, pressures(i, 0)), point.tau);
-        if (bound >= 0)
-          add_square(block,
-                     point.weight * friction_term(pressures(i, 1), bound, face.gamma).curvature,
-                     tangential_row(point, face.gamma));
+        add_square(block,
+                   point.weight * friction_term(pressures(i, 1), bound, face.gamma).curvature,
+                   tangential_row(point, face.gamma));
       });
   return blocks;
 }
@@ -266,8 +289,13 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line) {
   return low > 0 ? low : high;
 }
 
-CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Vector &u) {
-  const std::vector<CurveCell> &cells = curve.cells;
+CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const FullMu &mu,
+                           const Vector &u) {
+  const NitscheFacing &facing = layer.curves[number].facing;
+  std::vector<CurveCell> cells;
+  std::ranges::copy_if(layer.cells, std::back_inserter(cells), [&](const CurveCell &cell) {
+    return cell.curve == static_cast<int>(number);
+  });
   const auto count = static_cast<Index>(cells.size()) + 1;
   CurveFields fields;
   for (Vector *field : {&fields.sigma_n, &fields.sigma_tau, &fields.p_n, &fields.p_tau,
@@ -276,15 +304,15 @@ CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Ve
   Vector &excess = fields.excess;
   Vector slip = Vector::Zero(count), gamma = Vector::Zero(count), edges = Vector::Zero(count);
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const CurveCellAtMu at = curve_cell_at(curve, mu, cells[k]);
+    const CurveCellAtMu at = curve_cell_at(layer, mu, cells[k]);
     const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
     const bool forward = at.cell.reference[static_cast<std::size_t>(ends[0])][0] <
                          at.cell.reference[static_cast<std::size_t>(ends[1])][0];
     const Row here = local(cells[k].dofs, u);
     for (const double s : {0.0, 1.0}) {
       NitschePoint point =
-          nitsche_point(curve.scene, curve.facing, mu, at.cell, cells[k].edge, at.material, s);
-      if (curve.facing.follows_state) turn_to(curve.facing, mu, here, point);
+          nitsche_point(layer.scene, facing, mu, at.cell, cells[k].edge, at.material, s);
+      if (facing.follows_state) turn_to(facing, mu, here, point);
       const Index vertex = static_cast<Index>(k) + ((s == 1) == forward ? 1 : 0);
       fields.sigma_n[vertex] += point.sigma_n.dot(here);
       fields.sigma_tau[vertex] += point.sigma_tau.dot(here);
@@ -304,12 +332,15 @@ CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Ve
   return fields;
 }
 
-Vector nitsche_multiplier(const CurveFields &fields, bool friction) {
-  const Index count = fields.sigma_n.size();
-  Vector result(friction ? 2 * count : count);
-  result.head(count) = -fields.sigma_n;
-  if (friction) result.tail(count) = -fields.sigma_tau;
-  return result;
+Vector nitsche_multiplier(const NitscheLayer &layer, const FullMu &mu, const Vector &u) {
+  std::vector<double> result;
+  for (std::size_t k = 0; k < layer.curves.size(); ++k) {
+    const CurveFields fields = nitsche_fields(layer, k, mu, u);
+    result.insert(result.end(), fields.sigma_n.begin(), fields.sigma_n.end());
+    if (layer.curves[k].friction())
+      result.insert(result.end(), fields.sigma_tau.begin(), fields.sigma_tau.end());
+  }
+  return -Eigen::Map<const Vector>(result.data(), std::ssize(result));
 }
 
 } // namespace rbvi

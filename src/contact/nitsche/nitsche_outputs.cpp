@@ -64,8 +64,9 @@ double ends_in_contact(const CurveFields &fields) {
 }
 
 void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
-                     const CurveFields &fields, const NitscheLaw &law, Outputs &outputs) {
-  const Sums sums = integrate(faces, pressures, nitsche_bounds(pressures, law));
+                     const CurveFields &fields, Outputs &outputs) {
+  const NitscheLaw &law = faces.front().law;
+  const Sums sums = integrate(faces, pressures, nitsche_bounds(faces, pressures));
   outputs.normal_force = sums.normal;
   outputs.reaction = sums.force[1];
   outputs.horizontal_reaction = sums.force[0];
@@ -82,9 +83,7 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   outputs.law_error_normal = ratio((fields.sigma_n - fields.p_n.cwiseMin(0)).norm(), normal);
   if (law.law == FrictionLaw::none) return;
 
-  Matrix at_vertices(fields.p_n.size(), 2);
-  at_vertices << fields.p_n, fields.p_tau;
-  const Vector bounds = nitsche_bounds(at_vertices, law);
+  const Vector bounds = fields.p_n.unaryExpr([&](double p) { return nitsche_bound(law, p); });
   const Vector held = fields.p_tau.cwiseMax(-bounds).cwiseMin(bounds);
   const double error = (fields.sigma_tau - held).norm();
   outputs.tangential_force = sums.tangential;
@@ -94,6 +93,25 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
   outputs.friction_violation = std::max(0.0, (fields.sigma_tau.cwiseAbs() - bounds).maxCoeff());
   outputs.law_error_tangential = ratio(error, fields.sigma_tau.norm());
   outputs.law_error_tau_over_n = ratio(error, normal);
+}
+
+void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
+                     const std::vector<NitscheFace> &faces, const Vector &u,
+                     const Matrix &pressures, Outputs &outputs) {
+  auto begin = faces.begin();
+  for (std::size_t k = 0; k < layer.curves.size(); ++k) {
+    const auto end = std::find_if(begin, faces.end(), [k](const NitscheFace &face) {
+      return face.curve != static_cast<int>(k);
+    });
+    const CurveFields fields = nitsche_fields(layer, k, mu, u);
+    Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
+    nitsche_outputs({begin, end},
+                    pressures.middleRows(4 * (begin - faces.begin()), 4 * (end - begin)), fields,
+                    one);
+    if (layer.curves[k].facing.follows_state) one.ends_in_contact = ends_in_contact(fields);
+    if (&one == &part) add_contact(part, outputs);
+    begin = end;
+  }
 }
 
 } // namespace rbvi

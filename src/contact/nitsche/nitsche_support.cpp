@@ -54,16 +54,18 @@ class NitscheInterface : public ContactInterface {
 public:
   NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, const Friction &law,
                    NitscheFacing facing, double gamma0)
-      : ContactInterface(scene, std::move(interface_mesh)), curve_{scene, law, std::move(facing),
-                                                                   gamma0, curve_cells(mesh_)} {
+      : ContactInterface(scene, std::move(interface_mesh)), layer_{
+                                                                scene,
+                                                                {{law, std::move(facing), gamma0}},
+                                                                curve_cells(mesh_)} {
     dual_.vertices = curve_vertices(mesh_);
     for (const Index node : dual_.vertices)
       dual_.points.push_back(mesh_.points[static_cast<std::size_t>(node)]);
-    dual_.components = curve_.friction() ? 2 : 1;
+    dual_.components = layer_.friction() ? 2 : 1;
     dual_.gram = linear_gram(dual_.points, dual_.components);
   }
 
-  const NitscheCurve *nitsche() const override { return &curve_; }
+  const NitscheLayer *nitsche() const override { return &layer_; }
   void assemble(const FullMu &mu, const ContactState &, const WantedNodes &,
                 ContactOperators &operators) override {
     std::vector<Point> mapped(mesh_.points.size());
@@ -72,10 +74,12 @@ public:
           scene_.map(mu, mesh_.points[static_cast<std::size_t>(node)]);
     set_constraints(mu, mapped, {}, {}, operators);
   }
-  FrictionBound bound(const FullMu &mu) const override { return friction_bound(curve_.law, mu); }
+  FrictionBound bound(const FullMu &mu) const override {
+    return friction_bound(layer_.curves.front().law, mu);
+  }
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &displacement) const override {
-    const SupportPoint at = curve_.facing.at(mu, x, displacement);
+    const SupportPoint at = layer_.curves.front().facing.at(mu, x, displacement);
     return {at.normal, at.gap};
   }
   /// They come from the pressures along the curve: nitsche_outputs.
@@ -86,7 +90,7 @@ public:
   }
 
 private:
-  NitscheCurve curve_;
+  NitscheLayer layer_;
 };
 
 /// `faced`: a Support or RigidSurface; `facing` makes of it what a curve faces.
@@ -110,10 +114,22 @@ ContactRecipe nitsche_contact(const std::string &name, Faced faced, double gamma
 
 } // namespace
 
-const NitscheCurve &curve_of(const Contact &contact) {
-  const NitscheCurve *curve = contact.interfaces.front()->nitsche();
-  if (curve == nullptr) throw failure("the scene has contact by multipliers, not a curve");
-  return *curve;
+NitscheLayer layer_of(const Contact &contact) {
+  const auto one = [](const auto &interface) -> const NitscheLayer & {
+    const NitscheLayer *layer = interface->nitsche();
+    if (layer == nullptr) throw failure("the scene has contact by multipliers, not a curve");
+    return *layer;
+  };
+  NitscheLayer all{one(contact.interfaces.front()).scene, {}, {}};
+  for (const auto &interface : contact.interfaces) {
+    const NitscheLayer &more = one(interface);
+    for (CurveCell cell : more.cells) {
+      cell.curve = static_cast<int>(all.curves.size());
+      all.cells.push_back(cell);
+    }
+    all.curves.push_back(more.curves.front());
+  }
+  return all;
 }
 
 NitscheFacing facing_support(const Scene &scene, Support support) {
@@ -132,7 +148,18 @@ NitscheFacing facing_surface(const Scene &scene, RigidSurface surface) {
 }
 
 ContactRecipe nitsche_support(Support support, double gamma0) {
+  if (support.lumped)
+    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
   return nitsche_contact("nitsche_support", std::move(support), gamma0, facing_support);
+}
+
+ContactRecipe nitsche_half_plane(HalfPlane plane, double gamma0) {
+  ContactRecipe recipe = half_plane(std::move(plane), [gamma0](const Support &support) {
+    return nitsche_support(support, gamma0);
+  });
+  recipe.record.name = "nitsche_half_plane";
+  recipe.record.numbers["gamma0"] = {gamma0};
+  return recipe;
 }
 
 ContactRecipe nitsche_surface(RigidSurface surface, double gamma0) {
@@ -145,6 +172,12 @@ ContactRecipe nitsche_surface(RigidSurface surface, double gamma0) {
 ContactKind nitsche_support_kind() {
   return {"nitsche_support", 1, [](const Record &record) {
             return nitsche_support(support_in(record), number(record, "gamma0"));
+          }};
+}
+
+ContactKind nitsche_half_plane_kind() {
+  return {"nitsche_half_plane", 1, [](const Record &record) {
+            return nitsche_half_plane(half_plane_in(record), number(record, "gamma0"));
           }};
 }
 
@@ -174,6 +207,12 @@ ContactRecipe support_contact(Support support, const SceneOptions &options) {
   const double gamma0 = number_in(options, "nitsche_gamma0");
   return asks_for_nitsche(options) ? nitsche_support(std::move(support), gamma0)
                                    : rigid_support(std::move(support));
+}
+
+ContactRecipe half_plane_contact(HalfPlane plane, const SceneOptions &options) {
+  const double gamma0 = number_in(options, "nitsche_gamma0");
+  return asks_for_nitsche(options) ? nitsche_half_plane(std::move(plane), gamma0)
+                                   : half_plane(std::move(plane));
 }
 
 ContactRecipe surface_contact(RigidSurface surface, const SceneOptions &options) {

@@ -25,12 +25,12 @@ constexpr double mirrored = 1e-7;
 /// The model with all points: its answers, and what each point adds to them.
 class AllPoints {
 public:
-  AllPoints(const ReducedModel &model, const NitscheCurve &curve,
+  AllPoints(const ReducedModel &model, const NitscheLayer &layer,
             const std::vector<Sample> &samples)
-      : model_(model), solver_(model_, curve), scene_(curve.scene), samples_(samples),
-        of_curve_(4 * static_cast<Index>(curve.cells.size())),
-        symmetric_(is_symmetric(curve.scene)) {
-    const std::vector<CurveCell> &cells = curve.cells;
+      : model_(model), solver_(model_, layer), scene_(layer.scene), samples_(samples),
+        of_curve_(4 * static_cast<Index>(layer.cells.size())),
+        symmetric_(is_symmetric(layer.scene)) {
+    const std::vector<CurveCell> &cells = layer.cells;
     const auto count = static_cast<Index>(samples.size());
     answers_.resize(model.primal_size(), count);
     std::vector<char> met(4 * cells.size(), 0); // some answer has contact or friction there
@@ -134,15 +134,15 @@ void set_points(const AllPoints &all, const Vector &factors, const Matrix &press
 
 /// Relative distance of each answer of the model, with the points it has, to that with all;
 /// infinite where it has none.
-Vector errors_of_points(const ReducedModel &model, const NitscheCurve &curve,
+Vector errors_of_points(const ReducedModel &model, const NitscheLayer &layer,
                         const std::vector<Sample> &samples, const Matrix &answers) {
-  ReducedNitsche solver(model, curve);
+  ReducedNitsche solver(model, layer);
   Vector errors(answers.cols());
   for (Index p = 0; p < errors.size(); ++p) {
     const auto all = answers.col(p);
     try {
       const Mu &mu = samples[static_cast<std::size_t>(p)].mu;
-      errors[p] = (solver.solve(expand(curve.scene.parameters, mu)).u - all).norm() /
+      errors[p] = (solver.solve(expand(layer.scene.parameters, mu)).u - all).norm() /
                   std::max(all.norm(), 1e-300);
     } catch (const Error &) {
       errors[p] = std::numeric_limits<double>::infinity();
@@ -154,7 +154,7 @@ Vector errors_of_points(const ReducedModel &model, const NitscheCurve &curve,
 /// Non-negative least squares, point by point, until every answer of the model itself is met: to
 /// first order, at some training parameters and at those that turn out worst. `pressures`: at all
 /// points, of the samples.
-void choose_points(AllPoints &all, double tolerance, const NitscheCurve &curve,
+void choose_points(AllPoints &all, double tolerance, const NitscheLayer &layer,
                    const std::vector<Sample> &samples, const Matrix &pressures, ReducedModel &model,
                    CurveReport &report) {
   constexpr Index few = 64;
@@ -175,7 +175,7 @@ void choose_points(AllPoints &all, double tolerance, const NitscheCurve &curve,
   for (double first_order = tolerance;;) {
     fit.improve(first_order);
     set_points(all, fit.factors(), pressures, *model.nitsche);
-    const Vector errors = errors_of_points(model, curve, samples, all.answers());
+    const Vector errors = errors_of_points(model, layer, samples, all.answers());
     Index worst = 0;
     report.points.push_back(static_cast<int>(model.nitsche->points.size()));
     report.error.push_back(errors.maxCoeff(&worst));
@@ -191,13 +191,13 @@ void choose_points(AllPoints &all, double tolerance, const NitscheCurve &curve,
 
 /// P_n and, with friction, P_tau of the samples at all points.
 Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) {
-  const NitscheCurve &curve = curve_of(problem.contact());
-  const Index points = 4 * static_cast<Index>(curve.cells.size());
-  Matrix result(curve.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
+  const NitscheLayer layer = layer_of(problem.contact());
+  const Index points = 4 * static_cast<Index>(layer.cells.size());
+  Matrix result(layer.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const Vector u = displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
     const auto faces =
-        nitsche_faces(curve, expand(curve.scene.parameters, samples[p].mu), curve.cells, u);
+        nitsche_faces(layer, expand(layer.scene.parameters, samples[p].mu), layer.cells, u);
     result.col(static_cast<Index>(p)) = nitsche_pressures(faces, u).reshaped().head(result.rows());
   }
   return result;
@@ -208,30 +208,30 @@ Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) 
 CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model) {
-  const NitscheCurve &curve = curve_of(problem.contact());
-  if (curve.facing.follows_state && options.rule == CurveRule::interpolated)
+  const NitscheLayer layer = layer_of(problem.contact());
+  if (layer.follows_state() && options.rule == CurveRule::interpolated)
     throw bad_input("-nitsche_quadrature interpolated is for contact at rest: leave it out, or use "
                     "-kinematics small");
   CurveReport report;
   model.nitsche = NitscheModel{};
   NitscheModel &nitsche = *model.nitsche;
-  nitsche.consistency = interpolate_consistency(curve, samples, model.contact_trace);
+  nitsche.consistency = interpolate_consistency(layer, samples, model.contact_trace);
   nitsche.starts_mu.resize(model.parameters.size(), static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p)
     std::copy(samples[p].mu.begin(), samples[p].mu.end(),
               nitsche.starts_mu.col(static_cast<Index>(p)).begin());
   nitsche.rule = CurveRule::full;
   nitsche.starts = pressures_of(problem, samples);
-  if (curve.facing.follows_state) nitsche.states = coefficients;
+  if (layer.follows_state()) nitsche.states = coefficients;
   if (options.rule == CurveRule::empirical) {
-    AllPoints all(model, curve, samples);
+    AllPoints all(model, layer, samples);
     const Matrix pressures = nitsche.starts;
     if (all.points().empty())
       throw failure("there is no contact at any training mu, and nothing to integrate: widen the "
                     "parameter box");
     nitsche.rule = CurveRule::empirical;
     choose_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, round_off),
-                  curve, samples, pressures, model, report);
+                  layer, samples, pressures, model, report);
   } else if (options.rule == CurveRule::interpolated) {
     interpolate_terms(problem, samples, options, model, report);
     nitsche.rule = CurveRule::interpolated;

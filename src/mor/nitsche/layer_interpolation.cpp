@@ -131,14 +131,14 @@ void add_state(const LayerPattern &pattern, const std::vector<CurveCell> &cells,
 
 States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pattern,
                  const std::vector<Mu> &all_mu) {
-  const NitscheCurve &curve = curve_of(problem.contact());
-  const std::vector<CurveCell> &cells = curve.cells;
+  const NitscheLayer layer = layer_of(problem.contact());
+  const std::vector<CurveCell> &cells = layer.cells;
   States states;
   for (const Mu &mu : all_mu) {
     const Operators &op = problem.assemble(mu);
-    const std::vector<NitscheFace> faces = nitsche_faces(curve, op.mu, cells);
-    solver.watch = [&](const Vector &layer, const Vector &bounds) {
-      add_state(pattern, cells, faces, layer, bounds, states);
+    const std::vector<NitscheFace> faces = nitsche_faces(layer, op.mu, cells);
+    solver.watch = [&](const Vector &on_layer, const Vector &bounds) {
+      add_state(pattern, cells, faces, on_layer, bounds, states);
     };
     const NitscheSolution last = solver.solve(op);
     states.converged.push_back(static_cast<Index>(states.values[0].size()));
@@ -149,13 +149,13 @@ States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pa
 
 } // namespace
 
-LayerTerms interpolate_consistency(const NitscheCurve &curve, const std::vector<Sample> &samples,
+LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<Sample> &samples,
                                    const Matrix &trace) {
-  const LayerPattern pattern(curve.cells);
+  const LayerPattern pattern(layer.cells);
   std::vector<Vector> values;
   for (const Sample &sample : samples) {
-    const auto faces = nitsche_faces(curve, expand(curve.scene.parameters, sample.mu), curve.cells);
-    values.push_back(pattern.values(curve.cells, nitsche_consistency(faces, curve.whole_stress())));
+    const auto faces = nitsche_faces(layer, expand(layer.scene.parameters, sample.mu), layer.cells);
+    values.push_back(pattern.values(layer.cells, nitsche_consistency(faces)));
   }
   return interpolated(side_by_side(values), pattern.keys(), true, exact,
                       [&](const Vector &column) { return pattern.projected(column, trace); })
@@ -167,9 +167,10 @@ void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
   NitscheModel &nitsche = *model.nitsche;
   const Matrix &trace = model.contact_trace;
   // The steps as printed; with friction they can cycle without line search.
-  const bool friction = curve_of(problem.contact()).friction();
+  const NitscheLayer layer = layer_of(problem.contact());
+  const bool friction = layer.friction();
   NitscheSolver solver(problem, {.full_steps = !friction});
-  const LayerPattern pattern(curve_of(problem.contact()).cells);
+  const LayerPattern pattern(layer.cells);
   const std::vector<Mu> training = parameters_of(samples);
   const States states = states_at(problem, solver, pattern, training);
   const States others = states_at(problem, solver, pattern, options.eim_validation);

@@ -10,7 +10,7 @@ namespace rbvi {
 
 /// a_gamma - a over the training parameters, exact but for round-off where it is a sum of few
 /// terms. `trace`: contact dofs x n.
-LayerTerms interpolate_consistency(const NitscheCurve &curve, const std::vector<Sample> &samples,
+LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<Sample> &samples,
                                    const Matrix &trace);
 
 /// B^n, Theta^n and, with friction, B^tau, Theta^tau over all pairs of a training parameter and a

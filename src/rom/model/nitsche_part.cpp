@@ -19,6 +19,14 @@ constexpr NamedTerms layer_terms[] = {{"nitsche/consistency", &NitscheModel::con
                                       {"nitsche/friction_matrix", &NitscheModel::friction_matrix},
                                       {"nitsche/friction_vector", &NitscheModel::friction_vector}};
 
+/// Cells beside the curves.
+Index curve_cells(const ReducedModel &model) {
+  Index count = 0;
+  for (const InterfaceModel &interface : model.interfaces)
+    count += interface.mesh.count();
+  return count;
+}
+
 /// The terms of the first `size` of n columns.
 LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
   LayerTerms result = terms;
@@ -46,8 +54,8 @@ void check_layer_terms(const LayerTerms &terms, Index entries, Index dofs,
 void check_nitsche(const ReducedModel &model) {
   if (!model.nitsche) return;
   const NitscheModel &nitsche = *model.nitsche;
-  const Index cells = model.interfaces.front().mesh.count(), n = model.primal_size(),
-              packed = n * (n + 1) / 2, dofs = model.contact_trace.rows();
+  const Index cells = curve_cells(model), n = model.primal_size(), packed = n * (n + 1) / 2,
+              dofs = model.contact_trace.rows();
   check_layer_terms(nitsche.consistency, packed, dofs, "nitsche/consistency");
   check_layer_terms(nitsche.contact_matrix, packed, dofs, "nitsche/contact_matrix");
   check_layer_terms(nitsche.contact_vector, n, dofs, "nitsche/contact_vector");
@@ -130,7 +138,7 @@ std::string describe_curve(const ReducedModel &model) {
            number(nitsche.contact_vector.size()) + ", B^tau " +
            number(nitsche.friction_matrix.size()) + ", Theta^tau " +
            number(nitsche.friction_vector.size());
-  const std::size_t all = 4 * static_cast<std::size_t>(model.interfaces.front().mesh.count());
+  const std::size_t all = 4 * static_cast<std::size_t>(curve_cells(model));
   const bool few = nitsche.rule == CurveRule::empirical;
   return number(few ? nitsche.points.size() : all) + " of " + number(all) + " Gauss points";
 }

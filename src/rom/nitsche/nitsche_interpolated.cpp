@@ -36,8 +36,8 @@ void add_matrix(const LayerTerms &terms, const Vector &theta, Matrix &a) {
 
 } // namespace
 
-ReducedNitsche::Interpolated::Interpolated(const ReducedModel &of, const NitscheCurve &whole)
-    : model(*of.nitsche), trace(of.contact_trace), curve(whole), cells(touched(model, whole.cells)),
+ReducedNitsche::Interpolated::Interpolated(const ReducedModel &of, const NitscheLayer &whole)
+    : model(*of.nitsche), trace(of.contact_trace), layer(whole), cells(touched(model, whole.cells)),
       contact_matrix(model.contact_matrix, cells), contact_vector(model.contact_vector, cells),
       friction_matrix(model.friction_matrix, cells), friction_vector(model.friction_vector, cells) {
 }
@@ -45,14 +45,14 @@ ReducedNitsche::Interpolated::Interpolated(const ReducedModel &of, const Nitsche
 ReducedNitsche::Interpolated::Terms
 ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const System &system,
                                     const Vector &u) const {
-  const Vector layer = trace * u;
-  const Matrix pressures = nitsche_pressures(faces, layer);
-  const Vector contact = nitsche_residual(faces, layer, {});
+  const Vector on_layer = trace * u;
+  const Matrix pressures = nitsche_pressures(faces, on_layer);
+  const Vector contact = nitsche_residual(faces, on_layer, {});
   Vector sum = Vector::Zero(u.size());
   if (model.contact_vector.size() > 0)
     sum += model.contact_vector.reduced * contact_vector.of_vector(contact);
   if (model.friction_vector.size() > 0) {
-    const Vector both = nitsche_residual(faces, layer, nitsche_bounds(pressures, system.law));
+    const Vector both = nitsche_residual(faces, on_layer, nitsche_bounds(faces, pressures));
     sum += model.friction_vector.reduced * friction_vector.of_vector(both - contact);
   }
   const Vector au = system.quadratic.a_gamma * u;
@@ -68,7 +68,7 @@ Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &fac
              contact_matrix.of_blocks(selected(contact, contact_matrix.cells())), result);
   if (model.friction_matrix.size() > 0) {
     std::vector<FaceBlock> friction =
-        nitsche_tangent(faces, pressures, nitsche_bounds(pressures, system.law));
+        nitsche_tangent(faces, pressures, nitsche_bounds(faces, pressures));
     for (std::size_t k = 0; k < friction.size(); ++k)
       friction[k] -= contact[k];
     add_matrix(model.friction_matrix,
@@ -93,7 +93,7 @@ Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &
   const Matrix of_contact = times_trace(contact);
   if (model.contact_vector.size() > 0) add(model.contact_vector, contact_vector, of_contact);
   if (model.friction_vector.size() > 0) {
-    const Vector bounds = nitsche_bounds(pressures, system.law);
+    const Vector bounds = nitsche_bounds(faces, pressures);
     add(model.friction_vector, friction_vector,
         times_trace(nitsche_tangent(faces, pressures, bounds)) - of_contact);
   }
@@ -116,7 +116,7 @@ Matrix ReducedNitsche::Interpolated::times_trace(const std::vector<FaceBlock> &b
 
 int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vector &near,
                                         System &system) {
-  const std::vector<NitscheFace> faces = nitsche_faces(curve, all_parameters, cells);
+  const std::vector<NitscheFace> faces = nitsche_faces(layer, all_parameters, cells);
   int steps = 0;
   for (const bool printed : {true, false}) {
     system.u = near;

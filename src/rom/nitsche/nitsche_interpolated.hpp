@@ -9,11 +9,11 @@ namespace rbvi {
 struct ReducedNitsche::Interpolated {
   const NitscheModel &model;
   const Matrix &trace; ///< contact dofs x n: the primal basis
-  const NitscheCurve &curve;
+  const NitscheLayer &layer;
   std::vector<CurveCell> cells; ///< that some sampled entry touches
   SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
 
-  Interpolated(const ReducedModel &of, const NitscheCurve &whole);
+  Interpolated(const ReducedModel &of, const NitscheLayer &whole);
   /// From the coefficients `near`, by (4.79); where that does not converge (its matrix is not the
   /// derivative of its vectors), by the derivative, with halved steps. Into system.u. Returns the
   /// steps.

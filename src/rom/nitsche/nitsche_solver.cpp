@@ -15,22 +15,22 @@ namespace {
 using ChosenPoints = std::vector<std::pair<int, double>>;
 
 /// The points that the model integrates at; none where it interpolates.
-ChosenPoints points_of(const NitscheModel &nitsche, const NitscheCurve &curve) {
+ChosenPoints points_of(const NitscheModel &nitsche, const NitscheLayer &layer) {
   ChosenPoints chosen;
   if (nitsche.rule == CurveRule::empirical)
     for (std::size_t k = 0; k < nitsche.points.size(); ++k)
       chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
   else if (nitsche.rule == CurveRule::full)
-    for (int k = 0; k < 4 * static_cast<int>(curve.cells.size()); ++k)
+    for (int k = 0; k < 4 * static_cast<int>(layer.cells.size()); ++k)
       chosen.emplace_back(k, 1.0);
   return chosen;
 }
 
 /// All points of the curve. Where scene and mesh are symmetric, so that the points of the model lie
 /// on one half, which stands for both: those of that half, which count twice.
-ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheCurve &curve) {
-  const Vector x = point_abscissae(curve.cells);
-  const bool half = is_symmetric(curve.scene) && nitsche.rule == CurveRule::empirical &&
+ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheLayer &layer) {
+  const Vector x = point_abscissae(layer.cells);
+  const bool half = is_symmetric(layer.scene) && nitsche.rule == CurveRule::empirical &&
                     std::all_of(nitsche.points.begin(), nitsche.points.end(),
                                 [&](int point) { return x[point] < 0; });
   ChosenPoints chosen;
@@ -41,18 +41,19 @@ ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheCurve &curve)
 
 } // namespace
 
-ReducedNitsche::ReducedNitsche(const ReducedModel &model, const NitscheCurve &curve)
-    : model_(model), curve_(curve), consistency_(model.nitsche->consistency, curve.cells) {
-  system_ = std::make_unique<System>(model, curve.cells, points_of(*model.nitsche, curve));
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
+    : model_(model), layer_(std::move(layer)),
+      consistency_(model.nitsche->consistency, layer_.cells) {
+  system_ = std::make_unique<System>(model, layer_.cells, points_of(*model.nitsche, layer_));
   if (model.nitsche->rule == CurveRule::interpolated)
-    interpolated_ = std::make_unique<Interpolated>(model, curve);
+    interpolated_ = std::make_unique<Interpolated>(model, layer_);
 }
 
 ReducedNitsche::~ReducedNitsche() = default;
 
 ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_parameters) const {
   const Index n = model_.primal_size();
-  const Scene &scene = curve_.scene;
+  const Scene &scene = layer_.scene;
   Quadratic result;
   result.a =
       unpacked(model_.a.reduced * affine_coefficients(model_.a, scene.a, scene, all_parameters), n);
@@ -60,15 +61,15 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_paramet
   if (model_.f.size() > 0)
     result.f = model_.f.reduced * affine_coefficients(model_.f, scene.f, scene, all_parameters);
   const std::vector<NitscheFace> faces =
-      nitsche_faces(curve_, all_parameters, selected(curve_.cells, consistency_.cells()));
-  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces, curve_.whole_stress()));
+      nitsche_faces(layer_, all_parameters, selected(layer_.cells, consistency_.cells()));
+  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces));
   result.a_gamma = result.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
   return result;
 }
 
 Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_parameters) const {
   if (of_samples.cols() == 0) return {};
-  const ParameterSpace &space = curve_.scene.parameters;
+  const ParameterSpace &space = layer_.scene.parameters;
   return local_fit(of_samples, parts_of_box(space, model_.nitsche->starts_mu),
                    parts_of_box(space, all_parameters));
 }
@@ -76,14 +77,13 @@ Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_par
 NitscheAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
   const NitscheModel &nitsche = *model_.nitsche;
-  system.law = nitsche_law(curve_, all_parameters);
   system.quadratic = quadratic_at(all_parameters);
   NitscheAnswer answer;
   if (interpolated_) {
     answer.iterations =
         interpolated_->solve(all_parameters, predicted(nitsche.starts, all_parameters), system);
   } else {
-    system.set_points(curve_, all_parameters);
+    system.set_points(layer_, all_parameters);
     system.predict(predicted(nitsche.starts, all_parameters),
                    predicted(nitsche.states, all_parameters));
     answer.iterations = system.settle();
@@ -109,20 +109,19 @@ Matrix ReducedNitsche::tangent() const {
   return system_->tangent_at(system_->pressures);
 }
 
-CurveFields ReducedNitsche::fields(const FullMu &all_parameters, const Vector &u) const {
-  return nitsche_fields(curve_, all_parameters, model_.contact_trace * u);
+Vector ReducedNitsche::multiplier(const FullMu &all_parameters, const Vector &u) const {
+  return nitsche_multiplier(layer_, all_parameters, model_.contact_trace * u);
 }
 
 Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vector &u,
                                         Outputs &outputs) const {
   if (model_.nitsche->rule == CurveRule::full) return u;
   if (!whole_)
-    whole_ = std::make_unique<System>(model_, curve_.cells, whole_curve(*model_.nitsche, curve_));
-  whole_->law = nitsche_law(curve_, all_parameters);
+    whole_ = std::make_unique<System>(model_, layer_.cells, whole_curve(*model_.nitsche, layer_));
   whole_->quadratic = quadratic_at(all_parameters);
-  whole_->set_points(curve_, all_parameters);
+  whole_->set_points(layer_, all_parameters);
   whole_->set(u);
-  whole_->bounds = nitsche_bounds(whole_->pressures, whole_->law);
+  whole_->bounds = whole_->bounds_at(whole_->pressures);
   (void)whole_->residual();
   outputs.quadrature_residual = whole_->relative;
   (void)whole_->settle();
@@ -131,12 +130,11 @@ Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vect
 
 void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
                              Outputs &outputs) const {
-  const Vector layer = model_.contact_trace * over_whole_curve(all_parameters, u, outputs);
-  const std::vector<NitscheFace> faces = nitsche_faces(curve_, all_parameters, curve_.cells, layer);
-  const CurveFields fields = nitsche_fields(curve_, all_parameters, layer);
-  nitsche_outputs(faces, nitsche_pressures(faces, layer), fields,
-                  nitsche_law(curve_, all_parameters), outputs);
-  if (curve_.facing.follows_state) outputs.ends_in_contact = ends_in_contact(fields);
+  const Vector on_layer = model_.contact_trace * over_whole_curve(all_parameters, u, outputs);
+  const std::vector<NitscheFace> faces =
+      nitsche_faces(layer_, all_parameters, layer_.cells, on_layer);
+  nitsche_outputs(layer_, all_parameters, faces, on_layer, nitsche_pressures(faces, on_layer),
+                  outputs);
 }
 
 } // namespace rbvi

@@ -7,6 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rbvi {
@@ -43,25 +44,31 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
   u = Vector::Zero(model.primal_size());
 }
 
-void ReducedNitsche::System::set_points(const NitscheCurve &curve, const FullMu &all_parameters) {
-  const bool friction = law.law != FrictionLaw::none;
+void ReducedNitsche::System::set_points(const NitscheLayer &layer, const FullMu &all_parameters) {
+  laws.clear();
+  for (const Part &part : parts)
+    laws.insert(
+        laws.end(), part.points.size(),
+        layer.curve_of(layer.cells[static_cast<std::size_t>(part.cell)]).law_at(all_parameters));
+  friction = layer.friction();
   functionals.resize(u.size(), friction ? 2 * points : points);
   offsets.resize(functionals.cols());
   weights.resize(points);
   gamma.resize(points);
   turning = Vector::Zero(points);
-  if (curve.facing.follows_state) return set_at_rest(curve, all_parameters);
-  at_rest.facing = nullptr;
+  if (layer.follows_state()) return set_at_rest(layer, all_parameters);
+  at_rest.facing.clear();
   Index next = 0;
   for (const Part &part : parts) {
-    const CurveCell &beside = curve.cells[static_cast<std::size_t>(part.cell)];
-    const CurveCellAtMu at = curve_cell_at(curve, all_parameters, beside);
+    const CurveCell &beside = layer.cells[static_cast<std::size_t>(part.cell)];
+    const CurveCellAtMu at = curve_cell_at(layer, all_parameters, beside);
+    const NitscheFacing &facing = layer.curve_of(beside).facing;
     const auto count = static_cast<Index>(part.points.size());
     Eigen::Matrix<double, 12, Eigen::Dynamic> local(12, friction ? 2 * count : count);
     for (Index k = 0; k < count; ++k) {
       const auto [q, factor] = part.points[static_cast<std::size_t>(k)];
       const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
-      const NitschePoint point = nitsche_point(curve.scene, curve.facing, all_parameters, at.cell,
+      const NitschePoint point = nitsche_point(layer.scene, facing, all_parameters, at.cell,
                                                beside.edge, at.material, rule.s);
       local.col(k) = point.sigma_n - at.gamma * point.n;
       offsets[next + k] = at.gamma * point.facing.gap;
@@ -80,22 +87,24 @@ void ReducedNitsche::System::set_points(const NitscheCurve &curve, const FullMu 
 }
 
 /// Both axes of every point, and the displacement along them.
-void ReducedNitsche::System::set_at_rest(const NitscheCurve &curve, const FullMu &all_parameters) {
-  at_rest = {&curve.facing, all_parameters, {}, {}, Matrix(u.size(), 4 * points)};
+void ReducedNitsche::System::set_at_rest(const NitscheLayer &layer, const FullMu &all_parameters) {
+  at_rest = {{}, all_parameters, {}, {}, Matrix(u.size(), 4 * points)};
   along_tau.resize(u.size(), points);
   Index next = 0;
   for (const Part &part : parts) {
-    const CurveCell &beside = curve.cells[static_cast<std::size_t>(part.cell)];
-    const CurveCellAtMu at = curve_cell_at(curve, all_parameters, beside);
+    const CurveCell &beside = layer.cells[static_cast<std::size_t>(part.cell)];
+    const CurveCellAtMu at = curve_cell_at(layer, all_parameters, beside);
+    const NitscheFacing &facing = layer.curve_of(beside).facing;
     Eigen::Matrix<double, 12, 4> local;
     for (const auto &[q, factor] : part.points) {
       const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
-      const NitschePoint point = nitsche_point(curve.scene, curve.facing, all_parameters, at.cell,
+      const NitschePoint point = nitsche_point(layer.scene, facing, all_parameters, at.cell,
                                                beside.edge, at.material, rule.s);
       local << point.sigma_n - at.gamma * point.n, point.sigma_tau - at.gamma * point.tau, point.n,
           point.tau;
       for (Index k = 0; k < 4; ++k)
         at_rest.functionals.col(k * points + next).noalias() = part.basis * local.col(k);
+      at_rest.facing.push_back(&facing);
       at_rest.x.push_back(point.x);
       at_rest.normal.push_back(point.facing.normal);
       weights[next] = factor * rule.weight * point.weight;
@@ -106,16 +115,16 @@ void ReducedNitsche::System::set_at_rest(const NitscheCurve &curve, const FullMu
 
 /// The axes of every point to those of a state.
 void ReducedNitsche::System::turn_to(const Vector &coefficients) {
-  if (at_rest.facing == nullptr) return;
-  const bool friction = law.law != FrictionLaw::none;
+  if (at_rest.facing.empty()) return;
   const auto columns = [&](Index k) { return at_rest.functionals.middleCols(k * points, points); };
   const Vector along_n = columns(2).transpose() * coefficients,
                across = columns(3).transpose() * coefficients;
   for (Index i = 0; i < points; ++i) {
     const Point &n = at_rest.normal[static_cast<std::size_t>(i)];
-    const SupportPoint now = at_rest.facing->at(
-        at_rest.mu, at_rest.x[static_cast<std::size_t>(i)],
-        {along_n[i] * n[0] - across[i] * n[1], along_n[i] * n[1] + across[i] * n[0], 0});
+    const NitscheFacing &facing = *at_rest.facing[static_cast<std::size_t>(i)];
+    const SupportPoint now =
+        facing.at(at_rest.mu, at_rest.x[static_cast<std::size_t>(i)],
+                  {along_n[i] * n[0] - across[i] * n[1], along_n[i] * n[1] + across[i] * n[0], 0});
     const double c = now.normal[0] * n[0] + now.normal[1] * n[1],
                  s = now.normal[1] * n[0] - now.normal[0] * n[1];
     functionals.col(i) = c * columns(0).col(i) + s * columns(1).col(i);
@@ -148,6 +157,14 @@ Vector ReducedNitsche::System::weighted(double PointTerm::*part, const Matrix &a
   return result;
 }
 
+Vector ReducedNitsche::System::bounds_at(const Matrix &at) const {
+  if (!friction) return {};
+  Vector result(points);
+  for (Index i = 0; i < points; ++i)
+    result[i] = nitsche_bound(laws[static_cast<std::size_t>(i)], at(i, 0));
+  return result;
+}
+
 /// Sets `relative`.
 Vector ReducedNitsche::System::residual() {
   const Vector au = quadratic.a_gamma * u,
@@ -165,7 +182,7 @@ Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
     if (d[i] != 0) active.push_back(i);
   const Matrix part = functionals(Eigen::all, active);
   Matrix result = quadratic.a_gamma + (part * d(active).asDiagonal()) * part.transpose();
-  if (at_rest.facing != nullptr)
+  if (!at_rest.facing.empty())
     result.noalias() += (along_tau * turning_at(at).asDiagonal()) * along_tau.transpose();
   return result;
 }
@@ -180,22 +197,22 @@ Vector ReducedNitsche::System::turning_at(const Matrix &at) const {
 void ReducedNitsche::System::predict(const Vector &start, const Vector &state) {
   if (start.size() != functionals.cols()) { // from u = 0
     set(Vector::Zero(u.size()));
-    bounds = nitsche_bounds(pressures, law);
+    bounds = bounds_at(pressures);
     return;
   }
   Matrix at = Matrix::Zero(points, 2);
   at.reshaped().head(start.size()) = start;
-  bounds = nitsche_bounds(at, law);
+  bounds = bounds_at(at);
   turn_to(state);
   const Vector d = weighted(&PointTerm::curvature, at);
   const Vector forces = weighted(&PointTerm::slope, at) + d.cwiseProduct(offsets - start);
   const Eigen::LLT<Matrix> factor(tangent_at(at));
   if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
   Vector right = quadratic.f - functionals * forces;
-  if (at_rest.facing != nullptr)
+  if (!at_rest.facing.empty())
     right += along_tau * turning_at(at).cwiseProduct(along_tau.transpose() * state);
   set(factor.solve(right));
-  bounds = nitsche_bounds(pressures, law);
+  bounds = bounds_at(pressures);
 }
 
 /// Newton's method with bounds as they are. Returns the steps.
@@ -212,7 +229,7 @@ int ReducedNitsche::System::minimise() {
     NitscheLine line{weights, gamma, pressures, Matrix::Zero(points, 2), bounds};
     line.change.reshaped().head(functionals.cols()) = functionals.transpose() * d;
     double of_turning = 0;
-    if (at_rest.facing != nullptr)
+    if (!at_rest.facing.empty())
       of_turning = turning_at(pressures).dot((along_tau.transpose() * d).cwiseAbs2());
     const double t = line_minimum((quadratic.a_gamma * u - quadratic.f).dot(d),
                                   d.dot(quadratic.a_gamma * d) + of_turning, line);
@@ -228,7 +245,7 @@ int ReducedNitsche::System::minimise() {
 std::optional<int> ReducedNitsche::System::follow_bound() {
   double before = 1;
   for (int step = 0; step <= most_full_steps; ++step) {
-    bounds = nitsche_bounds(pressures, law);
+    bounds = bounds_at(pressures);
     const Vector r = residual();
     if (relative <= accuracy) return step;
     if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
@@ -236,8 +253,10 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
     std::vector<Index> slipping; // there the bound moves with P_n
     std::vector<double> rates;
     for (Index i = 0; i < points; ++i) {
+      const NitscheLaw &law = laws[static_cast<std::size_t>(i)];
       const double shear = pressures(i, 1);
-      if (!(std::abs(shear) > bounds[i]) || pressures(i, 0) >= 0) continue;
+      if (law.law != FrictionLaw::coulomb || !(std::abs(shear) > bounds[i]) || pressures(i, 0) >= 0)
+        continue;
       slipping.push_back(i);
       rates.push_back(-std::copysign(law.value, shear) * weights[i] / gamma[i]);
     }
@@ -250,7 +269,7 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
     if (!d.allFinite()) return std::nullopt;
     for (double t = 1; t >= shortest_step; t /= 2) { // the shortest one is taken whatever it gives
       set(start + t * d);
-      bounds = nitsche_bounds(pressures, law);
+      bounds = bounds_at(pressures);
       if (residual().norm() < r.norm()) break;
     }
   }
@@ -259,17 +278,17 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
 
 /// From the last iterate to the answer. Returns the steps.
 int ReducedNitsche::System::settle() {
-  if (!law.moves()) return minimise();
+  if (std::ranges::none_of(laws, &NitscheLaw::moves)) return minimise();
   int steps = 0;
-  if (law.law == FrictionLaw::coulomb) {
+  if (std::ranges::any_of(laws, [](auto &law) { return law.law == FrictionLaw::coulomb; })) {
     if (const std::optional<int> more = follow_bound()) return *more;
     steps = most_full_steps;
   }
   for (int loop = 0; loop < most_loops; ++loop) {
     const Vector before = u;
-    bounds = nitsche_bounds(pressures, law);
+    bounds = bounds_at(pressures);
     steps += minimise();
-    bounds = nitsche_bounds(pressures, law);
+    bounds = bounds_at(pressures);
     (void)residual();
     if ((u - before).norm() <= bound_accuracy * u.norm() && relative <= round_off) return steps;
   }

@@ -24,7 +24,7 @@ struct ReducedNitsche::System {
 
   /// Of contact that follows the displacement: the points at rest.
   struct AtRest {
-    const NitscheFacing *facing = nullptr; ///< null: contact at rest
+    std::vector<const NitscheFacing *> facing; ///< empty: contact at rest
     FullMu mu;
     std::vector<Point> x, normal;
     Matrix functionals; ///< n x 4 points: of P_n and P_tau without the gap, of u_n, of u_tau
@@ -32,9 +32,10 @@ struct ReducedNitsche::System {
 
   // At mu.
   Quadratic quadratic;
-  NitscheLaw law;
-  Matrix functionals; ///< n x 2 points: of P_n, then (with friction) of P_tau
-  Vector offsets;     ///< 2 points
+  std::vector<NitscheLaw> laws; ///< of the points
+  bool friction = false;        ///< of some of them
+  Matrix functionals;           ///< n x 2 points: of P_n, then (with friction) of P_tau
+  Vector offsets;               ///< 2 points
   Vector weights, gamma;
   AtRest at_rest;
 
@@ -50,12 +51,14 @@ struct ReducedNitsche::System {
   using ChosenPoints = std::vector<std::pair<int, double>>;
   System(const ReducedModel &model, const std::vector<CurveCell> &cells,
          const ChosenPoints &chosen);
-  void set_points(const NitscheCurve &curve, const FullMu &all_parameters);
-  void set_at_rest(const NitscheCurve &curve, const FullMu &all_parameters);
+  void set_points(const NitscheLayer &layer, const FullMu &all_parameters);
+  void set_at_rest(const NitscheLayer &layer, const FullMu &all_parameters);
   void set(const Vector &coefficients);
   void turn_to(const Vector &coefficients);
   /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.
   Vector weighted(double PointTerm::*part, const Matrix &at) const;
+  /// Of friction, at these pressures; empty without.
+  Vector bounds_at(const Matrix &at) const;
   Vector residual();
   Matrix tangent_at(const Matrix &at) const;
   Vector turning_at(const Matrix &at) const;

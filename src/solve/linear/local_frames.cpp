@@ -1,5 +1,6 @@
 #include "rbvi/solve/linear/local_frames.hpp"
 
+#include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
 
 #include <array>
@@ -7,23 +8,41 @@
 
 namespace rbvi {
 
-std::vector<NodalBound> bounds_along(const ContactInterface &interface, const FullMu &mu) {
+namespace {
+
+/// Adds those of one interface, by contact dof.
+void add_bounds(const ContactInterface &interface, const FullMu &mu,
+                std::map<int, NodalBound> &bounds) {
   const InterfaceMesh &mesh = interface.mesh();
-  std::map<int, NodalBound> bounds;
   for (Index e = 0; e < mesh.count(); ++e) {
     const int edge = mesh.edges[static_cast<std::size_t>(e)];
     const auto [a, b] = simplex_edges[static_cast<std::size_t>(edge)];
     std::vector<int> on_curve{a, b};
     if (mesh.degree == 2) on_curve.push_back(3 + edge);
     for (const int local : on_curve) {
-      const int node = mesh.nodes_of(e)[local];
-      const PointConstraint at =
-          interface.constraint_at(mu, mesh.points[static_cast<std::size_t>(node)]);
-      bounds[node] = {mesh.dofs[static_cast<std::size_t>(2 * node)], at.direction, at.gap};
+      const auto node = static_cast<std::size_t>(mesh.nodes_of(e)[local]);
+      const int dof = mesh.dofs[2 * node];
+      if (dof < 0 || mesh.dofs[2 * node + 1] < 0) continue;
+      const PointConstraint at = interface.constraint_at(mu, mesh.points[node]);
+      bounds[dof] = {dof, at.direction, at.gap};
     }
   }
+}
+
+} // namespace
+
+std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu) {
+  std::map<int, NodalBound> all;
+  for (const auto &interface : contact.interfaces) {
+    std::map<int, NodalBound> bounds;
+    add_bounds(*interface, mu, bounds);
+    for (const auto &[dof, bound] : bounds)
+      if (!all.emplace(dof, bound).second)
+        throw bad_input("two contact curves share a node, whose displacement has one bound: leave "
+                        "out -nitsche_bounds");
+  }
   std::vector<NodalBound> result;
-  for (const auto &[node, bound] : bounds)
+  for (const auto &[dof, bound] : all)
     result.push_back(bound);
   return result;
 }

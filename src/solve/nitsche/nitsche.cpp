@@ -30,9 +30,9 @@ NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *st
   const int factorised_before = system.factorisations;
   Handle<Vec> unknowns = like(op.f);
   Vec u = unknowns.get();
-  const bool nested = system.law.moves() && !options_.single_loop;
+  const bool nested = system.bounds_move() && !options_.single_loop;
   if (start != nullptr) {
-    system.predict(*start, nitsche_bounds(start->pressures, system.law), u);
+    system.predict(*start, nitsche_bounds(system.faces, start->pressures), u);
   } else if (options_.full_steps) {
     RBVI_CALL(VecZeroEntries(u));
     system.set_bounds(u);

@@ -83,10 +83,10 @@ NitscheSystem &system_of(void *context) {
 
 NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
                              const NitscheOptions &chosen)
-    : solver(of), problem(whole), curve(curve_of(whole.contact())), options(chosen),
+    : solver(of), problem(whole), layer(layer_of(whole.contact())), options(chosen),
       rows(global_rows(whole.trace(), whole.dofs().first_free)) {
   if (!options.nonpenetration) return;
-  if (curve.facing.follows_state)
+  if (layer.follows_state())
     throw bad_input("-nitsche_bounds nonpenetration is for contact at rest: leave it out, or use "
                     "-kinematics small");
   frames.emplace(whole);
@@ -95,10 +95,9 @@ NitscheSystem::NitscheSystem(const NitscheSolver &of, const Problem &whole,
 void NitscheSystem::set(const Operators &op) {
   if (!snes) make_snes(op);
   mu = op.mu;
-  faces = nitsche_faces(curve, mu, curve.cells);
-  law = nitsche_law(curve, op.mu);
+  faces = nitsche_faces(layer, mu, layer.cells);
   if (frames) {
-    frames->set(bounds_along(*problem.contact().interfaces.front(), op.mu));
+    frames->set(bounds_along(problem.contact(), op.mu));
     turn(frames->bounds(), faces);
     f = frames->turned(op.f);
     upper = frames->upper();
@@ -111,12 +110,12 @@ void NitscheSystem::set(const Operators &op) {
     RBVI_CALL(VecCopy(op.f, f.get()));
     RBVI_CALL(MatCopy(op.a, a_gamma.get(), SAME_NONZERO_PATTERN));
   }
-  add_blocks(faces, nitsche_consistency(faces, curve.whole_stress()), rows, a_gamma.get());
+  add_blocks(faces, nitsche_consistency(faces), rows, a_gamma.get());
 }
 
 void NitscheSystem::residual(Vec u, Vec r) {
   turn_to(u);
-  if (law.moves() && options.single_loop) set_bounds(u);
+  if (bounds_move() && options.single_loop) set_bounds(u);
   const Vector terms = nitsche_residual(faces, on_layer(u), bounds);
   RBVI_CALL(MatMult(a_gamma.get(), u, r));
   RBVI_CALL(VecAXPY(r, -1, f.get()));
@@ -139,9 +138,9 @@ void NitscheSystem::predict_from_rest(Vec u) {
   const Handle<Vec> rest = like(u);
   RBVI_CALL(VecZeroEntries(rest.get()));
   Matrix pressures = nitsche_pressures(faces, on_layer(rest.get()));
-  const Vector of_law = nitsche_bounds(pressures, law);
+  const Vector of_law = nitsche_bounds(faces, pressures);
   pressures.col(0).array() -= edge_depth * std::min(0.0, pressures.col(0).minCoeff());
-  predict({rest.get(), pressures}, law.moves() ? Vector(Vector::Zero(of_law.size())) : of_law, u);
+  predict({rest.get(), pressures}, bounds_move() ? Vector(Vector::Zero(of_law.size())) : of_law, u);
 }
 
 void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bounds, Vec u) {
@@ -239,7 +238,7 @@ SNESConvergedReason NitscheSystem::judge(PetscInt step, double r) {
   }
   // Where bounds follow the steps, residuals fall slowly, and not at each step.
   const bool stagnant =
-      law.moves() && options.single_loop ? step - best_step >= patience : relative > 0.1 * before;
+      bounds_move() && options.single_loop ? step - best_step >= patience : relative > 0.1 * before;
   if (step > 0 && relative <= round_off && stagnant) return SNES_CONVERGED_SNORM_RELATIVE;
   return SNES_CONVERGED_ITERATING;
 }
@@ -343,7 +342,7 @@ void NitscheSystem::set_callbacks() {
         return 0;
       },
       this, nullptr));
-  if (!options.single_loop && !curve.facing.follows_state)
+  if (!options.single_loop && !layer.follows_state())
     RBVI_CALL(SNESSetObjective(
         snes.get(),
         [](SNES, Vec u, PetscReal *value, void *context) {

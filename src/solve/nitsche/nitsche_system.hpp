@@ -16,7 +16,7 @@ struct NitscheSystem {
 
   const NitscheSolver &solver;
   const Problem &problem;
-  const NitscheCurve &curve;
+  const NitscheLayer layer;
   const NitscheOptions &options;
   std::vector<PetscInt> rows; ///< of the contact dofs
   std::optional<LocalFrames> frames;
@@ -30,7 +30,6 @@ struct NitscheSystem {
   // At mu; with local frames in their unknowns. Where contact follows u, faces are at its last one.
   Handle<Vec> f, upper; ///< upper: where the normal displacement is bounded
   std::vector<NitscheFace> faces;
-  NitscheLaw law;
   FullMu mu;
   Vector bounds; ///< of friction
 
@@ -45,8 +44,9 @@ struct NitscheSystem {
   std::exception_ptr failed;
 
   Vector on_layer(Vec u) const { return restrict_to(problem.trace(), u); }
-  void turn_to(Vec u) { rbvi::turn_to(curve, mu, on_layer(u), faces); }
-  void set_bounds(Vec u) { bounds = nitsche_bounds(nitsche_pressures(faces, on_layer(u)), law); }
+  void turn_to(Vec u) { rbvi::turn_to(layer, mu, on_layer(u), faces); }
+  void set_bounds(Vec u) { bounds = nitsche_bounds(faces, nitsche_pressures(faces, on_layer(u))); }
+  bool bounds_move() const { return rbvi::bounds_move(faces); }
 
   /// Collective, as are all below.
   void set(const Operators &op);

@@ -22,8 +22,14 @@ struct HalfPlane {
   bool lumped = false; ///< vertex quadrature
 };
 
-/// Throws bad_input for a normal whose length is not 1.
-ContactRecipe half_plane(HalfPlane plane);
+/// Contact with a support, by some formulation.
+using SupportContact = std::function<ContactRecipe(const Support &)>;
+
+/// `by`: of the support that the plane is. Throws bad_input for a normal whose length is not 1.
+ContactRecipe half_plane(HalfPlane plane, const SupportContact &by = rigid_support);
+
+/// The half-plane of a record.
+HalfPlane half_plane_in(const Record &record);
 
 /// "half_plane" in files.
 ContactKind half_plane_kind();

@@ -29,7 +29,7 @@ PointTerm consistency_term(double sigma, double gamma);
 PointTerm contact_term(double p, double gamma);
 
 /// (p^2 - (p - [p]_s)^2) / (2 gamma), [p]_s the projection on [-s, s]: friction of the bound s
-/// (4.36), (4.43).
+/// (4.36), (4.43); nothing where the bound is below zero: no friction.
 PointTerm friction_term(double p, double bound, double gamma);
 
 /// Coulomb's bound, `coefficient` |[p]_-| (4.51).

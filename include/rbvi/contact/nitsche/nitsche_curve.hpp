@@ -1,4 +1,4 @@
-// Nitsche's terms along the whole contact curve, on the dofs of the cells beside it (the contact
+// Nitsche's terms along the contact curves, on the dofs of the cells beside them (the contact
 // layer), from the terms of contact/nitsche/nitsche.hpp. Serial: the layer is small beside the
 // domain, and every rank holds all of it. The energy is a quadratic one, a_gamma(u, u) / 2 - f(u)
 // with a_gamma = a + consistency (4.18), (4.40), and the integrals of contact and friction over the
@@ -20,58 +20,14 @@ namespace rbvi {
 
 struct Contact;
 
-/// A cell beside the curve. Its dofs, node * 2 + component, are numbered in the layer; -1: fixed,
+/// A cell beside a curve. Its dofs, node * 2 + component, are numbered in the layer; -1: fixed,
 /// or not there (degree 1).
 struct CurveCell {
   Cell cell; ///< reference; mapped alike
   int edge = 0;
   std::array<int, 12> dofs;
+  int curve = 0; ///< of the layer's
 };
-
-/// The curve of one interface. gamma = gamma0 (lambda + 2 shear) / h on each edge, h its length in
-/// the reference domain. `scene` has a material and outlives it.
-struct NitscheCurve {
-  const Scene &scene;
-  Friction law;
-  NitscheFacing facing;
-  double gamma0;
-  std::vector<CurveCell> cells; ///< along the curve, by increasing x
-  bool friction() const { return law.law != FrictionLaw::none; }
-  /// Whether the consistency term has sigma_tau beside sigma_n. Where the axes turn it does without
-  /// friction too: the whole stress does not depend on them.
-  bool whole_stress() const { return friction() || facing.follows_state; }
-};
-
-/// The one of contact by Nitsche's method, which has a single interface. Throws failure where
-/// multipliers hold contact.
-const NitscheCurve &curve_of(const Contact &contact);
-
-/// What it sees at one mu. Rows of NitschePoint are for these dofs.
-struct NitscheFace {
-  std::array<NitschePoint, 4> points;
-  double gamma = 0;
-  std::array<int, 12> dofs;
-};
-
-using FaceBlock = Eigen::Matrix<double, 12, 12>;
-
-/// A cell at mu: mapped, with its material and its gamma.
-struct CurveCellAtMu {
-  Cell cell;
-  Lame material;
-  double gamma;
-};
-CurveCellAtMu curve_cell_at(const NitscheCurve &curve, const FullMu &mu, const CurveCell &cell);
-
-/// The faces of some cells of the curve, in their order. `state`: u of the layer, where contact
-/// follows it; empty: at rest. Throws failure, naming mu, for an inverted cell.
-std::vector<NitscheFace> nitsche_faces(const NitscheCurve &curve, const FullMu &mu,
-                                       const std::vector<CurveCell> &cells,
-                                       const Vector &state = {});
-
-/// Turns their axes to another state; nothing where contact does not follow it.
-void turn_to(const NitscheCurve &curve, const FullMu &mu, const Vector &state,
-             std::vector<NitscheFace> &faces);
 
 /// Friction::law with its threshold or coefficient at one mu.
 struct NitscheLaw {
@@ -82,8 +38,63 @@ struct NitscheLaw {
   bool moves() const { return law == FrictionLaw::coulomb || only_in_contact; }
 };
 
-/// Throws failure, naming the value, for a negative one.
-NitscheLaw nitsche_law(const NitscheCurve &curve, const FullMu &mu);
+/// The curve of one interface. gamma = gamma0 (lambda + 2 shear) / h on each edge, h its length in
+/// the reference domain.
+struct NitscheCurve {
+  Friction law;
+  NitscheFacing facing;
+  double gamma0;
+  bool friction() const { return law.law != FrictionLaw::none; }
+  /// Throws failure, naming the value, for a negative one.
+  NitscheLaw law_at(const FullMu &mu) const;
+};
+
+/// The curves of all interfaces. `scene` has a material and outlives it.
+struct NitscheLayer {
+  const Scene &scene;
+  std::vector<NitscheCurve> curves;
+  std::vector<CurveCell> cells; ///< curve by curve, along each by increasing x
+  bool friction() const;        ///< of some curve
+  bool follows_state() const;   ///< some facing does
+  const NitscheCurve &curve_of(const CurveCell &cell) const {
+    return curves[static_cast<std::size_t>(cell.curve)];
+  }
+};
+
+/// All of contact by Nitsche's method. Throws failure where multipliers hold it.
+NitscheLayer layer_of(const Contact &contact);
+
+/// What a cell sees at one mu. Rows of NitschePoint are for these dofs.
+struct NitscheFace {
+  std::array<NitschePoint, 4> points;
+  double gamma = 0;
+  std::array<int, 12> dofs;
+  int curve = 0;
+  NitscheLaw law{};
+  /// Whether the consistency term has sigma_tau beside sigma_n: with friction; and where the axes
+  /// turn, as the whole stress does not depend on them.
+  bool whole_stress = false;
+};
+
+using FaceBlock = Eigen::Matrix<double, 12, 12>;
+
+/// A cell at mu: mapped, with its material and its gamma.
+struct CurveCellAtMu {
+  Cell cell;
+  Lame material;
+  double gamma;
+};
+CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const CurveCell &cell);
+
+/// The faces of some cells of the layer, in their order. `state`: u of the layer, where contact
+/// follows it; empty: at rest. Throws failure, naming mu, for an inverted cell.
+std::vector<NitscheFace> nitsche_faces(const NitscheLayer &layer, const FullMu &mu,
+                                       const std::vector<CurveCell> &cells,
+                                       const Vector &state = {});
+
+/// Turns their axes to another state; nothing where contact does not follow it.
+void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
+             std::vector<NitscheFace> &faces);
 
 /// P_n (4.19a) and P_tau (4.35) at every point, face by face: 4 * faces rows, 2 columns.
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u);
@@ -91,13 +102,18 @@ Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u)
 /// What a change of u adds to them.
 Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du);
 
-/// The bound of friction at every point that these pressures tell: s (4.33), or s^c (4.51); empty
-/// without friction.
-Vector nitsche_bounds(const Matrix &pressures, const NitscheLaw &law);
+/// The bound of friction that the pressure P_n at a point of this law tells: s (4.33), or s^c
+/// (4.51); -1 without friction.
+double nitsche_bound(const NitscheLaw &law, double p_n);
+
+/// That of every point; empty where no face has friction.
+Vector nitsche_bounds(const std::vector<NitscheFace> &faces, const Matrix &pressures);
+
+/// Whether the bounds of some face depend on u.
+bool bounds_move(const std::vector<NitscheFace> &faces);
 
 /// a_gamma - a, a block for each face: (4.18), with the whole stress (4.40).
-std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces,
-                                           bool whole_stress);
+std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces);
 
 /// Integrals of contact in J^Nitsche (4.15) and of friction of these bounds (4.36); without
 /// friction `bounds` is empty.
@@ -135,24 +151,32 @@ NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u,
 /// at 0, of which it must be below zero: the minimum along a line of a convex energy. At most 16.
 double line_minimum(double linear, double quadratic, const NitscheLine &line);
 
-/// Fields at the vertices of the curve, by increasing x: stress averaged from the edges that meet
+/// Fields at the vertices of one curve, by increasing x: stress averaged from the edges that meet
 /// there, the pressures with it, and u_n less the gap.
 struct CurveFields {
   Vector sigma_n, sigma_tau, p_n, p_tau, excess;
   Vector arc_length; ///< from the middle, mapped
 };
-CurveFields nitsche_fields(const NitscheCurve &curve, const FullMu &mu, const Vector &u);
+CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t curve, const FullMu &mu,
+                           const Vector &u);
 
-/// -sigma_n, then with friction -sigma_tau at the vertices: what stands for the multipliers of the
-/// mixed method.
-Vector nitsche_multiplier(const CurveFields &fields, bool friction);
+/// -sigma_n, then with friction -sigma_tau at the vertices, curve by curve: what stands for the
+/// multipliers of the mixed method.
+Vector nitsche_multiplier(const NitscheLayer &layer, const FullMu &mu, const Vector &u);
 
 /// How many of the curve's two ends are in contact.
 double ends_in_contact(const CurveFields &fields);
 
-/// Fills forces, half-widths, pressures, penetration and the errors of the laws; see
-/// support_outputs. centre_pressure is that of -[P_n]_- averaged over each edge.
+/// Fills forces, half-widths, pressures, penetration and the errors of the laws of one curve; see
+/// support_outputs. `faces`: all of the curve. centre_pressure is that of -[P_n]_- averaged over
+/// each edge.
 void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
-                     const CurveFields &fields, const NitscheLaw &law, Outputs &outputs);
+                     const CurveFields &fields, Outputs &outputs);
+
+/// The same of all curves of the layer: with several, what are sums or maxima over them. `faces`:
+/// of all cells; `u` and the pressures are those of their state.
+void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
+                     const std::vector<NitscheFace> &faces, const Vector &u,
+                     const Matrix &pressures, Outputs &outputs);
 
 } // namespace rbvi

@@ -27,8 +27,8 @@ struct NitscheAnswer {
 
 class ReducedNitsche {
 public:
-  /// `model` and `curve` must outlive it.
-  ReducedNitsche(const ReducedModel &model, const NitscheCurve &curve);
+  /// `model`, and the scene of the layer, must outlive it.
+  ReducedNitsche(const ReducedModel &model, NitscheLayer layer);
   ~ReducedNitsche();
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
@@ -40,8 +40,8 @@ public:
   /// ... and the tangent, n x n.
   Matrix tangent() const;
 
-  /// Stress and pressures along the whole curve.
-  CurveFields fields(const FullMu &all_parameters, const Vector &u) const;
+  /// nitsche_multiplier of the whole curve.
+  Vector multiplier(const FullMu &all_parameters, const Vector &u) const;
   /// All that is measured but the energy. Pressures need u to a part in gamma, which few points do
   /// not give between them: from u, Newton's method goes on over the whole curve, one or two steps,
   /// and forces, widths and pressures are those of its answer. Throws failure where it does not
@@ -64,7 +64,7 @@ private:
   Vector over_whole_curve(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
 
   const ReducedModel &model_;
-  const NitscheCurve &curve_;
+  const NitscheLayer layer_;
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
   std::unique_ptr<Interpolated> interpolated_;

@@ -14,8 +14,9 @@ struct NodalBound {
   double gap;
 };
 
-/// At all nodes, middles too, of the boundary of an interface of cells beside it.
-std::vector<NodalBound> bounds_along(const ContactInterface &interface, const FullMu &mu);
+/// At all nodes, middles too, of the boundaries of interfaces of cells beside them, but for those
+/// that are fixed in some direction. Throws bad_input for a node of two boundaries.
+std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu);
 
 class LocalFrames {
 public:
