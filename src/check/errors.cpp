@@ -120,8 +120,8 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
       whole[static_cast<Index>(v * count + c)] =
           motion[c] + u[mesh.natural_node[v] * scene.components + static_cast<Index>(c)];
   }
-  double square = whole.dot(product_with(forms_of(scene.v_product), {}, mesh, problem.dofs(),
-                                         reference_cells(mesh), whole));
+  double square =
+      whole.dot(product_with(forms_of(scene.v_product), {}, mesh, problem.dofs(), {}, whole));
   MPI_Allreduce(MPI_IN_PLACE, &square, 1, MPI_DOUBLE, MPI_SUM, problem.comm());
   return std::sqrt(square);
 }

@@ -96,16 +96,18 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
                     " contact interfaces, on " + std::to_string(meshes.size()) + " meshes");
   check_formulations(scene);
   Contact contact;
-  std::vector<SparseMatrix> grams;
   contact.first_row.push_back(0);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     check_imposed(scene.contacts[i], meshes[i]);
     contact.interfaces.push_back(scene.contacts[i].make(scene, std::move(meshes[i])));
     const DualSpace &dual = contact.interfaces.back()->dual();
     contact.first_row.push_back(contact.first_row.back() + dual.size());
-    grams.push_back(dual.gram);
   }
-  contact.w_product = grams.size() == 1 ? grams.front() : stacked(grams, true);
+  if (contact.interfaces.size() == 1) return contact;
+  std::vector<SparseMatrix> grams;
+  for (const auto &interface : contact.interfaces)
+    grams.push_back(interface->dual().gram);
+  contact.stacked_gram = stacked(grams, true);
   return contact;
 }
 

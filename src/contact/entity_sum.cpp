@@ -68,7 +68,7 @@ void EntitySum::set_displacement(const FullMu &mu, Index entity, const ContactSt
   cell.displacement = values.data();
 }
 
-std::span<const Index> EntitySum::rows_of(Index entity) const {
+std::span<const int> EntitySum::rows_of(Index entity) const {
   return std::span(rows_).subspan(static_cast<std::size_t>(entity * rows()),
                                   static_cast<std::size_t>(rows()));
 }
@@ -136,10 +136,11 @@ void EntitySum::set_rows() {
       return moves ? dual_of_vertex_[static_cast<std::size_t>(nodes[a])] : Index{-1};
     };
     for (int a = 0; a <= entity_dim_; ++a)
-      rows_.push_back(dual(a));
+      rows_.push_back(static_cast<int>(dual(a)));
     for (int a = 0; a <= entity_dim_; ++a)
       for (Index k = 0; k < tangents; ++k)
-        rows_.push_back(dual(a) < 0 ? -1 : dual_.nodes() + dual(a) * tangents + k);
+        rows_.push_back(dual(a) < 0 ? -1
+                                    : static_cast<int>(dual_.nodes() + dual(a) * tangents + k));
   }
 }
 
@@ -170,7 +171,7 @@ std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
   if (wanted.empty()) return {};
   std::vector<bool> result(static_cast<std::size_t>(mesh_.count()), false);
   for (Index e = 0; e < mesh_.count(); ++e)
-    for (const Index dual : rows_of(e).first(static_cast<std::size_t>(entity_dim_) + 1))
+    for (const int dual : rows_of(e).first(static_cast<std::size_t>(entity_dim_) + 1))
       if (dual >= 0 && wanted[static_cast<std::size_t>(dual)])
         result[static_cast<std::size_t>(e)] = true;
   return result;
@@ -202,8 +203,9 @@ void EntitySum::set_pattern(const WantedNodes &wanted) {
   pattern_.makeCompressed();
   position_.clear();
   visit([&](Index row, Index column) {
-    position_.push_back(
-        row < 0 || column < 0 ? -1 : &pattern_.coeffRef(row, column) - pattern_.valuePtr());
+    position_.push_back(row < 0 || column < 0 ? -1
+                                              : static_cast<int>(&pattern_.coeffRef(row, column) -
+                                                                 pattern_.valuePtr()));
   });
 }
 
@@ -258,7 +260,7 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &state, const Want
   operators.g = Vector::Zero(dual_.size());
   operators.weights = Vector::Zero(dual_.nodes());
   EntityValues values = shape();
-  const Index *position = position_.data();
+  const int *position = position_.data();
   const std::vector<Point> mapped = mapped_vertices(mu, entities_);
   std::vector<double> displacement;
   visit_entities(mu, mapped, entities_, [&](Index e, Cell &cell) {
@@ -266,7 +268,7 @@ void EntitySum::assemble(const FullMu &mu, const ContactState &state, const Want
     integrate_beside_imposed(mu, cell, values);
     for (Index k = 0; k < values.b.size(); ++k, ++position)
       if (*position >= 0) operators.b.valuePtr()[*position] += values.b.data()[k];
-    const std::span<const Index> dual = rows_of(e);
+    const std::span<const int> dual = rows_of(e);
     for (std::size_t i = 0; i < dual.size(); ++i)
       if (dual[i] >= 0) operators.g[dual[i]] += values.g[static_cast<Index>(i)];
     add_weights(mu, e, cell, values, operators.weights);
@@ -314,7 +316,7 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &state, cons
 void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, EntityValues &values,
                             Vector &weights) const {
   weigh(mu, cell, values);
-  const std::span<const Index> rows = rows_of(entity);
+  const std::span<const int> rows = rows_of(entity);
   for (int a = 0; a <= entity_dim_; ++a)
     if (const Index dual = rows[static_cast<std::size_t>(a)]; dual >= 0)
       weights[dual] += values.weights[a];

@@ -11,10 +11,6 @@ namespace rbvi {
 
 namespace {
 
-bool in_region(const Mesh &mesh, const std::string &region, std::size_t cell) {
-  return region.empty() || mesh.region.at(region)[cell];
-}
-
 using CellRows = std::array<PetscInt, std::size_t{3} * most_nodes>;
 
 /// Rows of the free dofs of one cell, -1 where fixed; returns how many dofs the cell has.
@@ -45,33 +41,27 @@ std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell
   return result;
 }
 
-MappedCells reference_cells(const Mesh &mesh) {
-  MappedCells result;
-  result.cells.reserve(mesh.cells.size());
-  for (const auto &vertices : mesh.cells) {
-    Cell cell{mesh.dim, {}, {}};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i)
-      cell.reference[i] = mesh.points[static_cast<std::size_t>(vertices[i])];
-    cell.mapped = cell.reference;
-    result.cells.push_back(cell);
+Cell cell_of(const Mesh &mesh, std::size_t cell, const MappedVertices &mapped) {
+  Cell result{mesh.dim, {}, {}};
+  const std::vector<Point> &moved = mapped.empty() ? mesh.points : mapped;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i) {
+    const auto vertex = static_cast<std::size_t>(mesh.cells[cell][i]);
+    result.reference[i] = mesh.points[vertex];
+    result.mapped[i] = moved[vertex];
   }
   return result;
 }
 
-void map_cells(const Scene &scene, const FullMu &mu, const Mesh &mesh, MappedCells &cells) {
+MappedVertices map_vertices(const Scene &scene, const FullMu &mu, const Mesh &mesh) {
+  MappedVertices mapped;
   collectively(mesh.comm, [&] {
-    std::vector<Point> mapped;
-    mapped.reserve(mesh.points.size());
     for (std::size_t v = 0; v < mesh.points.size() && mesh.natural_node[v] < mesh.total_vertices;
          ++v)
       mapped.push_back(scene.map(mu, mesh.points[v]));
-    for (std::size_t i = 0; i < cells.cells.size(); ++i) {
-      Cell &cell = cells.cells[i];
-      for (std::size_t j = 0; j <= static_cast<std::size_t>(mesh.dim); ++j)
-        cell.mapped[j] = mapped[static_cast<std::size_t>(mesh.cells[i][j])];
-      check_orientation(scene, mu, cell);
-    }
+    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+      check_orientation(scene, mu, cell_of(mesh, k, mapped));
   });
+  return mapped;
 }
 
 std::vector<WeightedForm> forms_of(const Sum &sum) {
@@ -107,17 +97,22 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs) {
 
 namespace {
 
+/// The dofs of some nodes of a cell.
+std::vector<int> local_dofs(const std::vector<int> &nodes, int components) {
+  std::vector<int> local;
+  for (const int node : nodes)
+    for (int c = 0; c < components; ++c)
+      local.push_back(node * components + c);
+  return local;
+}
+
 /// Calls visitor(cell number, local dofs of the cell, values of the kernel) for each cell or facet
 /// of a form: the values belong to these dofs alone.
 template <class Visitor>
 void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Dofs &dofs,
-                  const MappedCells &cells, Visitor &&visitor) {
+                  const MappedVertices &mapped, Visitor &&visitor) {
   std::array<double, CellRows{}.size() * CellRows{}.size()> values;
-  const auto visit = [&](const Cell &cell, std::size_t number, const std::vector<int> &nodes) {
-    std::vector<int> local;
-    for (const int node : nodes)
-      for (int c = 0; c < dofs.components; ++c)
-        local.push_back(node * dofs.components + c);
+  const auto visit = [&](const Cell &cell, std::size_t number, const std::vector<int> &local) {
     const std::vector<int> imposed_by = imposed_on(mesh, dofs, number, local);
     if (imposed_by.empty()) {
       form.kernel(mu, cell, values.data());
@@ -130,24 +125,27 @@ void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Do
   };
   if (!form.boundary.empty()) {
     for (const auto &[cell, facet] : mesh.facets.at(form.boundary))
-      visit(facet_cell(cells.cells[cell], facet), cell, facet_nodes(mesh.dim, mesh.degree, facet));
+      visit(facet_cell(cell_of(mesh, cell, mapped), facet), cell,
+            local_dofs(facet_nodes(mesh.dim, mesh.degree, facet), dofs.components));
     return;
   }
-  std::vector<int> all(static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree)));
+  std::vector<int> all(
+      static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components));
   std::iota(all.begin(), all.end(), 0);
+  const std::vector<bool> *region = form.region.empty() ? nullptr : &mesh.region.at(form.region);
   for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-    if (in_region(mesh, form.region, k)) visit(cells.cells[k], k, all);
+    if (region == nullptr || (*region)[k]) visit(cell_of(mesh, k, mapped), k, all);
 }
 
 } // namespace
 
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-              const Dofs &dofs, const MappedCells &cells, Mat matrix) {
+              const Dofs &dofs, const MappedVertices &mapped, Mat matrix) {
   const auto count =
       static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
   std::vector<PetscScalar> all(mesh.cells.size() * count * count, 0);
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, cells,
+    visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    double *block = all.data() + cell * count * count;
                    for (const int i : local)
@@ -159,12 +157,12 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
 }
 
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-              const Dofs &dofs, const MappedCells &cells, Vec vector) {
+              const Dofs &dofs, const MappedVertices &mapped, Vec vector) {
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   CellRows rows{};
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, cells,
+    visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    cell_rows(mesh, dofs, cell, rows);
                    for (const int i : local)
@@ -176,10 +174,10 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
 }
 
 double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-                const Dofs &dofs, const MappedCells &cells) {
+                const Dofs &dofs, const MappedVertices &mapped) {
   double sum = 0;
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, cells,
+    visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t, const std::vector<int> &, const double *values) {
                    sum += weighted.weight * *values;
                  });
@@ -188,10 +186,10 @@ double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const 
 }
 
 Vector product_with(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-                    const Dofs &dofs, const MappedCells &cells, const Vector &field) {
+                    const Dofs &dofs, const MappedVertices &mapped, const Vector &field) {
   Vector result = Vector::Zero(field.size());
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, cells,
+    visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    const auto nodes = nodes_of(mesh, cell);
                    std::vector<Index> at;

@@ -233,16 +233,41 @@ bool constrains(const ContactRecipe &contact) {
   return contact.entities.kind != InterfaceEntities::Kind::cells_beside;
 }
 
+/// "the contact interfaces on 'slave' and 'master' ".
+std::string both(const ContactRecipe &one, const ContactRecipe &other) {
+  return "the contact interfaces on '" + one.entities.parts.front() + "' and '" +
+         other.entities.parts.front() + "' ";
+}
+
+std::string place(const Point &x) {
+  return "(" + short_number(x[0]) + ", " + short_number(x[1]) + ", " + short_number(x[2]) + ")";
+}
+
 /// What to throw for a displacement that two interfaces constrain.
 Error shared_displacement(const ContactRecipe &one, const ContactRecipe &other, const Point &at,
                           int component) {
-  const auto name = [](const ContactRecipe &contact) {
-    return "'" + contact.entities.parts.front() + "'";
-  };
-  return bad_input("the contact interfaces on " + name(one) + " and " + name(other) +
-                   " both constrain the displacement along " + "xyz"[component] + " at (" +
-                   short_number(at[0]) + ", " + short_number(at[1]) + ", " + short_number(at[2]) +
-                   "): give them boundaries without common nodes, or fix the displacement there");
+  return bad_input(both(one, other) + "both constrain the displacement along " + "xyz"[component] +
+                   " at " + place(at) +
+                   ": give them boundaries without common nodes, or fix the displacement there");
+}
+
+/// Whose each edge of a boundary is, by the natural numbers of its ends.
+using Edges = std::map<std::pair<PetscInt, PetscInt>, const ContactRecipe *>;
+
+/// The edges that its cells stand beside are its own. Throws bad_input where one is another
+/// interface's.
+void claim_edges(const Found &found, const ContactRecipe &contact, Edges &edges) {
+  for (std::size_t e = 0; e < found.mesh.edges.size(); ++e) {
+    const int *nodes = found.mesh.nodes_of(static_cast<Index>(e));
+    const auto [i, j] = simplex_edges[static_cast<std::size_t>(found.mesh.edges[e])];
+    const auto a = static_cast<std::size_t>(nodes[i]), b = static_cast<std::size_t>(nodes[j]);
+    const auto [known, is_new] =
+        edges.emplace(std::minmax({found.natural[a], found.natural[b]}), &contact);
+    if (!is_new)
+      throw bad_input(both(*known->second, contact) + "share the edge from " +
+                      place(found.mesh.points[a]) + " to " + place(found.mesh.points[b]) +
+                      ": give each a boundary of its own");
+  }
 }
 
 } // namespace
@@ -253,8 +278,10 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
   std::vector<std::size_t> first; // contact dofs before each interface
   std::vector<PetscInt> &natural_dofs = places.natural_dofs;
   const auto components = static_cast<std::size_t>(dofs.components);
+  Edges edges;
   for (const ContactRecipe &contact : scene.contacts) {
     Found found = find_interface(mesh, dofs, scene, contact.entities);
+    claim_edges(found, contact, edges);
     first.push_back(natural_dofs.size());
     for (std::size_t i = 0; i < found.free.size(); ++i) {
       const PetscInt natural =

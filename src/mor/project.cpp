@@ -93,9 +93,10 @@ AffineTerms start_terms_of_b(const AffineOperators &affine, Index entries) {
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
   model.mesh_fingerprint = problem.mesh().fingerprint;
-  for (std::size_t i = 0; i < problem.places().meshes.size(); ++i) {
+  const auto &interfaces = problem.contact().interfaces;
+  for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const std::vector<PetscInt> &nodes = problem.places().natural_nodes[i];
-    model.interfaces.push_back({problem.places().meshes[i], {nodes.begin(), nodes.end()}});
+    model.interfaces.push_back({interfaces[i]->mesh(), {nodes.begin(), nodes.end()}});
   }
 }
 

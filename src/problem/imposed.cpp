@@ -87,27 +87,26 @@ Vector natural_imposed(const Scene &scene, const FullMu &mu, const Mesh &mesh, c
 ImposedEnergy make_imposed_energy(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
   ImposedEnergy energy{imposed_energy(scene), {}, {}};
   energy.split = split_sum(energy.sum, scene.parameters);
-  const MappedCells cells = reference_cells(mesh);
   for (const ExactGroup &group : energy.split.exact) {
     std::vector<WeightedForm> forms;
     for (const auto &[term, weight] : group.members)
       forms.push_back({&energy.sum[static_cast<std::size_t>(term)].form, weight});
-    energy.exact.push_back(integral(forms, {}, mesh, dofs, cells));
+    energy.exact.push_back(integral(forms, {}, mesh, dofs, {}));
   }
   return energy;
 }
 
 double energy_at(const ImposedEnergy &energy, const Scene &scene, const FullMu &mu,
-                 const Mesh &mesh, const Dofs &dofs, const MappedCells &cells) {
+                 const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped) {
   const std::vector<double> theta =
       exact_coefficients(energy.sum, energy.split, scene.parameters, mu);
   double result = 0;
   for (std::size_t q = 0; q < theta.size(); ++q)
     result += theta[q] * energy.exact[q];
-  std::vector<WeightedForm> mapped;
+  std::vector<WeightedForm> forms;
   for (const int term : energy.split.mapped)
-    mapped.push_back({&energy.sum[static_cast<std::size_t>(term)].form});
-  return mapped.empty() ? result : result + integral(mapped, mu, mesh, dofs, cells);
+    forms.push_back({&energy.sum[static_cast<std::size_t>(term)].form});
+  return forms.empty() ? result : result + integral(forms, mu, mesh, dofs, mapped);
 }
 
 FullMu generic_point(const ParameterSpace &space) {

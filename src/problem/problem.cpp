@@ -8,6 +8,7 @@
 #include "rbvi/par/collective.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace rbvi {
 
@@ -51,8 +52,8 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
       mesh_(make_mesh(comm, *scene_, options)),
       dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
       places_(place_interfaces(mesh_, dofs_, *scene_)),
-      contact_(make_contact(*scene_, places_.meshes)), contact_gather_(contact_gather),
-      cells_(reference_cells(mesh_)),
+      contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
+      contact_gather_(contact_gather),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
   if (!imposes_values(*scene_)) return;
@@ -118,13 +119,13 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector 
   collectively(comm(), [&] { check_finite(*scene_, contact_, operators_); });
   const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
   if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
-    map_cells(*scene_, all, mesh_, cells_);
-  if (new_a) sum_up(scene_->a, scene_->parameters, all, mesh_, dofs_, cells_, a_);
-  if (new_f) sum_up(scene_->f, scene_->parameters, all, mesh_, dofs_, cells_, f_);
+    mapped_ = map_vertices(*scene_, all, mesh_);
+  if (new_a) sum_up(scene_->a, scene_->parameters, all, mesh_, dofs_, mapped_, a_);
+  if (new_f) sum_up(scene_->f, scene_->parameters, all, mesh_, dofs_, mapped_, f_);
   operators_.a = a_.total.get();
   operators_.f = f_.total.get();
   if (imposes_values(*scene_))
-    operators_.imposed_energy = energy_at(imposed_energy_, *scene_, all, mesh_, dofs_, cells_);
+    operators_.imposed_energy = energy_at(imposed_energy_, *scene_, all, mesh_, dofs_, mapped_);
   return operators_;
 }
 
@@ -135,8 +136,7 @@ Vector Problem::imposed_displacement(const Mu &mu) const {
 Mat Problem::v_product() {
   if (!v_product_) {
     v_product_ = make_matrix(mesh_, dofs_);
-    rbvi::assemble(forms_of(scene_->v_product), {}, mesh_, dofs_, reference_cells(mesh_),
-                   v_product_.get());
+    rbvi::assemble(forms_of(scene_->v_product), {}, mesh_, dofs_, {}, v_product_.get());
   }
   return v_product_.get();
 }

@@ -57,13 +57,12 @@ Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Me
                            const Dofs &dofs) {
   check_boundaries(sum, mesh);
   Summed<Object> result{split_sum(sum, space), {}, {}, {}};
-  const MappedCells cells = reference_cells(mesh);
   for (const ExactGroup &group : result.split.exact) {
     std::vector<WeightedForm> forms;
     for (const auto &[term, weight] : group.members)
       forms.push_back({&sum[static_cast<std::size_t>(term)].form, weight});
     result.exact.push_back(make<Object>(mesh, dofs));
-    assemble(forms, {}, mesh, dofs, cells, result.exact.back().get());
+    assemble(forms, {}, mesh, dofs, {}, result.exact.back().get());
   }
   const bool mapped = !result.split.mapped.empty();
   if (mapped) result.mapped = make<Object>(mesh, dofs);
@@ -79,7 +78,8 @@ Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Me
 
 template <class Object>
 void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters,
-            const Mesh &mesh, const Dofs &dofs, const MappedCells &cells, Summed<Object> &summed) {
+            const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped,
+            Summed<Object> &summed) {
   const std::vector<double> coefficients =
       exact_coefficients(sum, summed.split, space, all_parameters);
   summed.made_at.reset();
@@ -87,7 +87,7 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
     std::vector<WeightedForm> forms;
     for (const int term : summed.split.mapped)
       forms.push_back({&sum[static_cast<std::size_t>(term)].form});
-    assemble(forms, all_parameters, mesh, dofs, cells, summed.mapped.get());
+    assemble(forms, all_parameters, mesh, dofs, mapped, summed.mapped.get());
   }
   const Object total = summed.total.get();
   const bool is_one = total == summed.mapped.get() ||
@@ -104,8 +104,8 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
 template Summed<Mat> make_summed(const Sum &, const ParameterSpace &, const Mesh &, const Dofs &);
 template Summed<Vec> make_summed(const Sum &, const ParameterSpace &, const Mesh &, const Dofs &);
 template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                     const Dofs &, const MappedCells &, Summed<Mat> &);
+                     const Dofs &, const MappedVertices &, Summed<Mat> &);
 template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                     const Dofs &, const MappedCells &, Summed<Vec> &);
+                     const Dofs &, const MappedVertices &, Summed<Vec> &);
 
 } // namespace rbvi

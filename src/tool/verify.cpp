@@ -191,11 +191,12 @@ void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &pro
   std::vector<Mu> all = training;
   all.insert(all.end(), validation.begin(), validation.end());
   std::vector<double> worst(all.size(), 0);
-  MappedCells cells = reference_cells(problem.mesh());
+  const Mesh &mesh = problem.mesh();
   for (std::size_t p = 0; p < all.size(); ++p) {
-    map_cells(problem.scene(), expand(problem.scene().parameters, all[p]), problem.mesh(), cells);
-    for (const Cell &cell : cells.cells)
-      worst[p] = std::max(worst[p], aspect_ratio(cell.dim, cell.mapped));
+    const Scene &scene = problem.scene();
+    const MappedVertices mapped = map_vertices(scene, expand(scene.parameters, all[p]), mesh);
+    for (std::size_t k = 0; k < mesh.cells.size(); ++k)
+      worst[p] = std::max(worst[p], aspect_ratio(mesh.dim, cell_of(mesh, k, mapped).mapped));
   }
   over_ranks(world, MPI_MAX, worst);
   std::vector<double> is_training(all.size(), 0);

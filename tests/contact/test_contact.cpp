@@ -56,7 +56,7 @@ TEST(Contact, RowsOfAnInterfaceFollowThoseOfTheOther) {
   EXPECT_EQ(contact.first_row, (std::vector<Index>{0, 6, 8}));
   EXPECT_EQ(contact.dual_size(), 8);
   EXPECT_EQ(contact.nodes(), 8);
-  const Matrix gram = contact.w_product;
+  const Matrix gram = contact.w_product();
   ASSERT_EQ(gram.rows(), 8);
   EXPECT_EQ(gram.topLeftCorner(6, 6), Matrix(contact.interfaces[0]->dual().gram));
   EXPECT_EQ(gram.bottomRightCorner(2, 2), Matrix(contact.interfaces[1]->dual().gram));

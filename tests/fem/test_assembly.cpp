@@ -69,24 +69,21 @@ TEST(Assembly, H1ProductConvergesToTheIntegral) {
   // int w^2 = (1/30)^2 and int |grad w|^2 = 2 (1/3) (1/30) for w = (1/4 - x^2)(1/4 - y^2).
   const Membrane m;
   const Handle<Mat> v = make_matrix(m.mesh, m.dofs);
-  assemble(forms_of(m.scene.v_product), {}, m.mesh, m.dofs, reference_cells(m.mesh), v.get());
+  assemble(forms_of(m.scene.v_product), {}, m.mesh, m.dofs, {}, v.get());
   const double exact = 1.0 / 900 + 2.0 / 90;
   EXPECT_NEAR(quadratic(m, v.get(), bubble, bubble), exact, 2e-3 * exact);
 }
 
 TEST(Assembly, ASecondFillOverwritesTheFirst) {
   const Membrane m;
-  MappedCells cells = reference_cells(m.mesh);
   const Handle<Mat> a = make_matrix(m.mesh, m.dofs);
   const FullMu one{0.2, 0, 0}, other{0.23, 0.03, -0.04};
-  map_cells(m.scene, one, m.mesh, cells);
-  assemble(forms_of(m.scene.a), one, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), one, m.mesh, m.dofs, map_vertices(m.scene, one, m.mesh), a.get());
   const double first = quadratic(m, a.get(), bubble, bubble);
-  map_cells(m.scene, other, m.mesh, cells);
-  assemble(forms_of(m.scene.a), other, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), other, m.mesh, m.dofs, map_vertices(m.scene, other, m.mesh),
+           a.get());
   EXPECT_GT(std::abs(quadratic(m, a.get(), bubble, bubble) - first), 1e-3 * first);
-  map_cells(m.scene, one, m.mesh, cells);
-  assemble(forms_of(m.scene.a), one, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), one, m.mesh, m.dofs, map_vertices(m.scene, one, m.mesh), a.get());
   EXPECT_NEAR(quadratic(m, a.get(), bubble, bubble), first, 1e-14 * first);
 }
 
@@ -94,10 +91,8 @@ TEST(Assembly, TheMapKeepsEnergiesOfMappedFunctions) {
   // a(mu; u, u) of a field given on the mapped nodes does not depend on the map but for O(h^2).
   const Membrane m;
   const FullMu mu{0.24, 0.05, 0.05};
-  MappedCells cells = reference_cells(m.mesh);
   const Handle<Mat> a = make_matrix(m.mesh, m.dofs);
-  map_cells(m.scene, mu, m.mesh, cells);
-  assemble(forms_of(m.scene.a), mu, m.mesh, m.dofs, cells, a.get());
+  assemble(forms_of(m.scene.a), mu, m.mesh, m.dofs, map_vertices(m.scene, mu, m.mesh), a.get());
   const auto mapped_bubble = [&](const Point &x) { return bubble(m.scene.map(mu, x)); };
   EXPECT_NEAR(quadratic(m, a.get(), mapped_bubble, mapped_bubble), 2.0 / 90, 3e-3 * 2.0 / 90);
 }
@@ -107,8 +102,7 @@ TEST(Assembly, AnInvertedCellOnOneRankFailsOnAll) {
   m.scene.map = [](const FullMu &, const Point &x) {
     return x[0] > 0.48 ? Point{0.9 - x[0], x[1], 0} : x;
   };
-  MappedCells cells = reference_cells(m.mesh);
-  EXPECT_THROW(map_cells(m.scene, {0.2, 0, 0}, m.mesh, cells), Error);
+  EXPECT_THROW(map_vertices(m.scene, {0.2, 0, 0}, m.mesh), Error);
 }
 
 } // namespace

@@ -28,12 +28,10 @@ struct Body {
   Scene scene;
   Mesh mesh;
   Dofs all, free; ///< without and with what is held
-  MappedCells cells;
 
   Body(int degree, int components, const MeshOptions &options, MPI_Comm comm = PETSC_COMM_WORLD)
       : scene(make(degree, components, options)), mesh(make_mesh(comm, scene, options)),
-        all(number_dofs(mesh, components, {})), free(number_dofs(mesh, components, scene.fixed)),
-        cells(reference_cells(mesh)) {}
+        all(number_dofs(mesh, components, {})), free(number_dofs(mesh, components, scene.fixed)) {}
 
 private:
   static Scene make(int degree, int components, const MeshOptions &options) {
@@ -67,7 +65,7 @@ Vector interpolate(const Body &body, const Function &u) {
 
 Handle<Mat> matrix_of(const Body &body, const Form &form, const Dofs &dofs) {
   Handle<Mat> matrix = make_matrix(body.mesh, dofs);
-  assemble({{&form}}, {}, body.mesh, dofs, body.cells, matrix.get());
+  assemble({{&form}}, {}, body.mesh, dofs, {}, matrix.get());
   return matrix;
 }
 
@@ -85,7 +83,7 @@ Vector solve(const Body &body, const Form &a, const Form &f, const Function &hel
   Vector residual = -times(body, a, u);
   if (f) {
     const Handle<Vec> load = make_vector(body.all);
-    assemble({{&f}}, {}, body.mesh, body.all, body.cells, load.get());
+    assemble({{&f}}, {}, body.mesh, body.all, {}, load.get());
     residual += to_natural(body.all, load.get());
   }
   const Handle<Mat> matrix = matrix_of(body, a, body.free);
@@ -137,7 +135,7 @@ Errors errors_of(const Body &body, const Vector &u, const Harmonic &exact) {
   std::array<std::array<double, 3>, most_nodes> slopes{};
   std::array<double, 2> squares{};
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
-    const Vertices &x = body.cells.cells[k].reference;
+    const Vertices x = cell_of(mesh, k).reference;
     const Simplex s = simplex(mesh.dim, x);
     const auto nodes = nodes_of(mesh, k);
     for (const QuadraturePoint &q : simplex_quadrature(mesh.dim, 7)) {

@@ -78,8 +78,7 @@ TEST(DegreeTwo, QuadraticFieldsAreIntegratedExactly) {
   const Body body("patch", block);
   const Dofs free = number_dofs(body.mesh, 2, {});
   const Handle<Mat> v = make_matrix(body.mesh, free);
-  assemble(forms_of(body.scene.v_product), {}, body.mesh, free, reference_cells(body.mesh),
-           v.get());
+  assemble(forms_of(body.scene.v_product), {}, body.mesh, free, {}, v.get());
   const Matrix points = all_points(body.mesh);
   Vector natural(2 * points.rows());
   for (Index i = 0; i < points.rows(); ++i) {

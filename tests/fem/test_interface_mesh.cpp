@@ -152,6 +152,14 @@ TEST(InterfaceMesh, IsTheSameOnAnyNumberOfRanks) {
   expect_same({nitsche, nitsche.fixed}, {nitsche, nitsche.fixed, PETSC_COMM_SELF});
 }
 
+/// Cells beside two curves may be the same, edges not.
+TEST(InterfaceMesh, TwoCurvesOfCellsDoNotShareAnEdge) {
+  Scene scene = make_scene("rigid_disk", {{"arc_edges", "8"}, {"formulation", "nitsche"}});
+  scene.contacts.push_back(scene.contacts.front());
+  EXPECT_TRUE(refuses("on 'contact' and 'contact' share the edge from (",
+                      [&] { Placed(scene, scene.fixed); }));
+}
+
 TEST(InterfaceMesh, TwoInterfacesDoNotConstrainTheSameDisplacement) {
   Scene scene = make_scene("membrane_obstacle");
   scene.contacts.push_back(scene.contacts.front());

@@ -188,10 +188,11 @@ TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
   for (const auto &[name, mu] : {std::pair{"two_disks", 0.7}, std::pair{"patch", 0.08}}) {
     Problem problem(PETSC_COMM_WORLD, make_scene(name, {{"degree", "1"}}), {});
     const Scene &scene = problem.scene();
-    MappedCells cells = reference_cells(problem.mesh());
-    map_cells(scene, {mu}, problem.mesh(), cells);
+    const Mesh &mesh = problem.mesh();
+    const MappedVertices mapped = map_vertices(scene, {mu}, mesh);
     std::vector<double> largest{0};
-    for (const Cell &cell : cells.cells) {
+    for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
+      const Cell cell = cell_of(mesh, k, mapped);
       Eigen::Matrix<double, 6, 6, Eigen::RowMajor> stiffness;
       scene.a.front().form.kernel({mu}, cell, stiffness.data());
       Vector motion(6);

@@ -56,6 +56,26 @@ TEST(ResponseSolver, SharedFactorsGiveTheSame) {
   }
 }
 
+/// What the first A was ordered by serves another one of its pattern.
+TEST(ResponseSolver, AnotherMatrixIsFactorisedAnew) {
+  Disk disk;
+  const Trace &trace = disk.problem.trace();
+  const Matrix loads = loads_on(trace, 3);
+  Handle<Mat> other;
+  RBVI_CALL(MatDuplicate(disk.a, MAT_COPY_VALUES, other.put()));
+  RBVI_CALL(MatShift(other.get(), 10));
+  for (const Factors factors : {Factors::whole, Factors::shared}) {
+    ResponseSolver solver(disk.a, trace, "hf_", factors);
+    const Matrix first = solver.responses(loads);
+    solver.set(other.get());
+    const Matrix expected = ResponseSolver(other.get(), trace, "hf_", factors).responses(loads);
+    EXPECT_LE((solver.responses(loads) - expected).norm(), 1e-12 * expected.norm());
+    EXPECT_GT((first - expected).norm(), 0.1 * expected.norm());
+    solver.set(disk.a);
+    EXPECT_LE((solver.responses(loads) - first).norm(), 1e-12 * first.norm());
+  }
+}
+
 /// Loads on a dof that is listed twice add up.
 TEST(ResponseSolver, DofsMayRepeat) {
   Disk disk;

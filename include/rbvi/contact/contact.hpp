@@ -9,11 +9,15 @@ namespace rbvi {
 struct Contact {
   std::vector<std::unique_ptr<ContactInterface>> interfaces;
   std::vector<Index> first_row; ///< interfaces + 1
-  SparseMatrix w_product;       ///< Gram matrix of W, dual x dual
+  SparseMatrix stacked_gram;    ///< of W, with several interfaces
 
   Index dual_size() const { return first_row.back(); }
   /// All normal multipliers, over the interfaces.
   Index nodes() const;
+  /// Gram matrix of W, dual x dual.
+  const SparseMatrix &w_product() const {
+    return interfaces.size() == 1 ? interfaces.front()->dual().gram : stacked_gram;
+  }
 };
 
 /// `meshes`: of each contact of the scene, with the columns of the problem. `scene` must outlive

@@ -40,7 +40,7 @@ public:
   EntityValues shape() const;
   /// The dual rows of an entity, in the order of EntityValues; -1 where there is none. A row can
   /// stand there twice, at a vertex and at a fixed one beside it.
-  std::span<const Index> rows_of(Index entity) const;
+  std::span<const int> rows_of(Index entity) const;
   /// Its columns of B, -1 where there is none.
   std::vector<Index> columns_of(Index entity) const;
   /// Its reference vertices, and by what its dofs are imposed; valid as long as the interface.
@@ -84,12 +84,12 @@ private:
 
   int entity_dim_;
   std::vector<Index> dual_of_vertex_;
-  std::vector<Index> rows_;     ///< of each entity
+  std::vector<int> rows_;       ///< of each entity
   std::vector<int> imposed_by_; ///< of the dofs of each entity; empty: nothing is imposed
   SparseMatrix pattern_;        ///< of b, zero values; made by the first assemble
   WantedNodes pattern_wanted_;  ///< the rows that it has
   std::vector<bool> entities_;  ///< entities_at(pattern_wanted_)
-  std::vector<Index> position_; ///< per value of their kernels: where in b it is added, -1 nowhere
+  std::vector<int> position_;   ///< per value of their kernels: where in b it is added, -1 nowhere
 };
 
 } // namespace rbvi

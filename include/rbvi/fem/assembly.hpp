@@ -8,17 +8,15 @@
 
 namespace rbvi {
 
-/// This rank's cells with both copies of their vertices.
-struct MappedCells {
-  std::vector<Cell> cells; ///< one per owned cell
-};
+/// Where h(mu) takes this rank's vertices, in the order of Mesh::points; empty: they stay.
+using MappedVertices = std::vector<Point>;
 
-/// Collective. The reference cells, `mapped` equal to `reference`.
-MappedCells reference_cells(const Mesh &mesh);
+/// Each vertex is mapped once. Throws failure on every rank if a cell of any rank is inverted.
+/// Collective.
+MappedVertices map_vertices(const Scene &scene, const FullMu &mu, const Mesh &mesh);
 
-/// Collective. Moves the vertices by h(mu): each vertex is mapped once. Throws failure on every
-/// rank if a cell of any rank is inverted.
-void map_cells(const Scene &scene, const FullMu &mu, const Mesh &mesh, MappedCells &cells);
+/// An owned cell with both copies of its vertices.
+Cell cell_of(const Mesh &mesh, std::size_t cell, const MappedVertices &mapped = {});
 
 /// Cell::imposed_by of an owned cell, or of the nodes of one of its facets; `local`: which of the
 /// cell's dofs, node * components + component. Empty where no value is imposed on any of them.
@@ -39,19 +37,19 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs);
 
 /// Overwrites the values of a matrix by the sum of bilinear forms. Collective.
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-              const Dofs &dofs, const MappedCells &cells, Mat matrix);
+              const Dofs &dofs, const MappedVertices &mapped, Mat matrix);
 
 /// Overwrites a vector by the sum of linear forms. Collective.
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-              const Dofs &dofs, const MappedCells &cells, Vec vector);
+              const Dofs &dofs, const MappedVertices &mapped, Vec vector);
 
 /// The sum over all cells of forms that fill a single number each (imposed_energy). Collective.
 double integral(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-                const Dofs &dofs, const MappedCells &cells);
+                const Dofs &dofs, const MappedVertices &mapped);
 
 /// The share of this rank's cells in the sum of bilinear forms times a field; both by local node *
 /// components, fixed dofs included. Not collective.
 Vector product_with(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
-                    const Dofs &dofs, const MappedCells &cells, const Vector &field);
+                    const Dofs &dofs, const MappedVertices &mapped, const Vector &field);
 
 } // namespace rbvi

@@ -10,7 +10,8 @@
 namespace rbvi {
 
 struct InterfacePlaces {
-  std::vector<InterfaceMesh> meshes;                ///< of each contact of the scene
+  /// Of each contact of the scene. A Problem hands them over to its interfaces.
+  std::vector<InterfaceMesh> meshes;
   std::vector<std::vector<PetscInt>> natural_nodes; ///< of their nodes
   std::vector<PetscInt> natural_dofs;               ///< of each contact dof
   Trace trace;                                      ///< contact dof -> displacement dof

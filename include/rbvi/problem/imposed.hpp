@@ -24,7 +24,7 @@ ImposedEnergy make_imposed_energy(const Scene &scene, const Mesh &mesh, const Do
 
 /// At mu, to which `cells` are mapped. Collective.
 double energy_at(const ImposedEnergy &energy, const Scene &scene, const FullMu &mu,
-                 const Mesh &mesh, const Dofs &dofs, const MappedCells &cells);
+                 const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped);
 
 /// A point of the box that no symmetry singles out: values that contradict each other at almost
 /// all mu do so there.

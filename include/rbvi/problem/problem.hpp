@@ -95,7 +95,7 @@ public:
   const Summed<Vec> &f_terms() const { return f_; }
 
   Mat v_product(); ///< Gram matrix of V, assembled at the first call. Collective.
-  const SparseMatrix &w_product() const { return contact_.w_product; } ///< dual x dual
+  const SparseMatrix &w_product() const { return contact_.w_product(); } ///< dual x dual
 
 private:
   bool is_split(std::size_t interface) const;
@@ -110,7 +110,7 @@ private:
   Contact contact_;
   Index contact_gather_;
   std::optional<DualLayout> dual_layout_;
-  MappedCells cells_;
+  MappedVertices mapped_;
   Summed<Mat> a_;
   Summed<Vec> f_;
   ImposedEnergy imposed_energy_;

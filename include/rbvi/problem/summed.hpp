@@ -32,15 +32,16 @@ bool differs(const Summed<Object> &summed, const Sum &sum, const FullMu &all_par
 /// Collective. Throws bad_input for a coefficient that is not finite.
 template <class Object>
 void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters,
-            const Mesh &mesh, const Dofs &dofs, const MappedCells &cells, Summed<Object> &summed);
+            const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped,
+            Summed<Object> &summed);
 
 extern template Summed<Mat> make_summed(const Sum &, const ParameterSpace &, const Mesh &,
                                         const Dofs &);
 extern template Summed<Vec> make_summed(const Sum &, const ParameterSpace &, const Mesh &,
                                         const Dofs &);
 extern template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                            const Dofs &, const MappedCells &, Summed<Mat> &);
+                            const Dofs &, const MappedVertices &, Summed<Mat> &);
 extern template void sum_up(const Sum &, const ParameterSpace &, const FullMu &, const Mesh &,
-                            const Dofs &, const MappedCells &, Summed<Vec> &);
+                            const Dofs &, const MappedVertices &, Summed<Vec> &);
 
 } // namespace rbvi

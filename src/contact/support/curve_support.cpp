@@ -82,7 +82,7 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
   Lift result{Vector::Zero(dual_.size()), Vector::Zero(dual_.size())};
   std::vector<double> displacement;
   for (Index e = 0; e < mesh_.count(); ++e) {
-    const std::span<const Index> rows = rows_of(e);
+    const std::span<const int> rows = rows_of(e);
     if (std::ranges::none_of(rows, [&](Index row) { return row >= 0 && lambda[row] != 0; }))
       continue;
     Cell edge = reference_entity(e);

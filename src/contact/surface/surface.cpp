@@ -123,7 +123,7 @@ Curvature SurfaceInterface::curvature(const FullMu &mu, const ContactState &stat
   std::vector<double> displacement;
   Index row = 0;
   for (Index e = 0; e < mesh_.count(); ++e) {
-    const std::span<const Index> dual = rows_of(e);
+    const std::span<const int> dual = rows_of(e);
     const auto pressure = [&](std::size_t a) { return dual[a] < 0 ? 0 : lambda[dual[a]]; };
     if (pressure(0) == 0 && pressure(1) == 0) continue;
     Cell edge = reference_entity(e);
@@ -158,7 +158,7 @@ SparseMatrix SurfaceInterface::averages() const {
   Vector weights = Vector::Zero(dual_.nodes());
   for (Index e = 0; e < mesh_.count(); ++e) {
     const std::vector<Index> columns = columns_of(e);
-    const std::span<const Index> rows = rows_of(e);
+    const std::span<const int> rows = rows_of(e);
     Cell edge = reference_entity(e);
     edge.mapped = edge.reference;
     for (const TracePoint &at : points())
@@ -194,7 +194,7 @@ SurfaceInterface::AtRest SurfaceInterface::at_rest(const FullMu &mu, Index e) co
 
 void SurfaceInterface::add_edge(const FullMu &mu, Index e, const AtRest &rest, const Vector &state,
                                 const Vector &x, NodalCondition &condition) const {
-  const std::span<const Index> dual = rows_of(e);
+  const std::span<const int> dual = rows_of(e);
   const int *nodes = mesh_.nodes_of(e);
   const bool friction = dual_.components == 2;
   std::array<double, 6> u{}, load{};
@@ -248,7 +248,7 @@ NodalEvaluation SurfaceInterface::nodal_at(const FullMu &mu) const {
     condition.normal.setZero(2, dual_.nodes());
     condition.rotation.setZero(dual_.nodes());
     for (Index e = 0; e < mesh_.count(); ++e) {
-      const std::span<const Index> dual = rows_of(e);
+      const std::span<const int> dual = rows_of(e);
       if (dual[0] < 0 || !(is_wanted(near, dual[0]) || is_wanted(near, dual[1]))) continue;
       AtRest &edge = rest[static_cast<std::size_t>(e)];
       if (edge.points.empty()) edge = at_rest(mu, e);

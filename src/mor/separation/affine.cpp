@@ -144,7 +144,6 @@ template <class Visitor>
 void visit_domain(const Problem &problem, const Sum &sum, const std::vector<int> &terms,
                   Visitor &&visitor) {
   const Mesh &mesh = problem.mesh();
-  const MappedCells cells = reference_cells(mesh);
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
   for (const int term : terms) {
     const Form &form = sum[static_cast<std::size_t>(term)].form;
@@ -152,16 +151,16 @@ void visit_domain(const Problem &problem, const Sum &sum, const std::vector<int>
       if (!form.region.empty() && !mesh.region.at(form.region)[k]) continue;
       const auto nodes = nodes_of(mesh, k);
       visitor(std::vector<int>{nodes.begin(), nodes.begin() + per_cell},
-              TouchedCell{mesh.natural_cell[k], cells.cells[k].reference, {}, term});
+              TouchedCell{mesh.natural_cell[k], cell_of(mesh, k).reference, {}, term});
     }
     if (form.boundary.empty()) continue;
     for (const auto &[k, facet] : mesh.facets.at(form.boundary)) {
       std::vector<int> nodes = facet_nodes(mesh.dim, mesh.degree, facet);
       for (int &node : nodes)
         node = nodes_of(mesh, k)[static_cast<std::size_t>(node)];
-      visitor(
-          nodes,
-          TouchedCell{mesh.natural_cell[k], facet_cell(cells.cells[k], facet).reference, {}, term});
+      visitor(nodes,
+              TouchedCell{
+                  mesh.natural_cell[k], facet_cell(cell_of(mesh, k), facet).reference, {}, term});
     }
   }
 }

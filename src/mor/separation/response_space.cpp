@@ -127,9 +127,10 @@ public:
   /// Appends the directions of `fields` outside the basis that are longer than `least`. Collective.
   Appended append_remainder(Mat fields, double least) {
     Matrix rest = BorrowedRows(fields).rows();
-    Matrix inside = of_product_.transpose() * rest;
+    Matrix inside = of_product_.leftCols(known_).transpose() * rest;
     over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(fields)), MPI_SUM, inside);
-    rest.noalias() -= columns_ * inside;
+    with_columns(0, known_,
+                 [&](Mat columns) { rest.noalias() -= BorrowedRows(columns).rows() * inside; });
     const Handle<Mat> outside = dense_like(fields, rest);
     const Eigen::SelfAdjointEigenSolver<Matrix> gram(
         projected(outside.get(), product_, outside.get()));
@@ -144,26 +145,32 @@ public:
 private:
   /// Takes the columns that are new. Collective.
   void keep_up() {
-    const PetscInt kept = static_cast<PetscInt>(columns_.cols()), all = basis_.size();
-    if (kept == all) return;
-    Mat fresh = nullptr;
-    Handle<Mat> product;
-    RBVI_CALL(BVSetActiveColumns(basis_.columns.get(), kept, all));
-    RBVI_CALL(BVGetMat(basis_.columns.get(), &fresh));
-    RBVI_CALL(MatMatMult(product_, fresh, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
-    append(BorrowedRows(fresh).rows(), columns_);
-    append(BorrowedRows(product.get()).rows(), of_product_);
-    RBVI_CALL(BVRestoreMat(basis_.columns.get(), &fresh));
-    RBVI_CALL(BVSetActiveColumns(basis_.columns.get(), 0, all));
+    const PetscInt all = basis_.size();
+    if (known_ == all) return;
+    with_columns(known_, all, [&](Mat fresh) {
+      Handle<Mat> product;
+      RBVI_CALL(MatMatMult(product_, fresh, MAT_INITIAL_MATRIX, PETSC_DEFAULT, product.put()));
+      const BorrowedRows more(product.get());
+      if (of_product_.cols() < all) of_product_.conservativeResize(more.rows().rows(), 2 * all);
+      of_product_.middleCols(known_, all - known_) = more.rows();
+    });
+    known_ = all;
   }
-  static void append(const BorrowedRows::LocalRows &more, Matrix &to) {
-    to.conservativeResize(more.rows(), to.cols() + more.cols());
-    to.rightCols(more.cols()) = more;
+  /// Calls use(these columns of the basis). Collective.
+  template <class Use> void with_columns(PetscInt first, PetscInt after, const Use &use) {
+    const BV columns = basis_.columns.get();
+    Mat borrowed = nullptr;
+    RBVI_CALL(BVSetActiveColumns(columns, first, after));
+    RBVI_CALL(BVGetMat(columns, &borrowed));
+    use(borrowed);
+    RBVI_CALL(BVRestoreMat(columns, &borrowed));
+    RBVI_CALL(BVSetActiveColumns(columns, 0, basis_.size()));
   }
 
   LinearBasis &basis_;
   Mat product_;
-  Matrix columns_, of_product_; ///< this rank's rows of V and of P V
+  PetscInt known_ = 0; ///< columns whose product is there
+  Matrix of_product_;  ///< this rank's rows of P V, and room for more columns
 };
 
 /// Fields of the body at one mu after the other. Collective.

@@ -45,7 +45,7 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
   nodal_is_identity_ = model.dual_basis.isIdentity(0);
   const ContactInterface *nodal = nodal_interface(contact);
   if (nodal != nullptr && nodal_is_identity_) nodal_compliance_.emplace(nodal->averages());
-  w_product_ = nodal_ * contact.w_product * nodal_.transpose();
+  w_product_ = nodal_ * contact.w_product() * nodal_.transpose();
 }
 
 LawSolver::~LawSolver() = default;
