@@ -129,6 +129,11 @@ bool NitscheLayer::friction() const {
   return std::ranges::any_of(curves, &NitscheCurve::friction);
 }
 
+std::span<const CurveCell> NitscheLayer::cells_of(std::size_t curve) const {
+  const auto own = std::ranges::equal_range(cells, static_cast<int>(curve), {}, &CurveCell::curve);
+  return {own.begin(), own.end()};
+}
+
 bool NitscheLayer::follows_state() const {
   return std::ranges::any_of(curves,
                              [](const NitscheCurve &curve) { return curve.facing.follows_state; });
@@ -161,7 +166,7 @@ double nitsche_bound(const NitscheLaw &law, double p_n) {
   return law.only_in_contact && p_n >= 0 ? 0.0 : law.value;
 }
 
-Vector nitsche_bounds(const std::vector<NitscheFace> &faces, const Matrix &pressures) {
+Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures) {
   if (std::ranges::all_of(
           faces, [](const NitscheFace &face) { return face.law.law == FrictionLaw::none; }))
     return {};
@@ -292,10 +297,7 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line) {
 CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const FullMu &mu,
                            const Vector &u) {
   const NitscheFacing &facing = layer.curves[number].facing;
-  std::vector<CurveCell> cells;
-  std::ranges::copy_if(layer.cells, std::back_inserter(cells), [&](const CurveCell &cell) {
-    return cell.curve == static_cast<int>(number);
-  });
+  const std::span<const CurveCell> cells = layer.cells_of(number);
   const auto count = static_cast<Index>(cells.size()) + 1;
   CurveFields fields;
   for (Vector *field : {&fields.sigma_n, &fields.sigma_tau, &fields.p_n, &fields.p_tau,

@@ -26,8 +26,7 @@ double component(const NitschePoint::Row &row, Index c) {
   return sum;
 }
 
-Sums integrate(const std::vector<NitscheFace> &faces, const Matrix &pressures,
-               const Vector &bounds) {
+Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, const Vector &bounds) {
   Sums sums;
   sums.edge_pressures.resize(static_cast<Index>(faces.size()));
   Index number = 0, edge = 0;
@@ -63,7 +62,7 @@ double ends_in_contact(const CurveFields &fields) {
   return (fields.p_n[0] < 0 ? 1.0 : 0.0) + (fields.p_n[fields.p_n.size() - 1] < 0 ? 1.0 : 0.0);
 }
 
-void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
                      const CurveFields &fields, Outputs &outputs) {
   const NitscheLaw &law = faces.front().law;
   const Sums sums = integrate(faces, pressures, nitsche_bounds(faces, pressures));
@@ -98,19 +97,17 @@ void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressu
 void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
                      const std::vector<NitscheFace> &faces, const Vector &u,
                      const Matrix &pressures, Outputs &outputs) {
-  auto begin = faces.begin();
+  Index first = 0;
   for (std::size_t k = 0; k < layer.curves.size(); ++k) {
-    const auto end = std::find_if(begin, faces.end(), [k](const NitscheFace &face) {
-      return face.curve != static_cast<int>(k);
-    });
+    const auto count = std::ssize(layer.cells_of(k));
+    const auto own =
+        std::span(faces).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
     const CurveFields fields = nitsche_fields(layer, k, mu, u);
     Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
-    nitsche_outputs({begin, end},
-                    pressures.middleRows(4 * (begin - faces.begin()), 4 * (end - begin)), fields,
-                    one);
+    nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
     if (layer.curves[k].facing.follows_state) one.ends_in_contact = ends_in_contact(fields);
     if (&one == &part) add_contact(part, outputs);
-    begin = end;
+    first += count;
   }
 }
 

@@ -52,12 +52,10 @@ std::vector<Index> curve_vertices(const InterfaceMesh &mesh) {
 
 class NitscheInterface : public ContactInterface {
 public:
-  NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, const Friction &law,
-                   NitscheFacing facing, double gamma0)
-      : ContactInterface(scene, std::move(interface_mesh)), layer_{
-                                                                scene,
-                                                                {{law, std::move(facing), gamma0}},
-                                                                curve_cells(mesh_)} {
+  NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, NitscheCurve curve)
+      : ContactInterface(scene, std::move(interface_mesh)), layer_{scene,
+                                                                   {std::move(curve)},
+                                                                   curve_cells(mesh_)} {
     dual_.vertices = curve_vertices(mesh_);
     for (const Index node : dual_.vertices)
       dual_.points.push_back(mesh_.points[static_cast<std::size_t>(node)]);
@@ -103,8 +101,8 @@ ContactRecipe nitsche_contact(const std::string &name, Faced faced, double gamma
   add_friction(faced.friction, recipe);
   recipe.separable = false;
   recipe.make = [faced, gamma0, facing](const Scene &scene, InterfaceMesh mesh) {
-    return std::make_unique<NitscheInterface>(scene, std::move(mesh), faced.friction,
-                                              facing(scene, faced), gamma0);
+    return std::make_unique<NitscheInterface>(
+        scene, std::move(mesh), NitscheCurve{faced.friction, facing(scene, faced), gamma0});
   };
   recipe.record = record_of(faced);
   recipe.record.name = name;

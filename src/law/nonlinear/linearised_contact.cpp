@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <span>
 
 namespace rbvi {
 
@@ -21,10 +22,13 @@ public:
     position_.assign(at(rows.s.cols()), -1);
     touch(rows.s);
     touch(rows.e);
+    std::sort(dofs_.begin(), dofs_.end());
+    for (std::size_t k = 0; k < dofs_.size(); ++k)
+      position_[at(dofs_[k])] = static_cast<Index>(k);
     s_ = local(rows.s);
     e_ = local(rows.e);
   }
-  const std::vector<Index> &dofs() const { return dofs_; }
+  const std::vector<Index> &dofs() const { return dofs_; } ///< rising
   /// K change, both on dofs().
   Vector operator()(const Vector &change) const {
     return -(s_.transpose() * (e_ * change) + e_.transpose() * (s_ * change));
@@ -35,7 +39,7 @@ private:
     for (Index row = 0; row < rows.rows(); ++row)
       for (SparseMatrix::InnerIterator entry(rows, row); entry; ++entry)
         if (position_[at(entry.col())] < 0) {
-          position_[at(entry.col())] = std::ssize(dofs_);
+          position_[at(entry.col())] = 0;
           dofs_.push_back(entry.col());
         }
   }
@@ -51,6 +55,43 @@ private:
 
   std::vector<Index> dofs_, position_;
   SparseMatrix s_, e_;
+};
+
+/// C between dofs, which rise: a block for each body.
+class ComplianceBetween {
+public:
+  ComplianceBetween(const std::vector<Index> &dofs, const ComplianceColumns &compliance) {
+    for (auto first = dofs.begin(), after = first; first != dofs.end(); first = after) {
+      const auto body = compliance.body_of(*first);
+      after = std::lower_bound(first, dofs.end(), body.first + body.count);
+      blocks_.push_back(block({first, after}, compliance));
+    }
+  }
+  Vector operator*(const Vector &z) const {
+    Vector result(z.size());
+    Index first = 0;
+    for (const Matrix &block : blocks_) {
+      result.segment(first, block.rows()).noalias() = block * z.segment(first, block.rows());
+      first += block.rows();
+    }
+    return result;
+  }
+
+private:
+  /// Copied run by run, as most dofs follow each other.
+  static Matrix block(std::span<const Index> dofs, const ComplianceColumns &compliance) {
+    const Index count = std::ssize(dofs);
+    Matrix result(count, count);
+    for (Index first = 0, after = 0; first < count; first = after) {
+      while (after < count && dofs[at(after)] - dofs[at(first)] == after - first)
+        ++after;
+      for (Index k = 0; k < count; ++k)
+        result.col(k).segment(first, after - first) =
+            compliance.column(dofs[at(k)]).segment(dofs[at(first)], after - first);
+    }
+    return result;
+  }
+  std::vector<Matrix> blocks_;
 };
 
 } // namespace
@@ -176,9 +217,7 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
   const CurvatureLoad curvature(contact_.curvature(state_ + back_, start.x));
   const std::vector<Index> &dofs = curvature.dofs();
   contact_.compliance.require(dofs);
-  Matrix local(std::ssize(dofs), std::ssize(dofs)); // C on these dofs
-  for (std::size_t k = 0; k < dofs.size(); ++k)
-    local.col(static_cast<Index>(k)) = contact_.compliance.column(dofs[k])(dofs);
+  const ComplianceBetween local(dofs, contact_.compliance);
   std::vector<Index> active = facing(start.active);
   for (int set = 0; set < most_sets; ++set) {
     std::vector<Index> fresh;

@@ -140,7 +140,7 @@ void NitscheSystem::predict_from_rest(Vec u) {
   Matrix pressures = nitsche_pressures(faces, on_layer(rest.get()));
   const Vector of_law = nitsche_bounds(faces, pressures);
   pressures.col(0).array() -= edge_depth * std::min(0.0, pressures.col(0).minCoeff());
-  predict({rest.get(), pressures}, bounds_move() ? Vector(Vector::Zero(of_law.size())) : of_law, u);
+  predict({rest.get(), pressures}, bounds_move() ? Vector(of_law.cwiseMin(0.0)) : of_law, u);
 }
 
 void NitscheSystem::predict(const NitscheStart &start, const Vector &friction_bounds, Vec u) {

@@ -14,6 +14,7 @@
 #include "rbvi/contact/nitsche/nitsche.hpp"
 #include "rbvi/core/outputs.hpp"
 
+#include <span>
 #include <vector>
 
 namespace rbvi {
@@ -59,6 +60,7 @@ struct NitscheLayer {
   const NitscheCurve &curve_of(const CurveCell &cell) const {
     return curves[static_cast<std::size_t>(cell.curve)];
   }
+  std::span<const CurveCell> cells_of(std::size_t curve) const;
 };
 
 /// All of contact by Nitsche's method. Throws failure where multipliers hold it.
@@ -107,7 +109,7 @@ Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vec
 double nitsche_bound(const NitscheLaw &law, double p_n);
 
 /// That of every point; empty where no face has friction.
-Vector nitsche_bounds(const std::vector<NitscheFace> &faces, const Matrix &pressures);
+Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures);
 
 /// Whether the bounds of some face depend on u.
 bool bounds_move(const std::vector<NitscheFace> &faces);
@@ -170,7 +172,7 @@ double ends_in_contact(const CurveFields &fields);
 /// Fills forces, half-widths, pressures, penetration and the errors of the laws of one curve; see
 /// support_outputs. `faces`: all of the curve. centre_pressure is that of -[P_n]_- averaged over
 /// each edge.
-void nitsche_outputs(const std::vector<NitscheFace> &faces, const Matrix &pressures,
+void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
                      const CurveFields &fields, Outputs &outputs);
 
 /// The same of all curves of the layer: with several, what are sums or maxima over them. `faces`:
