@@ -147,8 +147,8 @@ DiscSolution solve_on_disc(int rings, bool lumped) {
   Problem problem(PETSC_COMM_WORLD, radial_scene(lumped), {file.string(), 0});
   if (rank == 0) std::filesystem::remove(file);
   HfSolution solution = HighFidelity(problem, {}).solve({0.2, 0, 0});
-  const Pressure errors = pressure_errors(problem.places().meshes.front(), solution.lambda,
-                                          radial_obstacle(rim, load, curvature));
+  const Pressure errors = pressure_errors(problem.contact().interfaces.front()->mesh(),
+                                          solution.lambda, radial_obstacle(rim, load, curvature));
   return {std::move(solution), errors};
 }
 

@@ -20,7 +20,7 @@ Handle<Mat> basis_of(const Problem &problem, Index hats, Index fields) {
   const Dofs &dofs = problem.dofs();
   Matrix natural = Matrix::Zero(dofs.total, hats + fields);
   Index next = 0;
-  const InterfaceMesh &disc = problem.places().meshes.front();
+  const InterfaceMesh &disc = problem.contact().interfaces.front()->mesh();
   for (std::size_t i = 0; i < disc.points.size() && next < hats; ++i)
     if (std::hypot(disc.points[i][0], disc.points[i][1]) < 0.17)
       natural(problem.places().natural_dofs[static_cast<std::size_t>(disc.dofs[i])], next++) = 1;

@@ -159,7 +159,8 @@ TEST(TwoBodyProblem, WithoutMotionTheGapIsThatOfTwoCircles) {
   for (const double radius : {0.7, 1.0, 1.3}) {
     const Operators op = contact_at(problem, radius);
     for (Index i = 0; i < op.nodal_gap.size(); ++i) {
-      const double x = problem.places().meshes.front().points[static_cast<std::size_t>(i)][0];
+      const double x =
+          problem.contact().interfaces.front()->mesh().points[static_cast<std::size_t>(i)][0];
       const double circles =
           initial_gap + 1 - std::sqrt(1 - x * x) + radius - std::sqrt(radius * radius - x * x);
       EXPECT_NEAR(op.nodal_gap[i], circles, 1e-6);
@@ -222,7 +223,7 @@ TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
 /// polygon below it, motion included; abscissae stay as they are.
 TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
   Problem problem(PETSC_COMM_WORLD, discs(), {});
-  const InterfaceMesh &curves = problem.places().meshes.front();
+  const InterfaceMesh &curves = problem.contact().interfaces.front()->mesh();
   for (const double radius : {0.7, 1.3}) {
     const Operators op = contact_at(problem, radius);
     Vector w(op.nodal_b.cols());
