@@ -1,74 +1,12 @@
 // Nitsche's terms along a curve: against differences of their energies, and the fields and outputs
 // of states that are known.
-#include "../element/cells.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "nitsche_strip.hpp"
 #include "rbvi/core/error.hpp"
-#include "support_scenes.hpp"
 
 #include <gtest/gtest.h>
 
 namespace rbvi {
 namespace {
-
-/// Triangles above a curve or, listing their edges against increasing x, below it; neighbours share
-/// a vertex. The edges on the curve are the local edges 0, 1 and 2 in turn.
-struct Strip {
-  std::vector<CurveCell> cells;
-  std::vector<Point> nodes; ///< of the reference domain; dof = 2 * node + component
-};
-
-enum class Side { above, below };
-
-Strip strip(int degree, const Curve &curve, Side side = Side::above) {
-  Strip result{{}, curve};
-  for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
-    const std::size_t first = side == Side::above ? k : k + 1, second = 2 * k + 1 - first;
-    const std::size_t edge = k % 3, end = (edge + 1) % 3;
-    Point apex = between(curve[k], curve[k + 1], 0.5);
-    apex[1] += side == Side::above ? 0.2 : -0.2;
-    CurveCell beside{{2, {}, {}}, static_cast<int>(edge), {}};
-    beside.cell.reference[edge] = curve[first];
-    beside.cell.reference[end] = curve[second];
-    beside.cell.reference[3 - edge - end] = apex;
-    beside.cell.mapped = beside.cell.reference;
-    beside.dofs.fill(-1);
-    const auto nodes = nodes_of(2, degree, beside.cell.reference);
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      std::size_t node = result.nodes.size();
-      if (i == edge || i == end)
-        node = i == edge ? first : second;
-      else
-        result.nodes.push_back({nodes[i][0], nodes[i][1], 0});
-      beside.dofs[2 * i] = static_cast<int>(2 * node);
-      beside.dofs[2 * i + 1] = static_cast<int>(2 * node + 1);
-    }
-    result.cells.push_back(beside);
-  }
-  return result;
-}
-
-/// Displacements of the nodes by a field of the mapped domain.
-Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const PointField &field) {
-  Vector u(2 * static_cast<Index>(s.nodes.size()));
-  for (std::size_t i = 0; i < s.nodes.size(); ++i) {
-    const Point value = field(scene.map(mu, s.nodes[i]));
-    u.segment<2>(2 * static_cast<Index>(i)) << value[0], value[1];
-  }
-  return u;
-}
-
-/// A half disk, stiffer on the right, that is pushed down.
-SupportScene half_disk(int degree) {
-  SupportScene scene = hertz(degree);
-  scene.motion = [](const FullMu &, const Point &) { return Point{0.02, -0.1, 0}; };
-  scene.material = [](const FullMu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; };
-  return scene;
-}
-
-/// gamma0 = 0.3.
-NitscheLayer layer_of(const SupportScene &scene, const Strip &s) {
-  return {scene, {{scene.support.friction, facing_support(scene, scene.support), 0.3}}, s.cells};
-}
 
 struct Example {
   std::vector<NitscheFace> faces;
@@ -357,100 +295,6 @@ TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
   EXPECT_NEAR(fields.sigma_n[2], 3.4, 1e-13);
   EXPECT_NEAR(fields.p_n[1], fields.sigma_n[1] - 0.3 * (17 + 34) / 2 / 0.5 * fields.excess[1],
               1e-12);
-}
-
-Vector stacked(const Vector &a, const Vector &b) {
-  return (Vector(a.size() + b.size()) << a, b).finished();
-}
-
-/// Two curves without common dofs, each with a law of its own, and both as one layer.
-struct TwoCurves {
-  SupportScene scene = half_disk(2);
-  Strip first = strip(2, arc(6, 0.5)), second = strip(2, arc(5, 0.4));
-  NitscheLayer one = layer_of(scene, first), other = layer_of(scene, second),
-               both{scene, one.curves, one.cells};
-  FullMu mu{1.1};
-  Vector u, v; ///< of the two curves
-
-  TwoCurves(const Friction &of_first, const Friction &of_second) {
-    one.curves.front().law = both.curves.front().law = of_first;
-    other.curves.front().law = of_second;
-    both.curves.push_back(other.curves.front());
-    const auto dofs = 2 * static_cast<int>(first.nodes.size());
-    for (CurveCell cell : other.cells) {
-      cell.curve = 1;
-      for (int &dof : cell.dofs)
-        if (dof >= 0) dof += dofs;
-      both.cells.push_back(cell);
-    }
-    Random random(41);
-    u = 0.05 * random.vector(dofs);
-    v = 0.05 * random.vector(2 * static_cast<Index>(second.nodes.size()));
-  }
-  std::vector<NitscheFace> faces(const NitscheLayer &layer) const {
-    return nitsche_faces(layer, mu, layer.cells);
-  }
-};
-
-const auto constant = [](double value) { return [=](const FullMu &) { return value; }; };
-
-TEST(NitscheCurves, TogetherAnswerAsEachByItself) {
-  for (const Friction &law : {Friction{}, Friction{FrictionLaw::tresca, constant(0.4)}}) {
-    const TwoCurves two(law, {FrictionLaw::coulomb, constant(0.3)});
-    const auto one = two.faces(two.one), other = two.faces(two.other), both = two.faces(two.both);
-    const Vector w = stacked(two.u, two.v);
-    const Matrix p = nitsche_pressures(one, two.u), q = nitsche_pressures(other, two.v),
-                 all = nitsche_pressures(both, w);
-    EXPECT_EQ(all, (Matrix(p.rows() + q.rows(), 2) << p, q).finished());
-    const Vector of_one = nitsche_bounds(one, p), of_other = nitsche_bounds(other, q),
-                 bounds = nitsche_bounds(both, all);
-    EXPECT_TRUE(bounds_move(both));
-    EXPECT_FALSE(bounds_move(one));
-    EXPECT_EQ(bounds.tail(q.rows()), of_other);
-    EXPECT_EQ(nitsche_residual(both, w, bounds), stacked(nitsche_residual(one, two.u, of_one),
-                                                         nitsche_residual(other, two.v, of_other)));
-    const double energy =
-        nitsche_energy(one, two.u, of_one) + nitsche_energy(other, two.v, of_other);
-    EXPECT_NEAR(nitsche_energy(both, w, bounds), energy, 1e-14 * energy);
-    const auto tangent = nitsche_tangent(both, all, bounds),
-               of_first = nitsche_tangent(one, p, of_one);
-    EXPECT_TRUE(std::equal(of_first.begin(), of_first.end(), tangent.begin()));
-    const auto consistency = nitsche_consistency(both), apart = nitsche_consistency(one);
-    EXPECT_TRUE(std::equal(apart.begin(), apart.end(), consistency.begin()));
-    EXPECT_EQ(nitsche_multiplier(two.both, two.mu, w),
-              stacked(nitsche_multiplier(two.one, two.mu, two.u),
-                      nitsche_multiplier(two.other, two.mu, two.v)));
-  }
-}
-
-Outputs outputs_of(const NitscheLayer &layer, const FullMu &mu, const Vector &u) {
-  Outputs outputs;
-  const auto faces = nitsche_faces(layer, mu, layer.cells);
-  nitsche_outputs(layer, mu, faces, u, nitsche_pressures(faces, u), outputs);
-  return outputs;
-}
-
-TEST(NitscheCurves, OutputsAreSumsAndMaxima) {
-  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
-  const Outputs one = outputs_of(two.one, two.mu, two.u),
-                other = outputs_of(two.other, two.mu, two.v),
-                both = outputs_of(two.both, two.mu, stacked(two.u, two.v));
-  EXPECT_NEAR(*both.normal_force, *one.normal_force + *other.normal_force, 1e-14);
-  EXPECT_NEAR(*both.reaction, *one.reaction + *other.reaction, 1e-14);
-  EXPECT_EQ(*both.contact_nodes, *one.contact_nodes + *other.contact_nodes);
-  EXPECT_EQ(*both.max_penetration, std::max(*one.max_penetration, *other.max_penetration));
-  EXPECT_EQ(*both.peak_pressure, std::max(*one.peak_pressure, *other.peak_pressure));
-  EXPECT_EQ(*both.tangential_force, *other.tangential_force);
-  EXPECT_FALSE(one.tangential_force);
-  EXPECT_FALSE(both.contact_half_width) << "there is no such thing of two curves";
-}
-
-TEST(NitscheCurves, TheMultiplierIsMinusTheStress) {
-  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
-  const CurveFields one = nitsche_fields(two.one, 0, two.mu, two.u),
-                    other = nitsche_fields(two.other, 0, two.mu, two.v);
-  EXPECT_EQ(nitsche_multiplier(two.one, two.mu, two.u), -one.sigma_n);
-  EXPECT_EQ(nitsche_multiplier(two.other, two.mu, two.v), -stacked(other.sigma_n, other.sigma_tau));
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace rbvi {
 namespace {
@@ -97,6 +98,21 @@ TEST(TwoInterfaces, ByNitschesMethodAnswerAsEachByItself) {
   EXPECT_NEAR(*b.tangential_force, *f.tangential_force, 1e-9 * *b.tangential_force);
   EXPECT_GT(*f.tangential_force, 0);
   EXPECT_FALSE(l.tangential_force);
+}
+
+/// A tilted plate without friction and one that rubs: the difference is of discretisation, as they
+/// have nothing but A in common.
+TEST(TwoInterfaces, ByNitschesMethodAnswerAsByMultipliers) {
+  const auto outputs = [](const char *formulation) {
+    Problem problem(PETSC_COMM_WORLD, make_scene("roller", {{"formulation", formulation}}), {});
+    return HighFidelity(problem, {}).solve({0.04, 0.1}).outputs;
+  };
+  const Outputs nitsche = outputs("nitsche"), mixed = outputs("mixed");
+  for (const auto member : {&Outputs::energy, &Outputs::normal_force, &Outputs::reaction,
+                            &Outputs::horizontal_reaction})
+    EXPECT_NEAR(*(nitsche.*member), *(mixed.*member), 2e-3 * std::abs(*(mixed.*member)));
+  EXPECT_NEAR(*nitsche.tangential_force, *mixed.tangential_force, 0.03 * *mixed.tangential_force);
+  EXPECT_NEAR(*nitsche.peak_pressure, *mixed.peak_pressure, 0.01 * *mixed.peak_pressure);
 }
 
 /// The normal displacement of the nodes bounded by the gap: on both.

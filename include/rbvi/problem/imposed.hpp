@@ -22,7 +22,7 @@ struct ImposedEnergy {
 /// Collective.
 ImposedEnergy make_imposed_energy(const Scene &scene, const Mesh &mesh, const Dofs &dofs);
 
-/// At mu, to which `cells` are mapped. Collective.
+/// At mu; `mapped`: the vertices there. Collective.
 double energy_at(const ImposedEnergy &energy, const Scene &scene, const FullMu &mu,
                  const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped);
 

@@ -1,0 +1,135 @@
+// Several curves by Nitsche's method in one layer: together they answer as each by itself.
+#include "nitsche_strip.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+namespace {
+
+Vector stacked(const Vector &a, const Vector &b) {
+  return (Vector(a.size() + b.size()) << a, b).finished();
+}
+
+/// Two curves without common dofs, each with a law of its own, and both as one layer.
+struct TwoCurves {
+  SupportScene scene = half_disk(2);
+  Strip first = strip(2, arc(6, 0.5)), second = strip(2, arc(5, 0.4));
+  NitscheLayer one = layer_of(scene, first), other = layer_of(scene, second),
+               both{scene, one.curves, one.cells};
+  FullMu mu{1.1};
+  Vector u, v; ///< of the two curves
+
+  TwoCurves(const Friction &of_first, const Friction &of_second) {
+    one.curves.front().law = both.curves.front().law = of_first;
+    other.curves.front().law = of_second;
+    both.curves.push_back(other.curves.front());
+    const auto dofs = 2 * static_cast<int>(first.nodes.size());
+    for (CurveCell cell : other.cells) {
+      cell.curve = 1;
+      for (int &dof : cell.dofs)
+        if (dof >= 0) dof += dofs;
+      both.cells.push_back(cell);
+    }
+    Random random(41);
+    u = 0.05 * random.vector(dofs);
+    v = 0.05 * random.vector(2 * static_cast<Index>(second.nodes.size()));
+  }
+  std::vector<NitscheFace> faces(const NitscheLayer &layer) const {
+    return nitsche_faces(layer, mu, layer.cells);
+  }
+};
+
+const auto constant = [](double value) { return [=](const FullMu &) { return value; }; };
+
+TEST(NitscheCurves, TogetherAnswerAsEachByItself) {
+  for (const Friction &law : {Friction{}, Friction{FrictionLaw::tresca, constant(0.4)}}) {
+    const TwoCurves two(law, {FrictionLaw::coulomb, constant(0.3)});
+    const auto one = two.faces(two.one), other = two.faces(two.other), both = two.faces(two.both);
+    const Vector w = stacked(two.u, two.v);
+    const Matrix p = nitsche_pressures(one, two.u), q = nitsche_pressures(other, two.v),
+                 all = nitsche_pressures(both, w);
+    EXPECT_EQ(all, (Matrix(p.rows() + q.rows(), 2) << p, q).finished());
+    const Vector of_one = nitsche_bounds(one, p), of_other = nitsche_bounds(other, q),
+                 bounds = nitsche_bounds(both, all);
+    EXPECT_TRUE(bounds_move(both));
+    EXPECT_FALSE(bounds_move(one));
+    EXPECT_EQ(bounds.tail(q.rows()), of_other);
+    EXPECT_EQ(nitsche_residual(both, w, bounds), stacked(nitsche_residual(one, two.u, of_one),
+                                                         nitsche_residual(other, two.v, of_other)));
+    const double energy =
+        nitsche_energy(one, two.u, of_one) + nitsche_energy(other, two.v, of_other);
+    EXPECT_NEAR(nitsche_energy(both, w, bounds), energy, 1e-14 * energy);
+    const auto tangent = nitsche_tangent(both, all, bounds),
+               of_first = nitsche_tangent(one, p, of_one);
+    EXPECT_TRUE(std::equal(of_first.begin(), of_first.end(), tangent.begin()));
+    const auto consistency = nitsche_consistency(both), apart = nitsche_consistency(one);
+    EXPECT_TRUE(std::equal(apart.begin(), apart.end(), consistency.begin()));
+    EXPECT_EQ(nitsche_multiplier(two.both, two.mu, w),
+              stacked(nitsche_multiplier(two.one, two.mu, two.u),
+                      nitsche_multiplier(two.other, two.mu, two.v)));
+  }
+}
+
+Outputs outputs_of(const NitscheLayer &layer, const FullMu &mu, const Vector &u) {
+  Outputs outputs;
+  const auto faces = nitsche_faces(layer, mu, layer.cells);
+  nitsche_outputs(layer, mu, faces, u, nitsche_pressures(faces, u), outputs);
+  return outputs;
+}
+
+TEST(NitscheCurves, OutputsAreSumsAndMaxima) {
+  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
+  const Outputs one = outputs_of(two.one, two.mu, two.u),
+                other = outputs_of(two.other, two.mu, two.v),
+                both = outputs_of(two.both, two.mu, stacked(two.u, two.v));
+  EXPECT_NEAR(*both.normal_force, *one.normal_force + *other.normal_force, 1e-14);
+  EXPECT_NEAR(*both.reaction, *one.reaction + *other.reaction, 1e-14);
+  EXPECT_EQ(*both.contact_nodes, *one.contact_nodes + *other.contact_nodes);
+  EXPECT_EQ(*both.max_penetration, std::max(*one.max_penetration, *other.max_penetration));
+  EXPECT_EQ(*both.peak_pressure, std::max(*one.peak_pressure, *other.peak_pressure));
+  EXPECT_EQ(*both.tangential_force, *other.tangential_force);
+  EXPECT_FALSE(one.tangential_force);
+  EXPECT_FALSE(both.contact_half_width) << "there is no such thing of two curves";
+}
+
+TEST(NitscheCurves, TheMultiplierIsMinusTheStress) {
+  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
+  const CurveFields one = nitsche_fields(two.one, 0, two.mu, two.u),
+                    other = nitsche_fields(two.other, 0, two.mu, two.v);
+  EXPECT_EQ(nitsche_multiplier(two.one, two.mu, two.u), -one.sigma_n);
+  EXPECT_EQ(nitsche_multiplier(two.other, two.mu, two.v), -stacked(other.sigma_n, other.sigma_tau));
+}
+
+/// Axes turn on the curve that follows the displacement alone.
+TEST(NitscheCurves, OneMayFollowTheDisplacement) {
+  TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
+  const NitscheFacing turning{[](const FullMu &, const Point &, const Point &displacement) {
+                                const double angle = 0.3 + 2 * displacement[0];
+                                return SupportPoint{{std::sin(angle), -std::cos(angle), 0},
+                                                    0.02 - 0.5 * displacement[1],
+                                                    displacement[0],
+                                                    0.7};
+                              },
+                              true};
+  two.other.curves.front().facing = two.both.curves.back().facing = turning;
+  EXPECT_TRUE(two.both.follows_state());
+  EXPECT_FALSE(two.one.follows_state());
+  const Vector w = stacked(two.u, two.v);
+  const auto at = [&](const NitscheLayer &layer, const Vector &state) {
+    return nitsche_faces(layer, two.mu, layer.cells, state);
+  };
+  const auto one = two.faces(two.one), other = at(two.other, two.v), both = at(two.both, w);
+  const auto residual = [](const std::vector<NitscheFace> &faces, const Vector &u) {
+    return nitsche_residual(faces, u, nitsche_bounds(faces, nitsche_pressures(faces, u)));
+  };
+  EXPECT_EQ(residual(both, w), stacked(residual(one, two.u), residual(other, two.v)));
+  const auto at_rest = two.faces(two.other);
+  EXPECT_GT((residual(other, two.v) - residual(at_rest, two.v)).norm(),
+            0.01 * residual(other, two.v).norm());
+}
+
+} // namespace
+} // namespace rbvi
