@@ -46,6 +46,11 @@ std::string joined(const std::vector<std::string> &parts, const std::string &sep
   return text;
 }
 
+std::string table_line(const std::vector<std::string> &parts, const std::string &begin,
+                       const std::string &between, const std::string &end) {
+  return begin + joined(parts, between) + end + "\n";
+}
+
 std::string shortest_number(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

@@ -14,7 +14,7 @@ namespace {
 
 using namespace pivoting;
 
-constexpr double tolerance = 1e-13;
+constexpr double pivot_tolerance = 1e-13;
 
 /// The problem of unit * z: its matrix has diagonal entries between 1/2 and 2 where that of M is
 /// not zero. Powers of two, so that nothing is rounded.
@@ -64,7 +64,7 @@ BasicSolution solve_basis(const ScaledLcp &problem, std::vector<Index> active) {
     basic.w += basic.x[k] * column;
     terms += std::abs(basic.x[k]) * column.cwiseAbs();
   }
-  find_violations(basic, basic.x, terms, tolerance);
+  find_violations(basic, basic.x, terms, pivot_tolerance);
   return basic;
 }
 

@@ -1,6 +1,6 @@
+#include "points.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/element/geometry.hpp"
 #include "rbvi/mesh/serial.hpp"
 
 #include <algorithm>
@@ -11,10 +11,6 @@
 namespace rbvi {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 using Facet = std::array<int, 3>; ///< decreasing vertices, the rest -1
 
@@ -69,10 +65,6 @@ Point centre_of(const SerialMesh &mesh, const int *vertices, int count) {
     for (std::size_t c = 0; c < 3; ++c)
       centre[c] += mesh.points[at(vertices[i])][c] / count;
   return centre;
-}
-
-double distance(const Point &x, const Point &y) {
-  return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
 }
 
 /// Length of an edge, area of a triangle.

@@ -1,7 +1,8 @@
 #include "rbvi/mesh/serial.hpp"
 
+#include "points.hpp"
+
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/geometry.hpp"
 #include "rbvi/io/checksum.hpp"
 
 #include <algorithm>
@@ -14,14 +15,6 @@
 namespace rbvi {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-double distance(const Point &x, const Point &y) {
-  return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]);
-}
 
 /// Facet i of a cell lies opposite to vertex i; its vertices in an order whose parity is that of
 /// the cell's orientation, so that two cells on either side of it list opposite parities.

@@ -12,7 +12,7 @@ namespace rbvi {
 namespace {
 
 // Measured on membranes, disks on a support and two disks from 4 000 to 230 000 dofs.
-constexpr double column = 0.4;            ///< one of many right-hand sides
+constexpr double one_column = 0.4;        ///< one of many right-hand sides
 constexpr double factorisation = 75;      ///< of sparse Cholesky factors in two dimensions
 constexpr double krylov_steps = 60;       ///< of the few sets from a neighbour or a coarser mesh
 constexpr double steps_of_a_set = 20;     ///< where sets are far from the factors
@@ -41,7 +41,7 @@ ContactCost contact_cost(const Problem &problem, int samples) {
   const auto nodes = static_cast<double>(problem.contact().nodes());
   const auto dofs = static_cast<double>(problem.dofs().total_free);
   const double count = std::max(1, samples);
-  const double columns = column * nodes / 2; // a half of them touches
+  const double columns = one_column * nodes / 2; // a half of them touches
   const double dense = std::pow(nodes / 3, 3) / (160 * dofs);
   const bool kept = constant_stiffness(problem.scene());
   // From nothing, the sets move by a layer of nodes a step.

@@ -35,9 +35,9 @@ std::string threshold(const BenchRow &row, double best) {
   return formatted("%.0f", std::ceil(row.offline / (best - row.median)));
 }
 
-const std::vector<std::string> header{"method",     "includes", "queries",      "median_ms",
-                                      "p95_ms",     "u_mean",   "u_max",        "lambda_mean",
-                                      "lambda_max", "speed_up", "benefit_from", "outputs_max"};
+const std::vector<std::string> bench_columns{
+    "method", "includes",    "queries",    "median_ms", "p95_ms",       "u_mean",
+    "u_max",  "lambda_mean", "lambda_max", "speed_up",  "benefit_from", "outputs_max"};
 
 std::vector<std::string> cells(const BenchRow &row, double best) {
   const bool answers = row.u_mean >= 0;
@@ -55,23 +55,19 @@ std::vector<std::string> cells(const BenchRow &row, double best) {
           error_text(row.outputs_max)};
 }
 
-std::string line(const std::vector<std::string> &parts, const std::string &begin,
-                 const std::string &between, const std::string &end) {
-  return begin + joined(parts, between) + end + "\n";
-}
-
 std::string markdown(const std::vector<BenchRow> &rows, double best) {
-  std::string table = line(header, "| ", " | ", " |") +
-                      line(std::vector<std::string>(header.size(), "---"), "|", "|", "|");
+  std::string table =
+      table_line(bench_columns, "| ", " | ", " |") +
+      table_line(std::vector<std::string>(bench_columns.size(), "---"), "|", "|", "|");
   for (const BenchRow &row : rows)
-    table += line(cells(row, best), "| ", " | ", " |");
+    table += table_line(cells(row, best), "| ", " | ", " |");
   return table;
 }
 
 std::string csv(const std::vector<BenchRow> &rows, double best) {
-  std::string table = line(header, "", ",", "");
+  std::string table = table_line(bench_columns, "", ",", "");
   for (const BenchRow &row : rows)
-    table += line(cells(row, best), "\"", "\",\"", "\"");
+    table += table_line(cells(row, best), "\"", "\",\"", "\"");
   return table;
 }
 

@@ -13,12 +13,7 @@ namespace {
 
 constexpr double megabyte = 1e6;
 
-std::string line(const std::vector<std::string> &parts, const std::string &begin,
-                 const std::string &between, const std::string &end) {
-  return begin + joined(parts, between) + end + "\n";
-}
-
-const std::vector<std::string> columns{
+const std::vector<std::string> growth_columns{
     "scene",         "refine",          "nodes",          "dofs",           "multipliers",
     "ranks",         "ranks_per_solve", "samples",        "failed",         "modes",
     "contact_nodes", "sample_seconds",  "iterations",     "model_mb",       "fields_mb",
@@ -31,39 +26,39 @@ std::string row(const GrowthRun &run, const std::string &stage, const RankCosts 
   const auto count = [](double value) { return formatted("%.0f", value); };
   const auto real = [](double value) { return formatted("%.6g", value); };
   const auto &[largest, sum] = cost;
-  return line({run.scene,
-               count(run.refine),
-               count(run.nodes),
-               count(run.dofs),
-               count(run.multipliers),
-               count(run.ranks),
-               count(run.ranks_per_solve),
-               count(run.samples),
-               count(run.failed),
-               count(run.modes),
-               count(run.contact_nodes),
-               real(run.sample_seconds),
-               real(run.iterations),
-               real(run.model_bytes / megabyte),
-               real(run.fields_bytes / megabyte),
-               real(run.resident / megabyte),
-               stage,
-               real(largest.seconds),
-               real(largest.cpu),
-               real(sum.cpu),
-               real(largest.memory / megabyte),
-               real(sum.memory / megabyte),
-               count(sum.messages),
-               count(largest.messages),
-               real(sum.bytes / megabyte),
-               count(largest.reductions),
-               count(largest.symbolic),
-               count(largest.factorisations),
-               real(largest.factor_seconds),
-               count(largest.solves),
-               real(largest.solve_seconds),
-               count(largest.cg_steps)},
-              "", ",", "");
+  return table_line({run.scene,
+                     count(run.refine),
+                     count(run.nodes),
+                     count(run.dofs),
+                     count(run.multipliers),
+                     count(run.ranks),
+                     count(run.ranks_per_solve),
+                     count(run.samples),
+                     count(run.failed),
+                     count(run.modes),
+                     count(run.contact_nodes),
+                     real(run.sample_seconds),
+                     real(run.iterations),
+                     real(run.model_bytes / megabyte),
+                     real(run.fields_bytes / megabyte),
+                     real(run.resident / megabyte),
+                     stage,
+                     real(largest.seconds),
+                     real(largest.cpu),
+                     real(sum.cpu),
+                     real(largest.memory / megabyte),
+                     real(sum.memory / megabyte),
+                     count(sum.messages),
+                     count(largest.messages),
+                     real(sum.bytes / megabyte),
+                     count(largest.reductions),
+                     count(largest.symbolic),
+                     count(largest.factorisations),
+                     real(largest.factor_seconds),
+                     count(largest.solves),
+                     real(largest.solve_seconds),
+                     count(largest.cg_steps)},
+                    "", ",", "");
 }
 
 /// What a table shows of the runs, and how.
@@ -131,8 +126,8 @@ std::string table(const Runs &runs, double held) {
     header.emplace_back(what.name);
     if (what.grows) header.emplace_back("exponent");
   }
-  std::string text = line(header, "| ", " | ", " |") +
-                     line(std::vector<std::string>(header.size(), "---"), "|", "|", "|");
+  std::string text = table_line(header, "| ", " | ", " |") +
+                     table_line(std::vector<std::string>(header.size(), "---"), "|", "|", "|");
   std::vector<std::string> names;
   for (const GrowthRun *run : runs)
     for (const auto &[name, cost] : run->stages)
@@ -140,7 +135,7 @@ std::string table(const Runs &runs, double held) {
   const auto add = [&](const std::string &name, const std::vector<const RankCosts *> &costs) {
     std::vector<std::string> cells = stage_cells(runs, costs, held);
     cells.insert(cells.begin(), name);
-    text += line(cells, "| ", " | ", " |");
+    text += table_line(cells, "| ", " | ", " |");
   };
   for (const std::string &name : names)
     add(name, stage_of(runs, name));
@@ -208,7 +203,7 @@ std::optional<double> growth_exponent(const std::vector<double> &x, const std::v
 }
 
 std::string growth_csv(const std::vector<GrowthRun> &runs) {
-  std::string text = line(columns, "", ",", "");
+  std::string text = table_line(growth_columns, "", ",", "");
   for (const GrowthRun &run : runs) {
     for (const auto &[name, cost] : run.stages)
       text += row(run, name, cost);

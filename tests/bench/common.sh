@@ -4,10 +4,32 @@
 source "$(dirname "${BASH_SOURCE[0]}")/../../mpi-scripts/common.sh"
 
 # shellcheck disable=SC2154
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+if [[ -n ${RBVI_BENCH_WORK:-} ]]; then
+  work=$RBVI_BENCH_WORK # of tests/bench/all, which keeps it and has seen that the tree is clean
+  commit=$(git rev-parse --short HEAD)
+else
+  work=$(mktemp -d)
+  trap 'rm -rf "$work"' EXIT
+  commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+fi
 repeats=5
-commit=$(git describe --always --dirty 2>/dev/null || echo unknown)
+
+# logged NAME COMMAND...: what it prints goes to $work/NAME.log, unless an earlier run was there; the
+# run directory NAME of one that was cut short is made anew, as its times would be of two runs.
+logged() {
+  local log=$work/$1.log
+  [[ -e $log ]] && return
+  [[ -e $log.part ]] && rm -rf "${work:?}/$1"
+  "${@:2}" >"$log.part"
+  mv "$log.part" "$log"
+}
+# seeded NAME FROM: a run directory with the samples of another one.
+seeded() {
+  [[ -e $work/$1.log ]] && return
+  rm -rf "${work:?}/$1"
+  mkdir "$work/$1"
+  cp -r "$work/$2/samples" "$work/$1/samples"
+}
 
 median() { sort -g | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 best() { sort -g | head -n 1; }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <future>
 
-namespace rbvi {
+namespace rbvi::bad_input_test {
 namespace {
 
 /// Every file below `directory` with its bytes, but for those of commands that still run.
@@ -374,4 +374,4 @@ INSTANTIATE_TEST_SUITE_P(Ranks, BadInput, testing::Values(1, 2),
                          [](const auto &ranks) { return "np" + std::to_string(ranks.param); });
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::bad_input_test

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::growth_test {
 namespace {
 
 using Row = std::map<std::string, std::string>;
@@ -85,4 +85,4 @@ TEST_F(Growth, OneNumberOfRanksPerSolveWhereItIsAskedFor) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::growth_test

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <thread>
 
-namespace rbvi {
+namespace rbvi::kept_test {
 namespace {
 
 /// `good` parameters of the membrane, then `bad` ones, at which the solver of Kept::wide needs more
@@ -267,4 +267,4 @@ TEST_F(Kept, TemporaryFilesOfKilledRunsAreSweptUp) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::kept_test

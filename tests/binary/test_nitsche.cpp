@@ -2,7 +2,7 @@
 // input.
 #include "run.hpp"
 
-namespace rbvi {
+namespace rbvi::nitsche_test {
 namespace {
 
 struct Nitsche : InDirectory {
@@ -64,4 +64,4 @@ TEST_F(Nitsche, AGammaThatIsTooSmallIsAFailureThatSaysWhatToTry) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_test

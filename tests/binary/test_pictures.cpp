@@ -1,7 +1,7 @@
 // What cases/figures.py draws from whole runs, and that every command says what it wrote.
 #include "run.hpp"
 
-namespace rbvi {
+namespace rbvi::pictures_test {
 namespace {
 
 struct Pictures : InDirectory {
@@ -68,4 +68,4 @@ TEST_F(Pictures, AFileThatIsNoVtuIsNamed) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::pictures_test

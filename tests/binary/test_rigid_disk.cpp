@@ -2,7 +2,7 @@
 // bad input.
 #include "run.hpp"
 
-namespace rbvi {
+namespace rbvi::rigid_disk_test {
 namespace {
 
 struct RigidDisk : InDirectory {
@@ -109,4 +109,4 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::rigid_disk_test

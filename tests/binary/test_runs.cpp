@@ -9,7 +9,7 @@
 #include <iterator>
 #include <thread>
 
-namespace rbvi {
+namespace rbvi::runs_test {
 namespace {
 
 struct Runs : InDirectory {
@@ -390,4 +390,4 @@ TEST_F(Runs, ALostRankEndsAll) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::runs_test

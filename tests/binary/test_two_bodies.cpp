@@ -1,7 +1,7 @@
 // Two bodies with both tools from outside: a whole run on 2 ranks, what it skips, and bad input.
 #include "run.hpp"
 
-namespace rbvi {
+namespace rbvi::two_bodies_test {
 namespace {
 
 struct TwoBodies : InDirectory {
@@ -135,4 +135,4 @@ TEST_F(TwoBodies, TheBoxCanBeWider) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_bodies_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::answered_responses_test {
 namespace {
 
 using namespace testing_reduced;
@@ -124,4 +124,4 @@ TEST(AnsweredResponses, TakeThePlaceOfLargeFields) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::answered_responses_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rbvi;
+namespace rbvi::bench_test {
 
 namespace {
 
@@ -63,3 +63,5 @@ TEST(Bench, OutputsAreComparedWithTheRangeOfTheirTrueValues) {
   EXPECT_DOUBLE_EQ(largest_output_error({outputs(-2, 100.5)}, truths), 0.5); // of 1 % of 100
   EXPECT_LT(largest_output_error({Outputs{}}, truths), 0);
 }
+
+} // namespace rbvi::bench_test

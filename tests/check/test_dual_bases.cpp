@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace rbvi {
+namespace rbvi::dual_bases_test {
 namespace {
 
 using namespace testing_reduced;
@@ -225,4 +225,4 @@ TEST(HybridCone, BeatsAsManyGeneratorsFromMoreSnapshots) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::dual_bases_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rbvi;
+namespace rbvi::interpolation_test {
 
 namespace {
 
@@ -52,3 +52,5 @@ TEST(Interpolation, TakesTheNearestSampleWhereThereIsNoGrid) {
   EXPECT_EQ(set.at(weights.front().first), (Mu{2, 1, 3}));
   EXPECT_EQ(weights.front().second, 1.0);
 }
+
+} // namespace rbvi::interpolation_test

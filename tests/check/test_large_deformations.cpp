@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <unistd.h>
 
-namespace rbvi {
+namespace rbvi::large_deformations_test {
 namespace {
 
 using namespace testing_reduced;
@@ -197,4 +197,4 @@ TEST(LargeModel, OtherReductionsAreRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::large_deformations_test

@@ -11,7 +11,7 @@
 
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::near_contact_test {
 namespace {
 
 using namespace testing_reduced;
@@ -158,4 +158,4 @@ TEST(NearContact, AnswersNothingWhereItReachesTheEdge) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::near_contact_test

@@ -15,7 +15,7 @@
 #include <fstream>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::nitsche_test {
 namespace {
 
 using namespace testing_reduced;
@@ -336,4 +336,4 @@ TEST(NitscheMeshes, AMeshThatIsNotSymmetricKeepsThePointsOfBothSides) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_test

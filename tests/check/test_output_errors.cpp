@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::output_errors_test {
 namespace {
 
 Outputs with_energy(double energy) {
@@ -46,4 +46,4 @@ TEST(OutputErrors, LeaveOutQueriesWithoutAnAnswer) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::output_errors_test

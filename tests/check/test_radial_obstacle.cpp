@@ -13,7 +13,7 @@
 #include <fstream>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::radial_obstacle_test {
 namespace {
 
 constexpr double rim = 0.5, load = -25, curvature = 20, region = 0.3;
@@ -258,4 +258,4 @@ TEST(HighFidelity, VertexQuadratureHasTheBetterPressure) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::radial_obstacle_test

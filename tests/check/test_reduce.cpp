@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::reduce_test {
 namespace {
 
 using namespace testing_reduced;
@@ -258,4 +258,4 @@ TEST(Separate, RanksAreThoseOfTheMaps) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::reduce_test

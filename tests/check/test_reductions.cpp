@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <unistd.h>
 
-namespace rbvi {
+namespace rbvi::reductions_test {
 namespace {
 
 using namespace testing_reduced;
@@ -320,4 +320,4 @@ TEST(JoinedFunctions, AreReducedLikeOthers) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::reductions_test

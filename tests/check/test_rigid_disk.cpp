@@ -13,7 +13,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace rbvi {
+namespace rbvi::rigid_disk_test {
 namespace {
 
 using namespace testing_reduced;
@@ -333,4 +333,4 @@ TEST(CondensedModel, NoContactAnywhereIsSaid) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::rigid_disk_test

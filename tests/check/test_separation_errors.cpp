@@ -11,7 +11,7 @@
 
 #include <filesystem>
 
-namespace rbvi {
+namespace rbvi::separation_errors_test {
 namespace {
 
 using namespace testing_reduced;
@@ -244,4 +244,4 @@ TEST(SeparationErrors, OverOtherParametersAreThoseOfTheModelsOwnSum) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::separation_errors_test

@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::support_stability_test {
 namespace {
 
 using namespace testing_reduced;
@@ -131,4 +131,4 @@ TEST(SupportStability, TheRatioInNormsOfTheMappedDomainIsThatOfAnotherCode) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::support_stability_test

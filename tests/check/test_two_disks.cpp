@@ -13,7 +13,7 @@
 #include <cmath>
 #include <memory>
 
-namespace rbvi {
+namespace rbvi::two_disks_test {
 namespace {
 
 using namespace testing_reduced;
@@ -275,4 +275,4 @@ TEST(TwoDisks, AHybridConeWidensUntilEveryRandomQueryIsAnswered) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_disks_test

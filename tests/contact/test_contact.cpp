@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::contact_test {
 namespace {
 
 constexpr double push = 0.2;
@@ -237,4 +237,4 @@ TEST(ContactRecipes, AreAskedTogether) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::contact_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::contact_area_test {
 namespace {
 
 /// A strip of squares cut in two: nodes 2 i and 2 i + 1 at x = i, i = 0 .. 4.
@@ -44,4 +44,4 @@ TEST(ContactArea, DoesNotDependOnTheScale) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::contact_area_test

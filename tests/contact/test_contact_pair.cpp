@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::contact_pair_test {
 namespace {
 
 constexpr auto lac = MultiplierSpace::macro_edges;
@@ -385,4 +385,4 @@ TEST(MacroEdges, HoldTwoEdgesEachAndTheLastAThirdIfTheirNumberIsOdd) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::contact_pair_test

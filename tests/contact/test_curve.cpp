@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::curve_test {
 namespace {
 
 /// Two polygons of `degree`, the nodes of one after those of the other.
@@ -103,4 +103,4 @@ TEST(Polyline, ShowsMotionAndDisplacementAtTheMappedNodes) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::curve_test

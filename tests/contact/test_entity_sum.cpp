@@ -9,7 +9,7 @@
 #include <map>
 #include <numeric>
 
-namespace rbvi {
+namespace rbvi::entity_sum_test {
 namespace {
 
 /// A scalar membrane over psi = height(mu, x), stretched by mu[0] along x.
@@ -425,4 +425,4 @@ TEST(ObstacleInterface, IsForScalarsOnWholeCells) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::entity_sum_test

@@ -9,7 +9,7 @@
 
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::half_plane_test {
 namespace {
 
 enum Position { push, tilt, friction };
@@ -240,4 +240,4 @@ TEST(HalfPlane, RefusesFunctionsThatAreNotFinite) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::half_plane_test

@@ -9,7 +9,7 @@
 
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::large_pair_test {
 namespace {
 
 /// An upper curve, then a lower one: column node * 2 + component.
@@ -306,4 +306,4 @@ TEST(LargePair, ACurveThatFoldsIsAFailureOfThisState) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::large_pair_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::nitsche_test {
 namespace {
 
 constexpr double gamma_of_tests = 7;
@@ -113,4 +113,4 @@ TEST(NitschePoints, AnInvertedCellIsAFailure) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_test

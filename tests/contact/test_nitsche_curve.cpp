@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::nitsche_curve_test {
 namespace {
 
 struct Example {
@@ -298,4 +298,4 @@ TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_curve_test

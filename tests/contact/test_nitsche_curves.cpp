@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::nitsche_curves_test {
 namespace {
 
 Vector stacked(const Vector &a, const Vector &b) {
@@ -132,4 +132,4 @@ TEST(NitscheCurves, OneMayFollowTheDisplacement) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_curves_test

@@ -7,7 +7,7 @@
 
 #include <functional>
 
-namespace rbvi {
+namespace rbvi::nitsche_outputs_test {
 namespace {
 
 constexpr NitscheLaw frictionless{};
@@ -158,4 +158,4 @@ TEST(NitscheOutputs, ErrorsOfTheLawsAreRelativeNorms) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_outputs_test

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::nitsche_surface_test {
 namespace {
 
 /// A disk of radius 1 below the origin.
@@ -149,4 +149,4 @@ TEST(NitscheSurface, OnlyItsOwnNormalIsTaken) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_surface_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::pair_test {
 namespace {
 
 constexpr PairDiscretisation constant{},
@@ -198,4 +198,4 @@ TEST(PairInterface, NeedsCurvesThatMoveVertically) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::pair_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::pivots_test {
 namespace {
 
 constexpr Index dofs = 12;
@@ -83,4 +83,4 @@ TEST(PivotBlock, RefusesConstraintsThatDependOnEachOther) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::pivots_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-namespace rbvi {
+namespace rbvi::quadratic_pair_test {
 namespace {
 
 using Function = std::function<double(double)>;
@@ -223,4 +223,4 @@ TEST(QuadraticPair, RefusesNodesThatDoNotFit) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::quadratic_pair_test

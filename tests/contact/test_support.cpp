@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::support_test {
 namespace {
 
 // Along a straight edge, by Simpson's rule: exact for cubic integrands.
@@ -347,4 +347,4 @@ TEST(Support, VertexQuadratureIsNodal) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::support_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::surface_test {
 namespace {
 
 constexpr double step = 1e-6; ///< of central differences: round-off 1e-10, error 1e-12
@@ -247,4 +247,4 @@ TEST(RigidSurface, UndeformedIsMinusTheMotion) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::surface_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rbvi;
+namespace rbvi::transfer_test {
 
 namespace {
 
@@ -92,3 +92,5 @@ TEST(Transfer, RefusesInterfacesOfAnotherScene) {
   const Contact one = curve(scene, 10);
   EXPECT_THROW(interpolation(one, Contact{}), Error);
 }
+
+} // namespace rbvi::transfer_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace rbvi {
+namespace rbvi::local_fit_test {
 namespace {
 
 Matrix scattered(Index d, Index count) {
@@ -56,4 +56,4 @@ TEST(LocalFit, TakesTheNearestWhereAFitSaysNothing) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::local_fit_test

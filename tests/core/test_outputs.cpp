@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::outputs_test {
 namespace {
 
 TEST(WriteCsv, ColumnsThatAreSetInTheAgreedOrder) {
@@ -146,4 +146,4 @@ TEST(ResolutionTally, CountsTheAnswersAtAnEndOfContactByThemselves) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::outputs_test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <unistd.h>
 
-namespace rbvi {
+namespace rbvi::parameters_test {
 namespace {
 
 ParameterSpace space() {
@@ -187,4 +187,4 @@ TEST(Describe, ReadsBackExactly) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::parameters_test

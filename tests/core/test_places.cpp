@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::places_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -58,4 +58,4 @@ TEST(Places, TheNearestCounts) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::places_test

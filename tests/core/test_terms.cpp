@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::terms_test {
 namespace {
 
 enum Position { kappa, nu };
@@ -127,4 +127,4 @@ TEST(Sum, ACoefficientThatIsNotFiniteIsNamed) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::terms_test

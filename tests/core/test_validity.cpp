@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace rbvi {
+namespace rbvi::validity_test {
 namespace {
 
 /// Every choice of every option, the others by default.
@@ -197,4 +197,4 @@ TEST(Validity, ASetWithACoefficientThatIsNotFiniteIsRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::validity_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::elastic_forms_test {
 namespace {
 
 using LinearField = Eigen::Matrix3d; // u(x) = field * x
@@ -154,4 +154,4 @@ TEST(H1Product, ActsOnEachComponentAlone) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::elastic_forms_test

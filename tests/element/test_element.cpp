@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::element_test {
 namespace {
 
 double factorial(int n) {
@@ -107,4 +107,4 @@ TEST(MapCell, RefusesAnInvertedCell) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::element_test

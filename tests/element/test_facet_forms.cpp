@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::facet_forms_test {
 namespace {
 
 Cell cell_of(int dim, const Vertices &x) {
@@ -131,4 +131,4 @@ TEST_P(Facets, SpringsAreTheMassOfAFacet) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::facet_forms_test

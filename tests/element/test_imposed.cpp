@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::imposed_test {
 namespace {
 
 const FullMu mu{0.7, 1.3};
@@ -140,4 +140,4 @@ TEST(ImposedForms, AValueThatIsNotFiniteIsNamed) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::imposed_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::lagrange_test {
 namespace {
 
 /// Its vertices are the origin and random points; edge vectors are independent.
@@ -145,4 +145,4 @@ TEST(Lagrange, OnlyDegrees1And2Exist) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::lagrange_test

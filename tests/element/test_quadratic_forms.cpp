@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::quadratic_forms_test {
 namespace {
 
 const Lame steel = lame(15, 0.35), rubber = lame(0.2, 0.45);
@@ -273,4 +273,4 @@ TEST(QuadraticForms, RefuseOtherDegrees) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::quadratic_forms_test

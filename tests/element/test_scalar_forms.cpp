@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::scalar_forms_test {
 namespace {
 
 /// constant + slope . x + x . curvature x
@@ -195,4 +195,4 @@ TEST(ScalarForms, RefuseOtherDegrees) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::scalar_forms_test

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::assembly_test {
 namespace {
 
 struct Membrane {
@@ -106,4 +106,4 @@ TEST(Assembly, AnInvertedCellOnOneRankFailsOnAll) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::assembly_test

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::contact_layer_test {
 namespace {
 
 constexpr int edges = 8;
@@ -189,4 +189,4 @@ TEST(ContactLayer, IsForTwoDimensions) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::contact_layer_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <functional>
 
-namespace rbvi {
+namespace rbvi::convergence_test {
 namespace {
 
 using Vertices = std::array<Point, 4>;
@@ -278,4 +278,4 @@ TEST(Elasticity, PassesThePatchTestOfItsDegree) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::convergence_test

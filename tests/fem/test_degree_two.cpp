@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-namespace rbvi {
+namespace rbvi::degree_two_test {
 namespace {
 
 struct Body {
@@ -133,4 +133,4 @@ TEST(InterfaceCurve, IsForTwoDimensions) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::degree_two_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::interface_mesh_test {
 namespace {
 
 std::size_t at(Index i) {
@@ -186,4 +186,4 @@ TEST(InterfaceMesh, ARegionNeedsACell) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::interface_mesh_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::rigid_body_modes_test {
 namespace {
 
 /// Of a body that nothing holds.
@@ -57,4 +57,4 @@ TEST(RigidBodyModes, HaveNoStrainInSpace) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::rigid_body_modes_test

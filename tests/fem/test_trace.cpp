@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::trace_test {
 namespace {
 
 // 20 rows; contact dof k sits in row (7 k + 3) mod 20: neither ordered nor contiguous.
@@ -85,4 +85,4 @@ TEST(Trace, without_contact_dofs_it_is_empty) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::trace_test

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::two_bodies_test {
 namespace {
 
 std::size_t at(Index i) {
@@ -250,4 +250,4 @@ TEST(ContactCurves, AreForTwoDimensions) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_bodies_test

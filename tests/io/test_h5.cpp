@@ -11,7 +11,7 @@
 #include <sstream>
 #include <sys/resource.h>
 
-namespace rbvi {
+namespace rbvi::h5_test {
 namespace {
 
 using Path = std::filesystem::path;
@@ -266,4 +266,4 @@ TEST(Fnv1a, PublishedValues) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::h5_test

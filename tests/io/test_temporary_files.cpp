@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-namespace rbvi {
+namespace rbvi::temporary_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ TEST_F(TemporaryFiles, AProcessThatStopsWritingBeginsNoFile) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::temporary_files_test

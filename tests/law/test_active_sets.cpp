@@ -7,7 +7,7 @@
 #include <barrier>
 #include <thread>
 
-using namespace rbvi;
+namespace rbvi::active_sets_test {
 
 namespace {
 
@@ -128,3 +128,5 @@ TEST(ActiveSets, SaySoWhereTheyDoNotSettle) {
       solve_by_sets(dense(p.h, p.q), p.h.diagonal(), uniform_laws(61, 3, {0.3, 0, false}), {}),
       Error);
 }
+
+} // namespace rbvi::active_sets_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace rbvi;
+namespace rbvi::collocated_friction_test {
 
 namespace {
 
@@ -361,3 +361,5 @@ TEST(CollocatedFriction, SaysWhatIsWrongWithTheInput) {
     EXPECT_EQ(error.status(), Status::bad_input);
   }
 }
+
+} // namespace rbvi::collocated_friction_test

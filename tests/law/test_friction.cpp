@@ -4,7 +4,7 @@
 
 #include <optional>
 
-using namespace rbvi;
+namespace rbvi::friction_test {
 
 TEST(Friction, LawsHoldForRandomProblems) {
   Random random(1);
@@ -292,3 +292,5 @@ TEST(Friction, DoesNotDependOnUnits) {
       EXPECT_EQ(solve_friction(once(tiny.h, given), tiny.q, dim, coulomb).states, plain.states);
     }
 }
+
+} // namespace rbvi::friction_test

@@ -2,7 +2,7 @@
 #include "friction_problems.hpp"
 #include "rbvi/core/error.hpp"
 
-using namespace rbvi;
+namespace rbvi::friction_solver_test {
 
 TEST(Friction, OnlyColumnsOfNodesThatTouchAreAskedFor) {
   const FrictionProblem p = punch(81, 2, 20, 0.1);
@@ -268,3 +268,5 @@ TEST(Friction, RefusesBadInput) {
     for (const ColumnSource &source : {narrow, broken})
       EXPECT_EQ(status(source, p.q, 2, bound), Status::failed);
 }
+
+} // namespace rbvi::friction_solver_test

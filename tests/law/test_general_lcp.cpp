@@ -14,7 +14,7 @@
 #include <limits>
 #include <set>
 
-using namespace rbvi;
+namespace rbvi::general_lcp_test {
 
 namespace {
 
@@ -32,7 +32,7 @@ GeneralLcpResult expect_solved(const Matrix &m, const Vector &q,
 }
 
 /// Not symmetric; its symmetric part is positive definite.
-Matrix random_positive(Random &random, Index n, double least = 1e-2) {
+Matrix random_positive_definite(Random &random, Index n, double least = 1e-2) {
   const Matrix b = random.matrix(n, n), c = random.matrix(n, n);
   return b * b.transpose() + least * Matrix::Identity(n, n) + 2 * (c - c.transpose());
 }
@@ -89,7 +89,7 @@ TEST(GeneralLcp, PositiveDefiniteMatricesThatAreNotSymmetric) {
   Random random(1);
   for (int k = 0; k < 200; ++k) {
     const Index n = 1 + k % 40;
-    const Matrix m = random_positive(random, n, 1e-3);
+    const Matrix m = random_positive_definite(random, n, 1e-3);
     const Vector q = random.vector(n);
     const GeneralLcpResult cold = expect_solved(m, q);
     EXPECT_EQ(expect_solved(m, q, random_start(random, n)).active, cold.active);
@@ -101,7 +101,7 @@ TEST(GeneralLcp, FindsTheSolutionThatEnumerationFinds) {
   Random random(2);
   for (int k = 0; k < 100; ++k) {
     const Index n = 1 + k % 8;
-    const Matrix m = random_positive(random, n);
+    const Matrix m = random_positive_definite(random, n);
     const Vector q = random.vector(n);
     const std::vector<Vector> solutions = brute_force(m, q);
     ASSERT_EQ(solutions.size(), 1u);
@@ -115,7 +115,7 @@ TEST(GeneralLcp, PMatricesThatAreNotPositiveDefinite) {
     const Index n = 2 + k % 20;
     // Columns of a positive definite matrix at will; triangular ones with large entries.
     const Vector d = Vector::NullaryExpr(n, [&] { return std::pow(10, 2 * random()); });
-    const Matrix columns = random_positive(random, n) * d.asDiagonal();
+    const Matrix columns = random_positive_definite(random, n) * d.asDiagonal();
     const Vector q = random.vector(n);
     const GeneralLcpResult result = expect_solved(columns, q);
     EXPECT_EQ(expect_solved(columns, q, random_start(random, n)).active, result.active);
@@ -140,7 +140,7 @@ TEST(GeneralLcp, EndsWhereTheExchangeOfAllViolatedEntriesCycles) {
   int cycles = 0;
   for (int k = 0; k < 20000 && cycles < 20; ++k) {
     const Index n = 3 + k % 6;
-    const Matrix other = random_positive(random, n, 1e-3);
+    const Matrix other = random_positive_definite(random, n, 1e-3);
     const Vector q = random.vector(n);
     if (!plain_exchange_cycles(other, q)) continue;
     ++cycles;
@@ -168,7 +168,7 @@ TEST(GeneralLcp, DegenerateEntriesWithBothSidesZero) {
   Random random(6);
   for (int k = 0; k < 100; ++k) {
     const Index n = 2 + k % 40;
-    const Matrix m = random_positive(random, n, 1);
+    const Matrix m = random_positive_definite(random, n, 1);
     Vector z = Vector::Zero(n), w = Vector::Zero(n);
     for (Index i = 0; i < n; ++i) {
       const double draw = random();
@@ -235,7 +235,7 @@ TEST(GeneralLcp, DoesNotDependOnUnits) {
   Random random(9);
   const Index n = 30;
   for (int k = 0; k < 20; ++k) {
-    const Matrix m = random_positive(random, n);
+    const Matrix m = random_positive_definite(random, n);
     const Vector q = random.vector(n);
     const GeneralLcpResult plain = expect_solved(m, q);
     const Vector d = Vector::NullaryExpr(n, [&] { return std::pow(10, 6 * random()); });
@@ -272,3 +272,5 @@ TEST(GeneralLcp, RefusesBadInput) {
   EXPECT_THROW(solve_general_lcp(m, Vector::Constant(2, nan)), Error);
   EXPECT_THROW(solve_general_lcp(Matrix::Constant(2, 2, nan), q), Error);
 }
+
+} // namespace rbvi::general_lcp_test

@@ -12,7 +12,7 @@
 #include <limits>
 #include <set>
 
-using namespace rbvi;
+namespace rbvi::lcp_test {
 
 namespace {
 
@@ -191,3 +191,5 @@ TEST(Lcp, SaysWhatIsWrong) {
   EXPECT_FALSE(stopped.converged);
   EXPECT_NE(stopped.reason.find("raise the limit"), std::string::npos);
 }
+
+} // namespace rbvi::lcp_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace rbvi;
+namespace rbvi::least_squares_friction_test {
 
 namespace {
 
@@ -367,3 +367,5 @@ TEST(LeastSquaresFriction, RefusesBadInput) {
             }),
             Status::failed);
 }
+
+} // namespace rbvi::least_squares_friction_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::loaded_columns_test {
 namespace {
 
 /// A column of one of two bodies is zero on the other.
@@ -54,4 +54,4 @@ TEST(LoadedColumns, MoveAsTheWholeMatrix) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::loaded_columns_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rbvi;
+namespace rbvi::mixed_qp_test {
 
 namespace {
 
@@ -105,3 +105,5 @@ TEST(MixedQp, ChecksItsSizes) {
   EXPECT_THROW(qp.solve(Matrix::Identity(3, 3), Vector::Ones(2)), Error);
   EXPECT_THROW(qp.solve(Matrix::Identity(3, 3), Vector::Ones(3), Vector::Ones(2)), Error);
 }
+
+} // namespace rbvi::mixed_qp_test

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace rbvi {
+namespace rbvi::node_laws_test {
 namespace {
 
 /// Symmetric positive definite, its rows of unlike sizes.
@@ -142,4 +142,4 @@ TEST(NodeLaws, RefusesRowsOfNoNodeOrOfTwo) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::node_laws_test

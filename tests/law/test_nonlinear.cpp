@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::nonlinear_test {
 namespace {
 
 /// Columns of a dense matrix; counts those that were required.
@@ -413,4 +413,4 @@ TEST(Anderson, SolvesALinearFixedPointLikeGmres) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nonlinear_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace rbvi;
+namespace rbvi::nonnegative_qp_test {
 
 namespace {
 
@@ -298,3 +298,5 @@ TEST(NonnegativeQp, ReportsWhatItCannotDo) {
   EXPECT_FALSE(short_run.solve(Matrix::Identity(3, 3), Vector::Ones(3)).converged);
   EXPECT_TRUE(qp.solve(Matrix::Identity(3, 3), Vector::Ones(3)).converged);
 }
+
+} // namespace rbvi::nonnegative_qp_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <set>
 
-using namespace rbvi;
+namespace rbvi::pivot_nodes_test {
 
 namespace {
 
@@ -99,3 +99,5 @@ TEST(PivotNodes, RefuseBadInput) {
   EXPECT_THROW(pivot_nodes(Matrix::Ones(6, 1), -1), Error);
   EXPECT_THROW(pivot_nodes(Matrix::Constant(6, 1, std::nan("")), 1), Error);
 }
+
+} // namespace rbvi::pivot_nodes_test

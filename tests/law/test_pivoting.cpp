@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rbvi;
+namespace rbvi::pivoting_test {
 using namespace rbvi::pivoting;
 
 namespace {
@@ -69,3 +69,5 @@ TEST(Pivoting, VisitsOutliveARestart) {
 }
 
 } // namespace
+
+} // namespace rbvi::pivoting_test

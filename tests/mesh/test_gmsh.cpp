@@ -3,7 +3,7 @@
 #include "temporary_file.hpp"
 #include "triangles.hpp"
 
-namespace rbvi {
+namespace rbvi::gmsh_test {
 namespace {
 
 /// The built-in mesh as Gmsh would draw it, numbers clashing: the circle is curve 5 and in no
@@ -367,4 +367,4 @@ TEST(GmshErrors, FoldedAndDegenerateCells) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::gmsh_test

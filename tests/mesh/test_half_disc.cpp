@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::half_disc_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -343,4 +343,4 @@ TEST(OneBody, TheRecipeChoosesTheEdges) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::half_disc_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::make_mesh_test {
 namespace {
 
 template <class T> std::vector<T> summed(std::vector<T> values, MPI_Datatype type) {
@@ -198,4 +198,4 @@ TEST(MakeMeshErrors, WrongRequestsAreErrorsOnEveryRank) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::make_mesh_test

@@ -8,7 +8,7 @@
 
 #include <functional>
 
-namespace rbvi {
+namespace rbvi::mesh_facts_test {
 namespace {
 
 /// The built-in mesh of a scene.
@@ -389,4 +389,4 @@ TEST(MeshFacts, FilesAreCheckedOnEveryRank) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::mesh_facts_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::serial_mesh_test {
 namespace {
 
 TEST(SquareWithDisc, HasTheCountsOfItsRings) {
@@ -232,4 +232,4 @@ TEST(PartitionCells, IsBalancedConnectedEnoughAndRepeatable) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::serial_mesh_test

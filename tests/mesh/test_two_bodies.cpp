@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::two_bodies_test {
 namespace {
 
 constexpr double quarter = std::numbers::pi / 4; ///< contact angle, and area of a quarter disc
@@ -324,4 +324,4 @@ TEST(TwoBodiesErrors, AnUnknownGeneratorIsAnsweredByThoseThatExist) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_bodies_test

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace rbvi {
+namespace rbvi::affine_test {
 namespace {
 
 Scene disk(const SceneOptions &options, const std::string &free = "radius") {
@@ -153,4 +153,4 @@ TEST(RowsApart, DoNotDependOnTheNumberOfRanks) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::affine_test

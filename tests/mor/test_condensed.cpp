@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::condensed_test {
 namespace {
 
 Scene disk(const std::string &free, const SceneOptions &options = {}) {
@@ -151,4 +151,4 @@ TEST(NodalDualBasis, HatsOfACoarserMeshReproduceItsFunctions) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::condensed_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-using namespace rbvi;
+namespace rbvi::cone_distances_test {
 using namespace rbvi::testing_multipliers;
 
 namespace {
@@ -101,3 +101,5 @@ TEST(DistancesToCone, NoModesAreNoModes) {
   EXPECT_EQ(distances_to_cone(values, basis, product),
             distances_to_cone(values, basis, product, {Matrix(9, 0)}));
 }
+
+} // namespace rbvi::cone_distances_test

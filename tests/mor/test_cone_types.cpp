@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-using namespace rbvi;
+namespace rbvi::cone_types_test {
 using namespace rbvi::testing_multipliers;
 
 namespace {
@@ -306,3 +306,5 @@ TEST(ConeNodal, NoiseIsNoContact) {
   EXPECT_EQ(cone.basis.generators, (Matrix{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {0, 0, 1}}));
   EXPECT_NEAR(cone.history.error.back(), 1e-11, 1e-16);
 }
+
+} // namespace rbvi::cone_types_test

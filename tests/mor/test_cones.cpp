@@ -13,7 +13,7 @@
 #include <numbers>
 #include <random>
 
-using namespace rbvi;
+namespace rbvi::cones_test {
 using namespace rbvi::testing_multipliers;
 
 namespace {
@@ -304,3 +304,5 @@ TEST(LargestPartBelow, ZerosForbidGenerators) {
   const Vector zero = Vector::Zero(3);
   EXPECT_EQ(largest_part_below(zero, 0, generators, generators, zero).coefficients, zero);
 }
+
+} // namespace rbvi::cones_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::eim_test {
 namespace {
 
 using testing_grid::random_matrix;
@@ -190,4 +190,4 @@ TEST(Eim, refuses_what_is_not_finite_on_every_rank) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::eim_test

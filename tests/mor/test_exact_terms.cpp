@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::exact_terms_test {
 namespace {
 
 /// Four exact terms, and springs and tractions whose facets move with the map.
@@ -96,4 +96,4 @@ TEST(ExactTerms, NeverMeetInterpolation) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::exact_terms_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <set>
 
-using namespace rbvi;
+namespace rbvi::gcns_test {
 
 namespace {
 
@@ -206,3 +206,5 @@ TEST(Gcns, SaysWhatIsWrongWithTheInput) {
   r.samples[1].q.resize(2);
   EXPECT_THROW(r.select(), Error);
 }
+
+} // namespace rbvi::gcns_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::held_multipliers_test {
 namespace {
 
 /// Nodes at the edge of the region, too: their neighbours are no contact dofs.
@@ -68,4 +68,4 @@ TEST(HeldMultipliers, DofsAreHeldWhereEachHasARowOfItsOwn) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::held_multipliers_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <random>
 
-using namespace rbvi;
+namespace rbvi::hybrid_cone_test {
 using namespace rbvi::testing_multipliers;
 
 namespace {
@@ -427,3 +427,5 @@ TEST(HybridCone, NeedsADefiniteCondensedOperator) {
     EXPECT_NE(std::string(error.what()).find("-reference_mu"), std::string::npos) << error.what();
   }
 }
+
+} // namespace rbvi::hybrid_cone_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::pga_test {
 namespace {
 
 using testing_grid::random_matrix;
@@ -306,4 +306,4 @@ TEST(Pga, size_bound_and_bad_options) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::pga_test

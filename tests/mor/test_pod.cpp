@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::pod_test {
 namespace {
 
 using namespace testing_grid;
@@ -237,4 +237,4 @@ TEST(AppendOrthonormalised, takes_many_columns_block_by_block) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::pod_test

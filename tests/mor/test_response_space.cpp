@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::response_space_test {
 namespace {
 
 Scene disk() {
@@ -105,4 +105,4 @@ TEST(ResponseSpace, TooFewPointsAreSaid) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::response_space_test

@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::stability_test {
 namespace {
 
 using namespace testing_grid;
@@ -363,4 +363,4 @@ TEST(RieszSpace, the_contact_dofs_that_b_couples_with_the_multipliers_are_enough
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::stability_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace rbvi {
+namespace rbvi::stiffness_change_test {
 namespace {
 
 /// Hat functions of dofs in the disc, which the map of the membrane only scales, and random fields.
@@ -116,4 +116,4 @@ TEST(StiffnessChange, IsLeftOutWhereItSavesNothing) {
   EXPECT_EQ(stiffness_change(trained.problem, trained.a, trained.set, all.get()).rank(), 0);
 }
 
-} // namespace rbvi
+} // namespace rbvi::stiffness_change_test

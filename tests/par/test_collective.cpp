@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace rbvi {
+namespace rbvi::collective_test {
 namespace {
 
 int rank_in_world() {
@@ -71,4 +71,4 @@ TEST(Collectively, OtherExceptionsAndEmptyMessagesArrive) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::collective_test

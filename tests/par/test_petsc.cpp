@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace rbvi {
+namespace rbvi::petsc_test {
 namespace {
 
 Handle<Vec> make_vector() {
@@ -116,4 +116,4 @@ TEST(Error, a_bare_code_does_not_inherit_an_earlier_message) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::petsc_test

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <thread>
 
-namespace rbvi {
+namespace rbvi::queue_test {
 namespace {
 
 using Clock = std::chrono::steady_clock; // one for all processes of a machine
@@ -141,4 +141,4 @@ TEST(SecondsLeft, TheLastNumbersKeepOneGroupEach) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::queue_test

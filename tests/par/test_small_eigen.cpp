@@ -13,7 +13,7 @@
 
 extern "C" PetscErrorCode SVDCreate_LAPACK(SVD svd);
 
-namespace rbvi {
+namespace rbvi::small_eigen_test {
 namespace {
 
 using testing_grid::random_matrix;
@@ -137,4 +137,4 @@ TEST(SmallSvdObject, reads_its_options_and_is_made_anew_after_a_failure) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::small_eigen_test

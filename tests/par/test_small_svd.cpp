@@ -8,7 +8,7 @@
 
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::small_svd_test {
 namespace {
 
 void expect_svd(const Matrix &matrix) {
@@ -84,4 +84,4 @@ TEST(SmallSvd, refuses_nan) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::small_svd_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::stage_test {
 namespace {
 
 constexpr StageName first("first"), second("second"), third("third");
@@ -43,4 +43,4 @@ TEST(Stages, WhatWasDeclaredToRunMustHaveRun) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::stage_test

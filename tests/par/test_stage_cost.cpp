@@ -11,7 +11,7 @@
 #include <ctime>
 #include <memory>
 
-namespace rbvi {
+namespace rbvi::stage_cost_test {
 namespace {
 
 constexpr double megabyte = 1e6;
@@ -155,4 +155,4 @@ TEST_F(StageCosts, OverTheRanks) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::stage_cost_test

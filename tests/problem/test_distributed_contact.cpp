@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace rbvi {
+namespace rbvi::distributed_contact_test {
 namespace {
 
 struct Case {
@@ -128,4 +128,4 @@ TEST(DistributedContact, ARankEvaluatesNoRowsOfOthersAboveTheSize) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::distributed_contact_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::problem_test {
 namespace {
 
 TEST(Problem, TheSimilarityScalesBAndG) {
@@ -92,4 +92,4 @@ TEST(Problem, WithoutLoadTheVectorStaysZero) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::problem_test

@@ -10,7 +10,7 @@
 
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::summed_test {
 namespace {
 
 Scene disk(const std::string &free) {
@@ -117,4 +117,4 @@ TEST(Summed, ABoundaryThatIsNotThereIsRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::summed_test

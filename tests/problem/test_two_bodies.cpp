@@ -10,7 +10,7 @@
 #include <memory>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::two_bodies_test {
 namespace {
 
 constexpr double indentation = 0.09, initial_gap = 0.001; // defaults of two_disks
@@ -266,4 +266,4 @@ TEST(TwoBodyProblem, OperatorsDoNotDependOnTheNumberOfRanks) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_bodies_test

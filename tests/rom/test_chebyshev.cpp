@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::chebyshev_test {
 namespace {
 
 Scene two_parameters() {
@@ -95,4 +95,4 @@ TEST(Chebyshev, NoAxisIsOnePointOfWeightOne) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::chebyshev_test

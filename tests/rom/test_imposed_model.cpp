@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace rbvi {
+namespace rbvi::imposed_model_test {
 namespace {
 
 ReducedModel model_with_imposed() {
@@ -58,4 +58,4 @@ TEST(ImposedInModelFile, SizesThatDoNotFitAreRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::imposed_model_test

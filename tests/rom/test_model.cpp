@@ -6,7 +6,7 @@
 #include "rbvi/io/h5.hpp"
 #include "rbvi/rom/online.hpp"
 
-namespace rbvi {
+namespace rbvi::model_test {
 namespace {
 
 using Path = std::filesystem::path;
@@ -239,4 +239,4 @@ TEST_F(ModelFile, WhatThisBuildLacksIsBadInput) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::model_test

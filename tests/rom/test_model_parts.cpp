@@ -9,7 +9,7 @@
 
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::model_parts_test {
 namespace {
 
 TEST(CheckModel, NamesWhatDoesNotFit) {
@@ -132,4 +132,4 @@ TEST(PrintModel, ShowsModesAndOnlineEnrichmentWhereTheyAre) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::model_parts_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::online_test {
 namespace {
 
 using namespace brute;
@@ -248,4 +248,4 @@ TEST(Outputs, OfAConsistentMassCountWholeWeights) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::online_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::online_modes_test {
 namespace {
 
 using namespace brute;
@@ -189,4 +189,4 @@ TEST(OnlineEnriched, NoMoreSupremizersThanMultipliersIsThePlainModel) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::online_modes_test

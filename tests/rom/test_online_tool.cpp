@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace rbvi {
+namespace rbvi::online_tool_test {
 namespace {
 
 using Path = std::filesystem::path;
@@ -340,4 +340,4 @@ TEST_F(OnlineBinary, IsSerial) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::online_tool_test

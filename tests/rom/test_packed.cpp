@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::packed_test {
 namespace {
 
 /// Two symmetric matrices with blocks of these orders, the second one with every other block alone.
@@ -58,4 +58,4 @@ TEST(PackedBlocks, OfOtherOrdersAreRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::packed_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::reduced_stiffness_test {
 namespace {
 
 using namespace synthetic;
@@ -89,4 +89,4 @@ TEST(ReducedStiffness, WhatTheCornersDoNotShowIsFactorised) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::reduced_stiffness_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <set>
 
-namespace rbvi {
+namespace rbvi::scene_record_test {
 namespace {
 
 /// Each scene of the catalogue as it is, and with each choice of each of its options.
@@ -182,4 +182,4 @@ TEST(SceneRecord, MakersHaveNamesOfTheirOwn) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::scene_record_test

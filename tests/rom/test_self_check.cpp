@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::self_check_test {
 namespace {
 
 std::string printed(const SelfCheck &check, const ReducedModel &model) {
@@ -78,4 +78,4 @@ TEST(SelfCheck, CountsBadInputAmongWhatHasNoAnswer) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::self_check_test

@@ -8,7 +8,7 @@
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/solution_vtu.hpp"
 
-namespace rbvi {
+namespace rbvi::solution_vtu_test {
 namespace {
 
 using synthetic::p0;
@@ -217,4 +217,4 @@ TEST_F(PairVtu, WithoutFieldsNothingIsWritten) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::solution_vtu_test

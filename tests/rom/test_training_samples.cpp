@@ -8,7 +8,7 @@
 #include <sstream>
 #include <unistd.h>
 
-namespace rbvi {
+namespace rbvi::training_samples_test {
 namespace {
 
 /// Two free parameters, the first with ten times the width of the second.
@@ -96,4 +96,4 @@ TEST(TrainingSamples, FailedOnesArePrinted) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::training_samples_test

@@ -8,7 +8,7 @@
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
 
-namespace rbvi {
+namespace rbvi::two_bodies_test {
 namespace {
 
 using synthetic::p0;
@@ -303,4 +303,4 @@ TEST_F(PairFile, ReturnsTheModel) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_bodies_test

@@ -13,7 +13,7 @@
 #include <random>
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::vtu_test {
 namespace {
 
 using Path = std::filesystem::path;
@@ -292,4 +292,4 @@ TEST(BodyNumbers, CountConnectedPartsFromTheFirstNode) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::vtu_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::complement_test {
 namespace {
 
 double relative(const Matrix &got, const Matrix &expected) {
@@ -99,4 +99,4 @@ TEST(Complement, IsSharedByGroups) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::complement_test

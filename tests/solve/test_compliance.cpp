@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace rbvi {
+namespace rbvi::compliance_test {
 namespace {
 
 /// A direct solver that counts its right-hand sides.
@@ -167,4 +167,4 @@ TEST(ComplianceOfASweep, SharedColumnsAreThoseOfOneGroup) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::compliance_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::distributed_contact_test {
 namespace {
 
 HfSolution solve(MPI_Comm comm, Index gather, const Scene &scene, const Mu &mu,
@@ -78,4 +78,4 @@ TEST(DistributedContact, TheResidualOverTheRanksIsThatOfOne) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::distributed_contact_test

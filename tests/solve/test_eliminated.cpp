@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::eliminated_test {
 namespace {
 
 using SceneValues = std::map<std::string, std::string>;
@@ -221,4 +221,4 @@ TEST(ContactCost, DoesAsItIsTold) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::eliminated_test

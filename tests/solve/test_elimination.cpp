@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::elimination_test {
 namespace {
 
 constexpr Index dofs = 23;
@@ -119,4 +119,4 @@ TEST(Elimination, RefusesConstraintsThatDependOnEachOther) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::elimination_test

@@ -12,7 +12,7 @@
 
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::fixed_nodes_test {
 namespace {
 
 struct Solved {
@@ -227,4 +227,4 @@ TEST(FixedNodes, ANodeThatCannotMoveAlongItsNormalIsRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::fixed_nodes_test

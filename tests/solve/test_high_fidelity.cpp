@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::high_fidelity_test {
 namespace {
 
 const Mu centred{0.2, 0, 0}, shifted{0.18, 0.025, -0.025};
@@ -177,4 +177,4 @@ TEST(Uzawa, StoppingEarlyIsAnError) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::high_fidelity_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::history_test {
 namespace {
 
 /// The block whose sides carry the shear stress that the last parameter says.
@@ -177,4 +177,4 @@ TEST(History, SaysWhatItCannotTake) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::history_test

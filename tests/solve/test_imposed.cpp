@@ -15,7 +15,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::imposed_test {
 namespace {
 
 using Field = Named<PointMap>;
@@ -329,4 +329,4 @@ TEST(Imposed, ValuesThatAreNotFiniteAreRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::imposed_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <span>
 
-namespace rbvi {
+namespace rbvi::large_deformations_test {
 namespace {
 
 /// Free: radius, indentation, offset.
@@ -311,4 +311,4 @@ TEST(LargeDeformations, BadInputIsRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::large_deformations_test

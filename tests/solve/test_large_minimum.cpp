@@ -10,7 +10,7 @@
 
 #include <numeric>
 
-namespace rbvi {
+namespace rbvi::large_minimum_test {
 namespace {
 
 /// On the contact dofs: the energy u . K u / 2, K the inverse of the compliance, and w(u) >= 0.
@@ -124,4 +124,4 @@ TEST(LargeDeformations, AGeneralPurposeOptimiserFindsTheSameMinimum) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::large_minimum_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <span>
 
-namespace rbvi {
+namespace rbvi::large_nitsche_test {
 namespace {
 
 /// Free: radius, indentation, offset.
@@ -147,4 +147,4 @@ TEST(LargeNitsche, BoundsOfTheNodesAreForContactAtRest) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::large_nitsche_test

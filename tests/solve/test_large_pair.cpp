@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::large_pair_test {
 namespace {
 
 HfSolution solve(const Scene &scene, const Mu &mu, const HfOptions &options = {}) {
@@ -159,4 +159,4 @@ TEST(LargeDeformationsOfTwo, PassThePatchTestTurnedAndMovedFar) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::large_pair_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::nitsche_test {
 namespace {
 
 /// Free: radius, indentation, friction, core_stiffness, poisson_ratio.
@@ -419,4 +419,4 @@ TEST(NitscheDisk, OneSolveIsTheSameOnAnyNumberOfRanks) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_test

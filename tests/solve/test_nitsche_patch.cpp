@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::nitsche_patch_test {
 namespace {
 
 using namespace block_on_support;
@@ -93,4 +93,4 @@ TEST(NitschePatch, AgreesWithTheMixedFormulation) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::nitsche_patch_test

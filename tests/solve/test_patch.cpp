@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::patch_test {
 namespace {
 
 struct Material {
@@ -125,4 +125,4 @@ TEST(Patch, ContactBeginsWhenTheGapIsClosed) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::patch_test

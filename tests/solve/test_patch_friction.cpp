@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::patch_friction_test {
 namespace {
 
 using namespace block_on_support;
@@ -71,4 +71,4 @@ TEST(PatchFriction, UzawaFindsTheSame) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::patch_friction_test

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::quadratic_obstacle_test {
 namespace {
 
 /// Energies and forces without a mesh, see test_high_fidelity.cpp.
@@ -159,4 +159,4 @@ TEST(QuadraticObstacle, OnTetrahedraBothDegreesAgreeUnderRefinement) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::quadratic_obstacle_test

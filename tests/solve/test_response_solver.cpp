@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::response_solver_test {
 namespace {
 
 struct Disk {
@@ -103,4 +103,4 @@ TEST(ResponseSolver, FactorsThatFitAreWhole) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::response_solver_test

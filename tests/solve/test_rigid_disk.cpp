@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::rigid_disk_test {
 namespace {
 
 /// Free: radius, indentation, friction, core_stiffness, poisson_ratio.
@@ -266,4 +266,4 @@ TEST(RigidDisk, BadInputIsRefused) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::rigid_disk_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::rigid_disk_degree_test {
 namespace {
 
 /// At radius 1 m and indentation 0.09 m.
@@ -49,4 +49,4 @@ TEST(RigidDiskOfDegreeOne, ConvergesByNitschesMethod) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::rigid_disk_degree_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::scaled_part_test {
 namespace {
 
 Scene disk(const std::string &free, const SceneOptions &options = {{"arc_edges", "40"}}) {
@@ -107,4 +107,4 @@ TEST(ScaledPart, AScaleOfNothingIsSaid) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::scaled_part_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::three_dimensions_test {
 namespace {
 
 Scene cube_scene() {
@@ -44,4 +44,4 @@ TEST(ThreeDimensions, TheActiveSetSolvesAndDoesNotDependOnRanks) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::three_dimensions_test

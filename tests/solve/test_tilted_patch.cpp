@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::tilted_patch_test {
 namespace {
 
 constexpr double height = 0.5, young = 15, poisson = 0.35;
@@ -122,4 +122,4 @@ TEST(TiltedPatch, SoIsAShearThatSlides) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::tilted_patch_test

@@ -11,7 +11,7 @@
 #include <map>
 #include <numbers>
 
-namespace rbvi {
+namespace rbvi::two_disks_test {
 namespace {
 
 /// Two disks, of degree 1 unless the options say otherwise.
@@ -259,4 +259,4 @@ TEST(TwoDisks, HaveNoBoundsAtNodes) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_disks_test

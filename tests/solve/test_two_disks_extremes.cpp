@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::two_disks_extremes_test {
 namespace {
 
 HfSolution solve(const Mu &mu, const SceneOptions &scene, const HfOptions &options = {},
@@ -129,4 +129,4 @@ TEST(DiskDiscretisations, PressuresAreSmooth) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_disks_extremes_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::two_interfaces_test {
 namespace {
 
 /// Vertical, at the height that it allows along x.
@@ -137,4 +137,4 @@ TEST(TwoInterfaces, BoundsAtNodesHaveTheSameAnswer) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::two_interfaces_test

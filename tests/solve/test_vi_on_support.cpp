@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::vi_on_support_test {
 namespace {
 
 /// Free: radius, indentation, friction, core_stiffness, poisson_ratio.
@@ -152,4 +152,4 @@ TEST(LumpedSupport, TendsToTheContinuumAtFirstOrder) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::vi_on_support_test

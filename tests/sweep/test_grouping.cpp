@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::grouping_test {
 namespace {
 
 const NodeMemory ample{4, 1e15};
@@ -90,4 +90,4 @@ TEST(Grouping, ANumberForcesIt) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::grouping_test

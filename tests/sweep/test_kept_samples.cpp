@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-namespace rbvi {
+namespace rbvi::kept_samples_test {
 namespace {
 
 using namespace testing_sweep;
@@ -227,4 +227,4 @@ TEST_F(SweepTest, ADirectoryThatCannotBeMadeFailsEverywhere) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::kept_samples_test

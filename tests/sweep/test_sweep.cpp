@@ -3,7 +3,7 @@
 
 #include "rbvi/io/parameter_sets.hpp"
 
-namespace rbvi {
+namespace rbvi::sweep_test {
 namespace {
 
 using namespace testing_sweep;
@@ -142,4 +142,4 @@ TEST_F(SweepTest, FewerSamplesThanGroups) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::sweep_test

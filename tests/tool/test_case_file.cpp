@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::case_file_test {
 namespace {
 
 std::string read(const std::string &text) {
@@ -141,4 +141,4 @@ TEST(CaseFile, IsReadByEveryRankOrRefusedByEveryRank) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::case_file_test

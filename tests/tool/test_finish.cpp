@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::finish_test {
 namespace {
 
 int rank_in_world() {
@@ -104,4 +104,4 @@ TEST(ReadInvocation, MistakesOfTheCommand) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::finish_test

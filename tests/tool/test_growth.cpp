@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::growth_test {
 namespace {
 
 TEST(Growth, TheExponentOfAPowerLaw) {
@@ -85,4 +85,4 @@ TEST(Growth, AStageThatDidNotRunOnAMeshHasNoNumberThere) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::growth_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::mesh_help_test {
 namespace {
 
 std::string printed(const std::string &scene) {
@@ -65,4 +65,4 @@ TEST(MeshHelp, TheCommandLineNamesTheScene) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::mesh_help_test

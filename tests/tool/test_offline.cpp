@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <limits>
 
-namespace rbvi {
+namespace rbvi::offline_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST_F(Offline, RefusesImposedDisplacementsThatContradictAtATrainingParameter) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::offline_test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace rbvi {
+namespace rbvi::option_table_test {
 namespace {
 
 ToolOptions options_of(const std::string &scene, const SceneOptions &own = {}) {
@@ -72,4 +72,4 @@ TEST(OptionTable, ThePageHasRangesChoicesAndScenes) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::option_table_test

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::tables_test {
 namespace {
 
 Sample sample(double ends_in_contact, double load_steps) {
@@ -34,4 +34,4 @@ TEST(SamplesOfASweep, AreToldOfWhereSomeTakeLoadStepsOrTouchAnEnd) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::tables_test

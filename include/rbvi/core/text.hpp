@@ -18,6 +18,10 @@ std::string counted(long number, const std::string &noun);
 /// "a, b, c".
 std::string joined(const std::vector<std::string> &parts, const std::string &separator = ", ");
 
+/// One line of a table: `begin`, the parts with `between` them, `end` and a line feed.
+std::string table_line(const std::vector<std::string> &parts, const std::string &begin,
+                       const std::string &between, const std::string &end);
+
 /// The shortest text that reads back as the same number.
 std::string shortest_number(double value);
 

@@ -208,9 +208,9 @@ private:
 
 /// Block exchange of the states; where it ends, the change of the first node alone, without the
 /// changes that are smaller than what the basis misses of the equations.
-class Solver {
+class LeastSquaresSolver {
 public:
-  explicit Solver(const LeastSquaresProblem &problem) : equations_(problem) {}
+  explicit LeastSquaresSolver(const LeastSquaresProblem &problem) : equations_(problem) {}
 
   LeastSquaresResult run(std::vector<SlipState> states) {
     const int limit = 50 + 4 * static_cast<int>(equations_.nodes());
@@ -360,7 +360,7 @@ void check(const LeastSquaresProblem &p, const std::vector<SlipState> &start) {
 LeastSquaresResult solve_least_squares(const LeastSquaresProblem &problem,
                                        const std::vector<SlipState> &start) {
   check(problem, start);
-  Solver solver(problem);
+  LeastSquaresSolver solver(problem);
   return solver.run(start.empty() ? solver.first_states() : solver.usual(start));
 }
 

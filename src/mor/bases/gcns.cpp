@@ -11,8 +11,8 @@ namespace rbvi {
 
 namespace {
 
-constexpr double tie = 1e-10;       ///< within it of the largest, relative, counts as equal
-constexpr double round_off = 1e-11; ///< of the largest pressure: what reduced solves leave
+constexpr double tie = 1e-10;         ///< within it of the largest, relative, counts as equal
+constexpr double solve_noise = 1e-11; ///< of the largest pressure: what reduced solves leave
 
 void check(const std::vector<GcnsSample> &samples, const Matrix &normal, const Matrix &tangential,
            const SparseMatrix &product, const GcnsOptions &options) {
@@ -49,7 +49,7 @@ public:
     if (!(largest > 0))
       throw failure("GCNS: all tangential multipliers are zero: leave out the friction");
     for (double &size : sizes_)
-      if (size <= round_off * largest) size = largest;
+      if (size <= solve_noise * largest) size = largest;
   }
 
   Gcns run(const GcnsOptions &options) {
@@ -154,8 +154,8 @@ private:
     for (std::size_t j = 0; j < taken_.size(); ++j)
       if (taken_[j] == 0) most = std::max(most, answer.excess[static_cast<Index>(j)]);
     std::vector<int> result;
-    if (most <= round_off * answer.scale) return result;
-    const double least = most * (1 - tie) - 0.1 * round_off * answer.scale;
+    if (most <= solve_noise * answer.scale) return result;
+    const double least = most * (1 - tie) - 0.1 * solve_noise * answer.scale;
     for (std::size_t j = 0; j < taken_.size(); ++j)
       if (taken_[j] == 0 && answer.excess[static_cast<Index>(j)] >= least)
         result.push_back(static_cast<int>(j));

@@ -23,8 +23,8 @@ double extent(const std::vector<Point> &points) {
 /// Per node of an interface: whether it is near one that carries.
 std::vector<bool> near_contact(const Contact &contact, std::size_t interface,
                                const Matrix &snapshots, double ring) {
-  constexpr double round_off = 1e-12; // some solvers leave it where nothing touches
-  const double least = round_off * snapshots.cwiseAbs().maxCoeff();
+  constexpr double noise = 1e-12; // some solvers leave it where nothing touches
+  const double least = noise * snapshots.cwiseAbs().maxCoeff();
   const DualSpace &dual = contact.interfaces[interface]->dual();
   std::vector<bool> carries(static_cast<std::size_t>(dual.nodes()), false);
   for (Index row = contact.first_row[interface]; row < contact.first_row[interface + 1]; ++row)

@@ -14,7 +14,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr std::size_t at_a_time = 100, most = 10000; ///< queries
+constexpr std::size_t at_a_time = 100, most_queries = 10000; ///< queries
 
 /// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
 Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver &solver,
@@ -104,7 +104,8 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   LawSolver solver(model, problem.scene(), problem.contact());
   Matrix answers = answers_at(problem, loads, solver, set);
   if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
-  ParameterReader random(problem.scene().parameters, "random:" + std::to_string(most) + ":29");
+  ParameterReader random(problem.scene().parameters,
+                         "random:" + std::to_string(most_queries) + ":29");
   // A part of the tolerance each: for what is not taken, what comes between answers, what the few
   // directions leave.
   constexpr double not_taken = 0.1, between = 0.5, of_few = 0.4;
@@ -114,7 +115,8 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
     for (std::optional<Mu> mu; set.size() < at_a_time && (mu = random.next());)
       set.push_back(*mu);
     if (set.empty())
-      throw failure("the responses to the answers of the law go on after " + std::to_string(most) +
+      throw failure("the responses to the answers of the law go on after " +
+                    std::to_string(most_queries) +
                     " of them: use -response_compression 0 or a larger one");
     answers = answers_at(problem, loads, solver, set);
   } while (directions.left(answers) > between * tolerance);

@@ -1,6 +1,6 @@
 #include "rbvi/rom/law/changed_stiffness.hpp"
 
-#include "rbvi/core/error.hpp"
+#include "not_definite.hpp"
 #include "rbvi/rom/model/packed.hpp"
 
 #include <Eigen/Cholesky>
@@ -11,21 +11,12 @@
 
 namespace rbvi {
 
-namespace {
-
-[[noreturn]] void not_definite() {
-  throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
-                "-eim_tolerance, or stay closer to the training set");
-}
-
-} // namespace
-
 ChangedStiffness::ChangedStiffness(const ReducedModel &model)
     : model_(model), a_(model.primal_size(), model.primal_size()) {
   unpack(model.a.reduced.col(0), a_);
   l_ = a_;
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(l_);
-  if (factor.info() != Eigen::Success) not_definite();
+  if (factor.info() != Eigen::Success) throw stiffness_not_definite();
   Matrix range = model.a_change.range;
   solve_fixed(range);
   const Eigen::HouseholderQR<Matrix> qr(range);
@@ -37,12 +28,13 @@ ChangedStiffness::ChangedStiffness(const ReducedModel &model)
 double ChangedStiffness::set(const Vector &theta) {
   const StiffnessChange &change = model_.a_change;
   scale_ = change.scales.dot(theta);
-  if (!(scale_ > 0)) not_definite();
+  if (!(scale_ > 0)) throw stiffness_not_definite();
   core_ = unpacked(change.cores * theta, change.rank());
   const Index size = along_.rows();
   const Matrix k = along_ * (core_ / scale_) * along_.transpose();
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(Matrix::Identity(size, size) + k);
-  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[0] > 0)) not_definite();
+  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[0] > 0))
+    throw stiffness_not_definite();
   const Vector inverse_roots = solver.eigenvalues().cwiseSqrt().cwiseInverse();
   inverse_ = solver.eigenvectors() * (inverse_roots.array() - 1).matrix().asDiagonal() *
              solver.eigenvectors().transpose();

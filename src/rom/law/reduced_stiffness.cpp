@@ -1,6 +1,6 @@
 #include "rbvi/rom/law/reduced_stiffness.hpp"
 
-#include "rbvi/core/error.hpp"
+#include "not_definite.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
 
@@ -19,11 +19,6 @@ FullMu corner(const ParameterSpace &space, double Parameter::*bound) {
   for (int i = 0; i < space.size(); ++i)
     mu.push_back(space.at(i).*bound);
   return expand(space, mu);
-}
-
-[[noreturn]] void not_definite() {
-  throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
-                "-eim_tolerance, or stay closer to the training set");
 }
 
 } // namespace
@@ -78,7 +73,7 @@ void ReducedStiffness::set(const FullMu &all_parameters) {
   const Vector theta = affine_coefficients(model_.a, scene_.a, scene_, all_parameters);
   if (eigenvectors_.size() > 0) {
     diagonal_ = eigenvalues_ * theta;
-    if (!(diagonal_.minCoeff() > 0)) not_definite();
+    if (!(diagonal_.minCoeff() > 0)) throw stiffness_not_definite();
   } else {
     a_.resize(model_.primal_size(), model_.primal_size());
     unpack(model_.a.reduced * theta, a_);
@@ -89,7 +84,7 @@ void ReducedStiffness::set(const FullMu &all_parameters) {
 
 void ReducedStiffness::factorise(const Matrix &stiffness) {
   factor_.compute(stiffness);
-  if (factor_.info() != Eigen::Success) not_definite();
+  if (factor_.info() != Eigen::Success) throw stiffness_not_definite();
 }
 
 void ReducedStiffness::restrict_to(Matrix subspace) {

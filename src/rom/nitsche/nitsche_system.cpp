@@ -14,9 +14,9 @@ namespace rbvi {
 
 namespace {
 
-constexpr double accuracy = 1e-13;       ///< of the residual, relative
-constexpr double round_off = 1e-9;       ///< below it the residual may stagnate
-constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds
+constexpr double residual_accuracy = 1e-13; ///< of the residual, relative
+constexpr double round_off = 1e-9;          ///< below it the residual may stagnate
+constexpr double bound_accuracy = 1e-12;    ///< change of u by new bounds
 constexpr double shortest_step = 0.125;
 constexpr int most_steps = 100, most_full_steps = 25, most_loops = 60;
 
@@ -220,7 +220,7 @@ int ReducedNitsche::System::minimise() {
   double before = 1;
   for (int step = 0; step <= most_steps; ++step) {
     const Vector r = residual();
-    if (relative <= accuracy) return step;
+    if (relative <= residual_accuracy) return step;
     if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
     before = relative;
     const Eigen::LLT<Matrix> factor(tangent_at(pressures));
@@ -247,7 +247,7 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
   for (int step = 0; step <= most_full_steps; ++step) {
     bounds = bounds_at(pressures);
     const Vector r = residual();
-    if (relative <= accuracy) return step;
+    if (relative <= residual_accuracy) return step;
     if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
     before = relative;
     std::vector<Index> slipping; // there the bound moves with P_n

@@ -148,7 +148,7 @@ std::vector<Option> of_meshes() {
           kept(always, number("mesh_refine", refinements, AT(mesh.refine), "uniform refinements"))};
 }
 
-std::vector<Option> of_solvers() {
+std::vector<Option> solver_rows() {
   return {
       choice("hf_method",
              choices(hf_method_names(),
@@ -369,7 +369,7 @@ const std::vector<Option> &tool_options() {
     std::vector<Option> all;
     add("Run", of_runs(), all);
     add("Mesh", of_meshes(), all);
-    add("High-fidelity solver", of_solvers(), all);
+    add("High-fidelity solver", solver_rows(), all);
     add("Large deformations", of_iterations(), all);
     add("Sweep", of_sweeps(), all);
     add("Bases", of_bases(), all);
