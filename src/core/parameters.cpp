@@ -98,15 +98,13 @@ ParameterSpace free_only(const ParameterSpace &space, const std::string &names) 
     if (!i)
       throw bad_input("there is no parameter '" + name + "'; there are " +
                       names_of(all_free(space.all)));
-    result.free.push_back(static_cast<int>(*i));
+    const auto position = static_cast<int>(*i);
+    if (std::ranges::find(result.free, position) != result.free.end())
+      throw bad_input("parameter '" + name + "' is named twice");
+    result.free.push_back(position);
   }
   if (result.free.empty())
     throw bad_input("no parameter is freed; there are " + names_of(all_free(space.all)));
-  std::sort(result.free.begin(), result.free.end());
-  const auto twice = std::adjacent_find(result.free.begin(), result.free.end());
-  if (twice != result.free.end())
-    throw bad_input("parameter '" + space.all[static_cast<std::size_t>(*twice)].name +
-                    "' is named twice");
   return result;
 }
 

@@ -69,8 +69,19 @@ TEST(CheckMu, BoxWithSlackOfRoundOff) {
   EXPECT_TRUE(in_box(space(), {0.2, 0.05}));
 }
 
-TEST(FreeOnly, ByNameInTheOrderOfTheSpace) {
-  EXPECT_EQ(free_only(space(), "x,radius").free, (std::vector<int>{0, 1}));
+TEST(FreeOnly, ByNameInTheOrderThatIsAskedFor) {
+  EXPECT_EQ(free_only(space(), "radius,x").free, (std::vector<int>{0, 1}));
+  const ParameterSpace turned = free_only(space(), "x,radius");
+  EXPECT_EQ(turned.free, (std::vector<int>{1, 0}));
+  EXPECT_EQ(names_of(turned), "x,radius");
+  EXPECT_EQ(parse_mu(turned, "0.02,0.18"), (Mu{0.02, 0.18}));
+  EXPECT_EQ(parse_mu(turned, "radius=0.18,x=0.02"), (Mu{0.02, 0.18}));
+  EXPECT_EQ(expand(turned, {0.02, 0.18}), (FullMu{0.18, 0.02}));
+  EXPECT_EQ(describe(turned, Mu{0.02, 0.18}), "x=0.02 radius=0.18");
+  const std::vector<Mu> grid = parse_set(turned, "grid:3,2");
+  ASSERT_EQ(grid.size(), 6u);
+  EXPECT_EQ(grid[0], (Mu{-0.05, 0.16}));
+  EXPECT_EQ(grid[1], (Mu{-0.05, 0.24}));
   EXPECT_TRUE(refuses("no parameter 'z'", [] { (void)free_only(space(), "z"); }));
   EXPECT_TRUE(refuses("named twice", [] { (void)free_only(space(), "x,x"); }));
   EXPECT_TRUE(refuses("no parameter is freed", [] { (void)free_only(space(), ""); }));

@@ -40,7 +40,7 @@ struct Parameter {
 /// All parameters of a scene, and which of them are free.
 struct ParameterSpace {
   std::vector<Parameter> all;
-  std::vector<int> free; ///< indices into `all`, increasing
+  std::vector<int> free; ///< indices into `all`, in the order of Mu
 
   int size() const { return static_cast<int>(free.size()); }
   const Parameter &at(int i) const {
@@ -51,7 +51,7 @@ struct ParameterSpace {
 /// Every parameter free.
 ParameterSpace all_free(std::vector<Parameter> parameters);
 
-/// Frees the named parameters only ("radius,center_x"). Throws bad_input for an unknown name.
+/// Frees the named ones alone ("radius,center_x"), in this order. Throws bad_input for others.
 ParameterSpace free_only(const ParameterSpace &space, const std::string &names);
 
 /// The values of all parameters: `mu` for the free ones, `value` for the others.

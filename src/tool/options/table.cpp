@@ -120,7 +120,7 @@ std::vector<Option> of_runs() {
       {"scene", OptionKind::text,
        "name of the scene (rbvi list); with its defaults no case file is needed", "name"},
       of_command(text("out", OptionKind::text, "directory", AT(out), "run directory")),
-      {"parameters", OptionKind::text, "names of the free parameters; the others keep their value",
+      {"parameters", OptionKind::text, "free parameters, in the order of -mu; others keep values",
        "names", "the scene's"},
       kept(always,
            otherwise("the scene's",
