@@ -1,6 +1,7 @@
 #include "online_batch.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/parameter_sets.hpp"
@@ -56,8 +57,9 @@ private:
 
 /// What is said at the end.
 struct Tally {
+  std::vector<Point> contact_points; ///< where locking is looked for
   long rows = 0, unanswered = 0, near_failed = 0;
-  double seconds = 0, residual = 0, violation = 0;
+  double seconds = 0, residual = 0, violation = 0, locking = 0;
   std::string reason; ///< of the first row without an answer
   ResolutionTally resolution;
   void add_failure(const std::string &why) {
@@ -151,6 +153,9 @@ void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &argum
     tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
     tally.violation = std::max(tally.violation, violation(outputs));
     tally.resolution.add(outputs);
+    const Scene &scene = solver.scene();
+    tally.locking = std::max(
+        tally.locking, locking_ratio(scene, expand(scene.parameters, mu), tally.contact_points));
   } catch (const Error &error) {
     tally.add_failure(error.what());
     table.add_failure(mu, error.what());
@@ -198,6 +203,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   ParameterReader reader(space, arguments.queries, arguments.extrapolate);
   const bool to_file = !arguments.out.empty() && arguments.out != "-";
   Tally tally;
+  tally.contact_points = dual_points(solver.contact());
   const Outputs like = example(solver, arguments);
   TableFile file(to_file ? arguments.out : "", out);
   {
@@ -216,6 +222,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   warn_of_violation(solver.model(), tally.violation, warnings);
   warn_of_failed_samples(tally.near_failed, warnings);
   tally.resolution.print(warnings);
+  warn_of_locking(tally.locking, warnings);
   if (tally.unanswered > 0)
     throw failure(
         std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +

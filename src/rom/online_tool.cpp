@@ -1,6 +1,7 @@
 #include "online_batch.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/overwrite.hpp"
@@ -112,6 +113,9 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   ResolutionTally resolution;
   resolution.add(outputs);
   resolution.print(out);
+  warn_of_locking(locking_ratio(solver.scene(), expand(solver.scene().parameters, mu),
+                                dual_points(solver.contact())),
+                  out);
   if (inside)
     print_expected_errors(out, solver.model());
   else

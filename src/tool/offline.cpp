@@ -129,7 +129,8 @@ void command_offline(const ToolOptions &options) {
     print_stages(run.stages);
     std::cout << "Self-check: ";
     print_self_check(std::cout, run.model.self_check, run.model.parameters);
-    tell_of_samples(run.sweep.samples, std::cout);
+    tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,
+                    std::cout);
     print_written(std::cout,
                   {options.out / "model.h5", fields_file(options.out / "model.h5"),
                    options.out / "samples.csv", case_of_run(options.out), options.out / "samples"});

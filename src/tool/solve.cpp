@@ -1,5 +1,6 @@
 // rbvi solve, list, inspect.
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/locking.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/print.hpp"
@@ -40,6 +41,8 @@ void command_solve(const ToolOptions &options) {
     ResolutionTally resolution;
     resolution.add(solution.outputs);
     resolution.print(std::cout);
+    warn_of_locking(locking_ratio(options.scene, expand(space, mu), dual_points(problem.contact())),
+                    std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
     if (!options.csv.empty()) {
       write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});

@@ -1,10 +1,12 @@
 #include "rbvi/tool/tables.hpp"
 
 #include "rbvi/check/bench.hpp"
+#include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/write_atomically.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 namespace rbvi {
@@ -39,16 +41,21 @@ void write_sample_table(const std::filesystem::path &path, const ParameterSpace 
   write_atomically(path, out.str());
 }
 
-void tell_of_samples(const std::vector<Sample> &samples, std::ostream &out) {
+void tell_of_samples(const Scene &scene, const Contact &contact, const std::vector<Sample> &samples,
+                     std::ostream &out) {
   ResolutionTally tally;
   long in_load_steps = 0;
+  double locking = 0;
+  const std::vector<Point> points = dual_points(contact);
   for (const Sample &sample : samples) {
     tally.add(sample.outputs);
+    locking = std::max(locking, locking_ratio(scene, expand(scene.parameters, sample.mu), points));
     if (sample.outputs.load_steps.value_or(0) > 0) ++in_load_steps;
   }
   if (in_load_steps > 0)
     out << in_load_steps << " of " << samples.size() << " samples took load steps\n";
   tally.print(out, "samples");
+  warn_of_locking(locking, out);
 }
 
 } // namespace rbvi

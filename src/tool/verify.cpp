@@ -386,7 +386,7 @@ void command_verify(const ToolOptions &given) {
   else if (options.stability && rank == 0)
     std::printf("Inf-sup constants: none, %s\n", none.c_str());
   if (rank == 0) {
-    tell_of_samples(answers, std::cout);
+    tell_of_samples(problem.scene(), problem.contact(), answers, std::cout);
     print_written(std::cout, {out, options.out / "model.h5"});
   }
   report_failures(options, sweep.report, validation.size(), "validation",

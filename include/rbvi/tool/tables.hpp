@@ -44,7 +44,8 @@ void write_sample_table(const std::filesystem::path &path, const ParameterSpace 
                         const std::vector<Sample> &samples);
 
 /// What the samples of a sweep have in common: a line each where some took load steps, touch an end
-/// of the contact boundary, or rest on few nodes (ResolutionTally).
-void tell_of_samples(const std::vector<Sample> &samples, std::ostream &out);
+/// of the contact boundary, rest on few nodes (ResolutionTally), or lock.
+void tell_of_samples(const Scene &scene, const Contact &contact, const std::vector<Sample> &samples,
+                     std::ostream &out);
 
 } // namespace rbvi
