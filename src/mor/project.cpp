@@ -7,6 +7,7 @@
 #include "rbvi/mor/separation/stiffness_change.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
+#include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "separation/dense_rows.hpp"
 #include "separation/eim_terms.hpp"
@@ -155,6 +156,7 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   ReducedModel model;
   model.scene_name = scene.name;
   model.scene_record = record_of(scene);
+  model.settings[whole_scene] = scene_text(scene, problem.contact());
   model.scene_options = scene.options;
   model.parameters = scene.parameters;
   model.modes = bases.modes;

@@ -1,5 +1,6 @@
 #include "rbvi/rom/print.hpp"
 
+#include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/self_check.hpp"
 
@@ -142,7 +143,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "multipliers") << model.dual_basis.rows() << '\n';
   label(out, "mesh") << model.mesh_fingerprint << '\n';
   for (const auto &[name, value] : model.settings)
-    label(out, name) << value << '\n';
+    if (name != whole_scene) label(out, name) << value << '\n';
   print_expected_errors(out, model);
   label(out, "self-check");
   print_self_check(out, model.self_check, model.parameters);

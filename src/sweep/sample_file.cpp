@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/model/scene_text.hpp"
 
 #include <limits>
 
@@ -11,7 +12,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 6;
+constexpr int sample_schema = 7;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
@@ -45,11 +46,18 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
   for (const auto &[name, value] : mine) {
     const auto found = theirs.find(name);
     const std::string other = found == theirs.end() ? "not set" : found->second;
-    if (other != value)
+    if (other != value && name != whole_scene)
       throw bad_input("the samples in " + path.parent_path().string() + " were made with " + name +
                       " = " + other + ", now it is " + value +
                       ": use another -out or restore the option");
   }
+  const auto found = theirs.find(whole_scene);
+  const std::string difference =
+      scene_difference(found == theirs.end() ? "" : found->second, mine.at(whole_scene), true);
+  if (!difference.empty())
+    throw bad_input("the samples in " + path.parent_path().string() + " are of another scene: " +
+                    difference + ": rbvi offline makes them anew in another -out");
+  if (theirs.size() == mine.size()) return;
   throw bad_input("the samples in " + path.parent_path().string() +
                   " were made with options that this scene no longer has: use another -out");
 }

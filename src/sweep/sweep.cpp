@@ -9,6 +9,7 @@
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"
 #include "rbvi/par/queue.hpp"
+#include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "sample_file.hpp"
 
@@ -307,16 +308,14 @@ Settings sample_settings(const Problem &problem, const HfOptions &options) {
   Settings settings{{"scene", scene.name}, {"mesh", problem.mesh().fingerprint}};
   for (const auto &[name, value] : scene.options)
     settings[name] = value;
-  std::string free;
   for (std::size_t i = 0; i < scene.parameters.all.size(); ++i) {
     const Parameter &parameter = scene.parameters.all[i];
     const auto &list = scene.parameters.free;
     if (std::find(list.begin(), list.end(), static_cast<int>(i)) == list.end())
       settings["fixed " + parameter.name] = number(parameter.value);
-    else
-      free += (free.empty() ? "" : ",") + parameter.name;
   }
-  settings["parameters"] = free;
+  settings["parameters"] = names_of(scene.parameters);
+  settings[whole_scene] = scene_text(scene, problem.contact());
   if (!has_multipliers(scene)) {
     settings["nitsche_bounds"] = options.nitsche.nonpenetration ? "nonpenetration" : "none";
     return settings;

@@ -132,7 +132,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
 
 void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   Problem problem(PETSC_COMM_SELF, options.scene, options.mesh);
-  check_mesh(problem, model, options);
+  check_problem(problem, model, options);
   const std::vector<Sample> snapshots =
       samples_at(problem, options, from_columns(model.trained_mu), "training").samples;
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);

@@ -5,6 +5,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 
 #include <algorithm>
@@ -117,11 +118,18 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
   return options;
 }
 
-void check_mesh(const Problem &problem, const ReducedModel &model, const ToolOptions &options) {
-  if (problem.mesh().fingerprint == model.mesh_fingerprint) return;
+void check_problem(const Problem &problem, const ReducedModel &model, const ToolOptions &options) {
+  const std::string its = "the model in " + options.out.string();
   const std::string file = setting(model, "mesh_file");
-  throw bad_input("the model in " + options.out.string() + " was made on another mesh" +
-                  (file.empty() ? "" : ", that of " + file + " then: give it by -mesh"));
+  if (problem.mesh().fingerprint != model.mesh_fingerprint)
+    throw bad_input(its + " was made on another mesh" +
+                    (file.empty() ? "" : ", that of " + file + " then: give it by -mesh"));
+  const std::string again = ": make it again by rbvi offline with another -out";
+  const std::string of_model = setting(model, whole_scene);
+  if (of_model.empty()) throw bad_input(its + " does not say of which scene it is" + again);
+  const std::string difference =
+      scene_difference(of_model, scene_text(problem.scene(), problem.contact()), true);
+  if (!difference.empty()) throw bad_input(its + " is of another scene: " + difference + again);
 }
 
 } // namespace rbvi

@@ -84,7 +84,7 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
   Problem &problem = work.world_problem();
   Reduction made = reduce(problem, sweep.samples, options.reduce);
   ReducedModel model = std::move(made.model);
-  model.settings = kept_settings(options);
+  model.settings.merge(kept_settings(options)); // beside the whole scene
   model.settings["samples"] = std::to_string(sweep.samples.size());
   if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
   name_training(sweep, model);

@@ -352,7 +352,7 @@ void command_verify(const ToolOptions &given) {
       group_ranks(world, options.scene, options.mesh, validation.size(), options.ranks_per_solve);
   const Groups groups(world, grouping.ranks_per_solve);
   Workspace work(world, groups, options);
-  check_mesh(work.group_problem(), model, options);
+  check_problem(work.group_problem(), model, options);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
                                 options.out / "samples");
   check_failures(options, sweep.report, validation.size(), "validation");

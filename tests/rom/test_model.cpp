@@ -4,6 +4,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
+#include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/online.hpp"
 
 namespace rbvi::model_test {
@@ -52,6 +53,30 @@ TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
   EXPECT_EQ(refusal(0.16, 0.24), "");
   for (const auto &[lower, upper] : {std::pair(-1.0, 0.2), {0.16, 1e300}, {0.24, 0.16}})
     EXPECT_NE(refusal(lower, upper).find("range of validity is [0.02, 0.38]"), std::string::npos);
+}
+
+/// A model knows what the functions of its scene returned when it was made.
+TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
+  ReducedModel model = full_model();
+  const Scene scene = scene_of(model);
+  model.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
+  write_model(model, path);
+  EXPECT_EQ(read_model(path).settings, model.settings);
+  const std::string line = "map values: ";
+  std::string &text = model.settings[whole_scene];
+  const std::size_t digit = text.find(line) + line.size() + 5;
+  text[digit] = text[digit] == '5' ? '6' : '5';
+  write_model(model, path);
+  try {
+    (void)read_model(path);
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    for (const std::string part : {"another one in this build: map values is ", "rbvi offline"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
 }
 
 TEST_F(ModelFile, ReturnsTheModel) {

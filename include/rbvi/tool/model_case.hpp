@@ -12,7 +12,7 @@ ReducedModel model_of_run(MPI_Comm world, const std::filesystem::path &out);
 /// one line that says where they differed. Throws bad_input for a model of another scene.
 ToolOptions adopt_model(ToolOptions options, const ReducedModel &model);
 
-/// Throws bad_input unless the mesh of the problem is the model's.
-void check_mesh(const Problem &problem, const ReducedModel &model, const ToolOptions &options);
+/// Throws bad_input unless mesh and scene of the problem are the model's, functions included.
+void check_problem(const Problem &problem, const ReducedModel &model, const ToolOptions &options);
 
 } // namespace rbvi

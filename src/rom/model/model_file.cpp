@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
+#include "rbvi/rom/model/scene_text.hpp"
 #include "stored_operators.hpp"
 
 #include <algorithm>
@@ -280,6 +281,20 @@ ReducedModel read_members(const H5Reader &file) {
   return model;
 }
 
+/// Throws bad_input for functions that this build does not have, or that have other values in it
+/// than in the build that made the model, where it tells them.
+void check_functions_of(const ReducedModel &model) {
+  const Scene scene = scene_of(model);
+  const auto text = model.settings.find(whole_scene);
+  if (text == model.settings.end()) return;
+  const std::string difference =
+      scene_difference(text->second, scene_text(scene, contact_of(model, scene)), false);
+  if (!difference.empty())
+    throw bad_input("the scene of the model is another one in this build: " + difference +
+                    ": make the model again by rbvi offline with another -out, or use the build "
+                    "that made it");
+}
+
 } // namespace
 
 void write_model(const ReducedModel &model, const std::filesystem::path &path) {
@@ -320,7 +335,7 @@ ReducedModel read_model(const std::filesystem::path &path, bool with_fields) {
     model.fields_key = file.string("fields/key");
     if (with_fields) read_fields(path, model.fields_key, model);
     check_model(model);
-    (void)scene_of(model);
+    check_functions_of(model);
     return model;
   } catch (const Error &error) {
     throw bad_input(std::string(error.what()) + ", while reading " + path.string());
