@@ -21,6 +21,17 @@ void check_option(const SceneOption &option, const std::string &value) {
   }
 }
 
+/// Throws bad_input in place of what the standard library throws in its code.
+Scene made(const SceneEntry &entry, const SceneOptions &options) {
+  try {
+    return entry.make(options);
+  } catch (const std::out_of_range &) {
+    throw bad_input("the code of scene " + entry.name +
+                    " asks for an option that the scene does not declare, or for a member of a "
+                    "list that is not there");
+  }
+}
+
 } // namespace
 
 bool is_symmetric(const Scene &scene) {
@@ -59,7 +70,7 @@ Scene make_scene(const std::string &name, const SceneOptions &options) {
     check_option(*option, value);
     resolved[key] = value;
   }
-  Scene scene = entry->make(resolved);
+  Scene scene = made(*entry, resolved);
   scene.name = entry->name;
   scene.summary = entry->summary;
   scene.options = resolved;

@@ -207,6 +207,18 @@ void check_boundary(const Subject &s, const MeshFact &fact) {
                std::to_string(missing) + ", " + text_of(s, *first) + " for one");
 }
 
+/// Loads and contact are on the surface: inside the body neither has a direction.
+void check_outer_boundaries(const Subject &s) {
+  const auto check = [&](const std::string &name) {
+    if (!name.empty()) check_boundary(s, {name, "on the surface of the body", {}});
+  };
+  for (const Term &load : s.scene.f)
+    check(load.form.boundary);
+  for (const ContactRecipe &contact : s.scene.contacts)
+    for (const std::string &part : contact.entities.parts)
+      if (contact.entities.kind != InterfaceEntities::Kind::cells) check(part);
+}
+
 void check_size(const Subject &s, const MeshFact &fact) {
   double size = 0;
   const bool cells = fact.part.empty() || is_region(s, fact.part);
@@ -296,13 +308,18 @@ void check_glued(const Subject &s) {
 
 /// Throws bad_input for a scene that speaks of a part its recipe does not name.
 void check_recipe(const Scene &scene) {
-  std::vector<std::string> known = scene.mesh.regions, used;
+  std::vector<std::string> known = scene.mesh.regions, used = scene.mesh.curved;
   known.insert(known.end(), scene.mesh.boundaries.begin(), scene.mesh.boundaries.end());
   known.emplace_back("");
   for (const MeshFact &fact : scene.mesh.facts)
     used.insert(used.end(), {fact.part, fact.within});
   for (const ContactRecipe &contact : scene.contacts)
     used.insert(used.end(), contact.entities.parts.begin(), contact.entities.parts.end());
+  for (const FixedBoundary &boundary : scene.fixed)
+    used.push_back(boundary.name);
+  for (const Sum *sum : {&scene.a, &scene.f, &scene.v_product})
+    for (const Term &term : *sum)
+      used.insert(used.end(), {term.form.region, term.form.boundary});
   for (const std::string &name : used)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw bad_input("scene " + scene.name + " speaks of '" + name +
@@ -327,6 +344,7 @@ void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &
   Subject s = subject_of(mesh, scene, source);
   s.outer = outer_facets(mesh);
   check_glued(s);
+  check_outer_boundaries(s);
   for (const MeshFact &fact : scene.mesh.facts) {
     if (!fact.part.empty() && !is_region(s, fact.part))
       check_boundary(s, fact);

@@ -1,4 +1,5 @@
 #include "rbvi/core/error.hpp"
+#include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
 
 #include <string_view>
@@ -98,6 +99,7 @@ SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
     mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
     check_mesh(mesh, source);
     check_facts(mesh, scene, source);
+    check_contact_curves(mesh, scene, source);
     mesh = refined_mesh(std::move(mesh), options.refine, scene, source, levels);
   }
   balance_inclusion(mesh, scene);

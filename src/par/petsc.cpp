@@ -51,6 +51,11 @@ void throw_petsc_error(PetscErrorCode code, const char *call) {
   if (recorders == 0 && specific != nullptr) message = one_line(specific);
   if (message.empty() && general != nullptr) message = one_line(general);
   if (message.empty()) message = "no message";
+  if (code == PETSC_ERR_MAT_CH_ZRPVT || code == PETSC_ERR_MAT_LU_ZRPVT)
+    throw failure(
+        "a matrix is singular: is there a body that no fixed boundary or spring holds, or a "
+        "material that is not stiff? (" +
+        message + ")");
   const std::string_view name = call;
   throw failure(std::string(name.substr(0, name.find('('))) + ": " + message + " (PETSc error " +
                 std::to_string(static_cast<int>(code)) + ")");

@@ -6,6 +6,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/problem/check_scene.hpp"
 
 #include <cmath>
 #include <utility>
@@ -37,6 +38,11 @@ void check_finite(const Scene &scene, const Contact &contact, const Operators &o
   }
 }
 
+Scene checked(Scene scene) {
+  check_functions(scene);
+  return scene;
+}
+
 } // namespace
 
 std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
@@ -47,7 +53,7 @@ std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
 }
 
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
-    : given_(std::move(scene)), mesh_options_(options),
+    : given_(checked(std::move(scene))), mesh_options_(options),
       scene_(std::make_unique<const Scene>(with_imposed_loads(given_))),
       mesh_(make_mesh(comm, *scene_, options)),
       dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),

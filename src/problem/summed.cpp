@@ -1,7 +1,5 @@
 #include "rbvi/problem/summed.hpp"
 
-#include "rbvi/core/error.hpp"
-
 namespace rbvi {
 
 namespace {
@@ -43,19 +41,11 @@ void add(double factor, Vec term, Vec total) {
   RBVI_CALL(VecAXPY(total, factor, term));
 }
 
-void check_boundaries(const Sum &sum, const Mesh &mesh) {
-  for (const Term &term : sum)
-    if (!term.form.boundary.empty() && !mesh.facets.contains(term.form.boundary))
-      throw bad_input("a term is an integral over the boundary '" + term.form.boundary +
-                      "', which the mesh of the scene does not have");
-}
-
 } // namespace
 
 template <class Object>
 Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Mesh &mesh,
                            const Dofs &dofs) {
-  check_boundaries(sum, mesh);
   Summed<Object> result{split_sum(sum, space), {}, {}, {}};
   for (const ExactGroup &group : result.split.exact) {
     std::vector<WeightedForm> forms;

@@ -6,6 +6,7 @@
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/problem/check_scene.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/tool/commands.hpp"
@@ -132,6 +133,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
 
 void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   Problem problem(PETSC_COMM_SELF, options.scene, options.mesh);
+  check_scene(problem);
   check_problem(problem, model, options);
   const std::vector<Sample> snapshots =
       samples_at(problem, options, from_columns(model.trained_mu), "training").samples;

@@ -3,6 +3,7 @@
 #include "rbvi/core/locking.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/problem/check_scene.hpp"
 #include "rbvi/rom/print.hpp"
 #include "rbvi/rom/solution_vtu.hpp"
 #include "rbvi/tool/commands.hpp"
@@ -25,6 +26,7 @@ void command_solve(const ToolOptions &options) {
     outputs.push_back({"-vtu", contact_file(options.vtu, i)});
   check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
+  check_scene(problem);
   check_solver_options(problem, options.hf);
   HighFidelity solver(problem, options.hf);
   const HfSolution solution =

@@ -1,6 +1,7 @@
 #include "rbvi/tool/workspace.hpp"
 
 #include "rbvi/par/collective.hpp"
+#include "rbvi/problem/check_scene.hpp"
 
 namespace rbvi {
 
@@ -9,6 +10,7 @@ Workspace::Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &op
   collectively(world, [&] {
     group_ = std::make_unique<Problem>(groups.comm(), options.scene, options.mesh,
                                        options.contact_gather);
+    check_scene(*group_);
     check_solver_options(*group_, options.hf);
   });
 }

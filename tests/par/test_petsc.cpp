@@ -2,6 +2,7 @@
 #include "rbvi/par/session.hpp"
 
 #include <gtest/gtest.h>
+#include <petscksp.h>
 
 #include <string>
 
@@ -113,6 +114,31 @@ TEST(Error, a_bare_code_does_not_inherit_an_earlier_message) {
   const std::string message = message_of([]() -> PetscErrorCode { return PETSC_ERR_MEM; });
   EXPECT_EQ(message.find("earlier"), std::string::npos) << message;
   EXPECT_NE(message.find("memory"), std::string::npos) << message;
+}
+
+TEST(Error, a_singular_stiffness_is_told_in_words_of_the_body) {
+  const ErrorRecorder recorder;
+  const std::string message = message_of([]() -> PetscErrorCode {
+    Mat matrix = nullptr;
+    PC pc = nullptr;
+    const PetscInt rows[] = {0, 1};
+    const PetscScalar values[] = {1, -1, -1, 1}; // a spring between two free points
+    PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, 2, 2, 2, nullptr, &matrix));
+    PetscCall(MatSetValues(matrix, 2, rows, 2, rows, values, INSERT_VALUES));
+    PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+    PetscCall(PCCreate(PETSC_COMM_SELF, &pc));
+    PetscCall(PCSetType(pc, PCCHOLESKY));
+    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERCHOLMOD));
+    PetscCall(PCSetOperators(pc, matrix, matrix));
+    const PetscErrorCode code = PCSetUp(pc);
+    PetscCall(PCDestroy(&pc));
+    PetscCall(MatDestroy(&matrix));
+    PetscCall(code);
+    return 0;
+  });
+  EXPECT_TRUE(message.starts_with("a matrix is singular: is there a body that no fixed boundary"))
+      << message;
 }
 
 } // namespace

@@ -53,8 +53,8 @@ void check_places(const SerialMesh &mesh, const Scene &scene, const std::string 
 /// As check_places, and further that the parts are whole. Regions hold every cell in their place,
 /// whose rim the mesh fits; boundaries exactly the facets of the surface along theirs; together
 /// they are the surface, where the recipe says so; sizes are right; no facets lie on top of others
-/// without common nodes, unless they are the two curves of a pair. For a mesh that is not refined:
-/// a rim that Scene::snap does not know is fitted by the file alone.
+/// without common nodes, unless they are a pair's; loads and contact are on the surface. For a mesh
+/// that is not refined: a rim that Scene::snap does not know is fitted by the file alone.
 void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &source);
 
 /// Largest coordinate, without its sign.

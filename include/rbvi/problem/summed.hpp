@@ -16,8 +16,8 @@ template <class Object> struct Summed {
   std::optional<std::vector<double>> made_at{}; ///< values_of_dependence
 };
 
-/// Assembles the exact groups. Collective. Throws bad_input for a boundary that the mesh does not
-/// name.
+/// Assembles the exact groups: integrals over the reference domain, of kernels that depend on no
+/// parameter. Collective.
 template <class Object>
 Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Mesh &mesh,
                            const Dofs &dofs);

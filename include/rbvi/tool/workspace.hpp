@@ -11,7 +11,8 @@ namespace rbvi {
 
 class Workspace {
 public:
-  /// Collective on `world`. Makes the group's problem and checks the options of its solvers.
+  /// Collective on `world`. Makes the group's problem and checks its scene, and the options of its
+  /// solvers.
   Workspace(MPI_Comm world, const Groups &groups, const ToolOptions &options);
   Problem &group_problem() const { return *group_; } ///< not after end_of_solves
   /// Lets go of the group's problem, where it is not the world's: its solves are over.

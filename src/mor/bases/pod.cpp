@@ -276,7 +276,10 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
     factor.col(p).head(coefficients.size()) = coefficients;
   }
   const PetscInt rank = factorisation.size();
-  if (rank == 0) throw failure("all snapshots of a POD are zero");
+  if (rank == 0)
+    throw failure("the displacements at all training parameters are zero: nothing moves the body; "
+                  "is there a load, a motion or an imposed displacement, and -train with other "
+                  "parameters than those without any?");
 
   SmallSvd svd = small_svd(factor.topRows(rank));
   fix_signs(svd);

@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/problem/check_scene.hpp"
 #include "rbvi/tool/options/case_file.hpp"
 #include "rbvi/tool/options/run_directory.hpp"
 #include "table.hpp"
@@ -159,6 +160,7 @@ ToolOptions read_options(MPI_Comm comm) {
   check_names(names, origin, options.scene);
   options.case_file = as_case_file(names);
   adapt_parameters(options.scene.parameters);
+  check_functions(options.scene);
   check_box(options.scene);
   options.train = options.scene.training;
   options.valid = options.scene.validation;
