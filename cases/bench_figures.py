@@ -74,7 +74,7 @@ def bench(run):
     path = run / "bench" / "table.csv"
     if not path.is_file():
         print("bench.png: left out, rbvi bench has not run")
-        return
+        return []
     rows = [row for row in text_rows(path) if row["u_max"]]
     time = np.array([number(row["median_ms"]) for row in rows])
     figure, axes = plt.subplots(1, 2, figsize=(10.5, 4.4), constrained_layout=True, sharex=True)
@@ -91,8 +91,8 @@ def bench(run):
         draw_marks(axes[1], rows, time, columns["outputs_max"], False)
         draw_front(axes[1], time[known], columns["outputs_max"][known], "--",
                    "Pareto front, outputs (open)")
-    for axis, title in zip(axes, ("displacement u", "multipliers and outputs")):
-        log_axis(axis, "median time of a query (ms)", "largest relative error", title)
+    for axis, title in zip(axes, ("(a) displacement u", "(b) multipliers and outputs")):
+        log_axis(axis, "median time of a query (ms)", "largest relative error (-)", title)
         axis.set_xscale("log")
         axis.margins(x=0.15)
     handles.update({line.get_label(): line for line in axes[1].lines
@@ -100,3 +100,4 @@ def bench(run):
     figure.legend(handles=handles.values(), labels=handles.keys(), loc="upper center",
                   bbox_to_anchor=(0.5, 0), ncols=3)
     save(figure, run / "figures", "bench.png")
+    return []

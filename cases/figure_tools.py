@@ -1,5 +1,6 @@
 """What all figures share: their style, reading a run and VTU files, saving as PNG and PDF."""
 
+import base64
 import csv
 import xml.etree.ElementTree as xml
 from typing import NamedTuple
@@ -83,24 +84,22 @@ class Grid(NamedTuple):
 
 
 def array_reader(data, path):
-    """The XML of a VTU file in ASCII or with raw appended data, and a function from its arrays to
+    """The XML of a VTU file with numbers in ASCII or base64, and a function from its arrays to
     numbers or, of type String, texts."""
-    head, mark, raw = data.partition(b'<AppendedData encoding="raw">')
-    root = xml.fromstring(head + b"</VTKFile>" if mark else data)
+    root = xml.fromstring(data)
     if root.tag != "VTKFile" or root.get("type") != "UnstructuredGrid":
         raise Missing(f"{path} is not a VTU file of an unstructured grid")
     order = ">" if root.get("byte_order") == "BigEndian" else "<"
-    raw = raw[raw.find(b"_") + 1:]
     types = {"Float64": "f8", "Int32": "i4", "Int64": "i8", "UInt8": "u1"}
 
     def numbers(array):
         if array.get("type") == "String":
             return bytes(map(int, array.text.split())).decode().rstrip("\0").split("\0")
         kind = np.dtype(order + types[array.get("type")])
-        if array.get("format") == "appended":
-            offset = int(array.get("offset"))
-            size = int(np.frombuffer(raw, order + "u8", 1, offset)[0])
-            return np.frombuffer(raw, kind, size // kind.itemsize, offset + 8)
+        if array.get("format") == "binary":
+            block = base64.b64decode(array.text)
+            size = int(np.frombuffer(block, order + "u8", 1)[0])
+            return np.frombuffer(block, kind, size // kind.itemsize, 8)
         return np.array((array.text or "").split(), kind)
 
     return root, numbers
@@ -140,6 +139,13 @@ def read_grid(path):
     of_all = section["FieldData"]
     units = dict(line.split(": ") for line in of_all.pop("units"))
     return Grid(points, cells, edges, of_nodes, of_cells, of_all, units)
+
+
+def label_plane(axis):
+    axis.set_aspect("equal")
+    axis.grid(False)
+    axis.set_xlabel("x (m)")
+    axis.set_ylabel("y (m)")
 
 
 def step_values(axis, grid, name, **style):
@@ -198,3 +204,26 @@ def log_axis(axis, xlabel, ylabel, title):
     axis.set_xlabel(xlabel)
     axis.set_ylabel(ylabel)
     axis.set_title(title, loc="left")
+
+
+def draw_constants(axis, x, beta):
+    """The four constants against x; one that vanishes is named instead."""
+    curves = (("beta_hf", r"$\beta_{HF}$", GREY, "-"), ("beta_on", r"$\beta_{on}$", GREEN, "-"),
+              ("beta_off", r"$\beta_{off}$", BLUE, "--"),
+              ("beta_dec", r"$\beta_{dec}$", ORANGE, ":"))
+    order = np.argsort(x)
+    for column, label, colour, style in curves:
+        if beta[column].max() > 1e-9:
+            axis.plot(x[order], np.maximum(beta[column][order], 1e-9), style, color=colour,
+                      label=label)
+        else:
+            axis.text(0.97, 0.03, label + " below 1e-9", color=colour, ha="right",
+                      transform=axis.transAxes)
+
+
+def draw_greedy(axes, tight, loose, colour, label, floor):
+    """Largest sigma and smallest beta_off along the supremizers; a dot where a looser run ends.
+    Values of beta below `floor` are drawn there."""
+    for axis, column, least in zip(axes, ("sigma_max", "beta_min"), (1e-8, floor)):
+        axis.plot(tight["S"], np.maximum(tight[column], least), color=colour, label=label)
+        axis.plot(loose["S"][-1], loose[column][-1], "o", color=colour)

@@ -9,6 +9,21 @@
 
 namespace rbvi {
 
+namespace {
+
+/// Values of the edges of a polyline at its nodes, weighted by length.
+Vector means_at_nodes(const Matrix &points, const Vector &of_edges) {
+  Vector sum = Vector::Zero(points.rows()), weight = Vector::Zero(points.rows());
+  for (Index e = 0; e < of_edges.size(); ++e) {
+    const double length = (points.row(e + 1) - points.row(e)).norm();
+    sum.segment<2>(e).array() += length * of_edges[e];
+    weight.segment<2>(e).array() += length;
+  }
+  return sum.cwiseQuotient(weight);
+}
+
+} // namespace
+
 Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string &name) {
   if (mesh.dim != 2)
     throw bad_input("the " + name + " is a curve in two dimensions: the mesh has " +
@@ -77,6 +92,13 @@ Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
     if (k > 0) edges.insert(edges.end(), {static_cast<int>(k) - 1, static_cast<int>(k)});
   }
   return {mapped_points(scene, mu, points), edges, 2, {{"u", of_nodes, "m"}}, {}, {}};
+}
+
+void add_pressure(const Vector &values, Grid &grid) {
+  const bool of_edges = values.size() < grid.points.rows();
+  if (of_edges) grid.of_cells.push_back({"pressure", values, "Pa"});
+  grid.of_nodes.push_back(
+      {"pressure", of_edges ? means_at_nodes(grid.points, values) : values, "Pa"});
 }
 
 } // namespace rbvi

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <type_traits>
 
 namespace rbvi {
@@ -33,11 +34,25 @@ template <class Number> void append_number(std::string &text, Number value, char
   text += separator;
 }
 
-template <class Number> void append_bytes(std::string &bytes, std::span<const Number> values) {
-  bytes.append(reinterpret_cast<const char *>(values.data()), values.size_bytes());
+template <class Number> std::string bytes_of(std::span<const Number> values) {
+  return {reinterpret_cast<const char *>(values.data()), values.size_bytes()};
 }
 
-/// XML and, behind it, the blocks of raw numbers that it points into.
+/// As RFC 4648 has it: three bytes are four characters, the last ones padded by '='.
+void append_base64(std::string &text, const std::string &bytes) {
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  text.reserve(text.size() + (bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += k <= count ? digits[word >> (18 - 6 * k) & 63U] : '=';
+  }
+}
+
 class Writer {
 public:
   explicit Writer(VtuFormat format) : format_(format) {}
@@ -47,11 +62,11 @@ public:
   template <class Number>
   void array(const std::string &name, std::span<const Number> values, std::size_t components) {
     open(vtk_type<Number>(), name, "NumberOfComponents", components);
-    if (format_ == VtuFormat::appended) {
-      line(" format=\"appended\" offset=\"" + std::to_string(raw_.size()) + "\"/>");
-      const std::uint64_t bytes = values.size_bytes();
-      append_bytes(raw_, std::span(&bytes, 1));
-      append_bytes(raw_, values);
+    if (format_ == VtuFormat::base64) {
+      line(" format=\"binary\">");
+      const std::uint64_t size = values.size_bytes();
+      append_base64(xml_, bytes_of(std::span(&size, 1)) + bytes_of(values));
+      line("\n</DataArray>");
       return;
     }
     line(" format=\"ascii\">");
@@ -80,12 +95,7 @@ public:
     line("</DataArray>");
   }
 
-  std::string finished() const {
-    std::string all = xml_;
-    if (format_ == VtuFormat::appended)
-      all += "<AppendedData encoding=\"raw\">\n_" + raw_ + "\n</AppendedData>\n";
-    return all + "</VTKFile>\n";
-  }
+  const std::string &text() const { return xml_; }
 
 private:
   void open(const std::string &type, const std::string &name, const std::string &counted,
@@ -95,7 +105,7 @@ private:
   }
 
   VtuFormat format_;
-  std::string xml_, raw_;
+  std::string xml_;
 };
 
 std::uint8_t vtk_cell_type(int per_cell) {
@@ -164,7 +174,7 @@ void write_field_data(Writer &out, const Grid &grid) {
 } // namespace
 
 VtuFormat vtu_format(const Grid &grid) {
-  return grid.points.rows() > most_ascii_nodes ? VtuFormat::appended : VtuFormat::ascii;
+  return grid.points.rows() > most_ascii_nodes ? VtuFormat::base64 : VtuFormat::ascii;
 }
 
 void write_vtu(const std::filesystem::path &path, const Grid &grid, VtuFormat format) {
@@ -184,7 +194,8 @@ void write_vtu(const std::filesystem::path &path, const Grid &grid, VtuFormat fo
   write_fields(out, "CellData", grid.of_cells, static_cast<Index>(cells));
   out.line("</Piece>");
   out.line("</UnstructuredGrid>");
-  write_atomically(path, out.finished());
+  out.line("</VTKFile>");
+  write_atomically(path, out.text());
 }
 
 } // namespace rbvi

@@ -75,8 +75,7 @@ std::vector<int> generator_counts(const ReducedModel &model) {
 }
 
 /// Errors of the pairs (N, R), decorrelated and, where that is known, as enriched_pair makes
-/// them.
-/// Collective: the pairs are shared among the ranks.
+/// them. Collective: the pairs are shared among the ranks.
 void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &model,
                      const Truths &truths, const SparseMatrix &w) {
   struct Pair {
@@ -135,6 +134,11 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
                truth = by_node(solver.contact(), truths.lambda.col(worst));
   Table table;
   table.add(model.parameters, std::vector<Mu>(points.size(), mu));
+  std::vector<double> interface;
+  for (const auto &one : solver.contact().interfaces)
+    interface.resize(interface.size() + static_cast<std::size_t>(one->dual().nodes()),
+                     interface.empty() ? 1 : interface.back() + 1);
+  table.add("interface", interface);
   for (std::size_t k = 0; k < static_cast<std::size_t>(solver.scene().dim); ++k) {
     std::vector<double> coordinates;
     for (const Point &x : points)

@@ -14,7 +14,7 @@ import h5py
 from small_runs import RUNS
 
 PLACEHOLDERS = {
-    "I": ("0",),
+    "I": ("0", "1"),
     "T": ("consistency", "contact_matrix", "contact_vector", "friction_matrix", "friction_vector"),
     "OPERATOR": ("a", "b", "f", "g", "b_normal", "b_tangential"),
     "TERM": ("contact_matrix", "contact_vector", "friction_matrix", "friction_vector"),
@@ -122,8 +122,8 @@ def main(out, root):
                 wrong += complaints
                 files += 1
     for kind, table in tables.items():
-        wrong += [f"LAYOUT.md has {name}, which no {kind} has"
-                  for name in table.keys() - seen[kind]]
+        wrong += [f"LAYOUT.md has {name}, which no {kind} has"  # the first interface has them all
+                  for name in table.keys() - seen[kind] if "/1/" not in name]
     print("\n".join(sorted(wrong)) or f"{files} files are as LAYOUT.md says")
     return 1 if wrong or files < 3 * len(RUNS) else 0
 

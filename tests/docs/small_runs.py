@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""small_runs.py BIN OUT: a run of every kind on few parameters, for the tests layout and columns.
+"""small_runs.py BIN OUT: a run of every kind on few parameters, for the tests layout, columns, figures
+and vtu.
 
 Each run OUT/NAME is made, asked and verified, some are measured: model.h5, samples, every table of
-rbvi, online_before.csv and online_after.csv (rbvi-online before and after rbvi verify), solve.csv.
+rbvi, online_before.csv and online_after.csv (rbvi-online before and after rbvi verify), solve.csv,
+u.vtu of that solve and online.vtu of rbvi-online at the same mu. OUT/answers/NAME has solve.csv and
+u.vtu of every scene and formulation.
 """
 
 import shutil
@@ -11,7 +14,10 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from every_scene import CASES, every_scene
+
 DISK = ["-case", CASES / "rigid_disk/case.yaml"]
 NITSCHE = [*DISK, "-formulation", "nitsche", "-arc_edges", "40", "-train", "grid:5"]
 REDUCED = "-multiplier_reduction"
@@ -21,6 +27,8 @@ RUNS = {
                       "-cone_type", "mcpg", "-pga_tolerance", "infsup"],
     "membrane_frame": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,3",
                        "-parameters", "radius,frame_height"],
+    "membrane_degree_2": ["-case", CASES / "membrane_obstacle/case.yaml", "-train", "grid:3,2,2",
+                          "-degree", "2", "-lumped", "no"],
     "two_disks": ["-case", CASES / "two_disks/case.yaml", "-train", "grid:9"],
     "two_disks_cone": ["-case", CASES / "two_disks/cone.yaml", "-train", "grid:9"],
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
@@ -34,6 +42,9 @@ RUNS = {
     "nitsche_empirical": NITSCHE,
     "nitsche_interpolated": [*NITSCHE, "-nitsche_quadrature", "interpolated",
                              "-nitsche_eim_validation", "random:2:2"],
+    "roller": ["-case", CASES / "roller/case.yaml", "-train", "grid:3,3"],
+    "roller_nitsche": ["-case", CASES / "roller/case.yaml", "-train", "grid:3,3", "-arc_edges", "24",
+                       "-formulation", "nitsche"],
 }
 MEASURED = ("two_disks", "nitsche_empirical")  # by rbvi bench, which takes longest
 GROWN = "disk_none"  # by rbvi bench -bench_growth
@@ -58,14 +69,23 @@ def make(binaries, out, options):
         call(rbvi, "bench", "-out", out, "-bench_growth", "0", "-train", "grid:2")
     table = (out / "samples.csv").read_text(encoding="utf-8").splitlines()
     mu = ",".join(table[1].split(",")[:table[0].split(",").index("energy")])
-    call(rbvi, "solve", "-case", out / "case.yaml", "-mu", mu, "-csv", out / "solve.csv")
+    call(online, out / "model.h5", "--mu", mu, "--vtu", out / "online.vtu")
+    answer(rbvi, out, ["-case", out / "case.yaml"], mu)
+
+
+def answer(rbvi, out, options, mu):
+    out.mkdir(parents=True, exist_ok=True)
+    call(rbvi, "solve", *options, "-mu", mu, "-csv", out / "solve.csv", "-vtu", out / "u.vtu")
 
 
 def main(binaries, out):
     shutil.rmtree(out, ignore_errors=True)
     with ThreadPoolExecutor(2) as pool:
-        for done in [pool.submit(make, binaries, out / name, options)
-                     for name, options in RUNS.items()]:
+        jobs = [pool.submit(make, binaries, out / name, options) for name, options in RUNS.items()]
+        jobs += [pool.submit(answer, binaries / "rbvi", out / "answers" / one.name,
+                             ["-case", one.case, *one.scene], one.mu[-1])
+                 for one in every_scene() if not one.reduction]
+        for done in jobs:
             done.result()
     print(f"{len(RUNS)} runs in {out}")
 

@@ -5,8 +5,10 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, save, table)
-from figures import contact_cells, draw_constants, draw_contact_field, draw_greedy
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy, history,
+                          log_axis, plt, save, table)
+from figures import contact_cells
+from panels import Triangles
 
 import numpy as np
 
@@ -150,11 +152,13 @@ def pressures(runs, directory):
         points = np.column_stack([data["x"], data["y"]])
         error = data["reduced"] - data["high_fidelity"]
         top, bound = data["high_fidelity"].max(), np.abs(error).max()
-        for axis, column in zip(row, ("high_fidelity", "reduced")):
-            draw_contact_field(figure, axis, points, cells, data[column], "Blues", (0, top),
-                               f"{name}: {column.replace('_', '-')}", "pressure (Pa)")
-        draw_contact_field(figure, row[2], points, cells, error, "RdBu_r", (-bound, bound),
-                           f"{name}: error", "error of the pressure (Pa)")
+        panels = [Triangles(f"{name}: {column.replace('_', '-')}", points, cells, data[column],
+                            "pressure (Pa)", (0, top)) for column in ("high_fidelity", "reduced")]
+        panels.append(Triangles(f"{name}: error", points, cells, error,
+                                "error of the pressure (Pa)", (-bound, bound), "RdBu_r"))
+        for axis, panel in zip(row, panels):
+            panel.draw(figure, axis)
+            axis.set_title(panel.title, loc="left")
     save(figure, directory, "pressure.png")
 
 

@@ -5,9 +5,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, history, log_axis, plt, read_grid,
-                          save, step_values, table)
-from figures import draw_constants, draw_greedy
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, draw_constants, draw_greedy, history,
+                          log_axis, plt, read_grid, save, step_values, table)
 from solution_figures import draw_bodies
 
 import numpy as np

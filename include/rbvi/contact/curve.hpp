@@ -17,4 +17,8 @@ SparseMatrix linear_gram(const std::vector<Point> &points, int copies);
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
               const std::vector<Index> &nodes, const Vector &u);
 
+/// Adds the field "pressure" to a polyline: one value for each node, or for each edge, then also at
+/// the nodes, as the mean of the edges beside them weighted by length.
+void add_pressure(const Vector &values, Grid &grid);
+
 } // namespace rbvi

@@ -25,8 +25,8 @@ struct Grid {
 };
 
 enum class VtuFormat {
-  ascii,   ///< every digit, for eyes and small scripts
-  appended ///< raw numbers behind the XML, headers of 64 bits: a third of the size
+  ascii, ///< every digit, for eyes and small scripts
+  base64 ///< the bytes of numbers as text, headers of 64 bits: shorter, and the file stays XML
 };
 
 /// ASCII up to 2000 nodes.

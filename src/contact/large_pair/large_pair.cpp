@@ -262,20 +262,21 @@ Grid LargePairInterface::fields(const FullMu &mu, const Vector &u, const Vector 
   const std::vector<Facing> vertices = projection.vertices();
   if (vertices.size() < 2) return {};
   std::vector<Index> nodes;
-  Vector gap(static_cast<Index>(vertices.size())), pressure(gap.size());
+  const bool constant = pair_.multiplier == MultiplierSpace::macro_edges;
+  Vector gap(static_cast<Index>(vertices.size())), pressure(gap.size() - (constant ? 1 : 0));
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     const Facing &p = vertices[k];
     nodes.push_back(static_cast<Index>(std::lround(p.weight)));
     const Point y = now.slave.at(p.slave_edge, p.s), xi = now.master.at(p.master_edge, p.t);
     gap[static_cast<Index>(k)] = p.normal[0] * (y[0] - xi[0]) + p.normal[1] * (y[1] - xi[1]);
-    double sum = 0;
-    for (const auto &[row, value] : multipliers(p))
-      if (row >= 0) sum += value * lambda[row];
-    pressure[static_cast<Index>(k)] = sum;
+  }
+  for (Index k = 0; k < pressure.size(); ++k) {
+    const Index node = nodes[static_cast<std::size_t>(k)];
+    pressure[k] = lambda[constant ? macro_edge_of(node, mesh_.parts[0], mesh_.degree) : node];
   }
   Grid grid = polyline(scene_, mu, mesh_, nodes, u);
   grid.of_nodes.push_back({"gap", gap, "m"});
-  grid.of_nodes.push_back({"pressure", pressure, "Pa"});
+  add_pressure(pressure, grid);
   return grid;
 }
 

@@ -7,17 +7,6 @@ namespace rbvi {
 
 namespace {
 
-/// Values of the edges of a polyline at its nodes, weighted by length.
-Vector means_at_nodes(const Matrix &points, const Vector &of_edges) {
-  Vector sum = Vector::Zero(points.rows()), weight = Vector::Zero(points.rows());
-  for (Index e = 0; e < of_edges.size(); ++e) {
-    const double length = (points.row(e + 1) - points.row(e)).norm();
-    sum.segment<2>(e).array() += length * of_edges[e];
-    weight.segment<2>(e).array() += length;
-  }
-  return sum.cwiseQuotient(weight);
-}
-
 class PairInterface : public ContactInterface {
 public:
   PairInterface(const Scene &scene, InterfaceMesh mesh, Pair pair);
@@ -112,9 +101,7 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
     const Index node = pair.paired[static_cast<std::size_t>(k)];
     pressure[k] = lambda[constant ? macro_edge_of(node, mesh_.parts[0], mesh_.degree) : node];
   }
-  if (constant) grid.of_cells.push_back({"pressure", pressure, "Pa"});
-  grid.of_nodes.push_back(
-      {"pressure", constant ? means_at_nodes(grid.points, pressure) : pressure, "Pa"});
+  add_pressure(pressure, grid);
   return grid;
 }
 

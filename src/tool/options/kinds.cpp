@@ -128,4 +128,26 @@ std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &e
   return all;
 }
 
+Option kept(bool (*when)(const ToolOptions &), Option option, const std::string &as) {
+  option.kept = when;
+  option.kept_as = as.empty() ? option.name : as;
+  return option;
+}
+
+bool always(const ToolOptions & /*options*/) {
+  return true;
+}
+
+Option otherwise(const std::string &value, Option option) {
+  option.default_value = value;
+  return option;
+}
+
+void add(const char *group, std::vector<Option> options, std::vector<Option> &all) {
+  for (Option &option : options) {
+    option.group = group;
+    all.push_back(std::move(option));
+  }
+}
+
 } // namespace rbvi

@@ -7,7 +7,18 @@
 
 #include <type_traits>
 
+/// The place of a value among the options.
+#define RBVI_AT(member)                                                                            \
+  [](auto &options) -> auto & {                                                                    \
+    return options.member;                                                                         \
+  }
+
 namespace rbvi {
+
+/// Largest relative error that a reduced model may be asked for: above, it says nothing.
+constexpr double rough = 0.5;
+
+inline const Range relative_error{0, rough}, positive{0, 1e300}, refinements{0, 6};
 
 // Values from text. They throw bad_input, naming the option.
 
@@ -53,6 +64,18 @@ template <class Place> Option placed(Option option, Place place) {
   option.default_value = as_text(place(defaults), plain);
   return option;
 }
+
+/// Models keep the value where `when` says so, as the setting `as`: by default of the same name.
+Option kept(bool (*when)(const ToolOptions &), Option option, const std::string &as = "");
+
+/// Every model keeps the value.
+bool always(const ToolOptions &options);
+
+/// What stands in place of a value that is not given.
+Option otherwise(const std::string &value, Option option);
+
+/// Options behind those of `all`, below a heading.
+void add(const char *group, std::vector<Option> options, std::vector<Option> &all);
 
 template <class Place>
 Option number(const std::string &name, const Range &range, Place place, const std::string &help) {

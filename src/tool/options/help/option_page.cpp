@@ -7,6 +7,7 @@
 #include "rbvi/rom/online_tool.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace rbvi {
 
@@ -16,28 +17,84 @@ constexpr const char *introduction = R"(# Options
 
 This page is printed by `rbvi -help -markdown`.
 
-Every option of rbvi can stand in the case file or on the command line, which wins, with one or two
-dashes. A case file is YAML: one `name: value` per line, without the dash; bounds may be a list
-`[0.16, 0.24]`. File names in it are looked for beside it, then in the working directory. An unknown
-name is an error, a name that stands there twice, too. A flag without a value means yes. Numbers in
-brackets are equations of Niakh (2022).
+Every option of rbvi can stand in the case file or on the command line, with one or two dashes; if it
+stands in both, the command line wins. A case file is YAML: one `name: value` per line, without the
+dash; two bounds may be a list `[0.16, 0.24]`. File names in a case file are looked for beside it, then
+in the working directory. An unknown name, and a name that stands there twice, is an error. A flag
+without a value means yes.
+
+The words of this page are explained where a group of options begins, and in the
+[glossary](README.md#glossary). Numbers in brackets are equations of Niakh (2022): u is the
+displacement, lambda the multipliers (pressure and friction stress), A and B are the matrices of the
+forms a and b, and mu is a parameter, the list of all numbers that vary.
 )";
+
+/// What the words mean that the options of a group use.
+const std::map<std::string, const char *> introductions{{"Run", R"(
+A run has a directory. `offline` solves the full (high-fidelity) problem at the parameters of a
+training set and makes a reduced model of the answers; `verify` compares the model with full answers
+at a validation set; `bench` measures times; `solve` solves the full problem once.
+)"},
+                                                        {"High-fidelity solver", R"(
+The full problem is solved by a method that finds out where the bodies touch. Eliminating the
+displacement leaves a problem for the multipliers alone, with the matrix B A^-1 B^T: that problem is
+called condensed.
+)"},
+                                                        {"Large deformations", R"(
+With `-kinematics large` the condition of contact depends on the displacement. It is then linearised,
+solved, and linearised again at the new state, until neither u nor the multipliers change.
+)"},
+                                                        {"Sweep", R"(
+The full problem is solved at all parameters of a set. The MPI ranks form groups; each group takes the
+next parameter from one queue.
+)"},
+                                                        {"Bases", R"(
+The displacement is combined from a few modes (POD of the snapshots, which are the full answers at the
+training parameters). Pressures must not be negative: where multipliers are reduced, they are combined
+with coefficients >= 0 from the functions of a dual basis; what these can form is a cone.
+)"},
+                                                        {"Stability", R"(
+A pair of bases determines the pressure only if its inf-sup constant beta is positive. Supremizers are
+displacements that join the modes for that purpose. beta_HF is the constant of the full problem,
+beta_on that with the supremizers of each parameter, beta_off that with one set for all parameters;
+sigma is the largest distance of the supremizers of a parameter to that set. Multipliers that are
+reduced to a cone need supremizers; the law at every node and Nitsche's method do not.
+)"},
+                                                        {"Separation", R"(
+Matrices and vectors that depend on mu are separated: written as short sums of fixed terms times
+functions of mu, exactly where the scene says how, otherwise by empirical interpolation (EIM).
+)"},
+                                                        {"Multipliers", R"(
+The law is the set of conditions at a node: no penetration, no tension, and with friction a bound on the
+tangential stress. lambda_n are the normal multipliers, lambda_tau the tangential ones. A response is the
+displacement A^-1 B^T e that a unit load on one multiplier causes. At its collocation nodes, and only
+there, a reduced model holds the bound of friction (collocated) or the law (joint).
+)"},
+                                                        {"Nitsche's method", R"(
+With `-formulation nitsche` contact and friction are terms of one equation for u, without multipliers.
+Newton's method solves it; a reduced model integrates these terms by one of three rules.
+)"}};
 
 constexpr const char *of_scenes = R"(
 ## Scenes
 
-Each scene has options and parameters of its own. A parameter is an option, too: two bounds
-`-radius 0.18,0.22` free it, one value `-radius 0.2` fixes it; `-parameters` names those that are
-free. No box, no value and no query leaves the range of validity. `rbvi -help -scene NAME` prints
-what a mesh for the scene must have, too.
+Each scene has options and parameters of its own. A parameter is an option, too: with two bounds,
+`-radius 0.18,0.22`, it is free and varies between them, with one value, `-radius 0.2`, it is fixed;
+`-parameters` names those that are free. The bounds of all free parameters are the box of a model. No
+box, no value and no query may leave the range of validity. `rbvi -help -scene NAME` also prints what a
+mesh for the scene must have.
+
+Some scenes share options. `-degree` is that of the finite elements for the displacement. `-lumped yes`
+takes the contact integrals b and g by values at the vertices alone (vertex quadrature). `-formulation`
+writes contact with multipliers (mixed) or without them, by Nitsche's method (nitsche).
 )";
 
 constexpr const char *of_petsc = R"(
 ## PETSc and SLEPc
 
-Options of their objects work under these prefixes: `-hf_pc_type`, `-nitsche_snes_monitor`,
-`-pga_eps_view`, ... One that a solver would read and not follow is refused, and so is one that
-nothing of the run asks for; SLEPc's of another command may stand in a case file.
+The solvers of PETSc and SLEPc take their own options behind these prefixes: `-hf_pc_type`,
+`-nitsche_snes_monitor`, `-pga_eps_view`, ... An option is refused if a solver would read it and not
+follow it, or if nothing in the run reads it. A case file may hold SLEPc's options of another command.
 )";
 
 constexpr const char *of_petsc_more = R"(
@@ -45,10 +102,10 @@ Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-12. `
 [1e-12] is that of the residual relative to its terms. Of PETSc itself, `-log_view` shows one stage
 per step.
 
-SLEPc solves the eigenproblems of the projected greedy, and the one singular value decomposition
-that replaces them where b only scales. Each rank has objects of its own for the parameters that are its
-share, of type lapack: it returns all pairs of a small matrix, which iterative types do not do for
-clustered values (fewer than all are an error). `-infsup_eps_` alone is iterative: where that is
+SLEPc solves the eigenproblems of the projected greedy algorithm. If b(mu) is a multiple of one fixed
+form ("B only scales"), one singular value decomposition replaces them all. Each rank has objects of its
+own for its share of the parameters, of type lapack: this type returns all pairs of a small matrix,
+which iterative types do not do for clustered values (fewer than all are an error). `-infsup_eps_` alone is iterative: where that is
 faster (m^3 > 1e5 n for m multipliers and n displacement dofs) beta_HF is the smallest eigenvalue of
 B V^-1 B^T x = beta^2 W x by inverse iteration, with one factorisation of [V B^T; B 0] for each
 parameter (the other constants still need a dense matrix of the size of the contact dofs).
@@ -108,7 +165,9 @@ std::string tables_of_groups() {
   std::string text, after, group;
   for (const Option &option : tool_options()) {
     if (option.group != group) {
-      text += after + "\n## " + option.group + "\n" + head(option_head);
+      const auto words = introductions.find(option.group);
+      text += after + "\n## " + option.group + "\n" +
+              (words == introductions.end() ? "" : words->second) + head(option_head);
       group = option.group;
       after.clear();
     }

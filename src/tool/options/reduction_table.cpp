@@ -1,0 +1,247 @@
+// The options of the reduced model.
+#include "reduction_table.hpp"
+
+#include "kinds.hpp"
+
+#include "rbvi/core/error.hpp"
+
+namespace rbvi {
+
+namespace {
+
+const Range basis_size{0, 100000};
+
+bool mixed(const ToolOptions &options) {
+  return has_multipliers(options.scene);
+}
+
+bool not_mixed(const ToolOptions &options) {
+  return !mixed(options);
+}
+
+bool with_law(const ToolOptions &options) {
+  return mixed(options) && keeps_law(options.reduce.multipliers.reduction);
+}
+
+bool with_reduced_law(const ToolOptions &options) {
+  return with_law(options) &&
+         options.reduce.multipliers.reduction != MultiplierReduction::condensed;
+}
+
+bool with_dual_basis(const ToolOptions &options) {
+  return mixed(options) && (!with_law(options) || with_reduced_law(options));
+}
+
+Option pga_tolerance() {
+  Option option =
+      number("pga_tolerance", {0, 0.999}, RBVI_AT(reduce.pga.tolerance),
+             "stop at this largest sigma (2.27); infsup: at the smallest beta_HF / c_HF over the "
+             "training set, which meets (2.23) for certain; 0: stop by -pga_beta_fraction");
+  option.values += ", infsup";
+  option.read = [read_number = option.read](const std::string &value, ToolOptions &options) {
+    options.reduce.infsup_tolerance = value == "infsup";
+    if (!options.reduce.infsup_tolerance)
+      while_doing("reading -pga_tolerance, a number or infsup",
+                  [&] { read_number(value, options); });
+  };
+  option.shown = [show_number = option.shown](const ToolOptions &options) {
+    return options.reduce.infsup_tolerance ? "infsup" : show_number(options);
+  };
+  return option;
+}
+
+Option reference_mu() {
+  Option option{"reference_mu", OptionKind::text,
+                "parameter at which -pga_product energy, and the hybrid basis, take A", "parameter",
+                "centre of the box"};
+  option.read = [](const std::string &value, ToolOptions &options) {
+    options.reduce.reference = while_doing(
+        "reading option -reference_mu", [&] { return parse_mu(options.scene.parameters, value); });
+  };
+  return option;
+}
+
+Option nitsche_eim_validation() {
+  Option option{"nitsche_eim_validation", OptionKind::set,
+                "interpolated: a further set, given as -train is, at whose Newton steps that error "
+                "is measured too",
+                "set"};
+  option.read = [](const std::string &value, ToolOptions &options) {
+    options.reduce.curve.eim_validation =
+        while_doing("reading option -nitsche_eim_validation",
+                    [&] { return parse_set(options.scene.parameters, value); });
+  };
+  return option;
+}
+
+std::vector<Option> of_bases() {
+  const std::vector<std::string> cones{
+      "snapshots of the pressure, each the one farthest from the cone of those before (B.2)",
+      "the same, each without the largest part that the cone holds already (Algorithm 2); default "
+      "of every -multiplier_reduction except cone",
+      "snapshots, each the one at the largest angle to the span of those before (Haasdonk, "
+      "Salomon, Wohlmuth 2012)",
+      "non-negative factorisation of the snapshots (Lee, Seung 2000), by HALS",
+      "hat functions of all nodes that were ever in contact (a hat is 1 at its node and 0 at the "
+      "others)",
+      "hat functions where contact changes, and a few modes of either sign at the nodes that never "
+      "leave contact: see the study in membrane_obstacle/README.md"};
+  return {
+      kept(always, number("pod_tolerance", relative_error, RBVI_AT(reduce.pod.tolerance),
+                          "relative error that the modes of the displacement may leave (2.11)")),
+      number("pod_max_size", basis_size, RBVI_AT(reduce.pod.max_size),
+             "largest number of modes; 0: no limit"),
+      kept(with_dual_basis,
+           choice("cone_type", choices(cone_type_names(), cones), RBVI_AT(reduce.cone.type),
+                  "dual basis: functions that the multipliers are combined from")),
+      kept(with_dual_basis,
+           number("cone_tolerance", relative_error, RBVI_AT(reduce.cone.tolerance),
+                  "relative error that the dual basis may leave (2.34); nodal does not use it")),
+      number("cone_max_size", basis_size, RBVI_AT(reduce.cone.max_size),
+             "largest number of its functions; 0: no limit"),
+      kept(with_dual_basis,
+           number("cone_feasibility", relative_error, RBVI_AT(reduce.cone.feasibility),
+                  "mcpg: largest negative value that a function may have, as a "
+                  "fraction of its maximum")),
+      kept(with_dual_basis, number("cone_ring", {0, 1000}, RBVI_AT(reduce.cone.ring),
+                                   "nodal, hybrid: how many layers of nodes around the nodes where "
+                                   "contact changes have hats, too; hybrid: at least 1 if the "
+                                   "training set has no corners, doubled as needed")),
+      kept(mixed, number("cone_level", refinements, RBVI_AT(reduce.cone.level),
+                         "hybrid, and the law at nodes: take the hats of the mesh with this many "
+                         "refinements less"))};
+}
+
+std::vector<Option> of_stability() {
+  return {
+      kept(with_dual_basis,
+           choice(
+               "pga_enrichment",
+               choices(
+                   enrichment_names(),
+                   {"none: the modes alone",
+                    "those of each parameter, made anew for each query (2.17)",
+                    "one set for all parameters, chosen by the projected greedy algorithm (2.30)"}),
+               RBVI_AT(reduce.enrichment), "which supremizers join the modes")),
+      kept(with_dual_basis,
+           choice("pga_product",
+                  choices(product_names(),
+                          {"the product of V, for which the theory states its constants and bounds",
+                           "the energy of A at -reference_mu"}),
+                  RBVI_AT(reduce.product), "product with which supremizers are computed")),
+      reference_mu(),
+      kept(with_dual_basis, pga_tolerance()),
+      kept(with_dual_basis,
+           number("pga_beta_fraction", {0, 1 - 1e-12}, RBVI_AT(reduce.pga.stability),
+                  "stop when beta_off >= this fraction of beta_on holds for certain")),
+      number("pga_max_size", basis_size, RBVI_AT(reduce.pga.max_size),
+             "largest number of supremizers; 0: no limit")};
+}
+
+std::vector<Option> of_separation() {
+  return {
+      kept(always, number("eim_tolerance", relative_error, RBVI_AT(reduce.eim.tolerance),
+                          "relative error that the separated operators may have (B.32)")),
+      number("eim_max_size", basis_size, RBVI_AT(reduce.eim.max_size),
+             "largest number of terms; 0: no limit"),
+      otherwise("-eim_tolerance",
+                kept(with_reduced_law,
+                     number("eim_normal_tolerance", relative_error, RBVI_AT(reduce.eim_normal),
+                            "collocated: the same for B^n, the rows of lambda_n (3.61a)"))),
+      otherwise(
+          "-eim_tolerance",
+          kept(with_reduced_law,
+               number("eim_tangential_tolerance", relative_error, RBVI_AT(reduce.eim_tangential),
+                      "collocated: the same for B^tau, the rows of lambda_tau (3.61b)")))};
+}
+
+std::vector<Option> of_multipliers() {
+  const std::vector<std::string> reductions{
+      "condensed on rigid supports and between two bodies, otherwise cone",
+      "a cone of functions (-cone_type), made stable by supremizers; without friction",
+      "not reduced: the law holds exactly at every node (or mirrored pair of nodes), and the body "
+      "enters by its condensed operator B A^-1 B^T, interpolated where A varies; the most accurate "
+      "by orders of magnitude",
+      "the published method: a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, "
+      "supremizers, the friction bound at nodes chosen greedily (Algorithm 3), B^n and B^tau "
+      "interpolated apart unless B is a multiple of one form; without friction the cone and B^n "
+      "alone",
+      "a cone for lambda_n and one for the friction bound less |lambda_tau|: Coulomb's bound holds "
+      "at every node",
+      "modes of both multipliers, with the law in the least-squares sense at nodes chosen by "
+      "pivoted QR"};
+  return {
+      kept(with_law,
+           number("condensed_tolerance", relative_error, RBVI_AT(reduce.condensed.tolerance),
+                  "relative error that the condensed operator may have as a function of mu")),
+      kept(with_law, number("condensed_ring", positive, RBVI_AT(reduce.condensed.ring),
+                            "condensed: keep multipliers up to this distance from where "
+                            "contact was seen, as a fraction of the extent of contact")),
+      number("response_tolerance", relative_error, RBVI_AT(reduce.condensed.responses),
+             "responses A^-1 B^T join the modes: first those of one A, then of others until "
+             "this relative error is left; 0: none join"),
+      number("response_compression", relative_error, RBVI_AT(reduce.condensed.compression),
+             "if A is constant and all responses would take more than 160 MB: only those to "
+             "answers of the law join, to this relative error; 0: all join"),
+      kept(with_law,
+           choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
+                  RBVI_AT(reduce.multipliers.reduction), "how the multipliers are reduced")),
+      flag("multiplier_exact", RBVI_AT(reduce.multipliers.exact),
+           "collocated, cones, joint: an answer that breaks the law at some node is corrected "
+           "by exact steps"),
+      kept(with_reduced_law,
+           number("tangential_tolerance", relative_error, RBVI_AT(reduce.multipliers.tangential),
+                  "relative error that the modes of lambda_tau (collocated) or of both "
+                  "multipliers (joint) may leave")),
+      number("joint_extra_nodes", basis_size, RBVI_AT(reduce.multipliers.extra_nodes),
+             "joint: how many more collocation nodes there are than modes"),
+      number("gcns_tolerance", positive, RBVI_AT(reduce.gcns.tolerance),
+             "collocated: no more nodes are chosen at this e_GCNS; 0: all are tried, and the "
+             "best number is kept"),
+      number("gcns_max_nodes", basis_size, RBVI_AT(reduce.gcns.max_nodes),
+             "collocated: largest number of collocation nodes; 0: no limit")};
+}
+
+std::vector<Option> of_nitsche() {
+  return {
+      choice("nitsche_loop",
+             {{"nested", "keeps it fixed within an outer loop (4.63)"},
+              {"single", "updates it in every Newton step (4.53)"}},
+             RBVI_AT(hf.nitsche.single_loop),
+             "how Newton's method treats Coulomb's bound, which depends on the pressure"),
+      choice("nitsche_bounds",
+             {{"none", "Newton's method"},
+              {"nonpenetration", "SNES keeps the nodes' normal displacements below the gap"}},
+             RBVI_AT(hf.nitsche.nonpenetration), "bounds that the displacement keeps besides"),
+      kept(not_mixed,
+           choice(
+               "nitsche_quadrature",
+               choices(curve_rule_names(),
+                       {"at a few Gauss points of the curve, with non-negative weights from least "
+                        "squares (NNLS), so that the reduced problem still minimises an energy",
+                        "at all Gauss points",
+                        "the published method: tangent and residual by empirical interpolation "
+                        "over (mu, Newton step) (4.71)-(4.80)"}),
+               RBVI_AT(reduce.curve.rule),
+               "how a reduced model integrates contact and friction over the curve")),
+      number("nitsche_quadrature_tolerance", relative_error, RBVI_AT(reduce.curve.tolerance),
+             "empirical: relative error that it may add to u at a training parameter; 0: as much "
+             "as the modes leave there"),
+      number("nitsche_eim_tolerance", relative_error, RBVI_AT(reduce.curve.eim_tolerance),
+             "interpolated: relative error that may be left over all (mu, Newton step) (B.32)"),
+      nitsche_eim_validation()};
+}
+
+} // namespace
+
+std::vector<Option> reduction_options() {
+  std::vector<Option> all;
+  add("Bases", of_bases(), all);
+  add("Stability", of_stability(), all);
+  add("Separation", of_separation(), all);
+  add("Multipliers", of_multipliers(), all);
+  add("Nitsche's method", of_nitsche(), all);
+  return all;
+}
+
+} // namespace rbvi

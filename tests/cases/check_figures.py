@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""check_figures.py RUNS SCRATCH: the numbers that the panels of cases/figures.py are made of.
+
+RUNS is of tests/docs/small_runs.py: every figure of every run, and the picture of an answer of every
+scene and formulation. A damaged file leaves the other figures (in SCRATCH).
+"""
+
+import csv
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests")]
+
+import figures
+from figure_tools import plt, read_grid, table
+from panels import Lines, Triangles, figure_of, shown
+from small_runs import RUNS
+from solution_figures import contact_grids, solution_panels
+
+# Of the force. Nitsche's method has stresses at the ends of edges alone, which do not integrate the
+# stress of elements of degree 2 exactly.
+FORCE_TOLERANCE = {"multipliers": 1e-3, "nitsche": 0.05}
+
+
+class Checks:
+    """Collects what does not hold."""
+
+    def __init__(self):
+        self.count, self.wrong, self.drawn = 0, [], set()
+
+    def that(self, holds, words):
+        self.count += 1
+        if not holds:
+            self.wrong.append(words)
+
+
+def check_lines(check, panel, name):
+    for curve in panel.curves:
+        y = np.asarray(curve.y, float)
+        check.that(np.shape(curve.x) == y.shape and y.size > 0, f"{name}: {curve.label} has no values")
+        drawn, _ = shown(curve, panel)
+        hidden = np.isfinite(y) & ~np.isfinite(drawn)
+        check.that(not np.any(hidden & (y >= panel.floor)), f"{name}: {curve.label} is not drawn")
+        check.that(not (panel.log and np.any(drawn < panel.floor)), f"{name}: zero is drawn")
+    check.that(panel.ylabel.endswith(")"), f"{name}: no unit in {panel.ylabel}")
+    check.that("(" not in panel.title or panel.title.endswith(")"), f"{name}: title")
+
+
+def check_triangles(check, panel, name):
+    x = panel.points[panel.cells]
+    sides = x[:, 1:] - x[:, :1]
+    area = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]) / 2
+    extent = np.prod(np.ptp(panel.points[np.unique(panel.cells)], axis=0))
+    check.that(np.all(area > 0) and 0.3 * extent < area.sum() < extent,
+               f"{name}: its triangles do not cover a region")
+    check.that(len(panel.values) == len(panel.cells if panel.flat else panel.points),
+               f"{name}: values do not fit")
+    low, high = panel.limits
+    check.that(low <= panel.values.min() + 1e-9 * high and high > low, f"{name}: limits")
+
+
+def check_drawn(check, panels, name):
+    """Every panel is drawn, over axes that do not end at round-off."""
+    figure, failed = figure_of(panels)
+    check.that(len(panels) > 0 and not failed, f"{name}: {'; '.join(failed) or 'no panels'}")
+    for axis in figure.axes:
+        low, high = axis.get_ylim()
+        check.that(axis.get_yscale() == "log" or high - low > 1e-8 * max(abs(low), abs(high)),
+                   f"{name}: an axis from {low} to {high}")
+    plt.close(figure)
+
+
+def check_panels(check, panels, name, kind=""):
+    """Of several figures of a kind with panels of the same titles and curves the first is drawn."""
+    same = (kind, *((panel.title.split(",")[0], len(getattr(panel, "curves", "")))
+                     for panel in panels))
+    if same not in check.drawn:
+        check.drawn.add(same)
+        check_drawn(check, panels, name)
+    for panel in panels:
+        if isinstance(panel, Lines):
+            check_lines(check, panel, f"{name}, {panel.title}")
+        if isinstance(panel, Triangles):
+            check_triangles(check, panel, f"{name}, {panel.title}")
+
+
+def force_on_curve(curve, grid):
+    """Integral of the pressure of a panel over the contact curve."""
+    length = np.linalg.norm(np.diff(grid.points, axis=0), axis=1)
+    if len(curve.y) == 2 * len(length):
+        return curve.y[::2] @ length
+    return (curve.y[1:] + curve.y[:-1]) / 2 @ length
+
+
+def force_on_region(panel):
+    x = panel.points[panel.cells]
+    sides = x[:, 1:] - x[:, :1]
+    area = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]) / 2
+    return area @ panel.values[panel.cells].mean(axis=1)
+
+
+def check_answer(check, run):
+    """Pressures that are drawn, over all interfaces, have the normal force of the answer as their
+    integral; gaps are closed below them."""
+    grid, panels = read_grid(run / "u.vtu"), solution_panels(run)
+    check_panels(check, panels, f"{run.name}, solution", run.name.split("_")[0])
+    with open(run / "solve.csv", encoding="utf-8", newline="") as file:
+        answer = next(csv.DictReader(file))
+    expected = float(answer["normal_force"])
+    if grid.of_nodes["u"].ndim == 1:
+        force = force_on_region(panels[1])
+    else:
+        contacts = contact_grids(run, grid)
+        lines = [panel for panel in panels if isinstance(panel, Lines)]
+        check.that(len(lines) == len(contacts) == len(list(run.glob("u_contact*.vtu"))),
+                   f"{run.name}: {len(lines)} panels of {len(contacts)} interfaces")
+        force = sum(force_on_curve(panel.curves[0], contact)
+                    for panel, contact in zip(lines, contacts))
+        half = "two_disks" in run.name  # a quarter of each disk is solved
+        force *= 2 if half else 1
+        for panel in lines:
+            check.that(np.all(np.diff(panel.curves[-1].x) > 0) or
+                       np.all(np.diff(panel.curves[-1].x) < 0), f"{run.name}: x goes back")
+    tolerance = FORCE_TOLERANCE["nitsche" if "nitsche" in run.name else "multipliers"]
+    check.that(abs(force - expected) <= tolerance * abs(expected),
+               f"{run.name}: the pressure that is drawn has the force {force:.6g}, not {expected:.6g}")
+
+
+def check_errors(check, run):
+    """Errors are those of the tables, at their parameters."""
+    data = table(run, "errors.csv")
+    for panel, error in zip(figures.errors_panels(run), ("u", "lambda")):
+        reduced = next(curve for curve in panel.curves
+                       if curve.label in ("reduced answers", "with supremizers"))
+        check.that(np.array_equal(np.sort(reduced.y), np.sort(data[error + "_enriched"])),
+                   f"{run.name}: errors of {error} are not those of the table")
+    worst = table(run, "worst_pressure.csv")
+    panels = figures.pressure_panels(run, worst)
+    check_panels(check, panels, f"{run.name}, pressure")
+    if isinstance(panels[0], Triangles):
+        shown_errors = [panels[1].values]
+    else:
+        check.that(len(panels) == 2 * len(np.unique(worst["interface"])),
+                   f"{run.name}: an interface has no pressure")
+        shown_errors = [panel.curves[0].y for panel in panels[1::2]]
+    error = np.concatenate(shown_errors)
+    check.that(np.array_equal(np.sort(error), np.sort(worst["reduced"] - worst["high_fidelity"])),
+               f"{run.name}: errors of the pressure are not those of the table")
+
+
+def check_run(check, run):
+    check_answer(check, run)
+    check_errors(check, run)
+    check_panels(check, figures.bases_panels(run), f"{run.name}, bases")
+    check_panels(check, figures.errors_panels(run), f"{run.name}, errors")
+    check_panels(check, figures.mesh_quality_panels(run), f"{run.name}, mesh_quality")
+    if (run / "verify/infsup.csv").is_file():
+        check_panels(check, figures.infsup_panels(run), f"{run.name}, infsup")
+    data = table(run, "error_map.csv")
+    data = data[np.isfinite(data["u_mean"])]
+    if len(data) > 0:
+        panels = figures.error_map_panels(run, data[data["enriched"] == data["enriched"].max()])
+        check_panels(check, panels, f"{run.name}, error_map")
+        whole = np.atleast_1d(table(run, "summary.csv"))["u_mean"][0]
+        check.that(panels[0].curves[-1].y[0] == whole, f"{run.name}: the whole model is not drawn")
+
+
+def check_damage(check, run, scratch):
+    """A table that cannot be drawn is named; the other figures are there."""
+    copy = scratch / "damaged"
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(run, copy, ignore=shutil.ignore_patterns("samples", "figures"))
+    (copy / "verify/worst_pressure.csv").write_text("radius,x\nno,numbers\n", encoding="utf-8")
+    drawn = os.popen(f"/usr/bin/python3 {ROOT}/cases/figures.py {copy} 2>&1")
+    output = drawn.read()
+    check.that(drawn.close() is not None, "figures.py succeeds with a damaged table")
+    check.that("figures.py: pressure: cannot be drawn" in output and "Traceback" not in output, output)
+    names = {path.stem for path in (copy / "figures").glob("*.png")}
+    check.that(names == {"solution", "bases", "error_map", "mesh_quality", "errors"}, str(names))
+
+
+def main(runs, scratch):
+    check = Checks()
+    for name in RUNS:
+        check_run(check, runs / name)
+    for run in sorted((runs / "answers").iterdir()):
+        check_answer(check, run)
+    check_damage(check, runs / "disk_none", scratch)
+    print("\n".join(check.wrong) or f"{check.count} checks of {len(RUNS)} runs hold")
+    return 1 if check.wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), Path(sys.argv[2])))
