@@ -16,7 +16,7 @@ void print_options(const Invocation &invocation) {
   if (invocation.markdown)
     std::fputs(options_page().c_str(), stdout);
   else
-    print_help(invocation.file);
+    print_help(invocation.file, invocation.topic);
 }
 
 void run(const Invocation &invocation) {
@@ -29,7 +29,7 @@ void run(const Invocation &invocation) {
     if (command == "inspect") command_inspect(invocation.file);
     return;
   }
-  const ToolOptions options = read_options(PETSC_COMM_WORLD);
+  const ToolOptions options = read_options(PETSC_COMM_WORLD, command);
   if (command == "offline") command_offline(options);
   if (command == "solve") command_solve(options);
   if (command == "verify") command_verify(options);
@@ -40,6 +40,8 @@ void run(const Invocation &invocation) {
 
 int main(int argc, char **argv) {
   const Invocation invocation = read_invocation(argc, argv);
+  // A line at a time, into files and pipes too: what is said is there when the process is ended.
+  (void)std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   if (invocation.status) return report_once(*invocation.status, invocation.message);
   try {
     std::vector<char *> arguments = invocation.pointers();

@@ -1,5 +1,5 @@
 // rbvi-online: answers parameters from a reduced model, on one core.
-#include "rbvi/core/error.hpp"
+#include "rbvi/io/system_error.hpp"
 #include "rbvi/rom/online_tool.hpp"
 
 #include <exception>
@@ -9,7 +9,7 @@ namespace {
 
 void run(const std::vector<std::string> &arguments) {
   rbvi::run_online(rbvi::parse_online_arguments(arguments), std::cout);
-  if (!std::cout.flush()) throw rbvi::failure("cannot write to standard output");
+  if (!std::cout.flush()) throw rbvi::cannot_write("to standard output");
 }
 
 } // namespace
@@ -19,10 +19,10 @@ int main(int count, char **arguments) {
     run({arguments + 1, arguments + count});
     return static_cast<int>(rbvi::Status::done);
   } catch (const rbvi::Error &error) {
-    std::cerr << "rbvi-online: " << error.what() << '\n';
+    std::cerr << "rbvi-online: " << rbvi::in_plain_words(error.what()) << '\n';
     return static_cast<int>(error.status());
   } catch (const std::exception &error) {
-    std::cerr << "rbvi-online: " << error.what() << '\n';
+    std::cerr << "rbvi-online: " << rbvi::in_plain_words(error.what()) << '\n';
     return static_cast<int>(rbvi::Status::failed);
   }
 }

@@ -155,7 +155,8 @@ void ResolutionTally::print(std::ostream &out, const char *answers) const {
 }
 
 bool is_table_column(const std::string &name) {
-  static const std::vector<std::string> others{"status",
+  static const std::vector<std::string> others{"id",
+                                               "status",
                                                "training",
                                                "max_aspect_ratio",
                                                "u_enriched",

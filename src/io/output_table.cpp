@@ -6,42 +6,61 @@
 
 namespace rbvi {
 
+namespace {
+
+/// As a field of CSV.
+std::string field(const std::string &text) {
+  return text.find_first_of(",\"\r\n") == std::string::npos ? text : csv_quoted(text);
+}
+
+} // namespace
+
+RowText row_of(const Mu &mu, const std::string &id) {
+  RowText row{id, {}};
+  for (const double value : mu)
+    row.parameters.push_back(shortest_number(value));
+  return row;
+}
+
 OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const Outputs &like,
-                         ErrorOfOutput errors, bool status)
-    : out_(out), parameters_(space.size()), errors_(std::move(errors)), status_(status) {
+                         TableStyle style)
+    : out_(out), parameters_(space.size()), style_(std::move(style)) {
   for (const OutputColumn &column : output_columns())
     if (like.*column.value) columns_.push_back(column);
+  out_ << (style_.id ? "id," : "");
   for (int i = 0; i < parameters_; ++i)
     out_ << (i > 0 ? "," : "") << space.at(i).name;
   for (const OutputColumn &column : columns_) {
     out_ << ',' << column.name;
-    if (errors_.contains(column.name)) out_ << ',' << column.name << "_error";
+    if (style_.errors.contains(column.name)) out_ << ',' << column.name << "_error";
   }
-  out_ << (status_ ? ",status\n" : "\n");
+  out_ << (style_.status ? ",status\n" : "\n");
 }
 
-void OutputTable::begin(const Mu &mu) {
-  for (int i = 0; i < parameters_; ++i)
-    out_ << (i > 0 ? "," : "")
-         << (mu.empty() ? "" : shortest_number(mu[static_cast<std::size_t>(i)]));
+void OutputTable::begin(const RowText &row) {
+  if (style_.id) out_ << field(row.id) << ',';
+  for (std::size_t i = 0; i < static_cast<std::size_t>(parameters_); ++i)
+    out_ << (i > 0 ? "," : "") << (i < row.parameters.size() ? field(row.parameters[i]) : "");
 }
 
-void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold) {
-  begin(mu);
+void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold,
+                      const std::string &id) {
+  begin(row_of(mu, id));
+  const std::string format = "%." + std::to_string(style_.digits) + "g";
   for (const OutputColumn &column : columns_) {
     const std::optional<double> value = outputs.*column.value;
-    out_ << ',' << (value ? formatted("%.10g", *value) : "");
-    const auto error = errors_.find(column.name);
-    if (error != errors_.end())
+    out_ << ',' << (value ? formatted(format.c_str(), *value) : "");
+    const auto error = style_.errors.find(column.name);
+    if (error != style_.errors.end())
       out_ << ',' << (errors_hold ? formatted("%.1e", error->second) : "");
   }
-  out_ << (status_ ? ",ok\n" : "\n");
+  out_ << (style_.status ? ",ok\n" : "\n");
 }
 
-void OutputTable::add_failure(const Mu &mu, const std::string &reason) {
-  begin(mu);
+void OutputTable::add_failure(const RowText &row, const std::string &reason) {
+  begin(row);
   for (const OutputColumn &column : columns_)
-    out_ << (errors_.contains(column.name) ? ",," : ",");
+    out_ << (style_.errors.contains(column.name) ? ",," : ",");
   out_ << ',' << csv_quoted(reason) << '\n';
 }
 

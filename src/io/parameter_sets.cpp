@@ -4,8 +4,10 @@
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/csv.hpp"
+#include "rbvi/io/system_error.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -20,6 +22,7 @@ namespace {
 using Generator = std::function<std::optional<Mu>()>;
 
 constexpr double largest_set = 1e7;
+constexpr const char *id_name = "id";
 
 int parse_count(const std::string &text, const std::string &what) {
   const double value = parse_number(text, what);
@@ -96,12 +99,15 @@ Generator random_set(const ParameterSpace &space, const std::string &text) {
 /// A CSV table on a stream.
 class CsvRows {
 public:
-  CsvRows(const ParameterSpace &space, std::string name, std::istream &in, bool allow_outside)
-      : space_(space), name_(std::move(name)), in_(in), allow_outside_(allow_outside) {
+  /// `row`: where the text of each row goes.
+  CsvRows(const ParameterSpace &space, std::string name, std::istream &in, bool allow_outside,
+          RowText &row)
+      : space_(space), name_(std::move(name)), in_(in), allow_outside_(allow_outside), row_(row) {
     std::string line;
     if (!next_line(line)) throw no_rows();
     while_doing(reading(), [&] { read_header(line); });
   }
+  bool has_ids() const { return id_.has_value(); }
   std::optional<Mu> next() {
     std::string line;
     if (!next_line(line)) {
@@ -135,7 +141,10 @@ private:
     for (const std::string &field : csv_fields(line)) {
       const std::string name = trimmed(field);
       const std::optional<std::size_t> i = find_free(space_, name);
-      if (!i && !is_table_column(name)) throw unknown_parameter(space_, name);
+      if (!i && name == id_name && !id_)
+        id_ = columns_.size();
+      else if (!i && !is_table_column(name))
+        throw unknown_parameter(space_, name);
       if (i && found[*i]) throw bad_input("two columns are named '" + name + "'");
       if (i) found[*i] = true;
       columns_.push_back(i);
@@ -143,8 +152,12 @@ private:
     if (std::find(found.begin(), found.end(), false) != found.end())
       throw bad_input("the header must name every free parameter: " + names_of(space_));
   }
-  Mu read_row(const std::string &line) const {
+  Mu read_row(const std::string &line) {
+    row_ = {"", std::vector<std::string>(static_cast<std::size_t>(space_.size()))};
     const std::vector<std::string> entries = csv_fields(line);
+    for (std::size_t k = 0; k < std::min(entries.size(), columns_.size()); ++k)
+      if (columns_[k]) row_.parameters[*columns_[k]] = trimmed(entries[k]);
+    if (id_ && *id_ < entries.size()) row_.id = entries[*id_];
     if (entries.size() != columns_.size())
       throw bad_input(std::to_string(entries.size()) + " entries under " +
                       std::to_string(columns_.size()) + " columns");
@@ -160,36 +173,42 @@ private:
   std::string name_;
   std::istream &in_;
   bool allow_outside_;
+  RowText &row_;
   std::vector<std::optional<std::size_t>> columns_; ///< free parameter of each column, if any
+  std::optional<std::size_t> id_;                   ///< column of ids
   long line_ = 0, rows_ = 0;
 };
 
-Generator csv_file(const ParameterSpace &space, const std::string &name, bool allow_outside) {
-  auto file = std::make_shared<std::ifstream>();
-  if (name != "-") {
-    file->open(name);
-    const bool empty = *file && file->peek() == EOF && !file->bad();
-    if (!*file && !empty)
-      throw bad_input("cannot read '" + name + "' (a set is grid:5,5, random:200:1 or a CSV file)");
-    if (empty) throw bad_input(name + " has no rows under a header of " + names_of(space));
-  }
-  auto rows = std::make_shared<CsvRows>(space, name == "-" ? "standard input" : name,
-                                        name == "-" ? std::cin : *file, allow_outside);
-  return [file, rows] { return rows->next(); };
+/// An open file; null for standard input. Throws bad_input for one that cannot be read.
+std::shared_ptr<std::ifstream> opened(const ParameterSpace &space, const std::string &name) {
+  if (name == "-") return nullptr;
+  errno = 0;
+  auto file = std::make_shared<std::ifstream>(name);
+  const bool empty = *file && file->peek() == EOF && !file->bad();
+  if (!*file && !empty)
+    throw bad_input("cannot read '" + name + "' (a set is grid:5,5, random:200:1 or a CSV file)" +
+                    system_reason());
+  if (empty) throw bad_input(name + " has no rows under a header of " + names_of(space));
+  return file;
 }
 
 } // namespace
 
 ParameterReader::ParameterReader(const ParameterSpace &space, const std::string &text,
                                  bool allow_outside) {
-  if (text.starts_with("grid:"))
+  if (text.starts_with("grid:")) {
     next_ = grid(space, text.substr(5));
-  else if (text.starts_with("random:"))
+  } else if (text.starts_with("random:")) {
     next_ = random_set(space, text.substr(7));
-  else if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos)
+  } else if (!text.empty() && text.find_first_not_of("0123456789") == std::string::npos) {
     next_ = random_set(space, text + ":1");
-  else
-    next_ = csv_file(space, text, allow_outside);
+  } else {
+    const std::shared_ptr<std::ifstream> file = opened(space, text);
+    const auto rows = std::make_shared<CsvRows>(space, file ? text : "standard input",
+                                                file ? *file : std::cin, allow_outside, *row_);
+    has_ids_ = rows->has_ids();
+    next_ = [file, rows, row = row_] { return rows->next(); };
+  }
 }
 
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,

@@ -84,12 +84,14 @@ fs::path temporary_name(const fs::path &path, int attempt) {
   return name;
 }
 
-void remove_stale_temporaries(const fs::path &directory) {
+void remove_stale_temporaries(const fs::path &directory, const std::string &of) {
   std::error_code error;
   std::vector<fs::path> stale;
   for (const auto &entry : fs::directory_iterator(directory, error)) {
-    const std::optional<pid_t> process = writer_of(entry.path().filename().string());
-    if (process && !still_written(*process, entry.path())) stale.push_back(entry.path());
+    const std::string name = entry.path().filename().string();
+    const std::optional<pid_t> process = writer_of(name);
+    const bool wanted = of.empty() || name.substr(0, name.rfind(mark)) == of;
+    if (wanted && process && !still_written(*process, entry.path())) stale.push_back(entry.path());
   }
   for (const fs::path &file : stale)
     fs::remove(file, error);

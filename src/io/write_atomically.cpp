@@ -1,13 +1,13 @@
 #include "rbvi/io/write_atomically.hpp"
 
-#include "rbvi/core/error.hpp"
+#include "rbvi/io/system_error.hpp"
 #include "rbvi/io/temporary_files.hpp"
 
 #include <cerrno>
 #include <condition_variable>
-#include <cstring>
 #include <fcntl.h>
 #include <mutex>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
@@ -36,12 +36,6 @@ struct Writing {
   }
 } writing;
 
-Error cannot_write(const Path &path) {
-  const bool full = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
-  return failure("cannot write " + path.string() + ": " + std::strerror(errno) +
-                 (full ? "; make room and start the same command again" : ""));
-}
-
 /// An open file descriptor.
 class Output {
 public:
@@ -69,7 +63,8 @@ bool write_all(int descriptor, const std::string &bytes) {
 
 void write_directly(const Path &path, const std::string &bytes) {
   Output out(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (out.get() < 0 || !write_all(out.get(), bytes) || out.close() != 0) throw cannot_write(path);
+  if (out.get() < 0 || !write_all(out.get(), bytes) || out.close() != 0)
+    throw cannot_write(path.string());
 }
 
 /// Makes a new, empty file beside `path`; processes that write at the same time get different ones.
@@ -79,7 +74,7 @@ Path make_temporary(const Path &path) {
   for (int attempt = 0; descriptor < 0; ++attempt) {
     name = temporary_name(path, attempt);
     descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno != EEXIST) throw cannot_write(path);
+    if (descriptor < 0 && errno != EEXIST) throw cannot_write(path.string());
   }
   ::close(descriptor);
   return name;
@@ -95,6 +90,18 @@ Path target_of(const Path &path) {
   const Path target = std::filesystem::canonical(path, error);
   if (error) throw failure("cannot write " + path.string() + ": " + error.message());
   return target;
+}
+
+/// Makes a file durable where its file system can: those of some networks cannot.
+bool synced(int descriptor) {
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS || errno == EOPNOTSUPP;
+}
+
+/// Gives a new file the mode of the one that it replaces, where its file system has modes.
+void keep_mode(int descriptor, const Path &before) {
+  struct stat facts {};
+  if (::stat(before.c_str(), &facts) == 0 && ::fchmod(descriptor, facts.st_mode & 07777U) != 0)
+    errno = 0;
 }
 
 /// Makes the new name durable. Some file systems cannot: the file itself is complete already.
@@ -139,18 +146,23 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::commit() {
   Output out(::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC));
-  if (out.get() < 0 || ::fsync(out.get()) != 0 || out.close() != 0 ||
+  if (out.get() >= 0) keep_mode(out.get(), target_);
+  if (out.get() < 0 || !synced(out.get()) || out.close() != 0 ||
       ::rename(temporary_.c_str(), target_.c_str()) != 0)
-    throw cannot_write(target_);
+    throw cannot_write(target_.string());
   sync_directory(target_);
   temporary_.clear();
   writing.end();
 }
 
+void AtomicFile::leave() {
+  if (!std::exchange(temporary_, {}).empty()) writing.end();
+}
+
 void AtomicFile::append(const std::string &bytes) const {
   Output out(::open(temporary_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
   if (out.get() < 0 || !write_all(out.get(), bytes) || out.close() != 0)
-    throw cannot_write(target_);
+    throw cannot_write(target_.string());
 }
 
 void write_atomically(const Path &path, const std::string &bytes) {

@@ -56,6 +56,8 @@ void throw_petsc_error(PetscErrorCode code, const char *call) {
         "a matrix is singular: is there a body that no fixed boundary or spring holds, or a "
         "material that is not stiff? (" +
         message + ")");
+  // Where there is no memory, PETSc 3.18 may hand out the number of a line in place of a code.
+  if (code == PETSC_ERR_MEM || code > PETSC_ERR_MAX_VALUE) message = "out of memory";
   const std::string_view name = call;
   throw failure(std::string(name.substr(0, name.find('('))) + ": " + message + " (PETSc error " +
                 std::to_string(static_cast<int>(code)) + ")");

@@ -5,6 +5,9 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/io/system_error.hpp"
+#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
 
@@ -15,6 +18,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 
 namespace rbvi {
 
@@ -23,34 +27,46 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// FILE.partial until everything is in it; a device, or a stream that is there, as it is.
+/// A temporary file beside FILE until everything is in it, so that of several writers each has its
+/// own; a device, or a stream that is there, as it is.
 class TableFile {
 public:
   TableFile(const std::string &name, std::ostream &standard)
       : name_(name), written_(name), stream_(name.empty() ? standard : file_) {
     if (name.empty()) return;
-    const fs::file_status status = fs::status(name);
-    if (fs::is_directory(status)) throw failure("cannot write " + name + ": it is a directory");
-    if (!fs::exists(status) || fs::is_regular_file(status)) written_ += ".partial";
+    const fs::path path = name;
+    const fs::file_status status = fs::status(path);
+    if (!fs::exists(status) || !fs::is_other(status)) {
+      remove_stale_temporaries(path.has_parent_path() ? path.parent_path() : ".",
+                               path.filename().string());
+      whole_ = std::make_unique<AtomicFile>(path);
+      written_ = whole_->temporary().string();
+    }
     file_.open(written_);
     check();
   }
+  ~TableFile() {
+    if (whole_) whole_->leave();
+  }
+  TableFile(const TableFile &) = delete;
+  TableFile &operator=(const TableFile &) = delete;
   std::ostream &stream() { return stream_; }
   /// After every row, which stays whatever happens to the next.
   void check() {
-    if (!stream_.flush())
-      throw failure("cannot write " + (name_.empty() ? "to standard output" : written_));
+    if (stream_.flush()) return;
+    const Error error = cannot_write(name_.empty() ? "to standard output" : name_);
+    throw whole_ ? failure(error.what() + ("; the rows are in " + written_)) : error;
   }
   void finish() {
     if (name_.empty()) return;
     file_.close();
-    std::error_code error;
-    if (file_ && written_ != name_) fs::rename(written_, name_, error);
-    if (!file_ || error) throw failure("cannot write " + name_ + ": the rows are in " + written_);
+    check();
+    if (whole_) whole_->commit();
   }
 
 private:
   std::string name_, written_;
+  std::unique_ptr<AtomicFile> whole_;
   std::ofstream file_;
   std::ostream &stream_;
 };
@@ -135,18 +151,18 @@ std::optional<Mu> next_query(ParameterReader &reader, OutputTable &table, Tally 
     } catch (const Error &error) {
       if (error.status() != Status::bad_input) throw;
       tally.add_failure(error.what());
-      table.add_failure({}, error.what());
+      table.add_failure(reader.row(), error.what());
     }
   }
 }
 
 /// One row: the answer, or why there is none.
-void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &arguments,
-                OutputTable &table, Tally &tally) {
+void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
+                const OnlineArguments &arguments, OutputTable &table, Tally &tally) {
   try {
     ReducedSolution solution;
     const Outputs outputs = answer(solver, mu, arguments, solution);
-    table.add(mu, outputs, in_box(solver.scene().parameters, mu));
+    table.add(mu, outputs, in_box(solver.scene().parameters, mu), id);
     ++tally.rows;
     if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
     tally.seconds += outputs.seconds.value_or(0);
@@ -158,7 +174,7 @@ void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &argum
         tally.locking, locking_ratio(scene, expand(scene.parameters, mu), tally.contact_points));
   } catch (const Error &error) {
     tally.add_failure(error.what());
-    table.add_failure(mu, error.what());
+    table.add_failure(row_of(mu, id), error.what());
   }
 }
 
@@ -208,9 +224,11 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   TableFile file(to_file ? arguments.out : "", out);
   {
     QueryProgress progress(total);
-    OutputTable table(file.stream(), space, like, errors_of_outputs(solver.model()), true);
+    OutputTable table(
+        file.stream(), space, like,
+        {errors_of_outputs(solver.model()), true, arguments.digits(), reader.has_ids()});
     while (const std::optional<Mu> mu = next_query(reader, table, tally)) {
-      answer_row(*mu, solver, arguments, table, tally);
+      answer_row(*mu, reader.row().id, solver, arguments, table, tally);
       file.check();
       progress.update(tally);
     }

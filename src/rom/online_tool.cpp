@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -50,6 +51,11 @@ void check_combination(const OnlineArguments &given) {
   if (one && many) throw bad_input("--mu and --queries exclude each other");
   if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
   if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
+  if (given.precision.empty()) return;
+  if (!many && given.out.empty()) throw bad_input("--precision needs --queries or --out");
+  const double digits = parse_number(given.precision, "--precision");
+  if (digits != std::floor(digits) || digits < 1 || digits > 17)
+    throw bad_input("--precision is " + given.precision + ": use a whole number from 1 to 17");
 }
 
 } // namespace
@@ -59,10 +65,12 @@ const std::vector<OnlineOption> &online_options() {
   static const std::vector<OnlineOption> options{
       {"mu", "VALUES", "one answer: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02", &Arguments::mu},
       {"queries", "SET",
-       "one row per mu: a CSV file, grid:5,5,5, random:COUNT:SEED or - (a CSV table on standard "
-       "input)",
+       "one row per mu: a CSV file (a column id is handed on), grid:5,5,5, random:COUNT:SEED or - "
+       "(a CSV table on standard input)",
        &Arguments::queries},
       {"out", "FILE", "the table as CSV (standard output without it, or as -)", &Arguments::out},
+      {"precision", "DIGITS", "of the outputs in the table: 1 to 17, 10 without it",
+       &Arguments::precision},
       {"vtu", "FILE",
        "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact",
        &Arguments::vtu},
@@ -102,7 +110,8 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   const ErrorOfOutput errors = inside ? errors_of_outputs(solver.model()) : ErrorOfOutput{};
   if (!arguments.out.empty()) {
     std::ostringstream table;
-    OutputTable(table, solver.scene().parameters, outputs, errors, true).add(mu, outputs);
+    OutputTable(table, solver.scene().parameters, outputs, {errors, true, arguments.digits()})
+        .add(mu, outputs);
     write_atomically(arguments.out, table.str());
     written.emplace_back(arguments.out);
   }

@@ -305,7 +305,8 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) + ", above " +
                   short_number(allowed) +
                   ": is the mesh or the parameter extreme? Try "
-                  "-hf_pc_factor_mat_solver_type mumps");
+                  "-hf_pc_factor_mat_solver_type mumps, or with an iterative -hf_ksp_type a "
+                  "smaller -hf_ksp_rtol");
   solved_.push_back({mu,
                      {solution.active, result.start.size() > 0 ? result.start : solution.lambda},
                      {},

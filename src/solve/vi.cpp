@@ -152,6 +152,8 @@ Handle<SNES> make_snes(MPI_Comm comm, double scale) {
   PC pc = nullptr;
   RBVI_CALL(SNESGetKSP(snes.get(), &ksp));
   RBVI_CALL(KSPSetType(ksp, KSPPREONLY));
+  // An iterative method that an option asks for is to be as good as the direct one.
+  RBVI_CALL(KSPSetTolerances(ksp, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   RBVI_CALL(KSPGetPC(ksp, &pc));
   RBVI_CALL(PCSetType(pc, PCLU));
   RBVI_CALL(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
@@ -185,9 +187,11 @@ MethodResult minimise(MPI_Comm comm, PrimalProblem &primal) {
   RBVI_CALL(SNESGetIterationNumber(snes.get(), &iterations));
   result.iterations = static_cast<int>(iterations);
   result.converged = reason > 0;
-  result.reason =
-      std::string("SNES: ") + SNESConvergedReasons[reason] +
-      (reason > 0 ? "" : ": try -vi_snes_max_it, another -vi_snes_type, or -hf_method active_set");
+  result.reason = std::string("SNES: ") + SNESConvergedReasons[reason] +
+                  (reason > 0 ? ""
+                   : reason == SNES_DIVERGED_LINEAR_SOLVE
+                       ? ": try another -vi_pc_type, a larger -vi_ksp_max_it, or no -vi_ksp_type"
+                       : ": try -vi_snes_max_it, another -vi_snes_type, or -hf_method active_set");
   return result;
 }
 

@@ -2,12 +2,14 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/system_error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 
@@ -34,6 +36,15 @@ Invocation refused(const std::string &reason) {
   result.status = static_cast<int>(Status::bad_input);
   result.message = "rbvi: " + reason;
   return result;
+}
+
+/// The first option that stands there twice; "": none does.
+std::string given_twice(const std::vector<std::string> &words) {
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (is_option(words[i]) && std::find(words.begin(), words.begin() + static_cast<long>(i),
+                                         words[i]) != words.begin() + static_cast<long>(i))
+      return words[i];
+  return "";
 }
 
 Invocation left_over(const std::string &word) {
@@ -67,6 +78,7 @@ Invocation read_invocation(int argc, char **argv) {
     const auto scene = std::find(given.begin(), given.end(), "-scene");
     if (given.end() - scene > 1) result.file = *(scene + 1);
     result.markdown = has("-markdown");
+    if (given.size() > 1 && !is_option(given[1])) result.topic = given[1];
     given.resize(1);
     given.emplace_back("help");
   }
@@ -75,13 +87,15 @@ Invocation read_invocation(int argc, char **argv) {
     return refused("unknown command '" + result.command + "'; the nearest one is '" +
                    nearest_name(result.command, commands) + "' (rbvi -help lists all)");
   given.erase(given.begin() + 1);
+  if (const std::string name = given_twice(given); !name.empty())
+    return refused(name + " is given twice: keep one of the two");
   const std::size_t words = result.command == "inspect" ? 2 : 1;
   for (std::size_t i = words; i < given.size(); ++i)
     if (!is_option(given[i]) && !is_option(given[i - 1])) return left_over(given[i]);
   // PETSc reads these on one rank alone while the others wait.
   for (std::size_t i = 1; i < given.size(); ++i)
     if (given[i - 1].starts_with("-options_file") && !std::ifstream(given[i]))
-      return refused("the options file " + given[i] + " cannot be read");
+      return refused("the options file " + given[i] + " cannot be read" + system_reason());
   if ((result.command == "list" || result.command == "help") && given.size() > 1)
     return left_over(given[1]);
   if (result.command == "inspect") {
@@ -98,7 +112,8 @@ int report_once(int status, const std::string &message) {
   MPI_Init(nullptr, nullptr);
   std::FILE *stream = status == 0 ? stdout : stderr;
   if (rank_of(MPI_COMM_WORLD) == 0) std::fprintf(stream, "%s\n", message.c_str());
-  if (std::fflush(stream) != 0) status = static_cast<int>(Status::failed);
+  if (std::fflush(stream) != 0 || std::ferror(stream) != 0)
+    status = static_cast<int>(Status::failed);
   MPI_Barrier(MPI_COMM_WORLD); // mpirun ends all at the first status that is not zero
   MPI_Finalize();
   return status;
@@ -117,15 +132,16 @@ int finish(MPI_Comm world, const std::function<void()> &work) {
     message = error.what();
     status = static_cast<int>(Status::failed);
   }
-  if (std::fflush(stdout) != 0 && status == 0) {
-    message = "cannot write to standard output";
+  errno = 0; // where an earlier line was lost, its reason is, too
+  if ((std::fflush(stdout) != 0 || std::ferror(stdout) != 0) && status == 0) {
+    message = cannot_write("to standard output").what();
     status = static_cast<int>(Status::failed);
   }
   const std::optional<int> first = first_failure(world, status != 0);
   // Where several ranks fail and others hang, the lowest comes first and ends the rest.
   if (!first) usleep(static_cast<useconds_t>(std::min(rank, 20)) * 200000);
   if (status != 0 && first.value_or(rank) == rank)
-    std::fprintf(stderr, "rbvi: %s\n", message.c_str());
+    std::fprintf(stderr, "rbvi: %s\n", in_plain_words(message).c_str());
   if (!first) MPI_Abort(world, status);
   int worst = status;
   MPI_Allreduce(&status, &worst, 1, MPI_INT, MPI_MAX, world);

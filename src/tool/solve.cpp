@@ -1,6 +1,7 @@
 // rbvi solve, list, inspect.
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/locking.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/problem/check_scene.hpp"
@@ -10,17 +11,35 @@
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
 namespace rbvi {
+
+namespace {
+
+/// Throws bad_input outside the box, saying how it is made wider.
+void check_inside(const ParameterSpace &space, const Mu &mu) {
+  for (std::size_t i = 0; i < mu.size() && !in_box(space, mu); ++i) {
+    const Parameter &p = space.at(static_cast<int>(i));
+    if (mu[i] >= p.lower && mu[i] <= p.upper) continue;
+    throw bad_input(p.name + " = " + shortest_number(mu[i]) + " is outside [" +
+                    shortest_number(p.lower) + ", " + shortest_number(p.upper) + "]: add -" +
+                    p.name + " " + shortest_number(std::min(mu[i], p.lower)) + "," +
+                    shortest_number(std::max(mu[i], p.upper)) + " for a wider box");
+  }
+}
+
+} // namespace
 
 void command_solve(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   check_eigen_options(options, EigenUse::none);
   if (options.mu.empty()) throw bad_input("no parameter is given: use -mu 0.18,0.02,-0.01");
   const ParameterSpace &space = options.scene.parameters;
-  const Mu mu = parse_mu(space, options.mu);
+  const Mu mu = parse_mu(space, options.mu, true);
+  check_inside(space, mu);
   std::vector<NamedFile> outputs{{"-csv", options.csv}, {"-vtu", options.vtu}};
   for (std::size_t i = 0; i < options.scene.contacts.size() && !options.vtu.empty(); ++i)
     outputs.push_back({"-vtu", contact_file(options.vtu, i)});

@@ -365,6 +365,23 @@ TEST_F(Runs, IterativeSolversOfPetscGiveTheSame) {
   for (const char *options : {"-hf_ksp_type cg", "-hf_ksp_type cg -hf_pc_type jacobi",
                               "-hf_ksp_type cg -hf_pc_type icc -hf_ksp_max_it 500"})
     EXPECT_NEAR(value_of(output_of(rbvi(1, solve + options)), "energy"), energy, 1e-9) << options;
+  const std::string vi = solve + "-lumped yes -hf_method vi ";
+  const double bounded = value_of(output_of(rbvi(1, vi)), "energy");
+  EXPECT_NEAR(value_of(output_of(rbvi(1, vi + "-vi_ksp_type cg -vi_pc_type icc")), "energy"),
+              bounded, 1e-9);
+  // The systems of vi differ in size from step to step.
+  expect_refused({vi, "multigrid does not follow the systems of vi"},
+                 shell(rbvi(1, vi + "-vi_ksp_type cg -vi_pc_type gamg")), 1);
+}
+
+/// Multigrid is as good as the limit on KKT residuals asks for; where it is told not to be, the
+/// failure names that.
+TEST_F(Runs, MultigridOnTheDefaultTolerance) {
+  const std::string solve = "solve -scene rigid_disk -arc_edges 40 -mu 1 "
+                            "-hf_ksp_type cg -hf_pc_type gamg ";
+  EXPECT_LE(value_of(output_of(rbvi(1, solve)), "kkt_residual"), 1e-10);
+  expect_refused({solve, "a smaller -hf_ksp_rtol", 1}, shell(rbvi(1, solve + "-hf_ksp_rtol 1e-7")),
+                 1);
 }
 
 /// A reader that has seen enough ends the command without a word. (Under mpirun the reader is

@@ -33,19 +33,21 @@ TEST(OutputTable, ErrorsStandBesideTheirOutputsAndFailuresSayWhy) {
   Outputs like;
   like.energy = like.kkt_residual = 0;
   std::ostringstream out;
-  OutputTable table(out, space, like, {{"energy", 1.23e-5}, {"min_u", 1}}, true);
+  OutputTable table(out, space, like, {{{"energy", 1.23e-5}, {"min_u", 1}}, true, 3, true});
   Outputs row;
-  row.energy = 0.5;
+  row.energy = 0.12345678901;
   row.kkt_residual = 1e-15;
-  table.add({0.25}, row);
+  table.add({0.25}, row, true, "a,b");
   table.add({2}, row, false);
-  table.add_failure({0.5}, "it \"fails\", here\nand there");
-  table.add_failure({}, "not a number");
-  EXPECT_EQ(out.str(), "radius,energy,energy_error,kkt_residual,status\n"
-                       "0.25,0.5,1.2e-05,1e-15,ok\n"
-                       "2,0.5,,1e-15,ok\n"
-                       "0.5,,,,\"it \"\"fails\"\", here and there\"\n"
-                       ",,,,\"not a number\"\n");
+  table.add_failure(row_of({0.5}, "7"), "it \"fails\", here\nand there");
+  table.add_failure({"8", {"one, two"}}, "not a number");
+  table.add_failure({}, "nothing");
+  EXPECT_EQ(out.str(), "id,radius,energy,energy_error,kkt_residual,status\n"
+                       "\"a,b\",0.25,0.123,1.2e-05,1e-15,ok\n"
+                       ",2,0.123,,1e-15,ok\n"
+                       "7,0.5,,,,\"it \"\"fails\"\", here and there\"\n"
+                       "8,\"one, two\",,,,\"not a number\"\n"
+                       ",,,,,\"nothing\"\n");
 }
 
 TEST(OutputColumns, EachHasANameOfItsOwnAndADefinition) {

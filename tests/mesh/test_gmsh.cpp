@@ -95,6 +95,19 @@ TEST(Gmsh, LinesMayEndAsOnWindows) {
   EXPECT_EQ(fingerprint_of(read_gmsh(file.name(), scene)), print);
 }
 
+/// As Gmsh reads them.
+TEST_P(Encodings, CommentsAndAByteOrderMarkMayComeFirst) {
+  const std::string text = written(membrane(), GetParam());
+  const std::string comment = "$Comments\n$MeshFormat of a converter\n$EndComments\n";
+  const TemporaryFile plain(text);
+  const std::string print = fingerprint_of(read_gmsh(plain.name(), scene));
+  for (const std::string &before :
+       {comment, std::string("\xef\xbb\xbf"), "\xef\xbb\xbf" + comment + "\n" + comment}) {
+    const TemporaryFile file(before + text);
+    EXPECT_EQ(fingerprint_of(read_gmsh(file.name(), scene)), print);
+  }
+}
+
 TEST_P(Encodings, AFileServesAsTheBuiltInMeshDoes) {
   const TemporaryFile file(written(membrane(), GetParam()));
   const Mesh read = make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 1});
@@ -250,10 +263,16 @@ void expect_refused(const std::string &file, const std::string &hint) {
 TEST(GmshErrors, MissingFileAndForeignFiles) {
   expect_refused("/nonexistent/mesh.msh", "cannot open");
   expect_refused("/", "not a Gmsh mesh");
-  for (const std::string content : {"", "hello", "$MeshFormat\nabc\n", "\x89HDF\r\n\x1a\n"}) {
+  for (const std::string content : {"", "hello", "$Comments\n", "\x89HDF\r\n\x1a\n"}) {
     const TemporaryFile file(content);
     expect_refused(file.name(), "not a Gmsh mesh");
   }
+  {
+    const TemporaryFile file("$MeshFormat\nabc\n");
+    expect_refused(file.name(), "'abc' in $MeshFormat is not the number");
+  }
+  const TemporaryFile file("$NOD\n1\n1 0 0 0\n$ENDNOD\n");
+  expect_refused(file.name(), "of MSH version 1: 2.2, 4.0 and 4.1 are read");
 }
 
 TEST_P(Encodings, TruncatedFilesAreRefused) {

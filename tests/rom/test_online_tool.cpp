@@ -49,6 +49,14 @@ bool contains(const std::string &text, const std::string &part) {
   return text.find(part) != std::string::npos;
 }
 
+/// Files whose names begin so.
+int files_named(const std::string &start) {
+  int count = 0;
+  for (const auto &entry : std::filesystem::directory_iterator("."))
+    count += entry.path().filename().string().starts_with(start) ? 1 : 0;
+  return count;
+}
+
 std::vector<std::string> lines_of(const std::string &text) {
   std::vector<std::string> lines = split(text, '\n');
   if (!lines.empty() && lines.back().empty()) lines.pop_back();
@@ -256,7 +264,51 @@ TEST_F(OnlineBinary, ARowWithoutAnAnswerSaysWhyAndTheOthersAreAnswered) {
       EXPECT_TRUE(contains(rows[i].at("status"), "while solving")) << rows[i].at("status");
     }
   }
-  EXPECT_FALSE(std::filesystem::exists("out.csv.partial"));
+  EXPECT_EQ(files_named("out.csv"), 1);
+}
+
+/// Each has a temporary file of its own; the last one that ends is there, whole.
+TEST_F(OnlineBinary, TwoWritersOfOneFileLeaveOneWholeTable) {
+  const std::string ask = RBVI_ONLINE " model.h5 --out out.csv --queries random:";
+  const Finished run =
+      shell("sh -c '" + ask + "2000:1 & " + ask + "3000:2 & " + ask + "1000:3 & wait'");
+  const std::vector<std::string> lines = lines_of(slurp("out.csv"));
+  const std::size_t rows = lines.size() - 1;
+  EXPECT_TRUE(rows == 1000 || rows == 2000 || rows == 3000) << rows << "\n" << run.out;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    EXPECT_EQ(split(lines[i], ',').size(), split(lines[0], ',').size()) << lines[i];
+    EXPECT_TRUE(lines[i].ends_with(",ok")) << lines[i];
+  }
+  EXPECT_FALSE(contains(run.out, "cannot")) << run.out;
+  EXPECT_EQ(files_named("out.csv"), 1);
+}
+
+/// Rows that a killed batch wrote stay beside the file, until the next one is written.
+TEST_F(OnlineBinary, TheRowsOfAKilledBatchStay) {
+  (void)shell("sh -c '(echo radius,center_x,center_y; yes 0.2,0,0) | " RBVI_ONLINE
+              " model.h5 --queries - --out out.csv & for i in $(seq 500); do sleep 0.02; "
+              "test -s out.csv.tmp.* && break; done; kill -KILL $!; wait'");
+  EXPECT_FALSE(std::filesystem::exists("out.csv"));
+  EXPECT_EQ(files_named("out.csv.tmp."), 1);
+  EXPECT_EQ(online("model.h5 --queries random:2:1 --out out.csv").status, 0);
+  EXPECT_EQ(files_named("out.csv"), 1);
+}
+
+TEST_F(OnlineBinary, IdsAreHandedOnAndDigitsAreChosen) {
+  std::ofstream("mu.csv") << "radius,id,center_x,center_y\n0.18,\"a, b\",0.02,-0.01\n0.2,2,0,0\n";
+  const Finished run = online("model.h5 --queries mu.csv --precision 15");
+  ASSERT_EQ(run.status, 0) << run.out;
+  const std::vector<std::string> lines = lines_of(run.out);
+  EXPECT_TRUE(lines[0].starts_with("id,radius,center_x,center_y,energy,")) << lines[0];
+  EXPECT_TRUE(lines[1].starts_with("\"a, b\",0.18,0.02,-0.01,")) << lines[1];
+  OnlineSolver solver(model);
+  const auto row = rows_of(lines[0] + "\n" + lines[2] + "\n").front();
+  EXPECT_EQ(row.at("id"), "2");
+  const double energy = solver.solve({0.2, 0, 0}).energy;
+  EXPECT_NEAR(parse_number(row.at("energy"), "energy"), energy, 1e-14 * std::abs(energy));
+  EXPECT_TRUE(refused("model.h5 --queries grid:2,2,2 --precision 18", "from 1 to 17"));
+  EXPECT_TRUE(refused("model.h5 --queries grid:2,2,2 --precision 1.5", "from 1 to 17"));
+  EXPECT_TRUE(refused("model.h5 --mu 0.2,0,0 --precision 3", "needs --queries or --out"));
 }
 
 TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
@@ -273,14 +325,21 @@ TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
 }
 
 TEST_F(OnlineBinary, ReadsAndWritesStreams) {
-  const Finished run = shell("printf 'radius,center_x,center_y\\n0.2,0,0\\n0.9,0,0\\nx,0,0\\n"
-                             "0.18,0.01,0\\n' | " RBVI_ONLINE " model.h5 --queries - --out -");
+  const Finished run =
+      shell("printf 'radius,id,center_x,center_y\\n0.2,1,0,0\\n0.9,2,0,0\\n"
+            "x,3,0.5,0\\n0.18,4,0.01,0\\n' | " RBVI_ONLINE " model.h5 --queries - --out -");
   EXPECT_EQ(run.status, 1);
   const auto rows = rows_of(run.out);    // the last line is that of the failure
   ASSERT_EQ(rows.size(), 6U) << run.out; // and the warning: three nodes
   EXPECT_EQ(rows[0].at("status"), "ok");
   EXPECT_TRUE(contains(rows[1].at("status"), "outside")) << rows[1].at("status");
   EXPECT_TRUE(contains(rows[2].at("status"), "line 4")) << rows[2].at("status");
+  // What is known of a bad row stays with it.
+  EXPECT_EQ(rows[1].at("radius"), "0.9");
+  EXPECT_EQ(rows[2].at("radius"), "x");
+  EXPECT_EQ(rows[2].at("center_x"), "0.5");
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(rows[i].at("id"), std::to_string(i + 1));
   EXPECT_EQ(rows[3].at("status"), "ok");
   EXPECT_TRUE(contains(run.out, "2 of 4 queries have no answer")) << run.out;
   EXPECT_EQ(shell("printf 'center_x\\n0\\n' | " RBVI_ONLINE " model.h5 --queries -").status, 2);

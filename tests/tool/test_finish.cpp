@@ -85,6 +85,7 @@ TEST(ReadInvocation, CommandFileAndOptions) {
   EXPECT_EQ(offline.pointers().back(), nullptr);
   EXPECT_EQ(invocation({"rbvi", "inspect", "m.h5"}).file, "m.h5");
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).command, "help");
+  EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).topic, "solve");
   EXPECT_EQ(invocation({"rbvi"}).command, "help");
   EXPECT_EQ(invocation({"rbvi", "--version"}).status, 0);
 }
@@ -98,6 +99,7 @@ TEST(ReadInvocation, MistakesOfTheCommand) {
                                             {"rbvi", "inspect", "a", "-b"},
                                             {"rbvi", "list", "all"},
                                             {"rbvi", "list", "-all"},
+                                            {"rbvi", "solve", "-mu", "1", "--mu", "2"},
                                             {"rbvi", "-case", "c.yaml", "offline"}};
   for (const auto &words : wrong)
     EXPECT_EQ(invocation(words).status, 2) << words.back();

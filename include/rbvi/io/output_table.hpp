@@ -2,30 +2,45 @@
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/io/output_table.hpp"
 
 namespace rbvi {
 
+/// A row of a table as its text stands there.
+struct RowText {
+  std::string id;                      ///< "" without one
+  std::vector<std::string> parameters; ///< of the free ones
+};
+
+/// Those of an answer; the shortest that read back as the same numbers.
+RowText row_of(const Mu &mu, const std::string &id = "");
+
+/// What a table of answers has beside parameters and outputs.
+struct TableStyle {
+  ErrorOfOutput errors = {}; ///< beside each of these outputs
+  bool status = false;       ///< a last column `status`: "ok", or why there is no answer
+  int digits = 10;           ///< of the outputs
+  bool id = false;           ///< a first column `id`, handed on from the queries
+};
+
 /// A table of answers, row by row: the free parameters with all digits that it takes to read them
-/// back, the outputs with 10 digits, beside each the error that was measured for it, and on request
-/// a last column `status`: "ok", or why there is no answer.
+/// back, the outputs with a given number of them.
 class OutputTable {
 public:
   /// Writes the header. Columns are those that `like` has. `out` must outlive it.
   OutputTable(std::ostream &out, const ParameterSpace &space, const Outputs &like,
-              ErrorOfOutput errors = {}, bool status = false);
+              TableStyle style = {});
   /// An output that is not set leaves its place empty, as do errors where they do not hold.
-  void add(const Mu &mu, const Outputs &outputs, bool errors_hold = true);
-  /// A row without an answer; `mu` empty where there is none. Needs the column `status`.
-  void add_failure(const Mu &mu, const std::string &reason);
+  void add(const Mu &mu, const Outputs &outputs, bool errors_hold = true,
+           const std::string &id = "");
+  /// A row without an answer: what is known of it stays. Needs the column `status`.
+  void add_failure(const RowText &row, const std::string &reason);
 
 private:
-  void begin(const Mu &mu);
+  void begin(const RowText &row);
   std::ostream &out_;
   int parameters_;
   std::vector<OutputColumn> columns_;
-  ErrorOfOutput errors_;
-  bool status_;
+  TableStyle style_;
 };
 
 /// A whole table without errors and status. A column that is set in any row is there.

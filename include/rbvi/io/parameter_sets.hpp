@@ -2,9 +2,10 @@
 #pragma once
 
 #include "rbvi/core/parameters.hpp"
-#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/io/output_table.hpp"
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace rbvi {
@@ -16,7 +17,8 @@ namespace rbvi {
 std::vector<Mu> parse_set(const ParameterSpace &space, const std::string &text,
                           bool allow_outside = false);
 
-/// A set one by one, in constant memory; "-" is a CSV table on standard input.
+/// A set one by one, in constant memory; "-" is a CSV table on standard input. A column `id` of a
+/// table is no parameter, and is handed on.
 class ParameterReader {
 public:
   /// `space` must outlive it. Throws bad_input for a set that cannot be read from the beginning.
@@ -24,9 +26,14 @@ public:
   /// The next one, nothing at the end. Throws bad_input, naming the line, for a row that is none;
   /// the rows behind it can still be read.
   std::optional<Mu> next() { return next_(); }
+  bool has_ids() const { return has_ids_; }
+  /// What stands in the row of the last next() of a table; empty for other sets.
+  const RowText &row() const { return *row_; }
 
 private:
   std::function<std::optional<Mu>()> next_;
+  std::shared_ptr<RowText> row_ = std::make_shared<RowText>();
+  bool has_ids_ = false;
 };
 
 /// Whether the set can be read only once: standard input, a pipe.

@@ -19,8 +19,10 @@ public:
   /// The file to write, empty at first.
   const std::filesystem::path &temporary() const { return temporary_; }
   void append(const std::string &bytes) const;
-  /// fsync, rename, fsync of the directory.
+  /// The mode of the file that is replaced, fsync, rename, fsync of the directory.
   void commit();
+  /// Unless commit() was: leaves the temporary file to whoever wants what is in it.
+  void leave();
 
 private:
   std::filesystem::path target_, temporary_;

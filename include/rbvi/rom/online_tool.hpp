@@ -8,8 +8,10 @@
 namespace rbvi {
 
 struct OnlineArguments {
-  std::string model, mu, queries, out, vtu; ///< "" where not given
+  std::string model, mu, queries, out, vtu, precision; ///< "" where not given
   bool extrapolate = false, decorrelated = false, full = false, help = false, version = false;
+  /// Of the outputs in tables.
+  int digits() const { return precision.empty() ? 10 : std::stoi(precision); }
 };
 
 /// An option: what it takes ("FILE"; "": it is a flag), what it does, and its place.

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/io/system_error.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -357,27 +358,35 @@ GmshFile Reader::read() {
 
 std::string content_of(const std::string &file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw bad_input("cannot open mesh file '" + file + "'");
+  if (!in) throw bad_input("cannot open mesh file '" + file + "'" + system_reason());
   std::ostringstream content;
   content << in.rdbuf();
   return content.str();
 }
 
-/// The keyword, then version and type as numbers.
-bool begins_as_gmsh(const std::string &content) {
-  std::istringstream in(content.substr(0, 100));
-  std::string word;
-  double version = 0;
-  int type = -1;
-  in >> word >> version >> type;
-  return in && word == "$MeshFormat" && (type == 0 || type == 1);
+/// From the first section on that is no comment: Gmsh passes over those, and over a byte order
+/// mark.
+std::string_view without_comments(std::string_view rest) {
+  const std::string_view mark = "\xef\xbb\xbf", end = "$EndComments";
+  if (rest.starts_with(mark)) rest.remove_prefix(mark.size());
+  for (;;) {
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+    const std::size_t at = rest.starts_with("$Comments") ? rest.find(end) : rest.npos;
+    if (at == rest.npos) return rest;
+    rest.remove_prefix(at + end.size());
+  }
 }
 
 } // namespace
 
 GmshFile read_gmsh_file(const std::string &file) {
-  const std::string content = content_of(file);
-  if (!begins_as_gmsh(content))
+  const std::string bytes = content_of(file);
+  const std::string_view content = without_comments(bytes);
+  if (content.starts_with("$NOD"))
+    throw bad_input("mesh file '" + file +
+                    "' is of MSH version 1: 2.2, 4.0 and 4.1 are read "
+                    "(Mesh.MshFileVersion)");
+  if (!content.starts_with("$MeshFormat"))
     throw bad_input("'" + file + "' is not a Gmsh mesh: it does not begin with $MeshFormat");
   try {
     return Reader(content).read();

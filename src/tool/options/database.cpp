@@ -21,19 +21,22 @@ bool starts_with_any(const std::string &name, const std::vector<std::string> &pr
                      [&](const std::string &prefix) { return name.starts_with(prefix); });
 }
 
-std::vector<std::string> unread_names() {
+std::map<std::string, std::string> unread_values(PetscOptions database) {
   PetscInt count = 0;
   char **names = nullptr, **values = nullptr;
-  RBVI_CALL(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  std::vector<std::string> unread(names, names + count);
-  RBVI_CALL(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
-  std::erase_if(unread, [](const std::string &name) { return contains(late_options, name); });
+  RBVI_CALL(PetscOptionsLeftGet(database, &count, &names, &values));
+  std::map<std::string, std::string> unread;
+  for (PetscInt i = 0; i < count; ++i)
+    unread[names[i]] = values[i] != nullptr ? values[i] : "";
+  RBVI_CALL(PetscOptionsLeftRestore(database, &count, &names, &values));
+  std::erase_if(unread, [](const auto &option) { return contains(late_options, option.first); });
   return unread;
 }
 
 std::vector<std::string> unread_names(const std::vector<std::string> &prefixes) {
-  std::vector<std::string> unread = unread_names();
-  std::erase_if(unread, [&](const std::string &name) { return !starts_with_any(name, prefixes); });
+  std::vector<std::string> unread;
+  for (const auto &[name, value] : unread_values())
+    if (starts_with_any(name, prefixes)) unread.push_back(name);
   return unread;
 }
 

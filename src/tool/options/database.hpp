@@ -1,13 +1,25 @@
 // The options of a run in PETSc's options database, and their values. They throw bad_input.
 #pragma once
 
+#include "rbvi/par/petsc.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 namespace rbvi {
 
-/// The options (without dash) that nothing has asked for yet and that are not of PETSc itself. To
-/// be called before anything asks for an option.
-std::vector<std::string> unread_names();
+/// The options (without dash) that nothing has asked for yet and that are not of PETSc itself, and
+/// their values ("": none). To be called before anything asks for an option. `database` null: the
+/// run's.
+std::map<std::string, std::string> unread_values(PetscOptions database = nullptr);
+
+/// An option that the run has from outside: from one of PETSc's files (.petscrc) or variables.
+struct Foreign {
+  std::string name, value;
+  std::string from; ///< "/home/me/.petscrc", "PETSC_OPTIONS"
+};
+
+/// Those that PETSc has not taken for itself, with the last place that each stands in. To be called
+/// before anything asks for an option. Collective.
+std::vector<Foreign> foreign_options(MPI_Comm comm);
 
 /// The options that begin with one of the prefixes and that nothing has asked for.
 std::vector<std::string> unread_names(const std::vector<std::string> &prefixes);
@@ -36,11 +48,18 @@ std::string text_of(const std::string &name);
 /// Forgets that an option was asked for.
 void mark_unread(const std::string &name);
 
-/// Where an option stands: " (line 2 of case.yaml)"; "" on the command line.
+/// Where an option stands: " (line 2 of case.yaml)", " (PETSC_OPTIONS)"; none on the command line.
 using Origin = std::map<std::string, std::string>;
 
 /// Refuses names that are neither ours, of the scene nor of a solver of PETSc's, and options of
 /// ours without a value that need one.
 void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene);
+
+/// "needs -bodies one", what an option or parameter of that name is missing in this scene; "" where
+/// nothing knows it.
+std::string what_needs(const std::string &name, const Scene &scene);
+
+/// Refuses options on the command line that are of another command.
+void check_command(const std::string &command, const std::vector<std::string> &command_line);
 
 } // namespace rbvi

@@ -41,6 +41,17 @@ std::string advice(const std::string &name, std::vector<std::string> known) {
   return "the nearest one is -" + nearest_name(name, known) + " (-help lists all)";
 }
 
+Error unknown_option(const std::string &name, const std::string &where,
+                     const std::vector<std::string> &known, const Scene &scene) {
+  const std::string option = "option -" + name + where;
+  if (contains(petsc_names, name))
+    return bad_input(option + " is PETSc's own, which reads it as it starts: give it on the "
+                              "command line");
+  const std::string needed = what_needs(name, scene);
+  return bad_input(needed.empty() ? "unknown " + option + ": " + advice(name, known)
+                                  : option + " " + needed);
+}
+
 } // namespace
 
 const std::vector<SolverPrefix> &solver_objects() {
@@ -65,6 +76,21 @@ std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds) {
   return prefixes;
 }
 
+std::string what_needs(const std::string &name, const Scene &scene) {
+  std::string others;
+  for (const SceneEntry &entry : scene_catalogue()) {
+    bool found = std::ranges::find(entry.options, name, &SceneOption::name) != entry.options.end();
+    for (const auto &[parameter, choice] : parameters_of(entry)) {
+      if (parameter.name != name) continue;
+      if (entry.name == scene.name) return choice.empty() ? "" : "needs " + choice;
+      found = true;
+    }
+    if (found && entry.name == scene.name) return "";
+    if (found) others += (others.empty() ? "" : ", ") + entry.name;
+  }
+  return others.empty() ? "" : "is of another scene (" + others + "), and this is " + scene.name;
+}
+
 void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene) {
   std::vector<std::string> known;
   for (const Option &option : tool_options())
@@ -77,8 +103,7 @@ void check_names(const std::vector<std::string> &names, const Origin &origin, co
     const auto found = origin.find(name);
     const std::string where = found == origin.end() ? "" : found->second;
     if (starts_with_any(name, solver_prefixes())) continue;
-    if (!contains(known, name))
-      throw bad_input("unknown option -" + name + where + ": " + advice(name, known));
+    if (!contains(known, name)) throw unknown_option(name, where, known, scene);
     if (!is_flag(name) && text_of(name).empty())
       throw bad_input("option -" + name + where + " has no value");
   }

@@ -2,6 +2,7 @@
 
 #include "database.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/problem/check_scene.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 
 namespace rbvi {
 
@@ -22,11 +24,22 @@ std::string case_file_name() {
   if (!file.empty()) return file;
   if (!out.empty() && std::filesystem::exists(case_of_run(out))) return case_of_run(out);
   if (!text_of("scene").empty()) return "";
-  throw bad_input(
-      "no case is named: use -case cases/<scene>/case.yaml, or -scene NAME (rbvi list)");
+  throw bad_input("no case is named" +
+                  (out.empty() ? "" : ", and " + out + " is no directory of a run") +
+                  ": use -case cases/<scene>/case.yaml, or -scene NAME (rbvi list)");
 }
 
-/// Puts the case file below the command line. Returns where its options stand.
+/// Throws bad_input where -scene is not the one of the case file, or there is no such scene.
+void check_scene_of_case(const std::string &file, const std::string &scene) {
+  const std::string given = text_of("scene");
+  if (given == scene) return;
+  (void)make_scene(given);
+  throw bad_input("-scene is " + given + ", and " + file + " is a case of " + scene +
+                  ": leave out -scene, or name another -case or -out");
+}
+
+/// Puts the case file below the command line and above what comes from outside. Returns where its
+/// options stand.
 Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_line) {
   std::string file;
   collectively(comm, [&] { file = case_file_name(); });
@@ -36,7 +49,10 @@ Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_l
     if (entry.name == "case")
       throw bad_input("a case file cannot name another: line " + std::to_string(entry.line) +
                       " of " + file);
-    if (contains(command_line, entry.name)) continue;
+    if (contains(command_line, entry.name)) {
+      if (entry.name == "scene") check_scene_of_case(file, entry.value);
+      continue;
+    }
     const std::string value = beside_case(entry.name, entry.value, file);
     RBVI_CALL(PetscOptionsSetValue(nullptr, ("-" + entry.name).c_str(),
                                    value.empty() ? nullptr : value.c_str()));
@@ -84,7 +100,8 @@ Given adapt_parameter(Parameter &parameter) {
 
 /// "-parameters" says which are free; without it those with two bounds and those that the scene
 /// frees, less those with one value.
-void adapt_parameters(ParameterSpace &space) {
+void adapt_parameters(Scene &scene) {
+  ParameterSpace &space = scene.parameters;
   std::string unfixed;
   std::vector<std::string> fixed;
   for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
@@ -97,11 +114,30 @@ void adapt_parameters(ParameterSpace &space) {
       unfixed += (unfixed.empty() ? "" : ",") + parameter.name;
   }
   const std::string named = text_of("parameters");
+  for (const std::string &part : split(named, ',')) {
+    const std::string name = trimmed(part);
+    const std::string needed = what_needs(name, scene);
+    if (!needed.empty() && std::ranges::find(space.all, name, &Parameter::name) == space.all.end())
+      throw bad_input("parameter '" + name + "' " + needed);
+  }
   space = free_only(space, named.empty() ? unfixed : named);
   for (int i = 0; i < space.size(); ++i)
     if (contains(fixed, space.at(i).name))
       throw bad_input("parameter " + space.at(i).name + " is freed by -parameters and fixed by -" +
                       space.at(i).name + " " + text_of(space.at(i).name) + ": give two bounds");
+}
+
+/// Corners of the box matter even to a single solve: where they are refused, says what it can do.
+void check_box_of_run(const Scene &scene) {
+  try {
+    check_box(scene);
+  } catch (const Error &error) {
+    if (text_of("mu").empty()) throw;
+    throw Error(error.status(),
+                error.what() + ("; for a single solve narrow the box around -mu (-" +
+                                scene.parameters.at(0).name +
+                                " LOWER,UPPER) or fix parameters (-NAME VALUE)"));
+  }
 }
 
 /// The options as a case file, without those of one command.
@@ -145,12 +181,23 @@ std::vector<std::string> normalised_arguments(int argc, char **argv) {
   return arguments;
 }
 
-ToolOptions read_options(MPI_Comm comm) {
-  const std::vector<std::string> command_line = unread_names();
-  const Origin origin = insert_case_file(comm, command_line);
-  std::vector<std::string> names = command_line;
-  for (const auto &[name, where] : origin)
-    names.push_back(name);
+namespace {
+
+/// "-young 20 (PETSC_OPTIONS)" for each, those that a case file beats with its line, too.
+std::string described(const std::vector<Foreign> &foreign, const Origin &case_file) {
+  std::string text;
+  for (const Foreign &option : foreign) {
+    const auto beaten = case_file.find(option.name);
+    text += (text.empty() ? "-" : ", -") + option.name + (option.value.empty() ? "" : " ") +
+            option.value + " (" + option.from + ")" +
+            (beaten == case_file.end() ? "" : ", not used for that" + beaten->second);
+  }
+  return text;
+}
+
+/// Everything but where it comes from. `names`: all options that are given.
+ToolOptions read_values(const std::vector<std::string> &names, const Origin &origin,
+                        const std::vector<std::string> &command_line) {
   ToolOptions options;
   options.command_line = command_line;
   const std::string scene = text_of("scene");
@@ -159,9 +206,9 @@ ToolOptions read_options(MPI_Comm comm) {
   options.scene = make_scene(scene, scene_options_of(scene));
   check_names(names, origin, options.scene);
   options.case_file = as_case_file(names);
-  adapt_parameters(options.scene.parameters);
+  adapt_parameters(options.scene);
   check_functions(options.scene);
-  check_box(options.scene);
+  check_box_of_run(options.scene);
   options.train = options.scene.training;
   options.valid = options.scene.validation;
   read_table(options);
@@ -171,6 +218,33 @@ ToolOptions read_options(MPI_Comm comm) {
   if (keeps_law(reduction) && !is_given("cone_type"))
     options.reduce.cone.type = ConeType::mcpg; // hybrid has functions of either sign
   return options;
+}
+
+} // namespace
+
+ToolOptions read_options(MPI_Comm comm, const std::string &command) {
+  const std::vector<Foreign> foreign = foreign_options(comm);
+  std::vector<std::string> command_line;
+  for (const auto &[name, value] : unread_values())
+    if (std::ranges::find(foreign, name, &Foreign::name) == foreign.end())
+      command_line.push_back(name);
+  std::string outside = described(foreign, {});
+  try {
+    check_command(command, command_line);
+    Origin origin = insert_case_file(comm, command_line);
+    outside = described(foreign, origin);
+    if (!outside.empty() && rank_of(comm) == 0)
+      std::printf("Options from outside: %s\n", outside.c_str());
+    for (const Foreign &option : foreign)
+      origin.try_emplace(option.name, " (" + option.from + ")");
+    std::vector<std::string> names = command_line;
+    for (const auto &[name, where] : origin)
+      names.push_back(name);
+    return read_values(names, origin, command_line);
+  } catch (const Error &error) {
+    if (outside.empty()) throw;
+    throw Error(error.status(), error.what() + ("; options from outside: " + outside));
+  }
 }
 
 } // namespace rbvi

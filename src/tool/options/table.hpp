@@ -46,6 +46,15 @@ struct Option {
 /// All options of rbvi that are not a scene's own, those of a group together.
 const std::vector<Option> &tool_options();
 
+struct Command {
+  std::string name, does, usage;
+};
+/// Those of rbvi but help.
+const std::vector<Command> &commands();
+
+/// Whether it is for that command.
+bool serves(const Option &option, const std::string &command);
+
 /// The one of this name; null: there is none.
 const Option *find_option(const std::string &name);
 

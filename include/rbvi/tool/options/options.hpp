@@ -1,5 +1,5 @@
-// Options of the rbvi tool: read from PETSc's options database (command line over case file),
-// checked before any work starts.
+// Options of the rbvi tool: read from PETSc's options database (command line over case file over
+// PETSc's files and variables), checked before any work starts.
 #pragma once
 
 #include "rbvi/io/overwrite.hpp"
@@ -40,10 +40,11 @@ bool is_option(const std::string &word);
 /// starts.
 std::vector<std::string> normalised_arguments(int argc, char **argv);
 
-/// Collective. Inserts the case file under the command line and reads everything. Throws bad_input
-/// for an unknown option (naming the nearest one), a missing or malformed case file, or a value
-/// that does not fit.
-ToolOptions read_options(MPI_Comm comm);
+/// Collective. Inserts the case file under the command line, above PETSc's files and variables,
+/// and reads everything for a command of rbvi; rank 0 prints one line of options from these files
+/// and variables. Throws bad_input for an unknown option (naming the nearest one), one of another
+/// command, a missing or malformed case file, or a value that does not fit.
+ToolOptions read_options(MPI_Comm comm, const std::string &command);
 
 /// The options that a model keeps among its settings, by the names that they have there.
 std::map<std::string, std::string> kept_settings(const ToolOptions &options);
@@ -76,8 +77,9 @@ enum class EigenUse {
 void check_eigen_options(const ToolOptions &options, EigenUse use);
 
 /// Prints the usage, the options above and those of the scenes; or, where one is named, options,
-/// parameters and mesh of that scene alone. Throws bad_input for an unknown scene.
-void print_help(const std::string &scene);
+/// parameters and mesh of that scene alone; or, of a command, its usage and its options alone.
+/// Throws bad_input for an unknown scene.
+void print_help(const std::string &scene, const std::string &command = "");
 
 /// All options of both programs and of the scenes, explained: the page cases/OPTIONS.md.
 std::string options_page();

@@ -32,13 +32,23 @@ void print_scene(const SceneEntry &entry) {
   print_mesh_contract(entry);
 }
 
-void print_options() {
+/// `command` "": of all.
+void print_options(const std::string &command = "") {
   std::printf("Options [default], range:\n");
   std::string group;
   for (const Option &option : tool_options()) {
+    if (!command.empty() && !serves(option, command)) continue;
     if (option.group != group) std::printf(" %s\n", (group = option.group).c_str());
     print_line(option, ", ");
   }
+}
+
+void print_command(const Command &command) {
+  std::printf("%s\n  %s\n", command.usage.c_str(), command.does.c_str());
+  if (command.name == "list" || command.name == "inspect") return;
+  print_options(command.name);
+  std::printf(
+      "Those of a scene: rbvi -help -scene NAME; of PETSc's objects, outputs: rbvi -help\n");
 }
 
 void print_solver_objects() {
@@ -53,22 +63,21 @@ void print_solver_objects() {
 
 } // namespace
 
-void print_help(const std::string &scene) {
+void print_help(const std::string &scene, const std::string &command) {
   if (!scene.empty()) {
     (void)make_scene(scene);
     for (const SceneEntry &entry : scene_catalogue())
       if (entry.name == scene) print_scene(entry);
     return;
   }
-  std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n"
-              "  offline   snapshots, bases, interpolation, reduced model into -out\n"
-              "  verify    reduced against high-fidelity over the validation set\n"
-              "  solve     one high-fidelity solve at -mu\n"
-              "  bench     run time against error\n"
-              "  list      the scenes of this build\n"
-              "  inspect FILE   what a model file holds\n"
-              "  -help -scene NAME   options, parameters and mesh of one scene\n"
-              "  -help -markdown     all options, explained: the page cases/OPTIONS.md\n\n");
+  for (const Command &known : commands())
+    if (known.name == command) return print_command(known);
+  std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n");
+  for (const Command &known : commands())
+    std::printf("  %-21s %s\n", known.name.c_str(), known.does.c_str());
+  std::printf("  COMMAND -help         usage and options of a command\n"
+              "  -help -scene NAME     options, parameters and mesh of one scene\n"
+              "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n\n");
   print_options();
   for (const SceneEntry &entry : scene_catalogue())
     print_scene(entry);

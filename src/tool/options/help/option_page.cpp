@@ -18,10 +18,12 @@ constexpr const char *introduction = R"(# Options
 This page is printed by `rbvi -help -markdown`.
 
 Every option of rbvi can stand in the case file or on the command line, with one or two dashes; if it
-stands in both, the command line wins. A case file is YAML: one `name: value` per line, without the
-dash; two bounds may be a list `[0.16, 0.24]`. File names in a case file are looked for beside it, then
-in the working directory. An unknown name, and a name that stands there twice, is an error. A flag
-without a value means yes.
+stands in both, the command line wins. Options in PETSc's own files (`~/.petscrc`, `.petscrc`,
+`petscrc`) and variables (`PETSC_OPTIONS`) come last: they are told, and `-skip_petscrc` leaves out the
+files. A case file is YAML: one `name: value` per line, without the dash; two bounds may be a list
+`[0.16, 0.24]`. File names in a case file are looked for beside it, then in the working directory. An
+unknown name, a name that stands there twice, and on the command line one without effect, is an error.
+A flag without a value means yes.
 
 The words of this page are explained where a group of options begins, and in the
 [glossary](README.md#glossary). Numbers in brackets are equations of Niakh (2022): u is the
@@ -98,9 +100,9 @@ follow it, or if nothing in the run reads it. A case file may hold SLEPc's optio
 )";
 
 constexpr const char *of_petsc_more = R"(
-Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-12. `-nitsche_snes_rtol`
-[1e-12] is that of the residual relative to its terms. Of PETSc itself, `-log_view` shows one stage
-per step.
+Linear solvers are direct; iterative ones (`-hf_ksp_type cg`) have rtol 1e-13, that of `vi` 1e-12.
+`-nitsche_snes_rtol` [1e-12] is that of the residual relative to its terms. Of PETSc itself, `-log_view`
+shows one stage per step; its own options are for the command line alone.
 
 SLEPc solves the eigenproblems of the projected greedy algorithm. If b(mu) is a multiple of one fixed
 form ("B only scales"), one singular value decomposition replaces them all. Each rank has objects of its

@@ -1,4 +1,4 @@
-#include "database.hpp"
+#include "../database.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
@@ -94,6 +94,12 @@ void make_solvers(MPI_Comm comm, const std::vector<std::string> &names, const Hf
   RBVI_CALL(KSPGetPC(ksp, &pc));
   RBVI_CALL(PCSetType(pc, PCLU));
   RBVI_CALL(SNESSetFromOptions(snes.get()));
+  PetscBool levels = PETSC_FALSE;
+  RBVI_CALL(
+      PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &levels, PCGAMG, PCMG, nullptr));
+  if (levels == PETSC_TRUE)
+    throw bad_input("multigrid does not follow the systems of vi, which differ in size from step "
+                    "to step: use -vi_pc_type icc, or no -vi_pc_type");
   check_direct(ksp, "vi_", names);
 }
 

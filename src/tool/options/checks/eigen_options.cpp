@@ -1,5 +1,5 @@
 // Options of SLEPc's objects: which there are, and whether a run asks for them.
-#include "database.hpp"
+#include "../database.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/stability/high_fidelity_constant.hpp"

@@ -1,9 +1,11 @@
 // Options that do not go together, or not with the scene.
-#include "database.hpp"
-#include "table.hpp"
+#include "../database.hpp"
+#include "../table.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
+
+#include <algorithm>
 
 namespace rbvi {
 
@@ -82,6 +84,79 @@ void check_cone_level(const ToolOptions &options) {
                     std::to_string(options.mesh.refine));
 }
 
+bool has_law(const Scene &scene, FrictionLaw law) {
+  return std::ranges::any_of(scene.contacts,
+                             [&](const ContactRecipe &c) { return c.friction == law; });
+}
+
+bool reduces_by(const ToolOptions &options, std::initializer_list<MultiplierReduction> any) {
+  return std::ranges::find(any, options.reduce.multipliers.reduction) != any.end();
+}
+
+/// Options of one method, by how they begin, and what they are for.
+struct OfMethod {
+  const char *begin;
+  bool (*used)(const ToolOptions &options);
+  const char *is_for;
+};
+
+using Reduction = MultiplierReduction;
+constexpr const char *without_multipliers =
+    "the mixed formulation: Nitsche's method has no multipliers";
+const OfMethod of_methods[] = {
+    {"nitsche_", [](const ToolOptions &o) { return !has_multipliers(o.scene); },
+     "Nitsche's method: set -formulation nitsche"},
+    {"nitsche_loop", [](const ToolOptions &o) { return has_law(o.scene, FrictionLaw::coulomb); },
+     "Coulomb's friction: set -friction coulomb"},
+    {"nitsche_quadrature_tolerance",
+     [](const ToolOptions &o) { return o.reduce.curve.rule == CurveRule::empirical; },
+     "-nitsche_quadrature empirical"},
+    {"nitsche_eim_",
+     [](const ToolOptions &o) { return o.reduce.curve.rule == CurveRule::interpolated; },
+     "-nitsche_quadrature interpolated"},
+    {"cone_", [](const ToolOptions &o) { return has_multipliers(o.scene); }, without_multipliers},
+    {"pga_", [](const ToolOptions &o) { return has_multipliers(o.scene); }, without_multipliers},
+    {"uzawa_",
+     [](const ToolOptions &o) {
+       return has_multipliers(o.scene) && o.hf.method == HfMethod::uzawa;
+     },
+     "-hf_method uzawa"},
+    {"nonlinear_", [](const ToolOptions &o) { return follows_state(o.scene); },
+     "contact that follows the displacement: set -kinematics large"},
+    {"gcns_", [](const ToolOptions &o) { return reduces_by(o, {Reduction::collocated}); },
+     "-multiplier_reduction collocated"},
+    {"joint_", [](const ToolOptions &o) { return reduces_by(o, {Reduction::joint}); },
+     "-multiplier_reduction joint"},
+    {"tangential_",
+     [](const ToolOptions &o) {
+       return reduces_by(o, {Reduction::collocated, Reduction::joint});
+     },
+     "-multiplier_reduction collocated or joint"},
+    {"multiplier_exact",
+     [](const ToolOptions &o) {
+       return reduces_by(o, {Reduction::collocated, Reduction::cones, Reduction::joint});
+     },
+     "-multiplier_reduction collocated, cones or joint"},
+    {"friction_bound", [](const ToolOptions &o) { return has_law(o.scene, FrictionLaw::tresca); },
+     "-friction tresca"},
+    {"friction_", [](const ToolOptions &o) { return has_friction(o.scene); },
+     "contact with friction, which this scene has not: leave out -friction none"}};
+
+/// Throws bad_input for options on the command line that nothing of the run uses, and for a free
+/// parameter that is one. In a case file they may wait for another command line.
+void check_effect(const ToolOptions &options) {
+  const auto check = [&](const std::string &name, const std::string &what) {
+    for (const OfMethod &method : of_methods)
+      if (name.starts_with(method.begin) && !method.used(options))
+        throw bad_input(what + " has no effect: it is for " + method.is_for);
+  };
+  for (const std::string &name : options.command_line)
+    check(name, "-" + name);
+  const ParameterSpace &space = options.scene.parameters;
+  for (int i = 0; i < space.size(); ++i)
+    check(space.at(i).name, "the free parameter " + space.at(i).name);
+}
+
 } // namespace
 
 void check_rules(const ToolOptions &options) {
@@ -97,6 +172,7 @@ void check_rules(const ToolOptions &options) {
   check_rows_apart(options.scene, reduce);
   check_dual_basis(options);
   check_cone_level(options);
+  check_effect(options);
 }
 
 } // namespace rbvi

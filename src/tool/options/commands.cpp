@@ -1,0 +1,70 @@
+// Which options are for which command of rbvi.
+#include "database.hpp"
+#include "table.hpp"
+
+#include "rbvi/core/error.hpp"
+
+namespace rbvi {
+
+namespace {
+
+struct Use {
+  const char *what; ///< an option, or a group of them
+  const char *commands;
+};
+
+constexpr Use uses[] = {{"mu", "solve"},
+                        {"vtu", "solve"},
+                        {"csv", "solve"},
+                        {"plan", "offline"},
+                        {"bench_growth", "bench"},
+                        {"train", "offline"},
+                        {"valid", "verify bench"},
+                        {"verify_stability", "verify"},
+                        {"nitsche_quadrature", "offline"},
+                        {"nitsche_quadrature_tolerance", "offline"},
+                        {"nitsche_eim_tolerance", "offline"},
+                        {"nitsche_eim_validation", "offline"},
+                        {"Sweep", "offline verify bench"},
+                        {"Bases", "offline"},
+                        {"Stability", "offline"},
+                        {"Separation", "offline"},
+                        {"Multipliers", "offline"}};
+
+/// "": all.
+std::string commands_of(const Option &option) {
+  for (const Use &use : uses)
+    if (option.name == use.what || option.group == use.what) return use.commands;
+  return "";
+}
+
+} // namespace
+
+const std::vector<Command> &commands() {
+  static const std::vector<Command> all{
+      {"offline", "snapshots, bases, interpolation, reduced model into -out",
+       "rbvi offline -case FILE -out DIRECTORY [options]"},
+      {"verify", "reduced against high-fidelity over the validation set",
+       "rbvi verify -out DIRECTORY [options]"},
+      {"solve", "one high-fidelity solve at -mu", "rbvi solve -case FILE -mu VALUES [options]"},
+      {"bench", "run time against error", "rbvi bench -out DIRECTORY [options]"},
+      {"list", "the scenes of this build", "rbvi list"},
+      {"inspect", "what a model file holds", "rbvi inspect FILE"}};
+  return all;
+}
+
+bool serves(const Option &option, const std::string &command) {
+  const std::string of = commands_of(option);
+  return of.empty() || contains(split(of, ' '), command);
+}
+
+void check_command(const std::string &command, const std::vector<std::string> &command_line) {
+  for (const std::string &name : command_line) {
+    const Option *option = find_option(name);
+    if (option != nullptr && option->of_command && !serves(*option, command))
+      throw bad_input("-" + name + " has no effect on rbvi " + command + ": it is for rbvi " +
+                      commands_of(*option));
+  }
+}
+
+} // namespace rbvi
