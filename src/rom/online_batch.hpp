@@ -21,9 +21,9 @@ void warn_of_violation(const ReducedModel &model, double violation, std::ostream
 void warn_of_failed_samples(long answers, std::ostream &out);
 
 /// Answers all queries, row by row, in constant memory, into a temporary file, which becomes FILE
-/// at the end, or to `out`. A set that can be read twice is read to its end before the first answer;
-/// the rows of a stream say so themselves where they are none. Throws bad_input for a wrong set,
-/// and failure, at the end, where some query has no answer.
+/// at the end, or to `out`. A set that can be read twice is read to its end before the first
+/// answer; the rows of a stream say so themselves where they are none. Throws bad_input for a wrong
+/// set, and failure, at the end, where some query has no answer.
 void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out);
 
 } // namespace rbvi

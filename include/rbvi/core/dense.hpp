@@ -1,6 +1,12 @@
 // Small dense and sparse matrices that one core holds whole.
 #pragma once
 
+// Aligned alike under all flags: programs with others free memory that the library took.
+#ifndef EIGEN_MAX_ALIGN_BYTES
+#define EIGEN_MAX_ALIGN_BYTES 64
+#define EIGEN_MAX_STATIC_ALIGN_BYTES 64
+#endif
+
 #include <Eigen/Dense>
 #include <Eigen/SparseCore>
 

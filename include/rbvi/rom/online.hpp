@@ -22,6 +22,10 @@
 
 namespace rbvi {
 
+static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64 && alignof(Eigen::Matrix<double, 8, 1>) == 64,
+              "include headers of rbvi before those of Eigen, or define EIGEN_MAX_ALIGN_BYTES and "
+              "EIGEN_MAX_STATIC_ALIGN_BYTES as 64 in the whole program: both share memory");
+
 struct ReducedSolution {
   FullMu mu;
   Vector u;                 ///< n coefficients

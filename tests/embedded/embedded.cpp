@@ -1,0 +1,29 @@
+// A program of others, on the serial library alone and without its flags: with the address
+// sanitizer, which sees what is freed. embedded MODEL...: answers the middle of the box of each.
+#include "rbvi/rom/model/model.hpp"
+#include "rbvi/rom/online.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+int main(int count, char **arguments) {
+  using namespace rbvi;
+  for (int i = 1; i < count; ++i) {
+    ReducedModel model = read_model(arguments[i]);
+    OnlineSolver solver(model);
+    Mu mu;
+    for (int k = 0; k < model.parameters.size(); ++k)
+      mu.push_back((model.parameters.at(k).lower + model.parameters.at(k).upper) / 2);
+    ReducedSolution solution = solver.solve(mu);
+    const double energy = solver.outputs(mu, solution).energy.value_or(NAN);
+    const Vector field = solver.field(solution);
+    // Memory of either side, freed or made larger by the other.
+    solution.x.conservativeResize(2 * solution.x.size() + 1);
+    solution.u = Vector::Ones(2 * solution.u.size() + 1);
+    model.trained_mu = Matrix::Zero(7, 9);
+    const ReducedModel smaller = leading(model, model.modes, model.generators);
+    if (!std::isfinite(energy) || field.size() == 0 || smaller.modes != model.modes) return 1;
+    std::printf("%s: energy %.10g\n", arguments[i], energy);
+  }
+  return count > 1 ? 0 : 2;
+}
