@@ -56,7 +56,7 @@ private:
 
 /// What is said at the end.
 struct Tally {
-  long rows = 0, unanswered = 0, near_failed = 0;
+  long rows = 0, unanswered = 0, near_failed = 0, not_alone = 0;
   double seconds = 0, residual = 0, violation = 0;
   std::string reason; ///< of the first row without an answer
   ResolutionTally resolution;
@@ -147,6 +147,7 @@ void answer_row(const Mu &mu, OnlineSolver &solver, const OnlineArguments &argum
     table.add(mu, outputs, in_box(solver.scene().parameters, mu));
     ++tally.rows;
     if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
+    if (solution.to_other > 0) ++tally.not_alone;
     tally.seconds += outputs.seconds.value_or(0);
     tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
     tally.violation = std::max(tally.violation, violation(outputs));
@@ -216,6 +217,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   warn_of_violation(solver.model(), tally.violation, warnings);
   warn_of_failed_samples(tally.near_failed, warnings);
   tally.resolution.print(warnings);
+  warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);
   if (tally.unanswered > 0)
     throw failure(
         std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +

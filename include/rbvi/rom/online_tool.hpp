@@ -9,7 +9,8 @@ namespace rbvi {
 
 struct OnlineArguments {
   std::string model, mu, queries, out, vtu; ///< "" where not given
-  bool extrapolate = false, decorrelated = false, full = false, help = false, version = false;
+  bool extrapolate = false, decorrelated = false, full = false, warm = false, help = false,
+       version = false;
 };
 
 /// An option: what it takes ("FILE"; "": it is a flag), what it does, and its place.
