@@ -197,6 +197,7 @@ Checked check_answers(const Problem &problem, ReducedModel &model, StageTable &s
   std::array<int, 2> found{};
   collectively(problem.comm(), [&] {
     if (rank_of(problem.comm()) != 0) return;
+    look_for_other_answers(model, problem.scene());
     model.self_check = self_check(model, problem.scene(), queries_of_check(model));
     found = {model.self_check.unanswered, model.self_check.clean() ? 1 : 0};
   });

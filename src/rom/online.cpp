@@ -49,12 +49,14 @@ Index solved_size(const ReducedModel &model) {
 
 } // namespace
 
-OnlineSolver::OnlineSolver(const ReducedModel &model) : OnlineSolver(model, scene_of(model)) {}
+OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &options)
+    : OnlineSolver(model, scene_of(model), options) {}
 
-OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
+OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
-      qp_(solved_size(model), model.free_modes) {
+      options_(options), qp_(solved_size(model), model.free_modes),
+      starts_(model.parameters, model.trained_mu) {
   check_terms_of(model.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.f, scene_.f, scene_.parameters, "f");
   check_imposed_by(model, scene_);
@@ -69,7 +71,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene)
   }
   trace_.emplace(model, contact_);
   if (model.law) {
-    law_ = std::make_unique<LawSolver>(model, scene_, contact_);
+    law_ = std::make_unique<LawSolver>(model, scene_, contact_, options);
     nodal_basis_ = model.dual_basis.sparseView();
     return;
   }
@@ -110,6 +112,7 @@ void OnlineSolver::update_changed(const Vector &theta_a, bool new_b) {
   if (!new_b && theta_a_ == theta_a) return;
   y_ = fixed_y_;
   changed_->solve_change(y_);
+  ++y_number_;
   qp_.reset();
   theta_a_ = theta_a;
 }
@@ -141,6 +144,7 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
   if (a_ratio == 0 || b_ratio == 0) {
     y_ = b_.transpose();
     l_.triangularView<Eigen::Lower>().solveInPlace(y_);
+    ++y_number_;
     qp_.reset();
   }
 }
@@ -293,13 +297,37 @@ ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
     solution.iterations = answer.iterations;
     solution.load_steps = answer.load_steps;
     solution.contraction = answer.contraction;
+    solution.to_other = answer.to_other;
     return solution;
   }
+  if (!options_.warm) start_cone(all_parameters);
+  solve_cone(solution);
+  return solution;
+}
+
+void OnlineSolver::solve_cone(ReducedSolution &solution) {
   if (follows_state(contact_))
     solve_following(solution);
   else
     solve_pair({}, solution);
-  return solution;
+}
+
+void OnlineSolver::start_cone(const FullMu &all_parameters) {
+  const Vector here = parts_of_box(model_.parameters, all_parameters);
+  const ConeStart &start = starts_.nearest(here, [&](Index sample) {
+    const Vector mu = model_.trained_mu.col(sample);
+    ReducedSolution unused;
+    unused.mu = expand(model_.parameters, {mu.begin(), mu.end()});
+    qp_.start_from({});
+    solve_cone(unused);
+    ConeStart found{qp_.active(), {}, y_number_};
+    if (model_.a.size() == 1 && model_.b.size() == 1) found.qp = qp_; // Y stays
+    return found;
+  });
+  if (start.qp && start.y_number == y_number_)
+    qp_ = *start.qp;
+  else
+    qp_.start_from(start.active);
 }
 
 ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {

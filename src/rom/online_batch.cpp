@@ -74,7 +74,7 @@ private:
 /// What is said at the end.
 struct Tally {
   std::vector<Point> contact_points; ///< where locking is looked for
-  long rows = 0, unanswered = 0, near_failed = 0;
+  long rows = 0, unanswered = 0, near_failed = 0, not_alone = 0;
   double seconds = 0, residual = 0, violation = 0, locking = 0;
   std::string reason; ///< of the first row without an answer
   ResolutionTally resolution;
@@ -165,6 +165,7 @@ void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
     table.add(mu, outputs, in_box(solver.scene().parameters, mu), id);
     ++tally.rows;
     if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
+    if (solution.to_other > 0) ++tally.not_alone;
     tally.seconds += outputs.seconds.value_or(0);
     tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
     tally.violation = std::max(tally.violation, violation(outputs));
@@ -241,6 +242,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   warn_of_failed_samples(tally.near_failed, warnings);
   tally.resolution.print(warnings);
   warn_of_locking(tally.locking, warnings);
+  warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);
   if (tally.unanswered > 0)
     throw failure(
         std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +

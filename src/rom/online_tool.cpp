@@ -49,6 +49,7 @@ void check_combination(const OnlineArguments &given) {
   if (given.model.empty()) throw bad_input("no model is named; --help shows how");
   const bool one = !given.mu.empty(), many = !given.queries.empty();
   if (one && many) throw bad_input("--mu and --queries exclude each other");
+  if (given.warm && !many) throw bad_input("--warm needs --queries");
   if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
   if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
   if (given.precision.empty()) return;
@@ -80,6 +81,11 @@ const std::vector<OnlineOption> &online_options() {
       {"extrapolate", "",
        "allow mu outside the box of the model, within the range of validity (an error otherwise)",
        nullptr, &Arguments::extrapolate},
+      {"warm", "",
+       "with --queries: each starts from the answer before, for queries along a path; without it "
+       "an "
+       "answer does not depend on the order of the queries",
+       nullptr, &Arguments::warm},
       {"help", "", "this list", nullptr, &Arguments::help},
       {"version", "", "of the program", nullptr, &Arguments::version}};
   return options;
@@ -125,6 +131,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   warn_of_locking(locking_ratio(solver.scene(), expand(solver.scene().parameters, mu),
                                 dual_points(solver.contact())),
                   out);
+  warn_of_other_answers(out, solution.to_other > 0 ? 1 : 0, 1);
   if (inside)
     print_expected_errors(out, solver.model());
   else
@@ -199,7 +206,7 @@ void run_online(const OnlineArguments &arguments, std::ostream &out) {
     print_model(out, model);
     return;
   }
-  OnlineSolver solver(model);
+  OnlineSolver solver(model, QueryOptions{.warm = arguments.warm});
   if (!arguments.mu.empty())
     answer_one(arguments, solver, out);
   else

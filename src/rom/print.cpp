@@ -1,5 +1,7 @@
 #include "rbvi/rom/print.hpp"
 
+#include "rbvi/core/text.hpp"
+#include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/self_check.hpp"
@@ -147,8 +149,33 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_expected_errors(out, model);
   label(out, "self-check");
   print_self_check(out, model.self_check, model.parameters);
+  print_several_answers(out, model);
   if (model.supremizers > 0)
     label(out, "  decorrelated") << validation(model.validation_decorrelated) << '\n';
+}
+
+void print_several_answers(std::ostream &out, const ReducedModel &model) {
+  if (!has_several_answers(model)) return;
+  std::vector<double> known = model.histories.at("self_check/other");
+  for (double &value : known)
+    value = parse_number(short_number(value), "parameter");
+  const bool reduced = model.law->reduction != MultiplierReduction::condensed;
+  out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, "
+      << short_number(known.front()) << " of the largest multiplier apart at "
+      << describe(model.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "
+      << (reduced ? "the one that the nearest training parameter leads to"
+                  : "the one that continues the answer without friction, and says where there are "
+                    "others")
+      << '\n';
+}
+
+void warn_of_other_answers(std::ostream &out, long not_alone, long all) {
+  if (not_alone == 0) return;
+  out << "warning: "
+      << (all == 1 ? "the answer is not the only one"
+                   : std::to_string(not_alone) + " of " + std::to_string(all) +
+                         " answers are not the only ones at their parameters")
+      << ": the law of friction has others with this coefficient\n";
 }
 
 void print_written(std::ostream &out, const std::vector<std::filesystem::path> &paths) {

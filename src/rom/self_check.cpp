@@ -1,6 +1,7 @@
 #include "rbvi/rom/self_check.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/extremes.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 
@@ -23,6 +24,14 @@ std::string at(const Worst &worst, const ParameterSpace &space) {
   return short_number(worst.value) + " (" + describe(space, mu) + ")";
 }
 
+/// Random ones, then the extremes.
+std::vector<Mu> set_of_check(const ParameterSpace &space, int queries) {
+  std::vector<Mu> set = parse_set(space, "random:" + std::to_string(queries) + ":17");
+  const std::vector<Mu> extremes = extremes_of_box(space);
+  set.insert(set.end(), extremes.begin(), extremes.end());
+  return set;
+}
+
 } // namespace
 
 int queries_of_check(const ReducedModel &model) {
@@ -32,28 +41,47 @@ int queries_of_check(const ReducedModel &model) {
 }
 
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries) {
+  const std::vector<Mu> set = set_of_check(model.parameters, queries);
   SelfCheck check;
-  check.queries = queries;
+  check.queries = static_cast<int>(set.size());
   OnlineSolver solver(model, scene);
-  ParameterReader set(model.parameters, "random:" + std::to_string(queries) + ":17");
-  while (const std::optional<Mu> mu = set.next()) {
+  for (const Mu &mu : set) {
     Outputs outputs;
     try {
-      outputs = solver.outputs(*mu, solver.solve(*mu));
+      outputs = solver.outputs(mu, solver.solve(mu));
     } catch (const Error &error) {
       if (check.unanswered++ == 0) {
-        check.unanswered_at = *mu;
+        check.unanswered_at = mu;
         check.reason = error.what();
       }
       continue;
     }
-    raise(check.residual, outputs.kkt_residual.value_or(0), *mu);
-    raise(check.penetration, outputs.max_penetration.value_or(0), *mu);
+    raise(check.residual, outputs.kkt_residual.value_or(0), mu);
+    raise(check.penetration, outputs.max_penetration.value_or(0), mu);
     const double peak = outputs.peak_pressure.value_or(0);
     if (outputs.friction_violation)
-      raise(check.friction, peak > 0 ? *outputs.friction_violation / peak : 0, *mu);
+      raise(check.friction, peak > 0 ? *outputs.friction_violation / peak : 0, mu);
   }
   return check;
+}
+
+void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set) {
+  if (!has_friction(scene) || !model.law) return;
+  if (set.empty()) set = set_of_check(model.parameters, queries_of_check(model));
+  OnlineSolver solver(model, scene, {.looks_for_others = true});
+  Worst farthest;
+  for (const Mu &mu : set) {
+    try {
+      if (const double other = solver.solve(mu).to_other; other > farthest.value)
+        farthest = {other, mu};
+    } catch (const Error &) { // has none
+      continue;
+    }
+  }
+  if (!(farthest.value > 0)) return;
+  std::vector<double> &known = model.histories["self_check/other"];
+  known.assign(1, farthest.value);
+  known.insert(known.end(), farthest.at.begin(), farthest.at.end());
 }
 
 void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space) {
@@ -61,7 +89,7 @@ void print_self_check(std::ostream &out, const SelfCheck &check, const Parameter
     out << "not made\n";
     return;
   }
-  out << check.queries << " random queries, ";
+  out << check.queries << " queries, ";
   if (check.unanswered == 0)
     out << "all answered";
   else

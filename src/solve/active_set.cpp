@@ -1,4 +1,4 @@
-#include "rbvi/law/friction/friction.hpp"
+#include "rbvi/law/friction/several_answers.hpp"
 #include "rbvi/law/lcp.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/linear/complement.hpp"
@@ -133,7 +133,8 @@ MethodResult solve_condensed(const ColumnSource &columns, const Vector &q, const
   if (!op.laws.has_tangents()) {
     take(solve_lcp(columns, q, start.active), result);
   } else {
-    FrictionResult found = solve_friction(columns, q, op.laws, start.lambda);
+    FrictionAnswer found = friction_answer(columns, q, op.laws, start.lambda, true);
+    if (found.has_others) found.reason += ", but the law of friction has other answers";
     result.start = std::move(found.start);
     take(std::move(found), result);
   }

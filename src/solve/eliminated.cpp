@@ -283,7 +283,8 @@ SetSolution Eliminated::solve_system(const Operators &op, const OwnContact &cont
   return found;
 }
 
-MethodResult Eliminated::solve(const Operators &op, const Vector &start, double accuracy) {
+MethodResult Eliminated::solve(const Operators &op, const Vector &start, double accuracy,
+                               bool by_rule) {
   complaint_.clear();
   // Ties follow B, which changes with mu.
   if (tied_ || !constant_stiffness(problem_.scene())) of_another_a_ = true;
@@ -302,7 +303,8 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
   };
   const FrictionResult found = solve_by_sets(
       solver, diagonal_of(layout_, contact, op.a, result.u.get()), own_laws(layout_, op.laws),
-      start.size() > 0 ? Vector(start(layout_.rows)) : Vector(), {.tolerance = accuracy}, largest);
+      start.size() > 0 ? Vector(start(layout_.rows)) : Vector(), {.tolerance = accuracy}, largest,
+      by_rule);
   RBVI_CALL(VecCopy(u_.get(), result.u.get()));
   result.iterations = found.iterations;
   result.converged = found.converged;
@@ -340,11 +342,11 @@ MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector
   // 0.10 s at 13e3 dofs, 0.51 and 0.47 s at 53e3, 4.8 and 2.1 s at 213e3.
   constexpr PetscInt coarser_from = 40000;
   if (start.size() > 0 && (problem_.dofs().total_free < coarser_from || !has_coarser()))
-    return on_this_.solve(op, start, accuracy);
-  if (!has_coarser()) return on_this_.solve(op, {}, accuracy);
+    return on_this_.solve(op, start, accuracy, true);
+  if (!has_coarser()) return on_this_.solve(op, {}, accuracy, true);
   const Operators &on_coarser = coarser_problem_->assemble(mu, ContactRows::own);
   const MethodResult rough = coarser_->solve(mu, on_coarser, {}, enough_to_start);
-  if (!rough.converged) return on_this_.solve(op, {}, accuracy);
+  if (!rough.converged) return on_this_.solve(op, {}, accuracy, true);
   return on_this_.solve(op, from_coarser_ * rough.start, accuracy);
 }
 

@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/law/friction/several_answers.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/eliminated.hpp"
@@ -189,7 +190,8 @@ MethodResult HighFidelity::run_eliminated_or_condensed(const Mu &mu, const Opera
 MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest, const Vector &slip,
                                          HfSolution &solution) {
   NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), at_rest.mu), {}};
-  if (!solved_.empty()) start = {nearest(mu)->state, nearest(mu)->start.lambda};
+  if (!solved_.empty() && !bounds_follow_pressure(at_rest.laws))
+    start = {nearest(mu)->state, nearest(mu)->start.lambda};
   Compliance own;
   Operators op = at_rest;
   NonlinearResult steps;

@@ -129,6 +129,7 @@ void command_offline(const ToolOptions &options) {
     print_stages(run.stages);
     std::cout << "Self-check: ";
     print_self_check(std::cout, run.model.self_check, run.model.parameters);
+    print_several_answers(std::cout, run.model);
     tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,
                     std::cout);
     print_written(std::cout,

@@ -13,6 +13,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
+#include "rbvi/rom/self_check.hpp"
 #include "rbvi/sweep/grouping.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
@@ -339,6 +340,8 @@ void check_errors(ReducedModel &model, const Problem &problem, const Truths &tru
   model.validation_decorrelated = summary(plain);
   (model.supremizers > 0 ? model.validation_enriched : model.validation_decorrelated).outputs =
       check_outputs(model, truths, out);
+  look_for_other_answers(model, problem.scene(), truths.mu);
+  print_several_answers(std::cout, model);
   write_model(model, options.out / "model.h5");
 }
 

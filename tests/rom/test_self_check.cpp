@@ -1,6 +1,7 @@
 #include "synthetic.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/extremes.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/self_check.hpp"
 
@@ -23,16 +24,19 @@ bool contains(const std::string &text, const std::string &part) {
 TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
   const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
   const SelfCheck check = self_check(model, scene_of(model), 30);
-  EXPECT_EQ(check.queries, 30);
+  EXPECT_EQ(check.queries, 30 + 8 + 6) << "with corners and faces";
   EXPECT_EQ(check.unanswered, 0);
   EXPECT_TRUE(check.clean());
   OnlineSolver solver(model);
   const Outputs there = solver.outputs(check.penetration.at, solver.solve(check.penetration.at));
   EXPECT_NEAR(*there.max_penetration, check.penetration.value, 1e-9);
-  for (const Mu &mu : parse_set(model.parameters, "random:30:17"))
+  std::vector<Mu> set = parse_set(model.parameters, "random:30:17");
+  for (const Mu &mu : extremes_of_box(model.parameters))
+    set.push_back(mu);
+  for (const Mu &mu : set)
     EXPECT_LE(*solver.outputs(mu, solver.solve(mu)).max_penetration,
               check.penetration.value + 1e-9);
-  EXPECT_TRUE(contains(printed(check, model), "30 random queries, all answered"));
+  EXPECT_TRUE(contains(printed(check, model), "44 queries, all answered"));
   EXPECT_FALSE(contains(printed(check, model), "reduce again"));
 }
 
@@ -48,11 +52,11 @@ TEST(SelfCheck, SaysWhatHasNoAnswer) {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
   model.a.reduced *= -1; // not positive definite
   const SelfCheck check = self_check(model, scene_of(model), 10);
-  EXPECT_EQ(check.unanswered, 10);
+  EXPECT_EQ(check.unanswered, 10 + 8 + 6);
   EXPECT_EQ(check.unanswered_at, parse_set(model.parameters, "random:1:17")[0]);
   EXPECT_FALSE(check.clean());
   const std::string text = printed(check, model);
-  EXPECT_TRUE(contains(text, "10 without an answer")) << text;
+  EXPECT_TRUE(contains(text, "24 without an answer")) << text;
   EXPECT_TRUE(contains(text, "not positive definite")) << text;
   EXPECT_TRUE(contains(text, "reduce again")) << text;
   EXPECT_TRUE(contains(printed({}, model), "not made"));

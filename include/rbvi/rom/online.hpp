@@ -37,15 +37,17 @@ struct ReducedSolution {
   int iterations = 0;       ///< active-set updates, or Newton steps
   /// Where contact follows the displacement: as in Outputs.
   std::optional<double> load_steps{}, contraction{};
+  double to_other = 0; ///< LawAnswer
 };
 
-/// Answers queries on a model that it does not own; keeps the last active set as the next start.
+/// Answers queries on a model that it does not own. An answer depends on its mu and the model, to
+/// round-off, not on the queries before (but QueryOptions::warm).
 class OnlineSolver {
 public:
-  explicit OnlineSolver(const ReducedModel &model);
+  explicit OnlineSolver(const ReducedModel &model, const QueryOptions &options = {});
   OnlineSolver(const OnlineSolver &) = delete;
   /// With the forms, map and obstacle of `scene` instead of those of the catalogue.
-  OnlineSolver(const ReducedModel &model, Scene scene);
+  OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options = {});
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`. Throws
   /// failure, saying what to try, if the reduced constraints contradict each other, if the reduced
   /// stiffness is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the
@@ -68,6 +70,9 @@ public:
 
 private:
   ReducedSolution solve_at(const FullMu &all_parameters);
+  void solve_cone(ReducedSolution &solution);
+  /// Sets qp_ to where a query starts.
+  void start_cone(const FullMu &all_parameters);
   void evaluate_contact(const Vector &state, ReducedSolution &solution);
   /// The pair at mu; contact, where it follows the displacement, at a state.
   void solve_pair(const Vector &state, ReducedSolution &solution);
@@ -91,8 +96,16 @@ private:
   std::unique_ptr<LawSolver> law_;
   SparseMatrix nodal_basis_; ///< with it: the dual basis
   std::unique_ptr<ReducedNitsche> nitsche_;
+  const QueryOptions options_;
   MixedQp qp_;
-  bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
+  struct ConeStart {
+    std::vector<Index> active;
+    std::optional<MixedQp> qp; ///< with its factorisation, of Y number y_number
+    int y_number = 0;
+  };
+  SampleStarts<ConeStart> starts_;
+  int y_number_ = 0; ///< Y so far
+  bool positive_;    ///< every pressure is: no free modes, no negative entry of a generator
   Index first_dual_, dual_rows_; ///< the rows of the dual basis that are not zero lie among these
   // At the last assembly: A (lower triangle), L, B and Y. The operators of the query are
   // a_scale_^2 A, a_scale_ L, b_scale_ B.

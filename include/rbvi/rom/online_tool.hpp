@@ -9,7 +9,8 @@ namespace rbvi {
 
 struct OnlineArguments {
   std::string model, mu, queries, out, vtu, precision; ///< "" where not given
-  bool extrapolate = false, decorrelated = false, full = false, help = false, version = false;
+  bool extrapolate = false, decorrelated = false, full = false, warm = false, help = false,
+       version = false;
   /// Of the outputs in tables.
   int digits() const { return precision.empty() ? 10 : std::stoi(precision); }
 };

@@ -19,4 +19,10 @@ void print_expected_errors(std::ostream &out, const ReducedModel &model);
 /// "wrote run/x/u.vtu, run/x/u_contact.vtu": files or directories, one line.
 void print_written(std::ostream &out, const std::vector<std::filesystem::path> &paths);
 
+/// A line where the law of the model has several answers (has_several_answers).
+void print_several_answers(std::ostream &out, const ReducedModel &model);
+
+/// A line where so many of `all` answers are not the only ones to the law of friction.
+void warn_of_other_answers(std::ostream &out, long not_alone, long all);
+
 } // namespace rbvi

@@ -34,8 +34,10 @@ public:
 
   /// `op`: this rank's rows at least; the rows of others are not looked at. `start`: as
   /// FrictionResult::start, of all multipliers, or empty. `accuracy`: of the systems, relative.
-  /// Throws failure, saying what to try, where one cannot be solved. Collective.
-  MethodResult solve(const Operators &op, const Vector &start, double accuracy = 1e-13);
+  /// `by_rule`: friction_answer. Throws failure, saying what to try, where one cannot be solved.
+  /// Collective.
+  MethodResult solve(const Operators &op, const Vector &start, double accuracy = 1e-13,
+                     bool by_rule = false);
 
   int factorisations() const { return factorisations_; }
   int krylov_steps() const { return krylov_steps_; }
@@ -74,7 +76,8 @@ public:
   /// `problem` must outlive it. Collective.
   explicit GridSequence(Problem &problem) : problem_(problem), on_this_(problem) {}
   /// `op`: of the problem at mu. `start`: as above; where it is empty, or the mesh is fine, from
-  /// the coarser meshes, where there are any, first to a lower `accuracy`. Collective.
+  /// the coarser meshes, where there are any, first to a lower `accuracy`. Friction is solved by
+  /// its rule on the coarsest mesh that is used, and continued on the others. Collective.
   MethodResult solve(const Mu &mu, const Operators &op, const Vector &start,
                      double accuracy = 1e-13);
 

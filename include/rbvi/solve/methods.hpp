@@ -66,7 +66,7 @@ private:
   std::vector<Index> slot_; ///< per contact dof: its column, -1 if it has none yet
 };
 
-/// `kept`: for a sweep in which A stays the same.
+/// `kept`: for a sweep in which A stays the same. Friction by its rule (friction_answer).
 MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
                               Compliance *kept = nullptr);
 

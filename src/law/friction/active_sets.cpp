@@ -43,9 +43,31 @@ public:
       : solve_(solve), order_(laws), laws_(laws_of(laws)), rows_(laws.rows),
         diagonal_(order_.inwards(Matrix(diagonal))), options_(options), largest_(largest) {}
 
-  FrictionResult run(const Vector &start) {
+  FrictionResult run(const Vector &start, bool by_rule) {
+    const Vector from = start.size() > 0 ? Vector(order_.inwards(Matrix(start))) : start;
+    const double coefficient = largest(laws_.nodes > 0 ? laws_.coefficient.maxCoeff() : 0);
+    return by_rule && coefficient > 0 ? continued(from, Laws::steps_to(coefficient))
+                                      : iterate(from);
+  }
+
+private:
+  /// Along growing coefficients from none, as friction_answer by its rule.
+  FrictionResult continued(Vector from, int steps) {
+    const Laws all = laws_;
+    for (int k = 0; k < steps; ++k) {
+      laws_ = all.with_part(static_cast<double>(k) / steps);
+      const FrictionResult found = iterate(from);
+      if (!found.converged) break;
+      from = order_.inwards(Matrix(found.start));
+    }
+    laws_ = all;
+    return iterate(from);
+  }
+
+  FrictionResult iterate(const Vector &from) {
+    keys_.clear();
     ActiveSets sets(laws_.nodes, laws_.dim);
-    if (start.size() > 0) sets = predicted_sets(laws_, order_.inwards(Matrix(start)));
+    if (from.size() > 0) sets = predicted_sets(laws_, from);
     pivoting::Policy<Index, double> policy(/*patience=*/20);
     double accuracy = std::max(while_sets_change, options_.tolerance);
     State point;
@@ -66,7 +88,6 @@ public:
     return std::move(result_);
   }
 
-private:
   State solved(const ActiveSets &sets, double accuracy) const {
     const SetSolution found = solve_(system_of(laws_, order_, sets, rows_), accuracy);
     return {order_.inwards(Matrix(found.x)), order_.inwards(Matrix(found.w)),
@@ -128,13 +149,13 @@ private:
 
 FrictionResult solve_by_sets(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
                              const Vector &start, const FrictionOptions &options,
-                             const LargestOverRanks &largest) {
+                             const LargestOverRanks &largest, bool by_rule) {
   check(laws);
   Vector in_space = Vector::Constant(1, laws.friction() && laws.tangents > 1 ? 1 : 0);
   if (largest) largest(in_space);
   if (in_space[0] > 0)
     throw failure("active sets without columns are for friction in two dimensions");
-  return Iteration(solve, diagonal, laws, options, largest).run(start);
+  return Iteration(solve, diagonal, laws, options, largest).run(start, by_rule);
 }
 
 } // namespace rbvi

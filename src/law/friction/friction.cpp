@@ -1,4 +1,4 @@
-#include "rbvi/law/friction/friction.hpp"
+#include "rbvi/law/friction/several_answers.hpp"
 
 #include "../pivoting.hpp"
 #include "friction_convex.hpp"
@@ -35,10 +35,9 @@ double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
   return worst;
 }
 
-FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
-                                const Vector &start, const FrictionOptions &options) {
-  const Index nodes = laws.nodes;
-  LazyColumns h(columns, q.size());
+/// Contact alone, on the first `nodes` entries. `start`: of x, or empty.
+LcpResult normal_contact(LazyColumns &h, const Vector &q, Index nodes, const Vector &start,
+                         const FrictionOptions &options) {
   const ColumnSource normals = [&](const std::vector<Index> &which) {
     h.require(which);
     Matrix result(nodes, static_cast<Index>(which.size()));
@@ -49,9 +48,15 @@ FrictionResult without_friction(const ColumnSource &columns, const Vector &q, co
   std::vector<Index> guess;
   for (Index i = 0; i < nodes && start.size() > 0; ++i)
     if (start[i] > 0) guess.push_back(i);
-  LcpResult normal =
-      solve_lcp(normals, q.head(nodes), guess,
-                {.tolerance = options.tolerance, .max_iterations = options.max_iterations});
+  return solve_lcp(normals, q.head(nodes), guess,
+                   {.tolerance = options.tolerance, .max_iterations = options.max_iterations});
+}
+
+FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
+                                const Vector &start, const FrictionOptions &options) {
+  const Index nodes = laws.nodes;
+  LazyColumns h(columns, q.size());
+  LcpResult normal = normal_contact(h, q, nodes, start, options);
   FrictionResult result;
   result.iterations = normal.iterations;
   result.columns = normal.columns;
@@ -77,9 +82,11 @@ public:
       : h_(columns, q.size()), q_(q), laws_(laws), options_(options),
         best_sets_(laws.nodes, laws.dim), systems_left_(options.max_iterations) {}
 
-  FrictionResult run(const Vector &start) {
+  FrictionAnswer run(const Vector &start, bool by_rule) {
     Outcome outcome;
-    if (start.size() > 0) {
+    if (by_rule && laws_.follow_pressure()) {
+      outcome = continued_from_no_friction(start);
+    } else if (start.size() > 0) {
       best_.x = laws_.feasible(start);
       result_.residual = std::numeric_limits<double>::infinity();
       State point;
@@ -95,6 +102,24 @@ public:
 
 private:
   enum class Outcome { converged, cycles, indefinite, limit };
+
+  /// Along growing coefficients, from the last point that is reached.
+  Outcome continued_from_no_friction(const Vector &guess) {
+    const LcpResult normal = normal_contact(h_, q_, laws_.nodes, guess, options_);
+    systems_left_ -= normal.iterations;
+    Vector x = Vector::Zero(q_.size());
+    if (normal.x.size() == laws_.nodes) x.head(laws_.nodes) = normal.x;
+    prepare(laws_, x);
+    State point = evaluate(h_, q_, std::move(x));
+    const int steps = Laws::steps_to(laws_.coefficient.maxCoeff());
+    for (int k = 1; k < steps; ++k) {
+      State next = point;
+      if (newton(laws_.with_part(static_cast<double>(k) / steps), next) != Outcome::converged)
+        break;
+      point = std::move(next);
+    }
+    return newton(laws_, point);
+  }
 
   /// The sets that a start tells, with the columns of their support.
   ActiveSets sets_from(const Vector &start) {
@@ -196,11 +221,12 @@ private:
     result_.residual = verdict.residual;
   }
 
-  FrictionResult finish(Outcome outcome) {
-    FrictionResult result = std::move(result_);
+  FrictionAnswer finish(Outcome outcome) {
+    FrictionAnswer result{std::move(result_)};
     result.iterations = options_.max_iterations - systems_left_;
     result.columns = h_.count();
     result.converged = outcome == Outcome::converged;
+    result.has_others = result.converged && best_.negative && laws_.dim == 2 && !laws_.jump();
     best_.x = laws_.feasible(std::move(best_.x));
     if (!result.converged) {
       best_ = evaluate(h_, q_, std::move(best_.x));
@@ -219,6 +245,10 @@ private:
     if (outcome == Outcome::indefinite)
       return "the block of H of the nodes in contact is not positive definite: dependent "
              "constraints or an inexact H";
+    if (laws_.jump())
+      return "a threshold that acts in contact alone jumps where a node leaves contact, so "
+             "that some problems have no answer: let it act everywhere (-friction_bound arc), or "
+             "ask nearby";
     const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
     const std::string remedy = "start closer to the solution (a smaller change of the load or of "
                                "the coefficient of friction)";
@@ -240,22 +270,27 @@ private:
 
 } // namespace
 
-FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
-                              const Vector &start, const FrictionOptions &options) {
+FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                               const Vector &start, bool by_rule, const FrictionOptions &options) {
   check(q, laws, start);
   const Laws inner = laws_of(laws);
   const auto solve = [&](const ColumnSource &source, const Vector &right, const Vector &from) {
-    return laws.friction() ? Solver(source, right, inner, options).run(from)
-                           : without_friction(source, right, inner, from, options);
+    return laws.friction() ? Solver(source, right, inner, options).run(from, by_rule)
+                           : FrictionAnswer{without_friction(source, right, inner, from, options)};
   };
   const Order order(laws);
   if (order.same()) return solve(columns, q, start);
   const ColumnSource ordered = order.inwards(columns);
-  FrictionResult result = solve(ordered, order.inwards(Matrix(q)),
+  FrictionAnswer result = solve(ordered, order.inwards(Matrix(q)),
                                 start.size() > 0 ? Vector(order.inwards(Matrix(start))) : start);
   for (Vector *part : {&result.x, &result.w, &result.start})
     *part = order.outwards(*part);
   return result;
+}
+
+FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                              const Vector &start, const FrictionOptions &options) {
+  return friction_answer(columns, q, laws, start, false, options);
 }
 
 } // namespace rbvi

@@ -43,15 +43,25 @@ Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
   return matrix;
 }
 
+/// Whether its determinant is negative.
+bool is_negative(const Eigen::PartialPivLU<Matrix> &lu) {
+  const bool odd = (lu.matrixLU().diagonal().array() < 0).count() % 2 == 1;
+  return odd != (lu.permutationP().determinant() < 0);
+}
+
 /// With one step of refinement. Empty if the matrix is singular or, where it is symmetric, not
-/// positive definite.
-Vector solve(const Matrix &matrix, const Vector &right, bool symmetric) {
+/// positive definite. `negative`: of the determinant.
+Vector solve(const Matrix &matrix, const Vector &right, bool symmetric, bool &negative) {
   const auto refined = [&](const auto &factors) {
     Vector u = factors.solve(right);
     u -= factors.solve(Vector(matrix * u - right));
     return u.allFinite() ? u : Vector();
   };
-  if (!symmetric) return refined(Eigen::PartialPivLU<Matrix>(matrix));
+  if (!symmetric) {
+    const Eigen::PartialPivLU<Matrix> lu(matrix);
+    negative = is_negative(lu);
+    return refined(lu);
+  }
   const Eigen::LLT<Matrix> cholesky(matrix);
   return cholesky.info() == Eigen::Success ? refined(cholesky) : Vector();
 }
@@ -170,6 +180,23 @@ Vector Laws::feasible(Vector x) const {
     if (size > limit) tangential *= limit / size;
   }
   return x;
+}
+
+bool Laws::jump() const {
+  for (Index i = 0; i < nodes; ++i)
+    if (at_node(i).jumps()) return true;
+  return false;
+}
+
+int Laws::steps_to(double largest) {
+  constexpr double longest = 0.25;
+  return std::max(1, static_cast<int>(std::ceil(largest / longest)));
+}
+
+Laws Laws::with_part(double part) const {
+  Laws result = *this;
+  result.coefficient *= part;
+  return result;
 }
 
 ActiveSets::ActiveSets(Index nodes, int dim)
@@ -326,10 +353,12 @@ Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, cons
     symmetric = symmetric && u.slope == 0;
   }
   Vector u;
-  if (right.size() > 0) u = solve(assemble(h, laws, sets, list, unit), right, symmetric);
+  bool negative = false;
+  if (right.size() > 0) u = solve(assemble(h, laws, sets, list, unit), right, symmetric, negative);
   if (u.size() != right.size()) return symmetric ? Solved::indefinite : Solved::singular;
   u.array() *= unit.array();
   point = evaluate(h, q, expand(laws, sets, list, u, std::move(x)));
+  point.negative = negative;
   return Solved::yes;
 }
 

@@ -27,8 +27,14 @@ struct Laws {
   }
   double bound(Index i, double normal) const { return at_node(i).value(normal); }
   Vector bounds(const Vector &x) const;
+  bool jump() const; ///< at some node
+  bool follow_pressure() const { return (coefficient.array() > 0).any() || jump(); }
   /// The nearest x that keeps the signs, and then the bounds.
   Vector feasible(Vector x) const;
+  /// Steps in which coefficients grow from zero, by at most 0.25 each, to `largest` of them all.
+  static int steps_to(double largest);
+  /// With this part of the coefficients.
+  Laws with_part(double part) const;
 };
 
 /// The kind of x_tau at a node: zero, free, or of a given direction.
@@ -52,8 +58,9 @@ struct ActiveSets {
 };
 
 struct State {
-  Vector x, w;  ///< multipliers, H x + q
-  Vector terms; ///< the sum of the sizes of the terms of every row of w
+  Vector x, w;           ///< multipliers, H x + q
+  Vector terms;          ///< the sum of the sizes of the terms of every row of w
+  bool negative = false; ///< the determinant of the linear system that gave it
 };
 
 /// The point of x, whose support has its columns.

@@ -10,14 +10,26 @@
 
 namespace rbvi {
 
-/// From the last query if that is far nearer than the samples, else from what they predict, else
-/// from the undeformed body.
+namespace {
+
+/// Of the answer from the undeformed body.
+double distance_from_rest(const NonlinearContact &problem, const NonlinearResult &found,
+                          const NonlinearOptions &options) {
+  if (!bounds_follow_pressure(problem.laws)) return 0;
+  const NonlinearResult other = solve_nonlinear(problem, {problem.undeformed, {}}, options);
+  return other.converged ? distance_of_answers(found.x, other.x) : 0;
+}
+
+} // namespace
+
+/// From what the samples predict, or the last query where that is asked for; else, and where there
+/// are several answers, from the undeformed body.
 NonlinearStart LawSolver::following_start(const FullMu &all_parameters) const {
   const Vector here = parts_of_box(scene_.parameters, all_parameters);
-  NonlinearStart start{{}, start_at(here)};
+  NonlinearStart start{{}, by_rule_ ? Vector() : start_at(here)};
   if (start.x.size() == 0)
     start.state = undeformed(contact_, scene_, all_parameters);
-  else if (uses_last(here))
+  else if (options_.warm && last_state_.size() > 0)
     start.state = last_state_;
   else
     start.state = local_fit(model_.law->states, samples_, here);
@@ -59,8 +71,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
     load = stiffness_.half_response(load_at(all_parameters));
     problem.free = model_.contact_trace * stiffness_.transposed_half_response(load);
   }
-  NonlinearOptions options;
-  options.economical = true;
+  NonlinearOptions options{.economical = true};
   if (!problem.nodal && problem.curvature && !problem.laws.has_tangents())
     options.tolerance = 1e-8; // the change after it is of second order
   NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
@@ -70,6 +81,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   if (!(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: reduce again with more training parameters");
+  if (options_.looks_for_others) answer.to_other = distance_from_rest(problem, found, options);
   assemble_nodal(contact_, all_parameters, {found.state}, at_nodes(found.x), answer.contact);
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());

@@ -19,12 +19,24 @@ namespace {
 
 constexpr double mended_above = 1e-6; ///< natural residual of a reduced law at all nodes
 
+/// Of another answer that only the sign of the tangent tells of.
+constexpr double least_distance = 1e-6;
+
 } // namespace
 
-LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact)
-    : model_(model), scene_(scene), contact_(contact),
+bool has_several_answers(const ReducedModel &model) {
+  return model.histories.contains("self_check/other");
+}
+
+LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                     const QueryOptions &options)
+    : model_(model), scene_(scene), contact_(contact), options_(options),
+      by_rule_(model.law && model.law->reduction == MultiplierReduction::condensed &&
+               !options.warm && has_several_answers(model)),
+      reduced_starts_(scene.parameters, model.law ? model.law->starts_mu : Matrix()),
       columns_(laws_of_columns(contact, model.dual_basis)), stiffness_(model, scene) {
   if (!model.law) throw bad_input("the model has no law of contact at nodes");
+  options_.looks_for_others = options.looks_for_others || by_rule_;
   if (model.law->reduction != MultiplierReduction::condensed)
     law_.emplace(*model.law, columns_, !model.evaluates_contact());
   samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
@@ -76,17 +88,8 @@ void LawSolver::check_edge(const Vector &x) const {
                     std::string(keeps_more));
 }
 
-/// The free parameters as parts of the box.
-bool LawSolver::uses_last(const Vector &here) const {
-  constexpr double far_nearer = 0.1;
-  if (last_start_.size() == 0) return false;
-  const double next = samples_.cols() > 0 ? (samples_.colwise() - here).colwise().norm().minCoeff()
-                                          : std::numeric_limits<double>::infinity();
-  return (last_ - here).norm() <= far_nearer * next;
-}
-
 Vector LawSolver::start_at(const Vector &here) const {
-  if (uses_last(here)) return last_start_;
+  if (options_.warm && last_start_.size() > 0) return last_start_;
   if (samples_.cols() == 0) return {};
   return local_fit(model_.law->starts, samples_, here);
 }
@@ -192,15 +195,30 @@ Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x, const 
   return at_all_nodes(body, x).start;
 }
 
-bool LawSolver::solve_reduced_law(const BodyAtMu &body, LawAnswer &answer) {
+ReducedLawStart LawSolver::reduced_start(const Vector &here) {
+  if (!law_) return {};
+  if (options_.warm) return last_reduced_;
+  return reduced_starts_.nearest(here, [&](Index sample) {
+    const Vector mu = model_.law->starts_mu.col(sample);
+    LawAnswer unused;
+    const BodyAtMu body = body_at(expand(scene_.parameters, {mu.begin(), mu.end()}), unused);
+    return law_->solve(body, [&](const Matrix &x) { return condensed_product(body, x); }).start;
+  });
+}
+
+bool LawSolver::solve_reduced_law(const BodyAtMu &body, const ReducedLawStart &start,
+                                  LawAnswer &answer) {
   const bool checks = model_.law->condensed.terms.size() > 0;
   const bool mends = model_.law->mended && checks;
+  const CondensedProduct product = [&](const Matrix &x) { return condensed_product(body, x); };
   try {
-    ReducedLawAnswer reduced =
-        law_->solve(body, [&](const Matrix &x) { return condensed_product(body, x); });
+    ReducedLawAnswer reduced = law_->solve(body, product, start);
+    if (options_.looks_for_others)
+      answer.to_other = distance_of_answers(reduced.x, law_->solve(body, product).x);
     answer.x = std::move(reduced.x);
     answer.residual = reduced.residual;
     answer.iterations = reduced.iterations;
+    last_reduced_ = std::move(reduced.start);
   } catch (const Error &) {
     if (!mends) throw;
     return false;
@@ -213,20 +231,20 @@ bool LawSolver::solve_reduced_law(const BodyAtMu &body, LawAnswer &answer) {
   return !mends || answer.residual <= mended_above;
 }
 
-void LawSolver::solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer) {
-  if (law_ && solve_reduced_law(body, answer)) return;
+void LawSolver::solve_at_nodes(const BodyAtMu &body, const Vector &here, LawAnswer &answer) {
   const auto columns = [&](const std::vector<Index> &which) {
     return condensed_columns(body, which);
   };
-  Vector start = answer.start.size() > 0
-                     ? answer.start
-                     : start_at(parts_of_box(scene_.parameters, all_parameters));
+  Vector start = answer.start.size() > 0 ? answer.start : start_at(here);
   for (Index i = 0; i < body.b_contact.rows() && start.size() > 0; ++i)
     if (body.b_contact.row(i).norm() == 0) start[i] = std::min(start[i], 0.0); // faces no partner
-  FrictionResult found = solve_friction(columns, body.q, body.laws, start);
+  FrictionAnswer found = friction_answer(columns, body.q, body.laws, start, by_rule_);
   if (!found.converged || !(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
+  if (options_.looks_for_others)
+    answer.to_other = distance_to_other_answer(columns, body.q, body.laws, found);
+  if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
   answer.energy = 0.5 * (found.x.dot(found.w - body.q) - body.load.squaredNorm());
   answer.residual = found.residual;
   answer.iterations += found.iterations;
@@ -238,12 +256,13 @@ LawAnswer LawSolver::solve(const FullMu &all_parameters) {
   if (follows_state(contact_)) {
     LawAnswer answer = solve_following(all_parameters);
     last_start_ = answer.start;
-    last_ = parts_of_box(scene_.parameters, all_parameters);
     return answer;
   }
+  const Vector here = parts_of_box(scene_.parameters, all_parameters);
+  const ReducedLawStart start = reduced_start(here);
   LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
-  solve_law(body, all_parameters, answer);
+  if (!law_ || !solve_reduced_law(body, start, answer)) solve_at_nodes(body, here, answer);
   check_edge(answer.x);
   if (model_.evaluates_contact()) {
     answer.reaction = body.b_contact.transpose() * answer.x;
@@ -256,7 +275,6 @@ LawAnswer LawSolver::solve(const FullMu &all_parameters) {
     answer.energy = 0.5 * (stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm() -
                            body.load.squaredNorm());
   last_start_ = answer.start;
-  last_ = parts_of_box(scene_.parameters, all_parameters);
   return answer;
 }
 

@@ -172,7 +172,8 @@ Vector ReducedLaw::diagonal_at(const BodyAtMu &body, const CondensedProduct &tim
   return (diagonal.array() > 0).select(diagonal, 1);
 }
 
-ReducedLawAnswer ReducedLaw::solve_cones(const BodyAtMu &body, const CondensedProduct &times_h) {
+ReducedLawAnswer ReducedLaw::solve_cones(const BodyAtMu &body, const CondensedProduct &times_h,
+                                         const ReducedLawStart &start) const {
   const Index r = law_.basis.normal.cols(), s = law_.basis.tangential.cols();
   const Matrix h = operator_at(body, times_h);
   // Coefficients of D from z = (a, c): (a, then nu_F a and t of each interface, -c).
@@ -195,13 +196,13 @@ ReducedLawAnswer ReducedLaw::solve_cones(const BodyAtMu &body, const CondensedPr
   const Vector load = functions_.transpose() * body.q + h * fixed;
   Matrix m = by_cones(Matrix(h * combine));
   m.diagonal() *= 1 + ridge;
-  const GeneralLcpResult found = solve_general_lcp(m, by_cones(load), last_active_);
+  const GeneralLcpResult found = solve_general_lcp(m, by_cones(load), start.active);
   if (!found.converged) not_solved(found.reason);
-  last_active_ = found.active;
-  return {functions_ * (combine * found.z + fixed), 0, found.iterations};
+  return {functions_ * (combine * found.z + fixed), 0, found.iterations, {{}, found.active, {}}};
 }
 
-ReducedLawAnswer ReducedLaw::solve_joint(const BodyAtMu &body, const CondensedProduct &times_h) {
+ReducedLawAnswer ReducedLaw::solve_joint(const BodyAtMu &body, const CondensedProduct &times_h,
+                                         const ReducedLawStart &start) const {
   const MultiplierBasis &basis = law_.basis;
   const auto count = static_cast<Index>(basis.nodes.size());
   const Matrix rows = operator_at(body, times_h), values = with_zeros(functions_, rows_);
@@ -210,20 +211,22 @@ ReducedLawAnswer ReducedLaw::solve_joint(const BodyAtMu &body, const CondensedPr
       {values.topRows(count), values.bottomRows(count), rows.topRows(count), rows.bottomRows(count),
        q.head(count), q.tail(count), diagonal.head(count), diagonal.tail(count),
        bounds_at(body.laws, basis.nodes)},
-      last_states_);
+      start.states);
   if (!found.converged) not_solved(found.reason);
-  last_states_ = found.states;
-  return {functions_ * found.y, found.residual, found.iterations};
+  return {functions_ * found.y, found.residual, found.iterations, {{}, {}, found.states}};
 }
 
-ReducedLawAnswer ReducedLaw::solve(const BodyAtMu &body, const CondensedProduct &times_h) {
-  if (law_.reduction == MultiplierReduction::cones) return solve_cones(body, times_h);
-  if (law_.reduction == MultiplierReduction::joint) return solve_joint(body, times_h);
+ReducedLawAnswer ReducedLaw::solve(const BodyAtMu &body, const CondensedProduct &times_h,
+                                   const ReducedLawStart &start) const {
+  if (law_.reduction == MultiplierReduction::cones) return solve_cones(body, times_h, start);
+  if (law_.reduction == MultiplierReduction::joint) return solve_joint(body, times_h, start);
   const MultiplierBasis &basis = law_.basis;
-  const CollocatedResult found = solve_collocated(collocated_problem(basis, body), last_);
+  const CollocatedResult found = solve_collocated(collocated_problem(basis, body), start.x);
   if (!found.converged) not_solved(found.reason);
-  last_ = found.x;
-  return {multiplier_coefficients(basis) * found.x, found.residual, found.iterations};
+  return {multiplier_coefficients(basis) * found.x,
+          found.residual,
+          found.iterations,
+          {found.x, {}, {}}};
 }
 
 } // namespace rbvi

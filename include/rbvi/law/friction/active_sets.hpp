@@ -36,9 +36,9 @@ using LargestOverRanks = std::function<void(Vector &)>;
 /// as exactly as the sets need, that of the last sets to `options.tolerance`. `diagonal`: the order
 /// of magnitude of H_jj, positive, which weighs a slip against a traction; the answer does not
 /// depend on it. Where the sets return, it is not converged: nothing else is tried. Throws failure
-/// for friction in three dimensions.
+/// for friction in three dimensions. `by_rule`: as friction_answer.
 FrictionResult solve_by_sets(const SetSolver &solve, const Vector &diagonal, const NodeLaws &laws,
                              const Vector &start, const FrictionOptions &options = {},
-                             const LargestOverRanks &largest = {});
+                             const LargestOverRanks &largest = {}, bool by_rule = false);
 
 } // namespace rbvi

@@ -20,6 +20,9 @@ public:
   explicit MixedQp(Index rows, Index free = 0);
   /// Y has changed: forgets its factorisations, keeps the active set as the next starting guess.
   void reset();
+  /// Starts from these columns instead, and which they are now: as NonnegativeQp.
+  void start_from(std::vector<Index> active) { qp_.start_from(std::move(active)); }
+  const std::vector<Index> &active() const { return qp_.active(); }
   /// `y`: rows x r with r >= k, c, g (empty: zero). Free columns that depend on others get the
   /// coefficient 0, or prove that the minimum is -infinity. Throws failure if the sizes do not fit.
   NonnegativeQpReport solve(const Matrix &y, const Vector &c, const Vector &g = {});

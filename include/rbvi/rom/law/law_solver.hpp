@@ -5,10 +5,20 @@
 // mended by solve_friction, which starts from it, where it fails.
 #pragma once
 
+#include "rbvi/law/friction/several_answers.hpp"
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/rom/law/reduced_law.hpp"
+#include "rbvi/rom/model/sample_starts.hpp"
 
 namespace rbvi {
+
+/// How queries are answered.
+struct QueryOptions {
+  /// Start from the last answer: queries that follow each other closely cost less, and where there
+  /// are several answers the order decides. Else a start is a function of mu and the model alone.
+  bool warm = false;
+  bool looks_for_others = false; ///< LawAnswer::to_other, from further starts
+};
 
 /// What a query gives.
 struct LawAnswer {
@@ -22,17 +32,26 @@ struct LawAnswer {
   /// Where contact follows the displacement: as in Outputs.
   std::optional<double> load_steps{}, contraction{};
   Vector start; ///< for a nearby query, as FrictionResult::start; empty where none is known
+  /// Largest distance to another answer that was seen, relative to the largest multiplier; 0: none.
+  double to_other = 0;
   ContactOperators contact; ///< at mu, where they do not separate
 };
 
+/// Whether the self-check met another answer at some parameter: its distance (LawAnswer::to_other)
+/// and the parameter are the history "self_check/other".
+bool has_several_answers(const ReducedModel &model);
+
 class ModelCompliance;
 
-/// Starts from what the training samples around mu predict (core/local_fit.hpp), or from the last
-/// query if that is far nearer.
+/// Starts from what the training samples around mu predict (core/local_fit.hpp), a reduced law from
+/// its own answer at the nearest of them. Where the self-check met another answer to the law at all
+/// nodes, every query is solved by the rule of the high-fidelity solver (friction_answer)
+/// and looks for others.
 class LawSolver {
 public:
   /// `model`, `scene` and `contact` must outlive it. Throws bad_input where they do not fit.
-  LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact);
+  LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+            const QueryOptions &options = {});
   ~LawSolver();
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
   LawAnswer solve(const FullMu &all_parameters);
@@ -54,12 +73,12 @@ private:
   Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which);
   /// H X where B does not separate, m x columns of X.
   Matrix condensed_product(const BodyAtMu &body, const Matrix &x);
+  ReducedLawStart reduced_start(const Vector &here);
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
-  bool solve_reduced_law(const BodyAtMu &body, LawAnswer &answer);
-  void solve_law(const BodyAtMu &body, const FullMu &all_parameters, LawAnswer &answer);
+  bool solve_reduced_law(const BodyAtMu &body, const ReducedLawStart &start, LawAnswer &answer);
+  void solve_at_nodes(const BodyAtMu &body, const Vector &here, LawAnswer &answer);
+  /// Empty: from rest.
   Vector start_at(const Vector &here) const;
-  /// Whether the last query is far nearer than the samples.
-  bool uses_last(const Vector &here) const;
   Vector load_at(const FullMu &all_parameters) const;
   NonlinearStart following_start(const FullMu &all_parameters) const;
   LawAnswer solve_following(const FullMu &all_parameters);
@@ -70,7 +89,11 @@ private:
   const ReducedModel &model_;
   const Scene &scene_;
   const Contact &contact_;
+  QueryOptions options_;
+  bool by_rule_; ///< the law at all nodes
   std::optional<ReducedLaw> law_;
+  SampleStarts<ReducedLawStart> reduced_starts_;
+  ReducedLawStart last_reduced_;
   /// The columns of B that the condensed operator knows. Throws failure where it meets others.
   SparseMatrix known_columns(const SparseMatrix &b) const;
   void check_edge(const Vector &x) const;
@@ -82,7 +105,7 @@ private:
   Matrix unit_loads_;       ///< of a unit force at each of these dofs: ReducedStiffness::turned
   std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
   Matrix samples_;          ///< where the starts are, as parts of the box
-  Vector last_start_, last_;                    ///< of the last query, and where it was
+  Vector last_start_;       ///< of the last query
   std::unique_ptr<ModelCompliance> compliance_; ///< where b does not separate
   // Where contact follows the displacement:
   std::optional<NodalCompliance> nodal_compliance_;

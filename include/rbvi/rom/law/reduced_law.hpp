@@ -23,24 +23,32 @@ struct BodyAtMu {
   NodeLaws laws;                     ///< of the m multipliers
 };
 
+/// What an answer leaves for a nearby query; empty: from rest.
+struct ReducedLawStart {
+  Vector x;                      ///< collocated: its coefficients
+  std::vector<Index> active;     ///< cones
+  std::vector<SlipState> states; ///< joint
+};
+
 struct ReducedLawAnswer {
   Vector x;            ///< m nodal coefficients
   double residual = 0; ///< of the reduced law, relative
   int iterations = 0;
+  ReducedLawStart start{};
 };
 
 /// H X of any number of columns, H the condensed operator at mu: m rows each.
 using CondensedProduct = std::function<Matrix(const Matrix &)>;
 
-/// Keeps the last answer as the next start.
 class ReducedLaw {
 public:
   /// `law` must outlive it; its reduction is not `condensed`. `columns`: of the dual basis.
   /// `b_separates`: the condensed operator is the sum of its terms.
   ReducedLaw(const NodalLaw &law, ColumnLaws columns, bool b_separates);
   /// `times_h`: used where B does not separate. Throws failure, saying what to try, where the
-  /// reduced law is not solved.
-  ReducedLawAnswer solve(const BodyAtMu &body, const CondensedProduct &times_h);
+  /// reduced law is not solved. Several answers are possible: `start` leads to one of them.
+  ReducedLawAnswer solve(const BodyAtMu &body, const CondensedProduct &times_h,
+                         const ReducedLawStart &start = {}) const;
 
 private:
   void set_functions();
@@ -48,8 +56,10 @@ private:
   Matrix tested(const Matrix &image) const;
   Matrix operator_at(const BodyAtMu &body, const CondensedProduct &times_h) const;
   Vector diagonal_at(const BodyAtMu &body, const CondensedProduct &times_h) const;
-  ReducedLawAnswer solve_cones(const BodyAtMu &body, const CondensedProduct &times_h);
-  ReducedLawAnswer solve_joint(const BodyAtMu &body, const CondensedProduct &times_h);
+  ReducedLawAnswer solve_cones(const BodyAtMu &body, const CondensedProduct &times_h,
+                               const ReducedLawStart &start) const;
+  ReducedLawAnswer solve_joint(const BodyAtMu &body, const CondensedProduct &times_h,
+                               const ReducedLawStart &start) const;
 
   const NodalLaw &law_;
   ColumnLaws columns_;
@@ -59,9 +69,6 @@ private:
   std::vector<Vector> diagonals_; ///< joint: of H at the nodes, n and then tau
   Matrix
       functions_; ///< cones: D, m x (R + (R + 1) an interface with friction + M); joint: Z, m x k
-  Vector last_;   ///< collocated
-  std::vector<Index> last_active_;     ///< cones
-  std::vector<SlipState> last_states_; ///< joint
 };
 
 /// The functions of `collocated` in coefficients of the nodal dual basis: m x (R + S).

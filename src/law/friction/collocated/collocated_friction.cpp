@@ -226,9 +226,11 @@ private:
 
 CollocatedResult solve_collocated(const CollocatedProblem &problem, const Vector &start) {
   // The sweeps aim at `accuracy`. Where the generators of a greedy cone nearly depend on each
-  // other, round-off leaves a few 1e-11 however many sweeps follow, far below what such a cone
-  // misses.
-  constexpr double accepted = 1e-10;
+  // other, round-off leaves a few 1e-11 however many sweeps follow; where one of them comes into
+  // contact, it can break the laws by what it carries whether it does or not (3e-10 at 205 of 1e5
+  // parameters of a half-disk): far below what such a cone misses, and less than other laws are let
+  // pass.
+  constexpr double accepted = 1e-8;
   check(problem, start);
   const ScaledProblem p = scaled(problem);
   Solver solver(p);

@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""same_answers.py BIN OUT: answers depend on the parameter and on what the model was made of alone.
+
+Of several answers to a law the rule of the page OUTPUTS.md chooses one. Every case file is reduced on few parameters by one rank and by two. Both models answer the same
+queries, one of them also in the reverse order.
+"""
+
+import csv
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+FEW = {
+    "membrane_obstacle/case.yaml": ["-train", "grid:3,2,2"],
+    "membrane_obstacle/published.yaml": ["-train", "grid:3,2,2"],
+    "patch/case.yaml": ["-train", "grid:3"],
+    "rigid_disk/case.yaml": ["-train", "grid:9"],
+    "rigid_disk/large.yaml": ["-train", "random:8:1", "-arc_edges", "40"],
+    "rigid_disk/large_nitsche.yaml": ["-train", "random:8:1", "-arc_edges", "40"],
+    "rigid_disk/nitsche.yaml": ["-train", "grid:5", "-arc_edges", "40"],
+    "rigid_disk/published.yaml": ["-train", "grid:21"],
+    "roller/case.yaml": ["-train", "grid:3,3"],
+    "two_disks/case.yaml": ["-train", "grid:9"],
+    "two_disks/cone.yaml": ["-train", "grid:9"],
+    "two_disks/large.yaml": ["-train", "grid:5"],
+    "two_disks/published.yaml": ["-train", "grid:9"],
+}
+# Of the answer itself, or round-off: not what is asked.
+CHECKS = ("seconds", "iterations", "kkt_residual", "quadrature_residual", "friction_violation",
+          "load_steps", "contraction", "training", "max_penetration")
+BY_ORDER = 1e-10  # over the largest of each column
+BY_RANKS = 1e-8  # what POD and greedy choices leave of the round-off of the samples
+
+
+def call(*command):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stderr}")
+    return done.stdout
+
+
+def rows_of(path):
+    with open(path, encoding="utf-8") as table:
+        return list(csv.DictReader(table))
+
+
+def difference(one, other):
+    """The largest over all columns, each over its largest value, and its column.
+
+    Forces that are zero by symmetry are round-off of the normal force.
+    """
+    worst = (0.0, "")
+    force = max((abs(float(row.get("normal_force") or 0)) for row in one), default=0)
+    for name in one[0]:
+        if name in CHECKS or name.endswith("_error") or name.startswith("expected"):
+            continue
+        if name == "status":
+            if [row[name] for row in one] != [row[name] for row in other]:
+                return float("inf"), name
+            continue
+        pairs = [(float(a[name]), float(b[name])) for a, b in zip(one, other) if a[name] and b[name]]
+        size = max((abs(a) for a, _ in pairs), default=0)
+        if name.endswith(("_force", "reaction")):
+            size = max(size, 1e-4 * force)
+        for a, b in pairs:
+            if not abs(a - b) <= worst[0] * size:
+                worst = (abs(a - b) / size if size > 0 else float("inf"), name)
+    return worst
+
+
+def compare(binaries, out, name):
+    models = []
+    for ranks in (1, 2):
+        run = out / f"{name.replace('/', '_')}_{ranks}"
+        call("mpirun", "-n", str(ranks), binaries / "rbvi", "offline", "-case", CASES / name, *FEW[name],
+             "-out", run)
+        models.append(run)
+    tables = []
+    for run in models:
+        tables.append(run / "answers.csv")
+        call(binaries / "rbvi-online", run / "model.h5", "--queries", "random:20:3", "--out",
+             tables[-1])
+    one, two = map(rows_of, tables)
+    header = (models[0] / "samples.csv").read_text(encoding="utf-8").split("\n", 1)[0].split(",")
+    names = header[:header.index("energy")]
+    backwards = models[0] / "backwards.csv"
+    with open(backwards, "w", encoding="utf-8") as table:
+        table.write("\n".join([",".join(names)] +
+                              [",".join(row[n] for n in names) for row in reversed(one)]) + "\n")
+    call(binaries / "rbvi-online", models[0] / "model.h5", "--queries", backwards, "--out",
+         models[0] / "backwards_answers.csv")
+    reverse = rows_of(models[0] / "backwards_answers.csv")[::-1]
+    return difference(one, reverse), difference(one, two)
+
+
+def several(binaries, out):
+    """Coulomb's law with a large coefficient has several answers: both programs take the same one, and
+    the model knows that there are others."""
+    case = ["-case", CASES / "patch/case.yaml", "-bodies", "one", "-lumped", "yes", "-parameters",
+            "indentation,shear,friction_coefficient", "-shear", "0,0.2", "-friction_coefficient", "0,4"]
+    run, full, reduced = out / "several", out / "several_full.csv", out / "several_reduced.csv"
+    call(binaries / "rbvi", "offline", *case, "-train", "random:20:1", "-out", run)
+    call(binaries / "rbvi", "solve", *case, "-mu", "0.01,0.2,2.868", "-csv", full)
+    said = call(binaries / "rbvi-online", run / "model.h5", "--mu", "0.01,0.2,2.868", "--out", reduced)
+    one, other = rows_of(full), rows_of(reduced)
+    if "the answer is not the only one" not in said:
+        return ["several answers: rbvi-online does not say that there are others"]
+    distance = abs(float(one[0]["energy"]) / float(other[0]["energy"]) - 1)
+    return [] if distance <= BY_ORDER else [f"several answers: the energies are {distance:.1e} apart"]
+
+
+def main(binaries, out):
+    shutil.rmtree(out, ignore_errors=True)
+    found = {str(path.relative_to(CASES)) for path in CASES.glob("*/*.yaml")}
+    wrong = sorted(f"{name}: no few parameters" for name in found ^ set(FEW))
+    out.mkdir(parents=True)
+    wrong += several(binaries, out)
+    with ThreadPoolExecutor(2) as pool:
+        results = {name: pool.submit(compare, binaries, out, name) for name in FEW}
+    for name, result in results.items():
+        (by_order, of_order), (by_ranks, of_ranks) = result.result()
+        print(f"{name:36s} order {by_order:.1e} {of_order:22s} ranks {by_ranks:.1e} {of_ranks}")
+        if not by_order <= BY_ORDER:
+            wrong.append(f"{name}: {of_order} depends on the order of the queries")
+        if not by_ranks <= BY_RANKS:
+            wrong.append(f"{name}: {of_ranks} depends on the number of ranks")
+    for line in wrong:
+        print(line)
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()))
