@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace rbvi {
+namespace rbvi::extremes_test {
 namespace {
 
 ParameterSpace box(int size) {
@@ -39,4 +39,4 @@ TEST(ExtremesOfBox, AreFewOfManyParameters) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::extremes_test

@@ -2,7 +2,7 @@
 #include "friction_problems.hpp"
 #include "rbvi/law/friction/several_answers.hpp"
 
-namespace rbvi {
+namespace rbvi::friction_rule_test {
 namespace {
 
 /// One node under a coefficient of 2, h_nn - c h_nt < 0. With q = (0.1, 1) there are three answers:
@@ -75,4 +75,4 @@ TEST(FrictionRule, FindsTheOnlyAnswer) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::friction_rule_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::query_order_test {
 namespace {
 
 /// More generators than functions: the multipliers are not unique, and a start chooses some.
@@ -70,4 +70,4 @@ TEST(SampleStarts, AreFoundOnceAtTheNearestSample) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::query_order_test
