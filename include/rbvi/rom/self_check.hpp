@@ -5,16 +5,18 @@
 
 namespace rbvi {
 
-/// 200, fewer (at least 20) of a model of more than 500 functions, whose queries take long.
+/// Random ones: 200, fewer (at least 20) of a model of more than 500 functions, whose queries take
+/// long.
 int queries_of_check(const ReducedModel &model);
 
-/// Asks `model` at random parameters of its box, the same on every machine, and collects what
-/// SelfCheck holds. Costs so many queries with outputs. Throws bad_input where model and scene do
+/// Asks `model` at so many random parameters of its box, the same on every machine, and at its
+/// corners and faces (corners_and_faces), and collects what SelfCheck holds. Costs so many queries
+/// with outputs. Throws bad_input where model and scene do
 /// not fit.
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries);
 
-/// "200 queries, all answered; largest residual 3e-14 (radius=0.8), ...": lines for people; says
-/// what to do where it is not clean.
+/// "200 random queries and 14 at corners and faces, all answered; largest residual 3e-14
+/// (radius=0.8), ...": lines for people; says what to do where it is not clean.
 void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space);
 
 } // namespace rbvi

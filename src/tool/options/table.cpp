@@ -128,8 +128,9 @@ std::vector<Option> of_runs() {
                           "training set: grid:5,5,5 | random:COUNT:SEED | COUNT (seed 1) | "
                           "file.csv with a header of names")),
            "training"),
-      otherwise("the scene's",
-                text("valid", OptionKind::set, "set", AT(valid), "validation set, as -train")),
+      otherwise("the scene's", text("valid", OptionKind::set, "set", AT(valid),
+                                    "validation set, as -train; verify measures at the corners and "
+                                    "faces of the box, too")),
       of_command(text("mu", OptionKind::text, "parameter", AT(mu),
                       "parameter of one solve: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02")),
       of_command(text("vtu", OptionKind::text, "file", AT(vtu), "file for the field of one solve")),
