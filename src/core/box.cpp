@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace rbvi {
 
@@ -49,7 +50,7 @@ std::vector<Mu> corners_and_faces(const ParameterSpace &space) {
     for (const Mu *side : {&low, &high}) {
       Mu mu;
       for (std::size_t j = 0; j < low.size(); ++j)
-        mu.push_back(j == i ? (*side)[j] : (low[j] + high[j]) / 2);
+        mu.push_back(j == i ? (*side)[j] : std::fma(0.5, high[j] - low[j], low[j])); // as a grid
       set.push_back(mu);
     }
   return set;

@@ -101,7 +101,7 @@ struct SelfCheck {
   bool answered() const { return unanswered == 0 && residual.value <= 1e-10; }
   /// Bodies do not penetrate, and friction is bounded, but for what a law on weighted gaps and
   /// tractions leaves between nodes: a few parts in a thousand of these scales.
-  bool admissible() const { return penetration.value <= 5e-2 * scale && friction.value <= 5e-2; }
+  bool admissible() const { return penetration.value <= 2e-2 * scale && friction.value <= 2e-2; }
   bool clean() const { return answered() && admissible(); }
 };
 
