@@ -22,20 +22,29 @@ public:
   explicit Errors(Problem &problem) : problem_(problem) {}
 
   void add(const Vector &u, const Vector &lambda, const Sample &truth) {
-    u_.push_back(v_norm(u - truth.u) / displacement_norm(problem_, truth.mu, truth.u));
-    const double pressed = w_norm(truth.lambda);
-    lambda_.push_back(w_norm(lambda - truth.lambda) / (pressed > 0 ? pressed : 1));
+    u_.emplace_back(v_norm(u - truth.u), displacement_norm(problem_, truth.mu, truth.u));
+    lambda_.emplace_back(w_norm(lambda - truth.lambda), w_norm(truth.lambda));
   }
   void store(BenchRow &row) const {
-    row.u_mean = mean(u_);
-    row.u_max = *std::max_element(u_.begin(), u_.end());
-    row.lambda_mean = mean(lambda_);
-    row.lambda_max = *std::max_element(lambda_.begin(), lambda_.end());
+    const Vector u = over_sizes(u_), lambda = over_sizes(lambda_);
+    row.u_mean = u.mean();
+    row.u_max = u.maxCoeff();
+    row.lambda_mean = lambda.mean();
+    row.lambda_max = lambda.maxCoeff();
   }
 
 private:
-  static double mean(const std::vector<double> &values) {
-    return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size())).mean();
+  using Sized = std::vector<std::pair<double, double>>; ///< errors, and what they are errors of
+  static Vector over_sizes(const Sized &errors) {
+    double largest = 0;
+    for (const auto &[error, size] : errors)
+      largest = std::max(largest, size);
+    Vector result(std::ssize(errors));
+    for (Index p = 0; p < result.size(); ++p) {
+      const auto &[error, size] = errors[static_cast<std::size_t>(p)];
+      result[p] = relative(error, size, largest);
+    }
+    return result;
   }
   double v_norm(const Vector &natural) {
     const Handle<Vec> u = from_natural(problem_.dofs(), natural);
@@ -51,7 +60,7 @@ private:
   }
 
   Problem &problem_;
-  std::vector<double> u_, lambda_;
+  Sized u_, lambda_;
 };
 
 BenchRow timed_row(std::string method, std::string includes, const std::vector<double> &seconds) {

@@ -46,10 +46,6 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   return result;
 }
 
-double relative(double error, double size) {
-  return size > 0 ? error / size : error;
-}
-
 /// 1 at the rows of normal multipliers, 0 at those of tangential ones.
 Vector normal_rows(const Contact &contact) {
   Vector rows(contact.dual_size());
@@ -81,9 +77,10 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
     projected.u = projections.col(p);
     const Vector difference = solver.multiplier(projected) - truths.lambda.col(p);
     const PartNorms norms = part_norms(w, difference, normal);
-    errors.lambda_floor[p] = relative(norms.normal, truths.lambda_norm[p]);
+    errors.lambda_floor[p] = relative(norms.normal, truths.lambda_norm[p], truths.largest_lambda);
     if (errors.tangential_floor.size() > 0)
-      errors.tangential_floor[p] = relative(norms.tangential, truths.tangential_norm[p]);
+      errors.tangential_floor[p] =
+          relative(norms.tangential, truths.tangential_norm[p], truths.largest_tangential);
   }
 }
 
@@ -94,7 +91,9 @@ Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const S
   const Vector distance = distances_to_cone(truths.lambda, {model.dual_basis.leftCols(bounded)}, w,
                                             {model.dual_basis.rightCols(model.free_modes)}) *
                           truths.lambda_norm.maxCoeff();
-  return distance.cwiseQuotient(truths.lambda_norm.cwiseMax(1e-300));
+  return distance.binaryExpr(truths.lambda_norm, [&](double d, double size) {
+    return relative(d, size, truths.largest_lambda);
+  });
 }
 
 /// The answer at one validation mu, nothing if the model has none.
@@ -107,6 +106,18 @@ std::optional<ReducedSolution> answer_at(OnlineSolver &solver, const Truths &tru
 }
 
 } // namespace
+
+double relative(double error, double size, double largest) {
+  constexpr double least_share = 1e-2;
+  const double scale = std::max(size, least_share * largest);
+  return scale > 0 ? error / scale : error;
+}
+
+void share_scale(Truths &one, Truths &other) {
+  for (const auto member :
+       {&Truths::largest_u, &Truths::largest_lambda, &Truths::largest_tangential})
+    one.*member = other.*member = std::max(one.*member, other.*member);
+}
 
 double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
   const Scene &scene = problem.scene();
@@ -165,6 +176,9 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
     const PartNorms norms = part_norms(problem.w_product(), sample.lambda, normal);
     truths.lambda_norm[p] = norms.normal;
     if (truths.tangential_norm.size() > 0) truths.tangential_norm[p] = norms.tangential;
+    truths.largest_u = std::max(truths.largest_u, truths.u_norm[p]);
+    truths.largest_lambda = std::max(truths.largest_lambda, norms.normal);
+    truths.largest_tangential = std::max(truths.largest_tangential, norms.tangential);
   }
   return truths;
 }
@@ -190,7 +204,11 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
     else
       outside.head(k).setZero();
     const double remainder = truths.remainder[p] * truths.remainder[p];
-    errors.u_floor[p] = std::sqrt(outside.squaredNorm() + remainder) / truths.u_norm[p];
+    const auto over_u = [&](const Vector &difference) {
+      return relative(std::sqrt(difference.squaredNorm() + remainder), truths.u_norm[p],
+                      truths.largest_u);
+    };
+    errors.u_floor[p] = over_u(outside);
     errors.u[p] = errors.lambda[p] = std::numeric_limits<double>::infinity();
     if (friction) errors.tangential[p] = errors.u[p];
     const auto start = Clock::now();
@@ -206,11 +224,13 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
       c = embedding * answer->u;
     else
       c.head(k) = answer->u;
-    errors.u[p] = std::sqrt((coordinates - c).squaredNorm() + remainder) / truths.u_norm[p];
+    errors.u[p] = over_u(coordinates - c);
     const Vector difference = solver.multiplier(*answer) - truths.lambda.col(p);
     const PartNorms norms = part_norms(w_product, difference, normal);
-    errors.lambda[p] = relative(norms.normal, truths.lambda_norm[p]);
-    if (friction) errors.tangential[p] = relative(norms.tangential, truths.tangential_norm[p]);
+    errors.lambda[p] = relative(norms.normal, truths.lambda_norm[p], truths.largest_lambda);
+    if (friction)
+      errors.tangential[p] =
+          relative(norms.tangential, truths.tangential_norm[p], truths.largest_tangential);
   }
   if (!model.has_multipliers())
     add_stress_floors(model, truths.coordinates.topRows(k), truths, w_product, errors);
@@ -240,13 +260,26 @@ SubModel enriched_pair(const ReducedModel &model, int n, int r) {
   return {rebased(part, c, n), c};
 }
 
-ValidationErrors summary(const ModelErrors &errors) {
-  ValidationErrors result{static_cast<int>(errors.u.size()), errors.u.mean(), errors.u.maxCoeff(),
-                          errors.lambda.mean(), errors.lambda.maxCoeff()};
-  if (errors.tangential.size() > 0) {
-    result.tangential_mean = errors.tangential.mean();
-    result.tangential_max = errors.tangential.maxCoeff();
-  }
+ValidationErrors summary(const std::vector<const ModelErrors *> &sets) {
+  ValidationErrors result;
+  const auto add = [&](double error, double &mean, double &max) {
+    mean = std::max(mean, 0.0) + error;
+    max = std::max(max, error);
+  };
+  for (const ModelErrors *errors : sets)
+    for (Index p = 0; p < errors->u.size(); ++p) {
+      if (std::isinf(errors->u[p])) {
+        ++result.unanswered;
+        continue;
+      }
+      ++result.count;
+      add(errors->u[p], result.u_mean, result.u_max);
+      add(errors->lambda[p], result.lambda_mean, result.lambda_max);
+      if (errors->tangential.size() > 0)
+        add(errors->tangential[p], result.tangential_mean, result.tangential_max);
+    }
+  for (double *sum : {&result.u_mean, &result.lambda_mean, &result.tangential_mean})
+    if (*sum > 0) *sum /= result.count;
   return result;
 }
 

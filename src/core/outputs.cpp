@@ -4,6 +4,7 @@
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 
 namespace rbvi {
@@ -85,9 +86,18 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
     const auto error = errors.find(column.name);
     if (error != errors.end())
       out << std::setw(static_cast<int>(18 - digits.size())) << ""
-          << "(error " << formatted("%.1e", error->second) << ')';
+          << "(largest error " << formatted("%.1e", error->second) << ')';
     out << '\n';
   }
+}
+
+void check_finite(const Outputs &outputs) {
+  for (const OutputColumn &column : output_columns())
+    if (const std::optional<double> value = outputs.*column.value; value && !std::isfinite(*value))
+      throw failure("the answer has no " + std::string(column.name) + ", which is " +
+                    short_number(*value) +
+                    ": is a load, a material or the mesh extreme, or a function of the scene not "
+                    "finite there?");
 }
 
 const OutputColumn &output_column(const std::string &name) {

@@ -1,5 +1,6 @@
 #include "rbvi/core/validity.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -86,10 +87,8 @@ void check_box(const Scene &scene) {
                       shortest_number(p.upper) + "]: its range of validity is " +
                       describe(p.valid));
   }
-  for (unsigned corner = 0; corner < 1U << space.free.size(); ++corner) {
-    Mu mu;
-    for (int i = 0; i < space.size(); ++i)
-      mu.push_back((corner >> i & 1U) != 0 ? space.at(i).upper : space.at(i).lower);
+  for (unsigned long bits = 0; bits < 1UL << space.free.size(); ++bits) {
+    const Mu mu = corner(space, bits);
     while_doing("checking the corner " + describe(space, mu) + " of the box",
                 [&] { check_together(scene, expand(space, mu)); });
   }

@@ -187,8 +187,8 @@ namespace {
 /// What a self-check found, on every rank.
 struct Checked {
   int unanswered = 0;
-  bool clean = true;
-  int wrong() const { return clean ? 0 : std::max(1, unanswered); } ///< queries
+  bool met = true;                                                ///< to round-off
+  int wrong() const { return met ? 0 : std::max(1, unanswered); } ///< queries
 };
 
 /// Collective. The self-check into the model of rank 0.
@@ -199,7 +199,7 @@ Checked check_answers(const Problem &problem, ReducedModel &model, StageTable &s
     if (rank_of(problem.comm()) != 0) return;
     look_for_other_answers(model, problem.scene());
     model.self_check = self_check(model, problem.scene(), queries_of_check(model));
-    found = {model.self_check.unanswered, model.self_check.clean() ? 1 : 0};
+    found = {model.self_check.unanswered, model.self_check.answered() ? 1 : 0};
   });
   MPI_Bcast(found.data(), 2, MPI_INT, 0, problem.comm());
   return {found[0], found[1] != 0};

@@ -1,6 +1,7 @@
 // What a reduction asks of its training set.
 #include "rbvi/mor/reduce.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -16,17 +17,17 @@ Mu box_centre(const ParameterSpace &space) {
 }
 
 bool holds_corners(const ParameterSpace &space, const std::vector<Mu> &training) {
-  const auto is_at = [&](const Mu &mu, unsigned corner) {
+  const auto is_at = [&](const Mu &mu, const Mu &other) {
     for (int i = 0; i < space.size(); ++i) {
       const Parameter &p = space.at(i);
-      const double bound = (corner >> i & 1U) != 0 ? p.upper : p.lower;
-      if (std::abs(mu[static_cast<std::size_t>(i)] - bound) > 1e-9 * (p.upper - p.lower))
-        return false;
+      const auto k = static_cast<std::size_t>(i);
+      if (!(std::abs(mu[k] - other[k]) <= 1e-9 * (p.upper - p.lower))) return false;
     }
     return true;
   };
-  for (unsigned corner = 0; corner < 1U << space.size(); ++corner)
-    if (std::ranges::none_of(training, [&](const Mu &mu) { return is_at(mu, corner); }))
+  for (unsigned long bits = 0; bits < 1UL << space.size(); ++bits)
+    if (std::ranges::none_of(training,
+                             [&](const Mu &mu) { return is_at(mu, corner(space, bits)); }))
       return false;
   return true;
 }

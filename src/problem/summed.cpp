@@ -1,5 +1,9 @@
 #include "rbvi/problem/summed.hpp"
 
+#include "rbvi/core/error.hpp"
+
+#include <cmath>
+
 namespace rbvi {
 
 namespace {
@@ -39,6 +43,24 @@ void add(double factor, Mat term, Mat total) {
 
 void add(double factor, Vec term, Vec total) {
   RBVI_CALL(VecAXPY(total, factor, term));
+}
+
+/// Throws bad_input where an entry is not finite: some norms pass over what is no number, these two
+/// do not.
+void check_finite(Mat stiffness, const std::string &where) {
+  PetscReal norm = 0;
+  RBVI_CALL(MatNorm(stiffness, NORM_FROBENIUS, &norm));
+  if (!std::isfinite(norm))
+    throw bad_input("the stiffness is not finite at " + where +
+                    ": some function in the terms of a is not, at some point of the body");
+}
+
+void check_finite(Vec load, const std::string &where) {
+  PetscReal norm = 0;
+  RBVI_CALL(VecNorm(load, NORM_1, &norm));
+  if (!std::isfinite(norm))
+    throw bad_input("the load is not finite at " + where +
+                    ": some function in the terms of f is not, at some point of the body");
 }
 
 } // namespace
@@ -88,6 +110,7 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
       add(coefficients[q], summed.exact[q].get(), total);
     if (summed.mapped) add(1, summed.mapped.get(), total);
   }
+  check_finite(total, describe(space, all_parameters));
   summed.made_at = values_of_dependence(sum, all_parameters);
 }
 

@@ -1,8 +1,11 @@
 #include "rbvi/rom/online.hpp"
 
+#include "law/not_definite.hpp"
+
 #include "rbvi/law/nonlinear/anderson.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/law/reduced_stiffness.hpp"
@@ -136,9 +139,7 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
     if (anew) enrich();
     l_ = a_;
     const Eigen::LLT<Eigen::Ref<Matrix>> factor(l_);
-    if (factor.info() != Eigen::Success)
-      throw failure("the reduced stiffness is not positive definite: reduce again with a smaller "
-                    "-eim_tolerance, or stay closer to the training set");
+    if (factor.info() != Eigen::Success) throw stiffness_not_definite();
     theta_a_ = theta_a;
   }
   if (a_ratio == 0 || b_ratio == 0) {
@@ -188,7 +189,7 @@ double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const 
   const double unequal = free > 0 ? excess.tail(free).cwiseAbs().maxCoeff() : 0;
   const double infeasible = relative(std::max({0.0, excess.maxCoeff(), unequal}), scale);
   const double gap = relative(std::abs(x.dot(excess)), scale * x.lpNorm<1>());
-  return std::max({stationarity, infeasible, gap});
+  return largest({stationarity, infeasible, gap});
 }
 
 void OnlineSolver::check(ReducedSolution &solution) {
@@ -258,7 +259,7 @@ void OnlineSolver::solve_following(ReducedSolution &solution) {
                          (solution.x - last_x).norm() <= tolerance * solution.x.norm();
     if (settled) {
       solution.iterations = iterations;
-      solution.contraction = change.norm() / last_change;
+      solution.contraction = last_change > 0 ? change.norm() / last_change : 0;
       assemble(contact_, solution.mu, {images.back()}, solution.contact);
       return;
     }
@@ -385,15 +386,17 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) con
   }
   if (nitsche_) {
     nitsche_->outputs(solution.mu, solution.u, result);
+    check_finite(result);
     return result;
   }
   const Vector lambda = multiplier(solution);
   const ContactOperators operators = nodal_operators(solution, lambda);
   const Vector gap = trace_->gap_left(operators, solution.u);
   trace_->check_outside(operators, gap);
-  result.max_penetration = gap.size() > 0 ? std::max(0.0, -gap.minCoeff()) : 0;
+  result.max_penetration = gap.size() > 0 ? larger(0, -gap.minCoeff<Eigen::PropagateNaN>()) : 0;
   const double least = law_ ? 0 : active_fraction * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
+  check_finite(result);
   return result;
 }
 

@@ -74,7 +74,7 @@ private:
 /// What is said at the end.
 struct Tally {
   std::vector<Point> contact_points; ///< where locking is looked for
-  long rows = 0, unanswered = 0, near_failed = 0, not_alone = 0;
+  long rows = 0, unanswered = 0, near_failed = 0, not_alone = 0, unvalidated = 0;
   double seconds = 0, residual = 0, violation = 0, locking = 0;
   std::string reason; ///< of the first row without an answer
   ResolutionTally resolution;
@@ -162,9 +162,11 @@ void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
   try {
     ReducedSolution solution;
     const Outputs outputs = answer(solver, mu, arguments, solution);
-    table.add(mu, outputs, in_box(solver.scene().parameters, mu), id);
+    const bool inside = in_box(solver.scene().parameters, mu);
+    table.add(mu, outputs, inside, id);
     ++tally.rows;
     if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
+    if (inside && beyond_validation(solver.model(), mu)) ++tally.unvalidated;
     if (solution.to_other > 0) ++tally.not_alone;
     tally.seconds += outputs.seconds.value_or(0);
     tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
@@ -214,6 +216,13 @@ void warn_of_failed_samples(long answers, std::ostream &out) {
          "checked\n";
 }
 
+void warn_of_unvalidated(long answers, std::ostream &out) {
+  if (answers == 0) return;
+  out << "warning: " << answers << (answers == 1 ? " answer lies" : " answers lie")
+      << " nearer to a corner or a face of the box than any parameter at which errors were "
+         "measured: theirs may be larger\n";
+}
+
 void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
   const ParameterSpace &space = solver.scene().parameters;
   const long total = count_queries(arguments, space);
@@ -240,6 +249,9 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   std::ostream &warnings = to_file ? out : std::cerr;
   warn_of_violation(solver.model(), tally.violation, warnings);
   warn_of_failed_samples(tally.near_failed, warnings);
+  warn_of_unvalidated(tally.unvalidated, warnings);
+  if (!to_file && expected_errors(solver.model()).count == 0)
+    print_expected_errors(warnings, solver.model());
   tally.resolution.print(warnings);
   warn_of_locking(tally.locking, warnings);
   warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);

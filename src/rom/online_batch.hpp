@@ -20,6 +20,10 @@ void warn_of_violation(const ReducedModel &model, double violation, std::ostream
 /// A line where `answers` of them lie next to a failed training sample (nearest_sample_failed).
 void warn_of_failed_samples(long answers, std::ostream &out);
 
+/// A line where `answers` of them lie nearer to the boundary of the box than any parameter at which
+/// errors were measured (beyond_validation).
+void warn_of_unvalidated(long answers, std::ostream &out);
+
 /// Answers all queries, row by row, in constant memory, into a temporary file, which becomes FILE
 /// at the end, or to `out`. A set that can be read twice is read to its end before the first
 /// answer; the rows of a stream say so themselves where they are none. Throws bad_input for a wrong

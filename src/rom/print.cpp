@@ -29,15 +29,22 @@ std::string joined(const std::map<std::string, std::string> &map) {
 }
 
 std::string validation(const ValidationErrors &errors) {
-  if (errors.count <= 0) return "not measured (run rbvi verify)";
   std::ostringstream text;
-  text << std::setprecision(2) << "u " << errors.u_mean << " mean, " << errors.u_max
-       << " max; lambda " << errors.lambda_mean << " mean, " << errors.lambda_max << " max; ";
-  if (errors.tangential_mean >= 0)
-    text << "lambda_tau " << errors.tangential_mean << " mean, " << errors.tangential_max
-         << " max; ";
-  text << "over " << errors.count << " parameters, relative";
-  return text.str();
+  if (errors.count > 0) {
+    text << std::setprecision(2) << "u " << errors.u_mean << " mean, " << errors.u_max
+         << " largest; lambda " << errors.lambda_mean << " mean, " << errors.lambda_max
+         << " largest; ";
+    if (errors.tangential_mean >= 0)
+      text << "lambda_tau " << errors.tangential_mean << " mean, " << errors.tangential_max
+           << " largest; ";
+    text << "over " << errors.count << " parameters, relative";
+  }
+  if (errors.unanswered > 0)
+    text << (errors.count > 0 ? "; " : "") << "no answer at " << errors.unanswered
+         << (errors.count > 0 ? " more" : " validation parameters, all of them");
+  return text.str().empty() ? "not measured: nobody knows how far this model is from "
+                              "high-fidelity answers until rbvi verify compares them"
+                            : text.str();
 }
 
 void print_parameters(std::ostream &out, const ParameterSpace &space) {

@@ -280,6 +280,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
       problem_.assemble(mu, condensed || nitsche_ ? ContactRows::all : ContactRows::own, slip);
   if (nitsche_) {
     HfSolution solution = solve_nitsche(mu, op);
+    check_finite(solution.outputs);
     solution.outputs.seconds = MPI_Wtime() - start;
     return solution;
   }
@@ -301,9 +302,10 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   solution.columns = result.columns;
   solution.reason = result.reason;
   solution.outputs.seconds = MPI_Wtime() - start;
+  check_finite(solution.outputs);
   const double allowed =
       follows ? std::max(largest_residual, 10 * options_.nonlinear.tolerance) : largest_residual;
-  if (by_sets && solution.kkt.largest() > allowed)
+  if (by_sets && !(solution.kkt.largest() <= allowed))
     throw failure("the KKT residual is " + short_number(solution.kkt.largest()) + ", above " +
                   short_number(allowed) +
                   ": is the mesh or the parameter extreme? Try "

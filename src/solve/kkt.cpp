@@ -1,3 +1,4 @@
+#include "rbvi/core/largest.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -72,7 +73,7 @@ KktResidual residual_of(const DualMeasures &dual, bool tangents) {
   kkt.feasibility = ratio(penetration, gap);
   kkt.complementarity = ratio(idle, scale);
   kkt.sign = std::max(0.0, ratio(negative, pressure));
-  if (tangents) kkt.friction = std::max(ratio(above, stress), ratio(idle_friction, scale));
+  if (tangents) kkt.friction = larger(ratio(above, stress), ratio(idle_friction, scale));
   return kkt;
 }
 
@@ -88,7 +89,7 @@ double stationarity(const Operators &op, Vec u, Vec reaction) {
 } // namespace
 
 double KktResidual::largest() const {
-  return std::max({stationarity, feasibility, complementarity, sign, friction});
+  return rbvi::largest({stationarity, feasibility, complementarity, sign, friction});
 }
 
 KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {

@@ -1,5 +1,6 @@
 // rbvi offline: from a case file to a model file.
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/io/parameter_sets.hpp"
@@ -19,6 +20,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <set>
 
 namespace rbvi {
 
@@ -52,6 +54,22 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
     failed.push_back(mu);
   model.trained_mu = as_columns(parameters_of(sweep.samples), model.parameters.size());
   model.failed_mu = as_columns(failed, model.parameters.size());
+}
+
+/// That nobody knows the errors of a new model; and where it has so few samples that it cannot even
+/// follow a linear function of the parameters.
+void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run) {
+  std::printf("Its errors are not measured: rbvi verify -out %s compares it with high-fidelity "
+              "answers\n",
+              run.c_str());
+  const std::vector<Mu> trained = from_columns(model.trained_mu);
+  const auto distinct = std::ssize(std::set<Mu>(trained.begin(), trained.end()));
+  if (distinct > model.parameters.size()) return;
+  std::printf(
+      "warning: %s for %s: the tolerances are met at these samples, which says nothing about "
+      "the rest of the box; give a larger -train\n",
+      counted(distinct, "different sample").c_str(),
+      counted(model.parameters.size(), "free parameter").c_str());
 }
 
 } // namespace
@@ -129,6 +147,7 @@ void command_offline(const ToolOptions &options) {
     print_stages(run.stages);
     std::cout << "Self-check: ";
     print_self_check(std::cout, run.model.self_check, run.model.parameters);
+    tell_of_errors(run.model, options.out);
     print_several_answers(std::cout, run.model);
     tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,
                     std::cout);

@@ -78,12 +78,12 @@ def differs(key, value, expected, scale):
     formulation, model, _, output = key
     difference = abs(value - expected)
     if output == "iterations":  # round-off may decide about the last, and about the order of pivots
-        return difference > (1 if model == "full" else max(1, expected))
+        return not difference <= (1 if model == "full" else max(1, expected))
     own_error = WITHIN_THEIR_ERROR.get((formulation, model), 0)
     if output == "quadrature_residual":  # an estimate of an error, of which the first digits count
-        return difference > (1e-2 if own_error else max(1e-8, 1e-2 * expected))
+        return not difference <= (1e-2 if own_error else max(1e-8, 1e-2 * expected))
     round_off = max(ROUND_OFF.get(output, 0), max(1e-10, own_error) * scale)
-    return difference > max(1.1e-9 * abs(expected), round_off)
+    return not difference <= max(1.1e-9 * abs(expected), round_off)  # nor is NaN within it
 
 
 def compare(found):

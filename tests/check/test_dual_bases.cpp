@@ -1,4 +1,5 @@
 // Every dual basis and every enrichment from snapshots to answers.
+#include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "reduced.hpp"
 
@@ -118,8 +119,8 @@ std::pair<double, double> differences(Reduced &r, const std::vector<Sample> &tru
   for (const Sample &sample : truth) {
     const ReducedSolution answer = solver.solve(sample.mu);
     const Vector off = solver.multiplier(answer) - sample.lambda;
-    u = std::max(u, (solver.field(answer) - sample.u).norm() / sample.u.norm());
-    lambda = std::max(lambda, std::sqrt(off.dot(w * off) / sample.lambda.dot(w * sample.lambda)));
+    u = larger(u, (solver.field(answer) - sample.u).norm() / sample.u.norm());
+    lambda = larger(lambda, std::sqrt(off.dot(w * off) / sample.lambda.dot(w * sample.lambda)));
   }
   return {u, lambda};
 }

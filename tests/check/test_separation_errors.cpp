@@ -3,6 +3,7 @@
 
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/mor/stages.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
@@ -67,8 +68,8 @@ double difference(const ReducedModel &one, const ReducedModel &other) {
   double largest = 0;
   for (const double radius : {0.713, 0.86, 1.027, 1.288}) {
     const ReducedSolution x = a.solve({radius}), y = b.solve({radius});
-    largest = std::max({largest, (x.u - y.u).norm() / x.u.norm(),
-                        (a.multiplier(x) - b.multiplier(y)).norm() / a.multiplier(x).norm()});
+    largest = rbvi::largest({largest, (x.u - y.u).norm() / x.u.norm(),
+                             (a.multiplier(x) - b.multiplier(y)).norm() / a.multiplier(x).norm()});
   }
   return largest;
 }
@@ -235,7 +236,7 @@ TEST(SeparationErrors, OverOtherParametersAreThoseOfTheModelsOwnSum) {
         rest -= weights[i] * Matrix(op.b);
       }
       const Index half = b.rows() / 2, first = normal ? 0 : half;
-      left = std::max(left, rest.middleRows(first, half).cwiseAbs().maxCoeff());
+      left = larger(left, rest.middleRows(first, half).cwiseAbs().maxCoeff());
       scale = std::max(scale, b.middleRows(first, half).cwiseAbs().maxCoeff());
     }
     EXPECT_NEAR(e.validation.back(), left / scale, 1e-6 * left / scale + 1e-13);

@@ -4,6 +4,7 @@
 #include "rbvi/contact/large_pair/large_pair.hpp"
 #include "rbvi/contact/pair/pair.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 
 #include <gtest/gtest.h>
 
@@ -178,7 +179,7 @@ TEST(LargePair, BetweenCirclesTheGapIsTheDistanceAtFourthOrder) {
         if (gap < 0 || std::abs(distance - op.nodal_gap[i]) < std::abs(gap - op.nodal_gap[i]))
           gap = distance;
       }
-      error = std::max(error, std::abs(gap - op.nodal_gap[i]));
+      error = larger(error, std::abs(gap - op.nodal_gap[i]));
     }
     EXPECT_GT(op.nodal_gap.size(), edges / 4);
     if (last > 0) {
@@ -247,7 +248,7 @@ TEST(LargePair, OperatorsAreContinuousWhereVerticesPassEachOther) {
         const ContactOperators op = at(*large, {0}, aside(mesh, 0.6 * k / steps - 0.3));
         const double change =
             (Matrix(op.b) - Matrix(last.b)).norm() + (op.g - last.g).norm() / 0.01;
-        largest = std::max(largest, change);
+        largest = larger(largest, change);
         sum += change;
         if (op.segments != last.segments) ++passed;
         last = op;

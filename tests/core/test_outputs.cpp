@@ -111,6 +111,22 @@ TEST(ResolutionWarning, IsEmptyWhereThereAreEnoughNodesOrNoZone) {
   EXPECT_EQ(resolution_warning(zones(20, 0, 0)), ""); // no friction to speak of
 }
 
+TEST(Outputs, ThatAreNotFiniteAreNoAnswer) {
+  Outputs outputs = zones(9, 5, 1);
+  EXPECT_NO_THROW(check_finite(outputs));
+  for (const OutputColumn &column : output_columns())
+    for (const double bad : {std::nan(""), 1 / 0.0}) {
+      Outputs wrong = outputs;
+      wrong.*column.value = bad;
+      try {
+        check_finite(wrong);
+        FAIL() << column.name;
+      } catch (const Error &error) {
+        EXPECT_NE(std::string(error.what()).find(column.name), std::string::npos) << error.what();
+      }
+    }
+}
+
 TEST(ResolutionTally, PrintsTheFirstAndHowMany) {
   std::ostringstream none, one, two;
   ResolutionTally tally;

@@ -4,6 +4,7 @@
 #include "columns.hpp"
 #include "half_plane.hpp"
 #include "random_matrix.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/law/friction/friction.hpp"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ inline double violation(const FrictionProblem &p, const FrictionBound &bound, co
   double worst = 0;
   const auto add = [&](Index j, double distance) {
     if (distance > 0)
-      worst = std::max(worst, distance * root[j] / std::max(largest, terms[j] / root[j]));
+      worst = larger(worst, distance * root[j] / std::max(largest, terms[j] / root[j]));
   };
   for (Index i = 0; i < p.nodes(); ++i) {
     if (x[i] < 0) return std::numeric_limits<double>::infinity();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/core/largest.hpp"
 
 #include <limits>
 
@@ -14,7 +15,7 @@ inline double lcp_violation(const Matrix &m, const Vector &q, const Vector &x) {
   double worst = 0;
   for (Index i = 0; i < q.size(); ++i) {
     if (x[i] < 0) return std::numeric_limits<double>::infinity();
-    if (terms[i] > 0) worst = std::max(worst, (x[i] > 0 ? std::abs(w[i]) : -w[i]) / terms[i]);
+    if (terms[i] > 0) worst = larger(worst, (x[i] > 0 ? std::abs(w[i]) : -w[i]) / terms[i]);
   }
   return worst;
 }

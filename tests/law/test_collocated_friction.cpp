@@ -1,5 +1,6 @@
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/law/friction/collocated_friction.hpp"
 #include "rbvi/law/qp/nonnegative_qp.hpp"
 
@@ -41,8 +42,8 @@ double violation(const CollocatedProblem &p, const Vector &x) {
   double worst = 0;
   for (Index i = 0; i < r; ++i) {
     if (x[i] < 0) return infinity;
-    worst = std::max(worst, -w[i] / terms[i]);
-    worst = std::max(worst, std::min(x[i] * root[i] / largest, std::abs(w[i]) / terms[i]));
+    worst = larger(worst, -w[i] / terms[i]);
+    worst = larger(worst, std::min(x[i] * root[i] / largest, std::abs(w[i]) / terms[i]));
   }
   const Vector bounds = bounds_of(p, x), traction = p.tangential_rows * x.tail(s);
   const Matrix unit = p.tangential_rows * root.tail(s).cwiseInverse().asDiagonal();
@@ -50,7 +51,7 @@ double violation(const CollocatedProblem &p, const Vector &x) {
   Matrix normals(s, 0);
   for (Index j = 0; j < bounds.size(); ++j) {
     const double scale = std::max(bounds[j], largest * size);
-    worst = std::max(worst, (std::abs(traction[j]) - bounds[j]) / scale);
+    worst = larger(worst, (std::abs(traction[j]) - bounds[j]) / scale);
     for (const double side : {-1.0, 1.0}) {
       if (side * traction[j] < bounds[j] - 1e-11 * scale) continue;
       normals.conservativeResize(Eigen::NoChange, normals.cols() + 1);

@@ -1,5 +1,6 @@
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/law/qp/nonnegative_qp.hpp"
 
 #include "random_matrix.hpp"
@@ -50,7 +51,7 @@ double kkt_violation(const Matrix &y, const Vector &c, const Vector &g, const Ve
     const double size = y.col(j).norm() * (c.norm() + image.norm()) + std::abs(g[j]);
     if (size == 0) continue;
     if (x[j] < 0) return std::numeric_limits<double>::infinity();
-    worst = std::max(worst, (x[j] > 0 ? std::abs(gradient[j]) : -gradient[j]) / size);
+    worst = larger(worst, (x[j] > 0 ? std::abs(gradient[j]) : -gradient[j]) / size);
   }
   return worst;
 }

@@ -1,6 +1,7 @@
 // The space of the responses of a body whose stiffness is a sum of exact terms, against a
 // factorisation at parameters that were not in it.
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/mor/separation/condensed.hpp"
 #include "rbvi/mor/separation/response_space.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
@@ -51,7 +52,7 @@ double worst_compliance(Problem &problem, const Matrix &loads, const LinearBasis
     ResponseSolver solver(problem.assemble(mu).a, problem.trace(), "hf_");
     const Matrix exact = loads.transpose() * solver.responses(loads);
     const Matrix found = reduced.compliance(expand(problem.scene().parameters, mu));
-    worst = std::max(worst, (found - exact).norm() / exact.norm());
+    worst = larger(worst, (found - exact).norm() / exact.norm());
   }
   return worst;
 }

@@ -1,5 +1,6 @@
 // Operators summed from kept terms: against an assembly of the whole at each mu, and on facets
 // against integrals in closed form.
+#include "../core/refuses.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
@@ -102,6 +103,32 @@ TEST(Summed, FacetsOfABoundaryAreIntegratedOnce) {
   }
   EXPECT_NEAR(up, 2 * 1.2, 1e-12) << "the length of the flat side";
   EXPECT_NEAR(across, 0, 1e-12);
+}
+
+/// A load or a stiffness that is no number at some point, or infinite, at some parameter; refused
+/// each time, and not at the others.
+TEST(Summed, WhatIsNotFiniteIsRefused) {
+  for (const double bad : {std::nan(""), 1 / 0.0}) {
+    Scene scene = disk("radius");
+    scene.f = {mapped_term(traction_load(
+        "arc",
+        [bad](const FullMu &mu, const Point &x, const Point &) -> Point {
+          return {0, mu[0] > 1.2 && x[0] > 0.5 ? bad : 1, 0};
+        },
+        2, 2))};
+    Problem loaded(PETSC_COMM_WORLD, scene, {});
+    for (int times = 0; times < 2; ++times)
+      EXPECT_TRUE(
+          refuses("the load is not finite at radius=1.25", [&] { (void)loaded.assemble({1.25}); }));
+    EXPECT_NO_THROW((void)loaded.assemble({1.1}));
+    scene.f = {};
+    scene.a.push_back(mapped_term({"", [bad](const FullMu &mu, const Cell &, double *values) {
+                                     std::fill_n(values, 144, mu[0] > 1.2 ? bad : 0);
+                                   }}));
+    Problem stiff(PETSC_COMM_WORLD, scene, {});
+    EXPECT_TRUE(refuses("the stiffness is not finite", [&] { (void)stiff.assemble({1.25}); }));
+    EXPECT_NO_THROW((void)stiff.assemble({1.1}));
+  }
 }
 
 TEST(Summed, ABoundaryThatIsNotThereIsRefused) {

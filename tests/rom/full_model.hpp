@@ -18,7 +18,10 @@ inline ReducedModel full_model() {
   model.validation_enriched = {64, 1e-4, 2e-4, 3e-4, 4e-4};
   model.validation_enriched.outputs = {{"energy", 1, 2, 3, 4, 5, 6},
                                        {"kkt_residual", 0, 1e-15, 0, 0, 0, 0}};
-  model.self_check = {200, 3, {0.2, 0.01}, "contact opens", {1e-12, {0.17, 0}}, {1e-3, {0.2, 0}}};
+  model.validation_enriched.unanswered = 2;
+  model.validated_mu = Matrix::Constant(2, 66, 0.02);
+  model.self_check = {200, 3, {0.2, 0.01}, "contact opens", {1e-12, {0.17, 0}}, {1e-3, {0.2, 0}},
+                      {},  8, 0.25};
   return model;
 }
 

@@ -1,5 +1,6 @@
 // Interpolation at Chebyshev points: exact for polynomials, exponential for smooth functions, and
 // its own estimate of what it misses.
+#include "rbvi/core/largest.hpp"
 #include "rbvi/rom/model/chebyshev.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +40,7 @@ double worst_error(const std::vector<ChebyshevAxis> &grid, double (*f)(double, d
   double worst = 0;
   for (double x = -1; x <= 2; x += 0.17)
     for (double y = 0.2; y <= 5; y += 0.31)
-      worst = std::max(worst, std::abs((values * grid_weights(scene, grid, {x, y}))[0] - f(x, y)));
+      worst = larger(worst, std::abs((values * grid_weights(scene, grid, {x, y}))[0] - f(x, y)));
   return worst;
 }
 

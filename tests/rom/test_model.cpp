@@ -115,6 +115,10 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_EQ(errors_of_outputs(copy), (ErrorOfOutput{{"energy", 2}}));
   EXPECT_EQ(copy.self_check.queries, 200);
   EXPECT_EQ(copy.self_check.unanswered, 3);
+  EXPECT_EQ(copy.self_check.at_boundary, 8);
+  EXPECT_EQ(copy.self_check.scale, 0.25);
+  EXPECT_EQ(copy.validation_enriched.unanswered, 2);
+  EXPECT_EQ(copy.validated_mu, model.validated_mu);
   EXPECT_EQ(copy.self_check.unanswered_at, (Mu{0.2, 0.01}));
   EXPECT_EQ(copy.self_check.reason, "contact opens");
   EXPECT_EQ(copy.self_check.residual.at, (Mu{0.17, 0}));

@@ -199,6 +199,18 @@ TEST(AffineCoefficients, ReassembleTheSampledEntries) {
   EXPECT_EQ(affine_coefficients({}, scene.f, scene, mu).size(), 0);
 }
 
+TEST(KktResidual, IsNoNumberWhereAnOperatorIsNone) {
+  const Vector two = Vector::Ones(2);
+  for (const Index entry : {0, 1}) {
+    Vector bad = two;
+    bad[entry] = std::nan("");
+    EXPECT_TRUE(std::isnan(kkt_residual(bad, -two, two, two, two, two)));
+    EXPECT_TRUE(std::isnan(kkt_residual(two, -two, two, bad, two, two)));
+    EXPECT_TRUE(std::isnan(kkt_residual(two, -two, two, two, bad, two)));
+    EXPECT_TRUE(std::isnan(kkt_residual(two, -two, two, two, two, bad)));
+  }
+}
+
 TEST(Outputs, AreIntegralsOverTheContactRegion) {
   ReducedModel model = synthetic::random_model({}, 8);
   model.validation_enriched = {10, 1e-3, 2e-3, 3e-3, 4e-3};

@@ -387,7 +387,26 @@ TEST_F(OnlineBinary, ReadsItsOwnTablesAgain) {
     EXPECT_EQ(first[i].at("energy_error"), "2.0e-05");
     EXPECT_FALSE(first[i].contains("kkt_residual_error"));
   }
-  EXPECT_TRUE(contains(online("model.h5 --mu 0.2,0,0").out, "(error 2.0e-05)"));
+  EXPECT_TRUE(contains(online("model.h5 --mu 0.2,0,0").out, "(largest error 2.0e-05)"));
+}
+
+TEST_F(OnlineBinary, SaysWhereNothingSoNearTheBoundaryWasMeasured) {
+  const std::string nearer = "nearer to a corner or a face of the box";
+  EXPECT_FALSE(contains(online("model.h5 --mu 0.24,0.05,0.05").out, nearer));
+  model.validated_mu = Vector{{0.2, 0, 0}};
+  write_model(model, "model.h5");
+  EXPECT_FALSE(contains(online("model.h5 --mu 0.2,0,0").out, nearer));
+  const Finished one = online("model.h5 --mu 0.21,0,0");
+  EXPECT_TRUE(contains(one.out, "warning: 1 answer lies " + nearer)) << one.out;
+  const Finished many = online("model.h5 --queries random:5:1 --out out.csv");
+  EXPECT_TRUE(contains(many.out, "warning: 5 answers lie " + nearer)) << many.out;
+  const Finished outside = online("model.h5 --mu 0.245,0,0 --extrapolate");
+  EXPECT_TRUE(contains(outside.out, "unknown outside the box")) << outside.out;
+  EXPECT_FALSE(contains(outside.out, nearer)) << outside.out;
+  model.validation_enriched = {};
+  model.validated_mu = {};
+  write_model(model, "model.h5");
+  EXPECT_TRUE(contains(online("model.h5 --mu 0.2,0,0").out, "not measured: nobody knows"));
 }
 
 TEST_F(OnlineBinary, IsSerial) {

@@ -1,7 +1,7 @@
 #include "synthetic.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/extremes.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/self_check.hpp"
 
@@ -24,20 +24,25 @@ bool contains(const std::string &text, const std::string &part) {
 TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
   const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
   const SelfCheck check = self_check(model, scene_of(model), 30);
-  EXPECT_EQ(check.queries, 30 + 8 + 6) << "with corners and faces";
+  EXPECT_EQ(check.queries, 44);
+  EXPECT_EQ(check.at_boundary, 14);
   EXPECT_EQ(check.unanswered, 0);
-  EXPECT_TRUE(check.clean());
+  EXPECT_TRUE(check.answered());
   OnlineSolver solver(model);
   const Outputs there = solver.outputs(check.penetration.at, solver.solve(check.penetration.at));
   EXPECT_NEAR(*there.max_penetration, check.penetration.value, 1e-9);
   std::vector<Mu> set = parse_set(model.parameters, "random:30:17");
-  for (const Mu &mu : extremes_of_box(model.parameters))
+  for (const Mu &mu : corners_and_faces(model.parameters))
     set.push_back(mu);
-  for (const Mu &mu : set)
-    EXPECT_LE(*solver.outputs(mu, solver.solve(mu)).max_penetration,
-              check.penetration.value + 1e-9);
-  EXPECT_TRUE(contains(printed(check, model), "44 queries, all answered"));
-  EXPECT_FALSE(contains(printed(check, model), "reduce again"));
+  double displacement = 0;
+  for (const Mu &mu : set) {
+    const ReducedSolution solution = solver.solve(mu);
+    EXPECT_LE(*solver.outputs(mu, solution).max_penetration, check.penetration.value + 1e-9);
+    displacement = std::max(displacement, (model.contact_trace * solution.u).cwiseAbs().maxCoeff());
+  }
+  EXPECT_NEAR(check.scale, displacement, 1e-9 * displacement);
+  EXPECT_TRUE(contains(printed(check, model),
+                       "30 random queries and 14 at corners and faces of the box, all answered"));
 }
 
 TEST(SelfCheck, IsTheSameEveryTime) {
@@ -52,7 +57,7 @@ TEST(SelfCheck, SaysWhatHasNoAnswer) {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
   model.a.reduced *= -1; // not positive definite
   const SelfCheck check = self_check(model, scene_of(model), 10);
-  EXPECT_EQ(check.unanswered, 10 + 8 + 6);
+  EXPECT_EQ(check.unanswered, 24);
   EXPECT_EQ(check.unanswered_at, parse_set(model.parameters, "random:1:17")[0]);
   EXPECT_FALSE(check.clean());
   const std::string text = printed(check, model);
@@ -65,6 +70,28 @@ TEST(SelfCheck, SaysWhatHasNoAnswer) {
   rough.residual = {1e-7, model.parameters.size() == 3 ? Mu{0.2, 0, 0} : Mu{}};
   EXPECT_FALSE(rough.clean());
   EXPECT_TRUE(contains(printed(rough, model), "residuals above 1e-10"));
+}
+
+/// Residuals of round-off say nothing of what the model does not know.
+TEST(SelfCheck, IsNotCleanWhereBodiesPenetrateOrFrictionExceedsItsBound) {
+  const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
+  SelfCheck check;
+  check.queries = 5;
+  check.scale = 0.1;
+  check.residual = {1e-14, {0.2, 0, 0}};
+  check.penetration = {1e-3, {0.2, 0, 0}};
+  EXPECT_TRUE(check.clean());
+  EXPECT_FALSE(contains(printed(check, model), "reduce again")) << printed(check, model);
+  for (const double bad : {0.02, std::nan("")}) {
+    check.penetration.value = bad;
+    EXPECT_TRUE(check.answered());
+    EXPECT_FALSE(check.clean());
+    EXPECT_TRUE(contains(printed(check, model), "bodies penetrate")) << printed(check, model);
+  }
+  check.penetration.value = 1e-3;
+  check.friction = {0.2, {0.2, 0, 0}};
+  EXPECT_FALSE(check.clean());
+  EXPECT_TRUE(contains(printed(check, model), "friction exceeds its bound"));
 }
 
 /// Where something is not finite between the training parameters the rest of the box has answers.

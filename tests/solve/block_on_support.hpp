@@ -1,6 +1,7 @@
 // The exact state of one block on a rigid support (scene patch), sticking or slipping.
 #pragma once
 
+#include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
@@ -45,8 +46,9 @@ inline double displacement_error(const Problem &problem, const Mu &mu, const Exa
     const Point &x = mesh.points[v], motion = problem.scene().motion(all, x);
     const Index dof = 2 * mesh.natural_node[v];
     const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
-    worst = std::max({worst, std::abs(across - exact.slip - (mu[1] - exact.slip) * x[1] / height),
-                      std::abs(down + mu[0] * x[1] / height)});
+    worst =
+        rbvi::largest({worst, std::abs(across - exact.slip - (mu[1] - exact.slip) * x[1] / height),
+                       std::abs(down + mu[0] * x[1] / height)});
   }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
   return worst;

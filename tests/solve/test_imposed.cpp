@@ -6,6 +6,7 @@
 #include "../mesh/temporary_file.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/support/support.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
@@ -40,7 +41,7 @@ double largest_error(const Solved &of, const Mu &mu, const Field &exact) {
     for (int c = 0; c < scene.components; ++c) {
       const auto k = static_cast<std::size_t>(c);
       const double value = of.solution.u[mesh.natural_node[v] * scene.components + c] + motion[k];
-      worst = std::max(worst, std::abs(value - expected[k]));
+      worst = larger(worst, std::abs(value - expected[k]));
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, of.problem.comm());
@@ -176,7 +177,7 @@ void expect_same(const Scene &moved, const Mu &mu, const HfOptions &options = {}
     for (int c = 0; c < 2; ++c) {
       const Index dof = 2 * mesh.natural_node[v] + c;
       const double whole = motion[static_cast<std::size_t>(c)] + s.solution.u[dof];
-      worst = std::max(worst, std::abs(whole - other.solution.u[dof]));
+      worst = larger(worst, std::abs(whole - other.solution.u[dof]));
       size = std::max(size, std::abs(whole));
     }
   }
@@ -229,8 +230,8 @@ TEST(Imposed, ALiftedFrameIsALoweredObstacle) {
           if (mesh.natural_node[v] < mesh.total_vertices) {
             const PetscInt dof = mesh.natural_node[v];
             const double x = scene.map(all, mesh.points[v])[0];
-            worst = std::max(worst, std::abs(lifted.solution.u[dof] - height - tilt * x -
-                                             lowered.solution.u[dof]));
+            worst = larger(worst, std::abs(lifted.solution.u[dof] - height - tilt * x -
+                                           lowered.solution.u[dof]));
           }
         EXPECT_LE(worst, 1e-12);
         EXPECT_EQ(lifted.solution.active, lowered.solution.active);

@@ -1,4 +1,5 @@
 // The patch test: two blocks whose meshes do not match carry a constant pressure exactly.
+#include "rbvi/core/largest.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +34,7 @@ double displacement_error(const Problem &problem, double indentation, const HfSo
     const Point motion = problem.scene().motion({indentation}, reference);
     const Index dof = 2 * mesh.natural_node[v];
     const double across = motion[0] + s.u[dof], down = motion[1] + s.u[dof + 1];
-    worst = std::max({worst, std::abs(across), std::abs(down + indentation * (x[1] + 0.5))});
+    worst = rbvi::largest({worst, std::abs(across), std::abs(down + indentation * (x[1] + 0.5))});
   }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
   return worst;

@@ -1,6 +1,7 @@
 // The patch test under a rigid half-plane that is tilted: a block turned by any angle carries a
 // constant pressure, and a constant shear where it rubs, exactly.
 #include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
@@ -66,8 +67,8 @@ double largest_error(const Problem &problem, const Mu &mu, const HfSolution &sol
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     for (int c = 0; c < 2; ++c) {
       const Point expected = exact(expand(problem.scene().parameters, mu), mesh.points[v]);
-      worst = std::max(worst, std::abs(solution.u[mesh.natural_node[v] * 2 + c] -
-                                       expected[static_cast<std::size_t>(c)]));
+      worst = larger(worst, std::abs(solution.u[mesh.natural_node[v] * 2 + c] -
+                                     expected[static_cast<std::size_t>(c)]));
     }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
   return worst;

@@ -2,6 +2,7 @@
 // warm starts; and reduced models of random size against their optimality system.
 #include "../rom/synthetic.hpp"
 
+#include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/law/lcp.hpp"
 #include "rbvi/law/qp/nonnegative_qp.hpp"
@@ -60,7 +61,7 @@ double violation(const RandomQp &qp, const Vector &x) {
   double worst = x.minCoeff() < 0 ? 1 : 0;
   for (Index j = 0; j < x.size(); ++j) {
     const double scale = qp.y.col(j).norm() * size + std::abs(qp.g[j]);
-    worst = std::max(worst, (x[j] > 0 ? std::abs(w[j]) : -w[j]) / scale);
+    worst = larger(worst, (x[j] > 0 ? std::abs(w[j]) : -w[j]) / scale);
   }
   return worst;
 }

@@ -1,5 +1,6 @@
 // 100000 random queries of a model file: every KKT residual <= 1e-10, and an answer does not
 // depend on the queries before it.
+#include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/online.hpp"
 
@@ -22,15 +23,14 @@ Extremes query(const ReducedModel &model) {
   Extremes worst;
   for (std::size_t k = 0; k < queries.size(); ++k) {
     const ReducedSolution answer = warm.solve(queries[k]);
-    worst.kkt = std::max(worst.kkt, answer.kkt_residual);
+    worst.kkt = larger(worst.kkt, answer.kkt_residual);
     worst.iterations = std::max(worst.iterations, answer.iterations);
     if (k % cold_every != 0) continue;
     OnlineSolver cold(model);
     const ReducedSolution again = cold.solve(queries[k]);
     const Vector lambda = cold.multiplier(again);
-    worst.u = std::max(worst.u, (answer.u - again.u).norm() / again.u.norm());
-    worst.lambda =
-        std::max(worst.lambda, (warm.multiplier(answer) - lambda).norm() / lambda.norm());
+    worst.u = larger(worst.u, (answer.u - again.u).norm() / again.u.norm());
+    worst.lambda = larger(worst.lambda, (warm.multiplier(answer) - lambda).norm() / lambda.norm());
   }
   return worst;
 }

@@ -22,7 +22,16 @@ struct Truths {
   Vector lambda_norm;           ///< P, in W; with friction of the normal part
   Vector tangential_norm;       ///< P, of the tangential part; empty without friction
   std::vector<Outputs> outputs; ///< P
+  double largest_u = 0, largest_lambda = 0, largest_tangential = 0; ///< of these norms
 };
+
+/// The error over the size, which counts as 1e-2 of the largest of its set where it is less: an
+/// answer that is zero, or nearly, is measured on the scale of the set. Of a set of zeros the error
+/// itself.
+double relative(double error, double size, double largest);
+
+/// Gives two sets one scale, the larger ones.
+void share_scale(Truths &one, Truths &other);
 
 /// Collective. `problem`: on the communicator of all ranks.
 Truths make_truths(Problem &problem, const ReducedModel &model, const std::vector<Sample> &samples);
@@ -58,6 +67,7 @@ bool knows_enriched_pairs(const ReducedModel &model);
 /// generators within the model's space. Needs knows_enriched_pairs(model).
 SubModel enriched_pair(const ReducedModel &model, int n, int r);
 
-ValidationErrors summary(const ModelErrors &errors);
+/// Over the queries of some sets that have an answer; the others are counted.
+ValidationErrors summary(const std::vector<const ModelErrors *> &sets);
 
 } // namespace rbvi

@@ -75,8 +75,11 @@ const OutputColumn &output_column(const std::string &name);
 /// Measured errors of outputs by column name, absolute.
 using ErrorOfOutput = std::map<std::string, double>;
 
-/// "name value" lines for one answer, with "(error ...)" where one was measured.
+/// "name value" lines for one answer, with "(largest error ...)" where one was measured.
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors = {});
+
+/// Throws failure, naming it, where an output is not finite.
+void check_finite(const Outputs &outputs);
 
 /// What is not accurate in this answer because contact reaches the end of its boundary, or because
 /// so few nodes are in contact, or stick, and how far it may be off; empty: nothing.

@@ -29,7 +29,7 @@ bool differs(const Summed<Object> &summed, const Sum &sum, const FullMu &all_par
 }
 
 /// summed.total at mu. `cells`: mapped there, where there are terms that depend on the map.
-/// Collective. Throws bad_input for a coefficient that is not finite.
+/// Collective. Throws bad_input for a coefficient or an entry that is not finite.
 template <class Object>
 void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters,
             const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped,

@@ -55,6 +55,7 @@ public:
   ReducedSolution solve(const Mu &mu, bool extrapolate = false);
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
+  /// Throws failure (check_finite).
   Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
   /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
   Vector multiplier(const ReducedSolution &solution) const;

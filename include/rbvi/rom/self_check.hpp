@@ -5,11 +5,12 @@
 
 namespace rbvi {
 
-/// 200, fewer (at least 20) of a model of more than 500 functions, whose queries take long.
+/// Random ones: 200, fewer (at least 20) of a model of more than 500 functions, whose queries take
+/// long.
 int queries_of_check(const ReducedModel &model);
 
-/// Asks `model` at `queries` random parameters of its box, the same on every machine, and at its
-/// corners and faces (extremes_of_box), and collects what SelfCheck holds. Costs so many queries
+/// Asks `model` at so many random parameters of its box, the same on every machine, and at its
+/// corners and faces (corners_and_faces), and collects what SelfCheck holds. Costs so many queries
 /// with outputs. Throws bad_input where model and scene do not fit.
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries);
 
@@ -18,8 +19,8 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries)
 /// (has_several_answers). Costs a few times as many queries. Throws likewise.
 void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set = {});
 
-/// "202 queries, all answered; largest residual 3e-14 (radius=0.8), ...": lines for people; says
-/// what to do where it is not clean.
+/// "200 random queries and 14 at corners and faces, all answered; largest residual 3e-14
+/// (radius=0.8), ...": lines for people; says what to do where it is not clean.
 void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space);
 
 } // namespace rbvi

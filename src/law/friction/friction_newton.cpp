@@ -1,5 +1,7 @@
 #include "friction_newton.hpp"
 
+#include "rbvi/core/largest.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -86,7 +88,7 @@ public:
 private:
   double root(Index j) const { return std::sqrt(diagonal_[j]); }
   void violated(double size, double scale) {
-    if (size > 0) verdict_.residual = std::max(verdict_.residual, size / scale);
+    if (!(size <= 0)) verdict_.residual = larger(verdict_.residual, size / scale);
   }
   bool turned(Index i) const {
     return laws_.dim == 2 && sets_.tangent_at(i) == Tangent::slip &&

@@ -164,7 +164,7 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
     measure(iterate, state, reaction, last_x, part, result);
     const double change = std::max(result.change_u, result.change_x);
     if (!std::isfinite(iterate.u.norm())) break;
-    result.rate = k == 0 ? 0 : change / last;
+    result.rate = last > 0 ? change / last : 0;
     // With friction the contraction of the last step does not tell that of the next.
     const bool predicts = options_.economical && nodal_ && !friction && k > 1;
     const double left = predicts ? change * std::min(result.rate, 1.0) : change;

@@ -1,6 +1,7 @@
 #include "rbvi/rom/law/reduced_law.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/law/general_lcp.hpp"
 
@@ -83,7 +84,7 @@ double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal
   const Vector bounds = bounds_of(laws, x), y = x - w.cwiseQuotient(diagonal);
   double largest = 0;
   const auto compare = [&](Index row, double projected) {
-    largest = std::max(largest, std::abs(x[row] - projected));
+    largest = larger(largest, std::abs(x[row] - projected));
   };
   for (Index i = 0; i < laws.nodes(); ++i) {
     const Index normal = laws.normal[static_cast<std::size_t>(i)];

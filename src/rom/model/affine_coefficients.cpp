@@ -1,6 +1,7 @@
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include "rbvi/contact/entity_sum.hpp"
+#include "rbvi/core/error.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/rom/model/packed.hpp"
@@ -51,6 +52,10 @@ Vector affine_coefficients(const AffineTerms &terms, const Sum &sum, const Scene
   for (const SampleMesh::Contribution &c : sample.contributions)
     theta[c.entry] += values(c.local, c.cell);
   terms.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
+  if (!result.allFinite())
+    throw bad_input("a stiffness or a load is not finite at " +
+                    describe(scene.parameters, all_parameters) +
+                    ": some function in the terms of a or f is not, at some point of the body");
   return result;
 }
 

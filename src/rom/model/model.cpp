@@ -227,8 +227,9 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
 }
 
 const ValidationErrors &expected_errors(const ReducedModel &model) {
-  const bool plain = model.supremizers == 0 && model.validation_decorrelated.count > 0;
-  return plain ? model.validation_decorrelated : model.validation_enriched;
+  const ValidationErrors &plain = model.validation_decorrelated;
+  return model.supremizers == 0 && plain.count + plain.unanswered > 0 ? plain
+                                                                      : model.validation_enriched;
 }
 
 ErrorOfOutput errors_of_outputs(const ReducedModel &model) {

@@ -92,9 +92,10 @@ ParameterSpace read_parameters(const H5Reader &file) {
 }
 
 void write_validation(H5Writer &file, const std::string &name, const ValidationErrors &errors) {
-  file.write(name, std::vector<double>{static_cast<double>(errors.count), errors.u_mean,
-                                       errors.u_max, errors.lambda_mean, errors.lambda_max,
-                                       errors.tangential_mean, errors.tangential_max});
+  file.write(name,
+             std::vector<double>{static_cast<double>(errors.count), errors.u_mean, errors.u_max,
+                                 errors.lambda_mean, errors.lambda_max, errors.tangential_mean,
+                                 errors.tangential_max, static_cast<double>(errors.unanswered)});
   std::vector<std::string> names;
   Matrix values(static_cast<Index>(errors.outputs.size()), 6);
   for (const OutputError &e : errors.outputs) {
@@ -108,14 +109,16 @@ void write_validation(H5Writer &file, const std::string &name, const ValidationE
 
 ValidationErrors read_validation(const H5Reader &file, const std::string &name) {
   const std::vector<double> values = file.doubles(name);
-  if (values.size() != 7) throw bad_input(name + " has not 7 entries");
+  if (values.size() != 8) throw bad_input(name + " has not 8 entries");
   ValidationErrors errors{static_cast<int>(values[0]),
                           values[1],
                           values[2],
                           values[3],
                           values[4],
                           values[5],
-                          values[6]};
+                          values[6],
+                          {},
+                          static_cast<int>(values[7])};
   const std::vector<std::string> names = file.strings(name + "_outputs/names");
   const Matrix rows = file.matrix(name + "_outputs/values");
   if (rows.rows() != static_cast<Index>(names.size()) || (rows.size() > 0 && rows.cols() != 6))
@@ -132,7 +135,9 @@ constexpr std::array worst_of_check{std::pair{"self_check/residual", &SelfCheck:
                                     std::pair{"self_check/friction", &SelfCheck::friction}};
 
 void write_self_check(H5Writer &file, const SelfCheck &check) {
-  file.write("self_check/counts", std::vector<int>{check.queries, check.unanswered});
+  file.write("self_check/counts",
+             std::vector<int>{check.queries, check.unanswered, check.at_boundary});
+  file.write("self_check/scale", check.scale);
   file.write("self_check/unanswered_at", check.unanswered_at);
   file.write("self_check/reason", check.reason);
   for (const auto &[name, worst] : worst_of_check) {
@@ -144,9 +149,11 @@ void write_self_check(H5Writer &file, const SelfCheck &check) {
 SelfCheck read_self_check(const H5Reader &file) {
   SelfCheck check;
   const std::vector<int> counts = file.ints("self_check/counts");
-  if (counts.size() != 2) throw bad_input("self_check/counts has not 2 entries");
+  if (counts.size() != 3) throw bad_input("self_check/counts has not 3 entries");
   check.queries = counts[0];
   check.unanswered = counts[1];
+  check.at_boundary = counts[2];
+  check.scale = file.number("self_check/scale");
   check.unanswered_at = Mu(file.doubles("self_check/unanswered_at"));
   check.reason = file.string("self_check/reason");
   for (const auto &[name, worst] : worst_of_check)
@@ -169,6 +176,7 @@ void write_history(H5Writer &file, const ReducedModel &model) {
   file.write("training/failed", model.failed_mu);
   write_validation(file, "validation/enriched", model.validation_enriched);
   write_validation(file, "validation/decorrelated", model.validation_decorrelated);
+  file.write("validation/mu", model.validated_mu);
   write_self_check(file, model.self_check);
 }
 
@@ -180,6 +188,7 @@ void read_history(const H5Reader &file, ReducedModel &model) {
   model.failed_mu = file.matrix("training/failed");
   model.validation_enriched = read_validation(file, "validation/enriched");
   model.validation_decorrelated = read_validation(file, "validation/decorrelated");
+  model.validated_mu = file.matrix("validation/mu");
   model.self_check = read_self_check(file);
 }
 

@@ -1,5 +1,7 @@
 #include "rbvi/rom/model/training_samples.hpp"
 
+#include "rbvi/core/box.hpp"
+
 namespace rbvi {
 
 namespace {
@@ -40,6 +42,11 @@ std::vector<Mu> from_columns(const Matrix &columns) {
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {
   return distance_to(model.failed_mu, model.parameters, free) <
          distance_to(model.trained_mu, model.parameters, free);
+}
+
+bool beyond_validation(const ReducedModel &model, const Mu &free) {
+  return model.validated_mu.cols() > 0 && expected_errors(model).count > 0 &&
+         nearer_to_boundary(model.parameters, model.validated_mu, free);
 }
 
 } // namespace rbvi

@@ -136,7 +136,7 @@ int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vect
       }
       system.u += t * d;
       here = std::move(next);
-      system.relative = here.scale > 0 ? here.residual.norm() / here.scale : 0;
+      system.relative = here.scale == 0 ? 0 : here.residual.norm() / here.scale;
       if (d.norm() <= accuracy * system.u.norm()) return steps;
     }
   }

@@ -171,7 +171,7 @@ Vector ReducedNitsche::System::residual() {
                terms = functionals * weighted(&PointTerm::slope, pressures);
   const Vector r = au + terms - quadratic.f;
   const double scale = au.norm() + terms.norm() + quadratic.f.norm();
-  relative = scale > 0 ? r.norm() / scale : 0;
+  relative = scale == 0 ? 0 : r.norm() / scale;
   return r;
 }
 

@@ -68,7 +68,7 @@ void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
     if (!nested) return;
     system.set_bounds(u);
     RBVI_CALL(VecAXPY(before.get(), -1, u));
-    const double size = norm(u), change = size > 0 ? norm(before.get()) / size : 0;
+    const double size = norm(u), change = size == 0 ? 0 : norm(before.get()) / size;
     const bool rests = change <= NitscheSystem::round_off && change > resting * last_change;
     // The first bounds are those of the start, not of u.
     const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);

@@ -229,7 +229,7 @@ void NitscheSystem::search(SNESLineSearch line) {
 SNESConvergedReason NitscheSystem::judge(PetscInt step, double r) {
   if (!std::isfinite(r)) return SNES_DIVERGED_FNORM_NAN;
   const double before = relative;
-  relative = scale > 0 ? r / scale : 0;
+  relative = scale == 0 ? 0 : r / scale;
   if (relative <= tolerance) return SNES_CONVERGED_FNORM_RELATIVE;
   if (r <= small_residual) return SNES_CONVERGED_FNORM_ABS;
   if (step == 0 || relative < best) {
@@ -259,7 +259,7 @@ double NitscheSystem::relative_residual(Vec u) {
     RBVI_CALL(VecRestoreArrayRead(u, &value));
     RBVI_CALL(VecRestoreArray(force.get(), &r));
   }
-  return scale > 0 ? norm(force.get()) / scale : 0;
+  return scale == 0 ? 0 : norm(force.get()) / scale;
 }
 
 int NitscheSystem::newton(Vec u, std::string &reason) {

@@ -46,7 +46,8 @@ std::vector<Option> of_runs() {
                           "(seed 1) | file.csv with a header of names")),
            "training"),
       otherwise("the scene's", text("valid", OptionKind::set, "set", RBVI_AT(valid),
-                                    "parameters of the validation set, given as -train is")),
+                                    "parameters of the validation set, given as -train is; verify "
+                                    "measures at the corners and faces of the box, too")),
       of_command(
           text("mu", OptionKind::text, "parameter", RBVI_AT(mu),
                "parameter at which solve solves: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02")),

@@ -1,4 +1,5 @@
-// The parameters that a model was trained at, and those at which there was no sample.
+// The parameters that a model was trained at, those at which there was no sample, and those of its
+// validation.
 #pragma once
 
 #include "rbvi/rom/model/model.hpp"
@@ -17,5 +18,9 @@ std::vector<Mu> from_columns(const Matrix &columns);
 /// there the model was trained on what lies around. Distances are measured in parts of the box;
 /// false for a model without failed samples.
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free);
+
+/// Whether errors were measured, and `free` is nearer to a corner or a face of the box than any
+/// parameter at which they were (nearer_to_boundary).
+bool beyond_validation(const ReducedModel &model, const Mu &free);
 
 } // namespace rbvi

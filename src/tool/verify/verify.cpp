@@ -1,15 +1,13 @@
 // rbvi verify: a finished model against high-fidelity solves over the validation set.
 #include "rbvi/check/errors.hpp"
-#include "rbvi/check/output_errors.hpp"
 #include "rbvi/check/separation_errors.hpp"
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/geometry.hpp"
-#include "rbvi/io/output_table.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
-#include "rbvi/mor/bases/cones.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
@@ -22,7 +20,8 @@
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
 
-#include "verify_stability.hpp"
+#include "errors.hpp"
+#include "stability.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -36,18 +35,6 @@ namespace rbvi {
 namespace {
 
 namespace fs = std::filesystem;
-
-void print_errors(const char *name, const ModelErrors &e) {
-  if (e.failed > 0)
-    std::printf("  %-18s no answer at %d of %d\n", name, e.failed, static_cast<int>(e.u.size()));
-  else
-    std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e   %9.3f   %9.1e\n", name, e.u.mean(),
-                e.u.maxCoeff(), e.lambda.mean(), e.lambda.maxCoeff(), 1e3 * e.seconds,
-                e.kkt_residual);
-  if (e.failed == 0 && e.tangential.size() > 0)
-    std::printf("  %-18s %9s %9s   %9.2e %9.2e\n", "  lambda_tau", "", "", e.tangential.mean(),
-                e.tangential.maxCoeff());
-}
 
 /// The positive ones of `wanted` below `last`, then `last`.
 std::vector<int> sizes_up_to(int last, const std::vector<int> &wanted) {
@@ -122,74 +109,6 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   });
 }
 
-/// The multiplier where it is worst (with friction its tangential part), and what it should be.
-void write_worst_pressure(const fs::path &path, const ReducedModel &model, const Truths &truths,
-                          const ModelErrors &errors) {
-  const bool friction = errors.tangential.size() > 0;
-  Index worst = 0;
-  (friction ? errors.tangential : errors.lambda).maxCoeff(&worst);
-  const Mu &mu = truths.mu[static_cast<std::size_t>(worst)];
-  OnlineSolver solver(model);
-  const std::vector<Point> points = dual_points(solver.contact());
-  const Matrix reduced = by_node(solver.contact(), solver.multiplier(solver.solve(mu, true))),
-               truth = by_node(solver.contact(), truths.lambda.col(worst));
-  Table table;
-  table.add(model.parameters, std::vector<Mu>(points.size(), mu));
-  std::vector<double> interface;
-  for (const auto &one : solver.contact().interfaces)
-    interface.resize(interface.size() + static_cast<std::size_t>(one->dual().nodes()),
-                     interface.empty() ? 1 : interface.back() + 1);
-  table.add("interface", interface);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(solver.scene().dim); ++k) {
-    std::vector<double> coordinates;
-    for (const Point &x : points)
-      coordinates.push_back(x[k]);
-    table.add(std::string(1, static_cast<char>('x' + k)), coordinates);
-  }
-  table.add("high_fidelity", truth.col(0));
-  table.add("reduced", reduced.col(0));
-  if (friction) {
-    table.add("high_fidelity_tangential", truth.col(1));
-    table.add("reduced_tangential", reduced.col(1));
-  }
-  table.write(path);
-}
-
-/// One row per way to answer.
-void write_summary(const fs::path &path,
-                   const std::vector<std::pair<std::string, const ModelErrors *>> &rows,
-                   const ReducedModel &model) {
-  std::ostringstream text;
-  text << std::setprecision(10)
-       << "model,N,S,R,free_modes,u_mean,u_max,u_floor_mean,u_floor_max,lambda_mean,lambda_max,"
-          "lambda_floor_mean,lambda_floor_max,seconds,kkt_residual,failed\n";
-  for (const auto &[name, e] : rows)
-    text << name << ',' << model.modes << ',' << (name == "decorrelated" ? 0 : model.supremizers)
-         << ',' << model.generators << ',' << model.free_modes << ',' << e->u.mean() << ','
-         << e->u.maxCoeff() << ',' << e->u_floor.mean() << ',' << e->u_floor.maxCoeff() << ','
-         << e->lambda.mean() << ',' << e->lambda.maxCoeff() << ',' << e->lambda_floor.mean() << ','
-         << e->lambda_floor.maxCoeff() << ',' << e->seconds << ',' << e->kkt_residual << ','
-         << e->failed << '\n';
-  write_atomically(path, text.str());
-}
-
-void write_errors(const fs::path &path, const ParameterSpace &space, const Truths &truths,
-                  const ModelErrors &enriched, const ModelErrors &plain) {
-  Table table;
-  table.add(space, truths.mu);
-  table.add("u_enriched", enriched.u);
-  table.add("lambda_enriched", enriched.lambda);
-  table.add("u_decorrelated", plain.u);
-  table.add("lambda_decorrelated", plain.lambda);
-  if (enriched.tangential.size() > 0) {
-    table.add("tangential_enriched", enriched.tangential);
-    table.add("tangential_decorrelated", plain.tangential);
-  }
-  table.add("u_floor", enriched.u_floor);
-  table.add("lambda_floor", enriched.lambda_floor);
-  table.write(path);
-}
-
 /// Largest aspect ratio of the mapped mesh at each mu (Niakh 2022, figure 2.3). Collective.
 void write_mesh_quality(const fs::path &path, MPI_Comm world, const Problem &problem,
                         const std::vector<Mu> &training, const std::vector<Mu> &validation) {
@@ -262,87 +181,24 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
   });
 }
 
-std::string reduction_name(const NodalLaw &law) {
-  return multiplier_reduction_names()[static_cast<std::size_t>(law.reduction)];
-}
-
-const char *kind_name(OutputKind kind) {
-  return kind == OutputKind::quantity  ? "quantity"
-         : kind == OutputKind::measure ? "measure"
-                                       : "check";
-}
-
-/// Every output: its definition's kind, absolute errors, and errors over its range and its value.
-void write_output_errors(const fs::path &path, const std::vector<OutputError> &errors) {
-  std::ostringstream text;
-  text << std::setprecision(4)
-       << "output,kind,mean,max,mean_of_range,max_of_range,mean_of_value,max_of_value\n";
-  for (const OutputError &e : errors)
-    text << e.name << ',' << kind_name(output_column(e.name).kind) << ',' << e.mean << ',' << e.max
-         << ',' << e.mean_of_range << ',' << e.max_of_range << ',' << e.mean_of_value << ','
-         << e.max_of_value << '\n';
-  write_atomically(path, text.str());
-}
-
-/// Errors of the outputs that have a target: quantities and measures.
-void print_output_errors(const std::vector<OutputError> &errors) {
-  std::printf("Errors of the outputs: largest, over the range, over the value\n");
-  for (const OutputError &e : errors)
-    if (output_column(e.name).kind != OutputKind::check)
-      std::printf("  %-20s %9.1e %9.1e %9.1e\n", e.name.c_str(), e.max, e.max_of_range,
-                  e.max_of_value);
-}
-
-/// The reduced outputs at the validation mu, and their errors.
-std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &truths,
-                                       const fs::path &out) {
-  const std::vector<Outputs> reduced = reduced_outputs(model, truths.mu);
-  std::vector<OutputError> errors = output_errors(reduced, truths.outputs);
-  print_output_errors(errors);
-  write_output_errors(out / "outputs.csv", errors);
-  std::ostringstream table;
-  write_csv(table, model.parameters, truths.mu, reduced);
-  write_atomically(out / "reduced.csv", table.str());
-  return errors;
-}
-
-/// Errors of the model, of its modes alone and of its leading parts, into tables, and the
-/// summaries into the model file.
-void check_errors(ReducedModel &model, const Problem &problem, const Truths &truths,
-                  const ToolOptions &options, const fs::path &out) {
-  const SparseMatrix &w = problem.w_product();
-  const ModelErrors whole = model_errors(model, {}, truths, w);
-  const ModelErrors plain =
-      model.supremizers == 0
-          ? whole
-          : model_errors(leading(model, model.modes, model.generators), {}, truths, w);
-  const std::string name = !model.has_multipliers() ? nitsche_name(model)
-                           : model.law              ? reduction_name(*model.law)
-                           : model.supremizers == 0 ? "decorrelated"
-                           : model.online_enriched  ? "online-enriched"
-                                                    : "offline-enriched";
-  std::vector<std::pair<std::string, const ModelErrors *>> rows{{name, &whole}};
-  if (model.supremizers > 0) rows.emplace_back("decorrelated", &plain);
-  std::printf("Relative errors over %zu validation mu\n"
-              "  %-18s %9s %9s   %9s %9s   %9s   %9s\n",
-              truths.mu.size(), "", "u mean", "max", "lambda m.", "max", "ms/query", "KKT");
-  for (const auto &[label, errors] : rows)
-    print_errors(label.c_str(), *errors);
-  std::printf("  %-18s %9.2e %9.2e   %9.2e %9.2e\n", "bases alone", whole.u_floor.mean(),
-              whole.u_floor.maxCoeff(), whole.lambda_floor.mean(), whole.lambda_floor.maxCoeff());
-  if (whole.tangential_floor.size() > 0)
-    std::printf("  %-18s %9s %9s   %9.2e %9.2e\n", "  lambda_tau", "", "",
-                whole.tangential_floor.mean(), whole.tangential_floor.maxCoeff());
-  write_errors(out / "errors.csv", options.scene.parameters, truths, whole, plain);
-  write_summary(out / "summary.csv", rows, model);
-  if (whole.failed == 0) write_worst_pressure(out / "worst_pressure.csv", model, truths, whole);
-  model.validation_enriched = model.supremizers > 0 ? summary(whole) : ValidationErrors{};
-  model.validation_decorrelated = summary(plain);
-  (model.supremizers > 0 ? model.validation_enriched : model.validation_decorrelated).outputs =
-      check_outputs(model, truths, out);
-  look_for_other_answers(model, problem.scene(), truths.mu);
-  print_several_answers(std::cout, model);
-  write_model(model, options.out / "model.h5");
+/// High-fidelity answers at the corners and faces of the box, but for those in `validation`; rank 0
+/// says where there is none. Collective.
+std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Problem &problem,
+                                     const ToolOptions &options,
+                                     const std::vector<Mu> &validation) {
+  const ParameterSpace &space = options.scene.parameters;
+  std::vector<Mu> set = corners_and_faces(space);
+  std::erase_if(
+      set, [&](const Mu &mu) { return std::ranges::find(validation, mu) != validation.end(); });
+  if (set.empty()) return {};
+  Sweep sweep = run_sweep(world, groups, problem, options.hf, set, options.out / "samples");
+  if (const auto &failed = sweep.report.failed; rank_of(world) == 0 && !failed.empty())
+    std::printf(
+        "%zu of %zu corners and centres of faces have no high-fidelity answer, the first at "
+        "%s: %s\n",
+        failed.size(), set.size(), describe(space, failed.front().first).c_str(),
+        failed.front().second.c_str());
+  return std::move(sweep.samples);
 }
 
 } // namespace
@@ -364,8 +220,12 @@ void command_verify(const ToolOptions &given) {
                                 options.out / "samples");
   check_failures(options, sweep.report, validation.size(), "validation");
   const std::vector<Sample> &answers = sweep.samples;
+  const std::vector<Sample> further =
+      boundary_samples(world, groups, work.group_problem(), options, validation);
   Problem &problem = work.world_problem();
-  const Truths truths = make_truths(problem, model, answers);
+  Truths truths = make_truths(problem, model, answers);
+  Truths boundary = make_truths(problem, model, further);
+  share_scale(truths, boundary);
   const fs::path out = options.out / "verify";
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
@@ -373,7 +233,10 @@ void command_verify(const ToolOptions &given) {
     make_directory(out);
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
-    check_errors(model, problem, truths, options, out);
+    check_errors(model, problem.w_product(), truths, boundary, out);
+    look_for_other_answers(model, problem.scene(), truths.mu);
+    print_several_answers(std::cout, model);
+    write_model(model, options.out / "model.h5");
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
@@ -393,7 +256,8 @@ void command_verify(const ToolOptions &given) {
   else if (options.stability && rank == 0)
     std::printf("Inf-sup constants: none, %s\n", none.c_str());
   if (rank == 0) {
-    tell_of_samples(problem.scene(), problem.contact(), answers, std::cout);
+    for (const auto *samples : {&answers, &further})
+      tell_of_samples(problem.scene(), problem.contact(), *samples, std::cout);
     print_written(std::cout, {out, options.out / "model.h5"});
   }
   report_failures(options, sweep.report, validation.size(), "validation",

@@ -1,4 +1,4 @@
-#include "verify_stability.hpp"
+#include "stability.hpp"
 
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/par/collective.hpp"
