@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace rbvi {
+namespace rbvi::locking_test {
 namespace {
 
 /// A material with this Poisson's ratio to the right of x = 0, 0.3 to the left.
@@ -45,4 +45,4 @@ TEST(Locking, IsToldInOneLineWithTheRemedy) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::locking_test

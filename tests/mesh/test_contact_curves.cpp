@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace rbvi {
+namespace rbvi::contact_curves_test {
 namespace {
 
 const std::string name = "contact";
@@ -80,4 +80,4 @@ TEST(ContactCurves, LoadsAndContactAreOnTheSurface) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::contact_curves_test

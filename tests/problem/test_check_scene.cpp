@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rbvi {
+namespace rbvi::check_scene_test {
 namespace {
 
 void check(const Scene &scene) {
@@ -210,4 +210,4 @@ TEST(CheckScene, FunctionsAreSet) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::check_scene_test

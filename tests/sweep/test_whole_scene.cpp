@@ -6,7 +6,7 @@
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
 
-namespace rbvi {
+namespace rbvi::whole_scene_test {
 namespace {
 
 using namespace testing_sweep;
@@ -175,4 +175,4 @@ TEST_F(SweepTest, TheOrderOfParametersDoesNotChangeAnswers) {
 }
 
 } // namespace
-} // namespace rbvi
+} // namespace rbvi::whole_scene_test
