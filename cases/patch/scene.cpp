@@ -10,8 +10,8 @@
 // <= nu_F p, so that the foot sticks; else nu_F p / G, and the foot slips as a whole.
 #include "scene.hpp"
 
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/contact/elastic_pair/elastic_pair.hpp"
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"
@@ -100,7 +100,7 @@ const Maker<Coefficient> shear_stress_at{
 
 Scene make_two(const SceneOptions &options) {
   Scene scene;
-  set_elastic_pair(options, scene);
+  set_elastic_pair(options, {true, true}, scene);
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain}}});
   scene.mesh = mesh_of_two();
   scene.map = joined_map();
@@ -139,6 +139,7 @@ Scene make_one(const SceneOptions &options) {
   support.friction.law = frictionless ? FrictionLaw::none : FrictionLaw::coulomb;
   support.friction.value = parameter(friction);
   support.lumped = options.at("lumped") == "yes";
+  support.closed_ends = true;
   scene.contacts = {support_contact(support, options)};
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain * height}},
                                {"shear", "m", 0, 0.2, 0.02, {-height / 2, height / 2}},

@@ -191,6 +191,30 @@ void check_on_wide_arc(const FullMu &all) {
   check_indentation(all, deepest_wide, "");
 }
 
+/// Throws bad_input where the rigid disk lies behind an end of the arc, against its radial normal:
+/// a gap along that normal is not the way to the disk.
+void check_facing(const FullMu &all, double half_angle) {
+  for (const double angle : {-half_angle, half_angle}) {
+    const Point n{std::sin(angle), -std::cos(angle), 0};
+    const Point p = from_support(all, {all[radius] * n[0], all[radius] * n[1], 0});
+    if (!(p[0] * n[0] + p[1] * n[1] < 0))
+      throw bad_input("at a radius of " + short_number(all[radius]) + " and an offset of " +
+                      short_number(all[offset]) +
+                      " an end of the contact arc faces away from the rigid disk: make them "
+                      "smaller, or use -contact_arc narrow or -normal rigid");
+  }
+}
+
+void check_radial_on_narrow_arc(const FullMu &all) {
+  check_on_narrow_arc(all);
+  check_facing(all, narrow_arc);
+}
+
+void check_radial_on_wide_arc(const FullMu &all) {
+  check_on_wide_arc(all);
+  check_facing(all, wide_arc);
+}
+
 bool in_core(const Point &centre) {
   return norm(centre) < core_radius;
 }
@@ -238,6 +262,10 @@ const auto pushed_down =
 
 const auto narrow_check = plain<Check>("rigid_disk/indentation", 1, check_on_narrow_arc);
 const auto wide_check = plain<Check>("rigid_disk/indentation_on_wide_arc", 1, check_on_wide_arc);
+const auto radial_narrow_check =
+    plain<Check>("rigid_disk/radial_narrow_arc", 1, check_radial_on_narrow_arc);
+const auto radial_wide_check =
+    plain<Check>("rigid_disk/radial_wide_arc", 1, check_radial_on_wide_arc);
 
 /// Contact that follows the displacement.
 ContactRecipe following_contact(const SceneOptions &options, const Friction &friction) {
@@ -257,13 +285,14 @@ ContactRecipe following_contact(const SceneOptions &options, const Friction &fri
 }
 
 /// Contact on the undeformed body.
-ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction, bool wide) {
+ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &friction) {
   const std::string &choice = options.at("normal");
   if (choice == "body")
     throw bad_input("-normal body is that of the deformed body: use it with -kinematics large");
   const Named<PointMap> normal = choice == "rigid" ? rigid_normals() : radial_normals();
-  const Support support{
-      "contact", normal, gap_of(options, normal), friction, options.at("lumped") == "yes", wide};
+  Support support{"contact", normal, gap_of(options, normal), friction,
+                  options.at("lumped") == "yes"};
+  support.body_normal = radial_normals();
   return support_contact(support, options);
 }
 
@@ -278,10 +307,13 @@ Scene make(const SceneOptions &options) {
   const std::string &arc = options.at("contact_arc");
   const bool wide = arc == "auto" ? large : arc == "wide";
   scene.contacts = {large ? following_contact(options, friction)
-                          : contact_at_rest(options, friction, wide)};
+                          : contact_at_rest(options, friction)};
   scene.material = ring_and_core({{"young", {young}}});
   scene.parameters = parameters(friction.law, nitsche, large ? 0.2 : wide ? 0.14 : 0.09, young);
-  if (!large) scene.check_parameters = wide ? wide_check() : narrow_check();
+  if (!large && options.at("normal") == "rigid")
+    scene.check_parameters = wide ? wide_check() : narrow_check();
+  else if (!large)
+    scene.check_parameters = wide ? radial_wide_check() : radial_narrow_check();
   scene.training = "grid:61";
   scene.validation = "random:30:1";
   scene.mesh = mesh(edges == 0 && nitsche ? nitsche_edges : edges, wide);
@@ -345,7 +377,8 @@ SceneEntry rigid_disk() {
           options,
           make,
           {surfaces, points_on_arc, radial_normals, rigid_normals, gaps("closest"), gaps("ray"),
-           gaps("vertical"), ring_and_core, scaled, pushed_down, narrow_check, wide_check}};
+           gaps("vertical"), ring_and_core, scaled, pushed_down, narrow_check, wide_check,
+           radial_narrow_check, radial_wide_check}};
 }
 
 } // namespace rbvi

@@ -62,6 +62,7 @@ const auto rim_points = plain<PointMap>(
 HalfPlane plate(const std::string &boundary, const Point &normal, int push) {
   HalfPlane plane{boundary, normal, {0, 0, 0}, affine(1, -1, push)};
   plane.surface = rim_points();
+  plane.body_normal = rim_points(); // of a unit circle: its points are its normals
   return plane;
 }
 

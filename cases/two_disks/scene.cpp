@@ -107,7 +107,7 @@ const Maker<PointMap> pressed_motion{
 
 Scene make(const SceneOptions &options) {
   Scene scene;
-  set_elastic_pair(options, scene);
+  set_elastic_pair(options, {true, false}, scene);
   scene.training = "grid:11";
   scene.validation = "random:30:1";
   scene.mesh = mesh(arc_edges(options, scene.degree));

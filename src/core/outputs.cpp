@@ -33,7 +33,8 @@ const std::vector<OutputColumn> &output_columns() {
        "nodes (-multiplier p0: pairs of edges) with pressure"},
       {"stick_nodes", &Outputs::stick_nodes, check, "those of them below the bound of friction"},
       {"ends_in_contact", &Outputs::ends_in_contact, check,
-       "large deformations, or -contact_arc wide: ends of the contact boundary with pressure"},
+       "ends of the contact boundary (of the membrane nodes on the rim of its region) with "
+       "pressure"},
       {"kkt_residual", &Outputs::kkt_residual, check,
        "residual of the problem that was solved, relative"},
       {"quadrature_residual", &Outputs::quadrature_residual, check,
@@ -42,7 +43,7 @@ const std::vector<OutputColumn> &output_columns() {
       {"friction_violation", &Outputs::friction_violation, check,
        "largest tangential stress beyond its bound"},
       {"law_error_normal", &Outputs::law_error_normal, check,
-       "Nitsche: |sigma_n - [P_n]_-| / |sigma_n| over the nodes (4.83)"},
+       "Nitsche: |sigma_n - [P_n]_-| / |sigma_n| over the nodes of all curves (4.83)"},
       {"law_error_tangential", &Outputs::law_error_tangential, check,
        "Nitsche: |sigma_tau - [P_tau]_s| / |sigma_tau| over the nodes (4.92)"},
       {"law_error_tau_over_n", &Outputs::law_error_tau_over_n, check, "the same over |sigma_n|"},
@@ -71,8 +72,7 @@ void add_contact(const Outputs &one, Outputs &all) {
         &Outputs::stick_nodes, &Outputs::ends_in_contact})
     combine(member, true);
   for (const auto member :
-       {&Outputs::peak_pressure, &Outputs::max_penetration, &Outputs::friction_violation,
-        &Outputs::law_error_normal, &Outputs::law_error_tangential, &Outputs::law_error_tau_over_n})
+       {&Outputs::peak_pressure, &Outputs::max_penetration, &Outputs::friction_violation})
     combine(member, false);
 }
 
@@ -105,8 +105,8 @@ std::string end_warning(long at_ends, long all, const char *answers) {
   const std::string who = all == 1 ? "contact reaches the end of its boundary"
                                    : std::to_string(at_ends) + " of " + std::to_string(all) + ' ' +
                                          answers + " touch an end of the contact boundary";
-  return who + ", beside which the body would touch too: a smaller indentation or offset, or a "
-               "scene with a wider contact boundary";
+  return who + ", beside which the body would touch too: a smaller indentation, offset or "
+               "load, or a scene with a wider contact boundary";
 }
 
 } // namespace

@@ -343,7 +343,15 @@ TEST(ObstacleInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
   EXPECT_DOUBLE_EQ(*out.normal_force, 2 * op.weights.dot(lambda));
   EXPECT_DOUBLE_EQ(*out.contact_measure, 2 * op.weights[4]);
   EXPECT_EQ(*out.contact_nodes, 2);
+  EXPECT_EQ(*out.ends_in_contact, 0);
   EXPECT_EQ(*out.peak_pressure, 3);
+  lambda[0] = 1; // a corner
+  interface->outputs({1}, op, lambda, 1e-2, out);
+  EXPECT_EQ(*out.ends_in_contact, 2);
+  Outputs of_whole; // beside the whole domain there is nothing
+  scene.contacts = {obstacle({"", quadratic})};
+  scene.contacts.front().make(scene, square(2))->outputs({1}, op, lambda, 1e-2, of_whole);
+  EXPECT_FALSE(of_whole.ends_in_contact);
 }
 
 TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {

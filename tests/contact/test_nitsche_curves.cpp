@@ -95,6 +95,23 @@ TEST(NitscheCurves, OutputsAreSumsAndMaxima) {
   EXPECT_FALSE(both.contact_half_width) << "there is no such thing of two curves";
 }
 
+/// A curve that nothing touches has no stress but what its free edge is off by.
+TEST(NitscheCurves, ErrorsOfTheLawsAreRelativeToTheStressOfAllCurves) {
+  const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
+  const Vector small = 1e-6 * two.u, slight = 1e-6 * two.v;
+  for (const auto &[u, v] : {std::pair{two.u, two.v}, {small, two.v}, {two.u, slight}}) {
+    const CurveFields one = nitsche_fields(two.one, 0, two.mu, u),
+                      other = nitsche_fields(two.other, 0, two.mu, v);
+    const Outputs both = outputs_of(two.both, two.mu, stacked(u, v));
+    const Vector sigma = stacked(one.sigma_n, other.sigma_n), p = stacked(one.p_n, other.p_n);
+    EXPECT_NEAR(*both.law_error_normal, (sigma - p.cwiseMin(0)).norm() / sigma.norm(), 1e-13);
+    const Outputs rubs = outputs_of(two.other, two.mu, v);
+    EXPECT_NEAR(*both.law_error_tangential, *rubs.law_error_tangential, 1e-13);
+    EXPECT_NEAR(*both.law_error_tau_over_n * sigma.norm(),
+                *rubs.law_error_tangential * other.sigma_tau.norm(), 1e-12);
+  }
+}
+
 TEST(NitscheCurves, TheMultiplierIsMinusTheStress) {
   const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
   const CurveFields one = nitsche_fields(two.one, 0, two.mu, two.u),

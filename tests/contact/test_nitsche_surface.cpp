@@ -90,7 +90,7 @@ TEST(NitscheSurface, TheSlipIsMeasuredAlongTheTangentOfTheSurface) {
 }
 
 /// A plane has one normal: nothing turns, and contact is that of a support at rest. The stress is
-/// the one on the edge, which differs.
+/// the one on the edge.
 TEST(NitscheSurface, APlaneIsASupport) {
   const SupportScene scene = scene_of(2);
   const OnOneCell on;
@@ -102,6 +102,9 @@ TEST(NitscheSurface, APlaneIsASupport) {
   for (std::size_t q = 0; q < points.size(); ++q) {
     turn_to(plane, {1.0}, on.u, points[q]);
     EXPECT_LE((points[q].n - at_rest[q].n).norm(), 1e-14);
+    EXPECT_LE((points[q].sigma_n - at_rest[q].sigma_n).norm(), 1e-14 * points[q].sigma_n.norm());
+    EXPECT_LE((points[q].sigma_tau - at_rest[q].sigma_tau).norm(),
+              1e-14 * points[q].sigma_tau.norm());
     EXPECT_NEAR(points[q].facing.gap, at_rest[q].facing.gap, 1e-14);
     EXPECT_NEAR(points[q].facing.slip, at_rest[q].facing.slip, 1e-14);
     EXPECT_EQ(points[q].turning, 0);

@@ -154,6 +154,29 @@ TEST(PairInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
   EXPECT_EQ(*out.peak_pressure, 3);
 }
 
+/// The upper curve has no end to speak of where the body ends with it.
+TEST(PairInterface, ContactAtAnEndIsCountedUnlessItIsClosed) {
+  const InterfaceMesh mesh = two_curves(1);
+  for (const PairDiscretisation &how : {constant, linear})
+    for (const bool closed : {false, true}) {
+      Scene scene = scene_of(how, 1);
+      scene.contacts = {two_bodies({"slave", "master", how, {closed, false}})};
+      const ContactOperators op = at(scene, mesh, {0});
+      const auto interface = scene.contacts.front().make(scene, mesh);
+      const auto ends = [&](Index row) {
+        Vector lambda = Vector::Zero(interface->dual().nodes());
+        lambda[row] = 1;
+        Outputs out;
+        interface->outputs({0}, op, lambda, 1e-3, out);
+        return *out.ends_in_contact;
+      };
+      const Index last = interface->dual().nodes() - 1;
+      EXPECT_EQ(ends(0), closed ? 0 : 1);
+      EXPECT_EQ(ends(1), 0);
+      EXPECT_EQ(ends(last), 1);
+    }
+}
+
 /// Where the bodies are beside each other.
 TEST(PairInterface, WithoutPartnersThereIsNothingToDraw) {
   const Scene scene = scene_of(constant, 1);

@@ -38,13 +38,13 @@ std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<Scen
   return options;
 }
 
-void set_elastic_pair(const SceneOptions &options, Scene &scene) {
+void set_elastic_pair(const SceneOptions &options, std::array<bool, 2> closed_ends, Scene &scene) {
   scene.dim = 2;
   scene.components = 2;
   scene.degree = options.at("degree") == "2" ? 2 : 1;
   const PairDiscretisation discretisation = pair_discretisation(options);
   if (options.at("kinematics") == "small") {
-    scene.contacts = {two_bodies({"slave", "master", discretisation})};
+    scene.contacts = {two_bodies({"slave", "master", discretisation, closed_ends})};
   } else {
     if (discretisation.quadrature == PairQuadrature::direct)
       throw bad_input("-integration direct is for small deformations: leave it out with "

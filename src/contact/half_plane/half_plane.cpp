@@ -26,6 +26,7 @@ Record record_of(const HalfPlane &plane) {
                 {{"position", plane.position.record}}};
   if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
   if (plane.surface) record.parts["surface"] = plane.surface.record;
+  if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
   add_friction(plane.friction, record);
   return record;
 }
@@ -44,6 +45,8 @@ HalfPlane half_plane_in(const Record &record) {
   if (record.parts.contains("surface")) plane.surface = made<PointMap>(part(record, "surface"));
   plane.friction = friction_in(record);
   plane.lumped = number(record, "lumped") != 0;
+  if (record.parts.contains("body_normal"))
+    plane.body_normal = made<PointMap>(part(record, "body_normal"));
   return plane;
 }
 
@@ -55,6 +58,7 @@ ContactRecipe half_plane(HalfPlane plane, const SupportContact &by) {
                     short_number(plane.normal[2]) +
                     "): give one of length 1 in the plane of x and y");
   Support support{plane.boundary, {}, {}, plane.friction, plane.lumped};
+  support.body_normal = plane.body_normal;
   support.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
   ContactRecipe recipe = by(support);
   recipe.coefficients.push_back({"position of the half-plane", plane.position});

@@ -12,13 +12,6 @@ namespace rbvi {
 
 namespace {
 
-constexpr double round_off = 1e-9; ///< of the weight of a multiplier
-
-/// Whether a multiplier has no partner somewhere.
-bool is_partial(double weight, double whole) {
-  return !(weight > (1 - round_off) * whole);
-}
-
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 class LargePairInterface : public ContactInterface {
@@ -50,8 +43,6 @@ private:
   /// The integral of each multiplier's function over the whole slave curve.
   Vector whole_weights(const FullMu &mu) const;
   MirroredEnds mirrored(bool of_master = true) const;
-  double ends_in_contact(const FullMu &mu, const Vector &weights, const Vector &lambda,
-                         double least) const;
   /// Adds factor * direction . (v(x) - v(xi)) to a row.
   void add_difference(const Curves &now, const Facing &point, const Point &direction, double factor,
                       Index row, Triplets &entries) const;
@@ -111,28 +102,6 @@ MirroredEnds LargePairInterface::mirrored(bool of_master) const {
     return mesh_.dofs[2 * node] < 0 && mesh_.dofs[2 * node + 1] >= 0;
   };
   return {on_axis(0), on_axis(vertex_count(mesh_.parts[of_master ? 1 : 0], mesh_.degree) - 1)};
-}
-
-/// An end is where the slave curve has one off the axis, or where nothing faces it from there on:
-/// the last multiplier with a partner, and those before it that do not have one everywhere.
-double LargePairInterface::ends_in_contact(const FullMu &mu, const Vector &weights,
-                                           const Vector &lambda, double least) const {
-  const Vector whole = whole_weights(mu);
-  const Index count = whole.size();
-  const MirroredEnds axis = mirrored(false);
-  const auto carries_from = [&](Index first, Index step) {
-    Index row = first;
-    while (row >= 0 && row < count && !(weights[row] > round_off * whole[row]))
-      row += step;
-    const bool on_axis = row == first && (step > 0 ? axis.first : axis.last);
-    if (on_axis || row < 0 || row >= count) return false;
-    do {
-      if (lambda[row] > least) return true;
-      row += step;
-    } while (row >= 0 && row < count && is_partial(weights[row], whole[row]));
-    return false;
-  };
-  return (carries_from(0, 1) ? 1.0 : 0.0) + (carries_from(count - 1, -1) ? 1.0 : 0.0);
 }
 
 std::array<std::pair<Index, double>, 2> LargePairInterface::multipliers(const Facing &point) const {
@@ -252,7 +221,9 @@ void LargePairInterface::outputs(const FullMu &mu, const ContactOperators &opera
       if (row >= 0)
         vertical += p.weight * length(mu, p.slave_edge) * value * lambda[row] * p.normal[1];
   outputs.reaction = scene_.mirror_images * vertical;
-  outputs.ends_in_contact = ends_in_contact(mu, operators.weights, lambda, least);
+  const MirroredEnds axis = mirrored(false);
+  outputs.ends_in_contact =
+      ends_in_contact(whole_weights(mu), operators.weights, lambda, least, {axis.first, axis.last});
 }
 
 Grid LargePairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {

@@ -87,8 +87,8 @@ NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, cons
   lagrange_values(2, scene.degree, barycentric, values);
   lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
   set_functionals(static_cast<std::size_t>(nodes_per_cell(2, scene.degree)), values, gradients,
-                  facing.follows_state ? outward_normal(cell.mapped, begin, end)
-                                       : point.facing.normal,
+                  facing.body_normal ? facing.body_normal(mu, x)
+                                     : outward_normal(cell.mapped, begin, end),
                   material, point);
   return point;
 }

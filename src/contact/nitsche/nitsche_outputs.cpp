@@ -17,6 +17,11 @@ struct Sums {
   Vector edge_pressures;
 };
 
+/// Of |sigma_tau| at the vertices.
+Vector bounds_at(const CurveFields &fields, const NitscheLaw &law) {
+  return fields.p_n.unaryExpr([&](double p) { return nitsche_bound(law, p); });
+}
+
 /// A component of a unit vector, from the functionals of the displacement along it: shape functions
 /// sum to one.
 double component(const NitschePoint::Row &row, Index c) {
@@ -52,14 +57,38 @@ Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, cons
   return sums;
 }
 
-double ratio(double value, double scale) {
-  return scale > 0 ? value / scale : value;
-}
+/// How far fields are from the laws: sums of squares over the nodes of curves.
+struct LawErrors {
+  double normal = 0, tangential = 0; ///< |sigma - its projection|^2
+  double sigma_n = 0, sigma_tau = 0; ///< |sigma|^2
+  bool friction = false;
+
+  void add(const CurveFields &fields, const NitscheLaw &law) {
+    normal += (fields.sigma_n - fields.p_n.cwiseMin(0)).squaredNorm();
+    sigma_n += fields.sigma_n.squaredNorm();
+    if (law.law == FrictionLaw::none) return;
+    const Vector bounds = bounds_at(fields, law);
+    friction = true;
+    tangential +=
+        (fields.sigma_tau - fields.p_tau.cwiseMax(-bounds).cwiseMin(bounds)).squaredNorm();
+    sigma_tau += fields.sigma_tau.squaredNorm();
+  }
+  void set(Outputs &outputs) const {
+    const auto ratio = [](double square, double scale) {
+      return std::sqrt(scale > 0 ? square / scale : square);
+    };
+    outputs.law_error_normal = ratio(normal, sigma_n);
+    if (!friction) return;
+    outputs.law_error_tangential = ratio(tangential, sigma_tau);
+    outputs.law_error_tau_over_n = ratio(tangential, sigma_n);
+  }
+};
 
 } // namespace
 
-double ends_in_contact(const CurveFields &fields) {
-  return (fields.p_n[0] < 0 ? 1.0 : 0.0) + (fields.p_n[fields.p_n.size() - 1] < 0 ? 1.0 : 0.0);
+double ends_in_contact(const CurveFields &fields, std::array<bool, 2> closed) {
+  const double last = fields.p_n[fields.p_n.size() - 1];
+  return (!closed[0] && fields.p_n[0] < 0 ? 1.0 : 0.0) + (!closed[1] && last < 0 ? 1.0 : 0.0);
 }
 
 void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
@@ -78,26 +107,24 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
       sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
   outputs.contact_nodes = static_cast<double>((fields.p_n.array() < 0).count());
-  const double normal = fields.sigma_n.norm();
-  outputs.law_error_normal = ratio((fields.sigma_n - fields.p_n.cwiseMin(0)).norm(), normal);
+  LawErrors errors;
+  errors.add(fields, law);
+  errors.set(outputs);
   if (law.law == FrictionLaw::none) return;
 
-  const Vector bounds = fields.p_n.unaryExpr([&](double p) { return nitsche_bound(law, p); });
-  const Vector held = fields.p_tau.cwiseMax(-bounds).cwiseMin(bounds);
-  const double error = (fields.sigma_tau - held).norm();
+  const Vector bounds = bounds_at(fields, law);
   outputs.tangential_force = sums.tangential;
   outputs.stick_half_width = sums.stick / 2;
   outputs.stick_nodes = static_cast<double>(
       (fields.p_n.array() < 0 && fields.p_tau.array().abs() < bounds.array()).count());
   outputs.friction_violation = std::max(0.0, (fields.sigma_tau.cwiseAbs() - bounds).maxCoeff());
-  outputs.law_error_tangential = ratio(error, fields.sigma_tau.norm());
-  outputs.law_error_tau_over_n = ratio(error, normal);
 }
 
 void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
                      const std::vector<NitscheFace> &faces, const Vector &u,
                      const Matrix &pressures, Outputs &outputs) {
   Index first = 0;
+  LawErrors errors;
   for (std::size_t k = 0; k < layer.curves.size(); ++k) {
     const auto count = std::ssize(layer.cells_of(k));
     const auto own =
@@ -105,10 +132,13 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
     const CurveFields fields = nitsche_fields(layer, k, mu, u);
     Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
     nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
-    if (layer.curves[k].facing.follows_state) one.ends_in_contact = ends_in_contact(fields);
+    const std::array<bool, 2> closed = layer.curves[k].facing.closed_ends;
+    if (!closed[0] || !closed[1]) one.ends_in_contact = ends_in_contact(fields, closed);
     if (&one == &part) add_contact(part, outputs);
+    errors.add(fields, own.front().law);
     first += count;
   }
+  errors.set(outputs);
 }
 
 } // namespace rbvi

@@ -61,6 +61,11 @@ public:
       dual_.points.push_back(mesh_.points[static_cast<std::size_t>(node)]);
     dual_.components = layer_.friction() ? 2 : 1;
     dual_.gram = linear_gram(dual_.points, dual_.components);
+    for (const Index node : partly_fixed()) {
+      std::array<bool, 2> &closed = layer_.curves.front().facing.closed_ends;
+      if (node == 0) closed[0] = true;
+      if (node + 1 == dual_.nodes()) closed[1] = true;
+    }
   }
 
   const NitscheLayer *nitsche() const override { return &layer_; }
@@ -131,10 +136,12 @@ NitscheLayer layer_of(const Contact &contact) {
 }
 
 NitscheFacing facing_support(const Scene &scene, Support support) {
+  const Named<PointMap> body_normal = support.body_normal;
+  const std::array<bool, 2> closed_ends{support.closed_ends, support.closed_ends};
   return {[&scene, support = std::move(support)](const FullMu &mu, const Point &x, const Point &) {
             return support_point(scene, support, mu, x);
           },
-          false};
+          false, body_normal, closed_ends};
 }
 
 NitscheFacing facing_surface(const Scene &scene, RigidSurface surface) {
@@ -148,7 +155,10 @@ NitscheFacing facing_surface(const Scene &scene, RigidSurface surface) {
 ContactRecipe nitsche_support(Support support, double gamma0) {
   if (support.lumped)
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
-  return nitsche_contact("nitsche_support", std::move(support), gamma0, facing_support);
+  ContactRecipe recipe =
+      nitsche_contact("nitsche_support", std::move(support), gamma0, facing_support);
+  recipe.record.version = 2; // 1: the stress was on the normal of contact
+  return recipe;
 }
 
 ContactRecipe nitsche_half_plane(HalfPlane plane, double gamma0) {
@@ -156,6 +166,7 @@ ContactRecipe nitsche_half_plane(HalfPlane plane, double gamma0) {
     return nitsche_support(support, gamma0);
   });
   recipe.record.name = "nitsche_half_plane";
+  recipe.record.version = 2; // of nitsche_support
   recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
 }
@@ -168,13 +179,13 @@ ContactRecipe nitsche_surface(RigidSurface surface, double gamma0) {
 }
 
 ContactKind nitsche_support_kind() {
-  return {"nitsche_support", 1, [](const Record &record) {
+  return {"nitsche_support", 2, [](const Record &record) {
             return nitsche_support(support_in(record), number(record, "gamma0"));
           }};
 }
 
 ContactKind nitsche_half_plane_kind() {
-  return {"nitsche_half_plane", 1, [](const Record &record) {
+  return {"nitsche_half_plane", 2, [](const Record &record) {
             return nitsche_half_plane(half_plane_in(record), number(record, "gamma0"));
           }};
 }

@@ -7,6 +7,8 @@
 #include "rbvi/element/scalar_forms.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 namespace rbvi {
 
@@ -23,6 +25,7 @@ public:
     for (Index e = 0; e < mesh_.count(); ++e)
       simplices_.insert(simplices_.end(), mesh_.nodes_of(e), mesh_.nodes_of(e) + mesh_.dim + 1);
     set_dual(1 + *std::ranges::max_element(simplices_), 1, obstacle_.lumped, gram());
+    if (!obstacle_.region.empty()) rim_ = rim();
   }
 
   void integrate(const FullMu &mu, const Cell &cell, EntityValues &values) const override {
@@ -44,11 +47,13 @@ public:
 
 private:
   SparseMatrix gram() const;
+  std::vector<Index> rim() const;
   Vector at_vertices(const Vector &normal) const;
 
   Obstacle obstacle_;
   Form b_, g_;
   std::vector<int> simplices_; ///< the vertices of each cell, which are the first nodes
+  std::vector<Index> rim_;     ///< dual nodes on the rim of the region
 };
 
 SparseMatrix ObstacleInterface::gram() const {
@@ -68,6 +73,25 @@ SparseMatrix ObstacleInterface::gram() const {
   return result;
 }
 
+/// Those of the facets of one cell alone.
+std::vector<Index> ObstacleInterface::rim() const {
+  std::map<std::vector<int>, int> cells_of;
+  const int corners = mesh_.dim + 1;
+  for (auto cell = simplices_.begin(); cell != simplices_.end(); cell += corners)
+    for (int left_out = 0; left_out < corners; ++left_out) {
+      std::vector<int> facet(cell, cell + corners);
+      facet.erase(facet.begin() + left_out);
+      std::ranges::sort(facet);
+      ++cells_of[facet];
+    }
+  std::set<Index> nodes;
+  for (const auto &[facet, cells] : cells_of)
+    for (const int vertex : facet)
+      if (cells == 1) nodes.insert(dual_of_vertex()[static_cast<std::size_t>(vertex)]);
+  nodes.erase(-1);
+  return {nodes.begin(), nodes.end()};
+}
+
 /// From dual functions; zero where there is none.
 Vector ObstacleInterface::at_vertices(const Vector &normal) const {
   const std::vector<Index> &dual = dual_of_vertex();
@@ -80,6 +104,9 @@ Vector ObstacleInterface::at_vertices(const Vector &normal) const {
 void ObstacleInterface::outputs(const FullMu &, const ContactOperators &operators,
                                 const Vector &lambda, double least, Outputs &outputs) const {
   pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
+  if (!obstacle_.region.empty())
+    outputs.ends_in_contact =
+        scene_.mirror_images * static_cast<double>((lambda(rim_).array() > least).count());
   if (!obstacle_.lumped) return;
   const Vector pressed = (lambda.array() > least).select(lambda, 0);
   outputs.contact_measure =

@@ -32,15 +32,18 @@ public:
     operators.nodal_gap = std::move(coupled.nodal_gap);
     operators.uncovered = std::move(coupled.uncovered);
   }
-  void outputs(const FullMu &, const ContactOperators &operators, const Vector &lambda,
+  void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override {
     pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
+    outputs.ends_in_contact = rbvi::ends_in_contact(whole_weights(mu), operators.weights, lambda,
+                                                    least, pair_.closed_ends);
   }
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override;
 
 private:
   PairOperators couple_at(const FullMu &mu) const;
   SparseMatrix at_contact_dofs(SparseMatrix b) const;
+  Vector whole_weights(const FullMu &mu) const;
 
   Pair pair_;
   bool alone_;               ///< node i is contact dof i of the problem
@@ -74,6 +77,15 @@ SparseMatrix PairInterface::at_contact_dofs(SparseMatrix b) const {
   SparseMatrix result(b.rows(), mesh_.columns);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
+}
+
+/// Of the multipliers, whether they have a partner or not.
+Vector PairInterface::whole_weights(const FullMu &mu) const {
+  std::vector<Point> mapped;
+  for (const Point &x : slave_)
+    mapped.push_back(scene_.map(mu, x));
+  return multiplier_product(mapped, pair_.discretisation.multiplier, mesh_.degree) *
+         Vector::Ones(dual_.nodes());
 }
 
 PairOperators PairInterface::couple_at(const FullMu &mu) const {
@@ -129,22 +141,26 @@ ContactRecipe two_bodies(Pair pair) {
     return std::make_unique<PairInterface>(scene, std::move(mesh), pair);
   };
   const auto &[multiplier, quadrature] = pair.discretisation;
-  recipe.record = {"two_bodies",
-                   1,
-                   {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
-                    {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}}},
-                   {{"slave", pair.slave}, {"master", pair.master}}};
+  recipe.record = {
+      "two_bodies",
+      2,
+      {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
+       {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}},
+       {"closed_ends", {pair.closed_ends[0] ? 1.0 : 0.0, pair.closed_ends[1] ? 1.0 : 0.0}}},
+      {{"slave", pair.slave}, {"master", pair.master}}};
   return recipe;
 }
 
 ContactKind two_bodies_kind() {
-  return {"two_bodies", 1, [](const Record &record) {
+  return {"two_bodies", 2, [](const Record &record) {
+            const std::vector<double> &closed = numbers(record, "closed_ends");
             const bool linear = number(record, "linear_pressure") != 0,
                        direct = number(record, "direct") != 0;
             return two_bodies({text(record, "slave"),
                                text(record, "master"),
                                {linear ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
-                                direct ? PairQuadrature::direct : PairQuadrature::intersection}});
+                                direct ? PairQuadrature::direct : PairQuadrature::intersection},
+                               {closed.front() != 0, closed.back() != 0}});
           }};
 }
 

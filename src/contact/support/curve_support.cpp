@@ -114,9 +114,12 @@ void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
   support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
                    mapped(dual_.vertices, Eigen::all)},
                   outputs);
-  if (counts_ends())
-    outputs.ends_in_contact =
-        (lambda[0] > 0 ? 1.0 : 0.0) + (lambda[dual_.nodes() - 1] > 0 ? 1.0 : 0.0);
+  if (!counts_ends()) return;
+  const std::vector<Index> on_axis = partly_fixed(); // of symmetry: there contact has no end
+  const auto carries = [&](Index node) {
+    return lambda[node] > 0 && std::ranges::find(on_axis, node) == on_axis.end() ? 1.0 : 0.0;
+  };
+  outputs.ends_in_contact = carries(0) + carries(dual_.nodes() - 1);
 }
 
 } // namespace rbvi

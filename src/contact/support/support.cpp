@@ -28,7 +28,7 @@ protected:
                   const Point &x) const override {
     return support_.normal(mu, x);
   }
-  bool counts_ends() const override { return support_.counts_ends; }
+  bool counts_ends() const override { return !support_.closed_ends; }
 
 private:
   Support support_;
@@ -92,18 +92,22 @@ Record record_of(const Support &support) {
                 {{"lumped", {support.lumped ? 1.0 : 0.0}}},
                 {{"boundary", support.boundary}},
                 {{"normal", support.normal.record}, {"gap", support.gap.record}}};
-  if (support.counts_ends) record.numbers["counts_ends"] = {1};
+  if (support.closed_ends) record.numbers["closed_ends"] = {1};
+  if (support.body_normal) record.parts["body_normal"] = support.body_normal.record;
   add_friction(support.friction, record);
   return record;
 }
 
 Support support_in(const Record &record) {
-  return {text(record, "boundary"),
-          made<PointMap>(part(record, "normal")),
-          made<PointValue>(part(record, "gap")),
-          friction_in(record),
-          number(record, "lumped") != 0,
-          record.numbers.contains("counts_ends")};
+  Support support{text(record, "boundary"),
+                  made<PointMap>(part(record, "normal")),
+                  made<PointValue>(part(record, "gap")),
+                  friction_in(record),
+                  number(record, "lumped") != 0,
+                  record.numbers.contains("closed_ends")};
+  if (record.parts.contains("body_normal"))
+    support.body_normal = made<PointMap>(part(record, "body_normal"));
+  return support;
 }
 
 } // namespace rbvi

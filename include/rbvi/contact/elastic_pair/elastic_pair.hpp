@@ -4,14 +4,17 @@
 
 #include "rbvi/core/scene.hpp"
 
+#include <array>
+
 namespace rbvi {
 
-/// The options multiplier, integration, kinematics, degree (by default the one given), young and poisson_ratio,
-/// then the scene's own.
+/// The options multiplier, integration, kinematics, degree (by default the one given), young and
+/// poisson_ratio, then the scene's own.
 std::vector<SceneOption> elastic_pair_options(int degree, const std::vector<SceneOption> &own);
 
 /// Sets dimension, components, degree, material, a, v_product and the pair as these options say. a
 /// does not depend on the parameters: right where h(mu) moves each body by a similarity.
-void set_elastic_pair(const SceneOptions &options, Scene &scene);
+/// `closed_ends`: Pair::closed_ends.
+void set_elastic_pair(const SceneOptions &options, std::array<bool, 2> closed_ends, Scene &scene);
 
 } // namespace rbvi

@@ -19,7 +19,8 @@ struct HalfPlane {
   /// The true surface of the body at a point of the reference boundary, mapped; empty: the edges.
   Named<PointMap> surface{};
   Friction friction{};
-  bool lumped = false; ///< vertex quadrature
+  bool lumped = false;           ///< vertex quadrature
+  Named<PointMap> body_normal{}; ///< Support::body_normal
 };
 
 /// Contact with a support, by some formulation.

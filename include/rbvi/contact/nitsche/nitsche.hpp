@@ -36,11 +36,15 @@ PointTerm friction_term(double p, double bound, double gamma);
 double coulomb_bound(double p, double coefficient);
 
 /// What the points of a curve face. A support at rest ignores the displacement there; where it
-/// counts (large deformations), normal, gap and slip are those of the state, and the stress is the
-/// one on the edge at rest, sigma n_0, in the axes of the state.
+/// counts (large deformations), normal, gap and slip are those of the state. The stress is that on
+/// the body at rest, sigma n_0, in the axes of what is faced.
 struct NitscheFacing {
   std::function<SupportPoint(const FullMu &mu, const Point &x, const Point &displacement)> at;
   bool follows_state = false;
+  /// n_0: Support::body_normal; empty: the normal of the mapped edge.
+  Named<PointMap> body_normal{};
+  /// Whether the body ends, or is mirrored, at the curve's first and last end.
+  std::array<bool, 2> closed_ends{};
 };
 
 /// What a point of the curve sees of the displacement of the cell beside it: functionals of its
@@ -55,8 +59,8 @@ struct NitschePoint {
 };
 
 /// What point s of [0, 1] on edge `edge` (Lagrange order) of a triangle sees, of degree
-/// scene.degree, at rest; weight: the length of the mapped edge. At rest the normal is the one
-/// faced at the reference point, in u_n, sigma_n and the gap alike; edges are straight.
+/// scene.degree, at rest; weight: the length of the mapped edge. The axes are those faced at the
+/// reference point; edges are straight.
 NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, const FullMu &mu,
                            const Cell &cell, int edge, const Lame &material, double s);
 

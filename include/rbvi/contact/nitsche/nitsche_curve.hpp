@@ -166,8 +166,8 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t curve, const F
 /// multipliers of the mixed method.
 Vector nitsche_multiplier(const NitscheLayer &layer, const FullMu &mu, const Vector &u);
 
-/// How many of the curve's two ends are in contact.
-double ends_in_contact(const CurveFields &fields);
+/// How many of the curve's two ends are in contact, of those that are not closed.
+double ends_in_contact(const CurveFields &fields, std::array<bool, 2> closed);
 
 /// Fills forces, half-widths, pressures, penetration and the errors of the laws of one curve; see
 /// support_outputs. `faces`: all of the curve. centre_pressure is that of -[P_n]_- averaged over
@@ -175,7 +175,8 @@ double ends_in_contact(const CurveFields &fields);
 void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
                      const CurveFields &fields, Outputs &outputs);
 
-/// The same of all curves of the layer: with several, what are sums or maxima over them. `faces`:
+/// The same of all curves of the layer: with several, what are sums or maxima over them, and the
+/// errors of the laws over the nodes of all, so that one without contact does not count. `faces`:
 /// of all cells; `u` and the pressures are those of their state.
 void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
                      const std::vector<NitscheFace> &faces, const Vector &u,

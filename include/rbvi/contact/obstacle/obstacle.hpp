@@ -9,7 +9,7 @@
 namespace rbvi {
 
 struct Obstacle {
-  std::string region;
+  std::string region; ///< beside it the body goes on, which outputs count contact at its rim for
   /// psi(mu) at a point of the mapped domain.
   Named<PointValue> height;
   /// b and g by vertex quadrature: the constraint is a bound at each vertex. Else exact, g by a

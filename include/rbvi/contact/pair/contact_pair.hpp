@@ -16,6 +16,8 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/scene.hpp"
 
+#include <array>
+
 namespace rbvi {
 
 /// Where multipliers live.
@@ -67,6 +69,16 @@ Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
 /// Integrals are in arc length of the straight slave edges. O(slave + master nodes).
 PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &master,
                      const PairDiscretisation &discretisation, int degree = 1);
+
+/// Whether a multiplier has no partner somewhere: its weight, and `whole`, which it would have with
+/// one everywhere.
+bool is_partial(double weight, double whole);
+
+/// The ends of contact where `lambda` is above `least`: where the slave curve ends, unless that end
+/// is closed (the body ends, or is mirrored, there), or where nothing faces it from there on: the
+/// last multiplier with a partner, and those before it that do not have one everywhere.
+double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
+                       double least, std::array<bool, 2> closed);
 
 /// Gram matrix of the multipliers in L2 of the slave polygon; an entry (possibly zero) for every
 /// pair of neighbours.

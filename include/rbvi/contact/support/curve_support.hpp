@@ -46,7 +46,7 @@ protected:
   virtual Point normal_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
                           const Point &x) const = 0;
   /// Whether outputs say if contact reaches the ends of the curve.
-  virtual bool counts_ends() const { return follows_state(); }
+  virtual bool counts_ends() const { return true; }
   const std::vector<TracePoint> &points() const { return points_; }
 
 private:

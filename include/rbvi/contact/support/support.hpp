@@ -18,14 +18,18 @@ namespace rbvi {
 
 struct Support {
   std::string boundary;
-  /// Unit normal at a point of the reference boundary, out of the mapped body.
+  /// Unit normal of contact at a point of the reference boundary, out of the mapped body.
   Named<PointMap> normal;
   /// Gap along it: u . n <= gap.
   Named<PointValue> gap;
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
-  /// Outputs count the ends in contact: beside them the body would touch, too.
-  bool counts_ends = false;
+  /// The body ends where the boundary does: contact may reach its ends, as it may an axis of
+  /// symmetry.
+  bool closed_ends = false;
+  /// By Nitsche's method: the unit normal of the body's exact boundary at a point of the reference
+  /// boundary, out of the mapped body, which its stress acts on; empty: that of the edges.
+  Named<PointMap> body_normal{};
 };
 
 ContactRecipe rigid_support(Support support);
