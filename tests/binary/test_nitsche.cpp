@@ -44,6 +44,27 @@ TEST_F(Nitsche, IsReducedVerifiedAndAsked) {
   EXPECT_TRUE(contains(inspect, "of 160 Gauss points")) << inspect;
 }
 
+/// Where the normal of contact is not that of the body, whose stress the method takes, it is as
+/// close to the laws and to the answer by multipliers as where it is.
+TEST_F(Nitsche, FulfilsTheLawsAlongAnyNormal) {
+  const auto solved = [](const std::string &options) {
+    return output_of(rbvi(1, "solve -scene rigid_disk -arc_edges 80 -mu 1 " + options));
+  };
+  for (const std::string normal : {"radial", "rigid"}) {
+    SCOPED_TRACE(normal);
+    const std::string common = "-friction none -normal " + normal + " -formulation ";
+    const std::string nitsche = solved(common + "nitsche"), mixed = solved(common + "mixed");
+    EXPECT_LT(value_of(nitsche, "law_error_normal"), 0.04)
+        << "0.1 with the stress on another normal";
+    const double energy = value_of(mixed, "energy"), peak = value_of(mixed, "peak_pressure");
+    EXPECT_NEAR(value_of(nitsche, "energy"), energy, 1e-5 * energy);
+    EXPECT_NEAR(value_of(nitsche, "peak_pressure"), peak, 1e-2 * peak);
+  }
+  const std::string lifted = output_of(
+      rbvi(1, "solve -scene roller -formulation nitsche -top -0.1 -parameters tilt -mu 0"));
+  EXPECT_LT(value_of(lifted, "law_error_normal"), 0.2) << "of two arcs one is not touched";
+}
+
 TEST_F(Nitsche, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused({{offline + "-hf_method uzawa", "mixed formulation"},

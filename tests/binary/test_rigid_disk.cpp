@@ -87,6 +87,33 @@ TEST_F(RigidDisk, AnAnswerThatBreaksTheLawSaysSo) {
   EXPECT_FALSE(contains(output_of(rbvi_online("mended/model.h5 --mu 0.85")), warning));
 }
 
+/// On a large body the ends of the wide arc face away from the rigid disk.
+TEST_F(RigidDisk, ADiskBehindTheArcIsRefused) {
+  const std::string solve = "solve -scene rigid_disk -radius 5 -parameters indentation -mu 0.05 ";
+  for (const std::string formulation : {"", "-formulation nitsche "}) {
+    const std::string wide = solve + formulation + "-arc_edges 40 -contact_arc wide ";
+    expect_all_refused({{wide, "faces away from the rigid disk"}});
+    EXPECT_GT(value_of(output_of(rbvi(1, wide + "-normal rigid")), "normal_force"), 0);
+  }
+}
+
+/// Beside a region, or the end of an arc, the body would touch too.
+TEST_F(RigidDisk, ContactAtTheEndOfItsRegionIsSaid) {
+  const std::string warning = "contact reaches the end of its boundary";
+  const auto says = [&](const std::string &scene) {
+    return contains(output_of(rbvi(1, "solve -scene " + scene)), warning);
+  };
+  EXPECT_FALSE(says("membrane_obstacle -mu 0.2,0,0"));
+  EXPECT_TRUE(says("membrane_obstacle -load -400 -mu 0.2,0,0"));
+  for (const std::string formulation : {"mixed", "nitsche"}) {
+    EXPECT_FALSE(says("patch -bodies one -mu 0.05 -formulation " + formulation));
+    EXPECT_FALSE(says("roller -mu 0.05,0 -formulation " + formulation));
+    EXPECT_TRUE(says("rigid_disk -contact_arc wide -arc_edges 80 -indentation 0.25 -radius 1.3 "
+                     "-parameters friction_coefficient -mu 0.2 -formulation " +
+                     formulation));
+  }
+}
+
 TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused(

@@ -99,7 +99,7 @@ inline Point radial(const FullMu &, const Point &x) {
 inline SupportScene hertz(int degree) {
   SupportScene scene = support_scene(degree);
   scene.map = [](const FullMu &mu, const Point &x) { return Point{mu[0] * x[0], mu[0] * x[1], 0}; };
-  scene.support.normal = radial;
+  scene.support.normal = scene.support.body_normal = radial;
   scene.support.gap = [](const FullMu &mu, const Point &x) {
     const double r = std::hypot(x[0], x[1]);
     return mu[0] * (r / -x[1] - 1);

@@ -98,8 +98,8 @@ TEST(NitscheCurves, OutputsAreSumsAndMaxima) {
 /// A curve that nothing touches has no stress but what its free edge is off by.
 TEST(NitscheCurves, ErrorsOfTheLawsAreRelativeToTheStressOfAllCurves) {
   const TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
-  const Vector small = 1e-6 * two.u, none = Vector::Zero(two.v.size());
-  for (const auto &[u, v] : {std::pair{two.u, two.v}, {small, two.v}, {two.u, none}}) {
+  const Vector small = 1e-6 * two.u, slight = 1e-6 * two.v;
+  for (const auto &[u, v] : {std::pair{two.u, two.v}, {small, two.v}, {two.u, slight}}) {
     const CurveFields one = nitsche_fields(two.one, 0, two.mu, u),
                       other = nitsche_fields(two.other, 0, two.mu, v);
     const Outputs both = outputs_of(two.both, two.mu, stacked(u, v));
