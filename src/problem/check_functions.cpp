@@ -118,7 +118,7 @@ void check_imposed_term(const Scene &scene, const ImposedTerm &term, const std::
   for (const Point &x : {Point{0.3, 0.4, 0}, Point{-0.6, 0.5, 0}, Point{0.7, -0.8, 0}}) {
     const auto at = [&](const FullMu &all) {
       const Point value = asked(what, [&] { return term.value(all, x); });
-      return Vector(Eigen::Map<const Vector>(value.data(), 3));
+      return Vector{{value[0], value[1], value[2]}};
     };
     for (std::size_t i = 0; i < mu.size(); ++i)
       if (std::ranges::find(declared, static_cast<int>(i)) == declared.end() &&

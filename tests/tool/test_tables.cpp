@@ -17,7 +17,9 @@ Sample sample(double ends_in_contact, double load_steps) {
 
 std::string told(const std::vector<Sample> &samples) {
   std::ostringstream out;
-  tell_of_samples(samples, out);
+  Scene scene;
+  scene.parameters = all_free({{"indentation", "", 0, 2, 1}});
+  tell_of_samples(scene, Contact{}, samples, out);
   return out.str();
 }
 
