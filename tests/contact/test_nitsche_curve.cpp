@@ -286,7 +286,9 @@ TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
     return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
   };
   const Strip s = strip(2, line(2, -0.5, 0.5, -1));
-  scene.support.normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
+  scene.support.normal = scene.support.body_normal = [](const FullMu &, const Point &) {
+    return Point{0, -1, 0};
+  };
   const FullMu mu{1};
   const Vector u = nodal(scene, mu, s, [](const Point &x) { return Point{0, 0.1 * x[1], 0}; });
   const CurveFields fields = nitsche_fields(layer_of(scene, s), 0, mu, u);
