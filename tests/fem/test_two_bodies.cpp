@@ -235,8 +235,8 @@ TEST(ContactCurves, NeedAnEdge) {
 
 TEST(ContactCurves, NeedToBeGraphsOverX) {
   Scene scene = make_scene("patch");
-  scene.contacts = {two_bodies({"slave", "sides", {}})};
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+  scene.contacts = {two_bodies({"slave", "sides", {}})};
   const std::string message =
       refusal([&] { (void)curves_of(mesh, number_dofs(mesh, 2, {}), scene); });
   EXPECT_CONTAINS(message, "'sides'");

@@ -32,6 +32,11 @@ Vector bounds_of(const CollocatedProblem &p, const Vector &x) {
   });
 }
 
+/// Where all terms are zero nothing is violated.
+double relative(double value, double scale) {
+  return value == 0 ? 0 : value / scale;
+}
+
 /// The definition, without the multipliers of the solver. The variational inequality says that
 /// -w_tau is in the cone of the normals of the bounds that are reached: its distance from it.
 double violation(const CollocatedProblem &p, const Vector &x) {
@@ -42,8 +47,9 @@ double violation(const CollocatedProblem &p, const Vector &x) {
   double worst = 0;
   for (Index i = 0; i < r; ++i) {
     if (x[i] < 0) return infinity;
-    worst = larger(worst, -w[i] / terms[i]);
-    worst = larger(worst, std::min(x[i] * root[i] / largest, std::abs(w[i]) / terms[i]));
+    worst = larger(worst, relative(-w[i], terms[i]));
+    worst = larger(worst,
+                   std::min(relative(x[i] * root[i], largest), relative(std::abs(w[i]), terms[i])));
   }
   const Vector bounds = bounds_of(p, x), traction = p.tangential_rows * x.tail(s);
   const Matrix unit = p.tangential_rows * root.tail(s).cwiseInverse().asDiagonal();
@@ -51,7 +57,7 @@ double violation(const CollocatedProblem &p, const Vector &x) {
   Matrix normals(s, 0);
   for (Index j = 0; j < bounds.size(); ++j) {
     const double scale = std::max(bounds[j], largest * size);
-    worst = larger(worst, (std::abs(traction[j]) - bounds[j]) / scale);
+    worst = larger(worst, relative(std::abs(traction[j]) - bounds[j], scale));
     for (const double side : {-1.0, 1.0}) {
       if (side * traction[j] < bounds[j] - 1e-11 * scale) continue;
       normals.conservativeResize(Eigen::NoChange, normals.cols() + 1);
@@ -62,7 +68,8 @@ double violation(const CollocatedProblem &p, const Vector &x) {
   const Vector load = -w.tail(s).cwiseQuotient(root.tail(s));
   NonnegativeQp cone(s);
   EXPECT_TRUE(cone.solve(normals, load).converged);
-  return std::max(worst, cone.residual().norm() / terms.tail(s).cwiseQuotient(root.tail(s)).norm());
+  const double size_of_load = terms.tail(s).cwiseQuotient(root.tail(s)).norm();
+  return larger(worst, relative(cone.residual().norm(), size_of_load));
 }
 
 CollocatedResult expect_solved(const CollocatedProblem &p, const Vector &start = {}) {

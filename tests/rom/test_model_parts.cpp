@@ -112,7 +112,7 @@ TEST(PrintModel, ShowsParametersSizesAndErrors) {
   std::ostringstream out;
   print_model(out, full_model());
   for (const char *part : {"membrane_obstacle", "radius", "[0.16, 0.24] m", "0.01 (fixed) m",
-                           "supremizers", "-pod_tolerance", "0.0004 max"})
+                           "supremizers", "-pod_tolerance", "0.0004 largest"})
     EXPECT_NE(out.str().find(part), std::string::npos) << part << " in\n" << out.str();
 }
 

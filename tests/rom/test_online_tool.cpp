@@ -154,7 +154,7 @@ TEST_F(OnlineBinary, AnswersMany) {
 TEST_F(OnlineBinary, DecorrelatedIsAnotherModelWithItsOwnErrors) {
   const Finished run = online("model.h5 --mu 0.2,0,0 --decorrelated");
   EXPECT_EQ(run.status, 0) << run.out;
-  EXPECT_TRUE(contains(run.out, "0.2 max")) << run.out;
+  EXPECT_TRUE(contains(run.out, "0.2 largest")) << run.out;
   EXPECT_TRUE(contains(online("model.h5 --decorrelated").out, "supremizers           0"));
 }
 

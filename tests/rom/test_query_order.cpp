@@ -17,6 +17,11 @@ ReducedModel model_of_dependent_generators(bool trained) {
   return model;
 }
 
+/// The factors of a start may be updated ones, or made anew: the same to round-off.
+double distance(const Vector &one, const Vector &other) {
+  return (one - other).norm() / other.norm();
+}
+
 TEST(OrderOfQueries, DoesNotMatter) {
   for (const bool trained : {false, true}) {
     const ReducedModel model = model_of_dependent_generators(trained);
@@ -27,11 +32,11 @@ TEST(OrderOfQueries, DoesNotMatter) {
       first.push_back(forwards.solve(mu));
     for (std::size_t k = set.size(); k-- > 0;) {
       const ReducedSolution again = backwards.solve(set[k]);
-      EXPECT_EQ(again.x, first[k].x);
-      EXPECT_EQ(again.u, first[k].u);
+      EXPECT_LE(distance(again.x, first[k].x), 1e-12);
+      EXPECT_LE(distance(again.u, first[k].u), 1e-12);
       EXPECT_EQ(again.iterations, first[k].iterations);
       if (k % 10 > 0) continue;
-      EXPECT_EQ(OnlineSolver(model).solve(set[k]).x, first[k].x);
+      EXPECT_LE(distance(OnlineSolver(model).solve(set[k]).x, first[k].x), 1e-12);
     }
   }
 }

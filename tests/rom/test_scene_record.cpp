@@ -164,7 +164,7 @@ TEST(SceneRecord, WhatThisBuildDoesNotHaveIsNamed) {
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["contact_0"].name = "glue";
-            }).find("contact 'glue' version 1 is not in this build"),
+            }).find("contact 'glue' version 2 is not in this build"),
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["map"].numbers.clear();

@@ -121,6 +121,7 @@ HfSolution solve_cube(MPI_Comm comm, const std::string &file, int degree, bool l
   scene.snap = {};
   scene.contacts = {obstacle({"core", [](const FullMu &, const Point &) { return -0.5; }, lumped})};
   scene.a = {mapped_term(laplace("", degree))};
+  scene.v_product = {exact_term(h1_product(1, 1, degree))};
   scene.f = {mapped_term(constant_load("", -25, degree))};
   Problem problem(comm, scene, {file, 0});
   HfOptions options;

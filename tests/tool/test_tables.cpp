@@ -29,7 +29,7 @@ TEST(SamplesOfASweep, AreToldOfWhereSomeTakeLoadStepsOrTouchAnEnd) {
   const std::string both = told({sample(1, 8), sample(0, 8), sample(2, 0)});
   EXPECT_EQ(both.find("2 of 3 samples took load steps\nwarning: 2 of 3 samples touch an end"), 0U)
       << both;
-  EXPECT_NE(both.find("a smaller indentation or offset"), std::string::npos);
+  EXPECT_NE(both.find("a smaller indentation, offset"), std::string::npos);
   Sample small = sample(0, 0);
   small.outputs.ends_in_contact = small.outputs.load_steps = std::nullopt;
   EXPECT_EQ(told({small}), "") << "of small deformations there is none";
