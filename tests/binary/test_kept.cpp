@@ -82,10 +82,14 @@ TEST_F(Kept, FailedValidationSamplesLeaveTheOthersMeasured) {
     const Finished run = shell(rbvi(ranks, "verify -out run"));
     expect_failure(run, "1 of 11 validation samples failed");
     EXPECT_EQ(lines_with(run.out, "Relative errors over 10 validation mu"), 1) << run.out;
+    EXPECT_EQ(lines_with(run.out, "6 of 14 corners and centres of faces have no high-fidelity"), 1)
+        << run.out;
     EXPECT_EQ(lines_with(run.out, "wrote run/verify, run/model.h5"), 1) << run.out;
     EXPECT_EQ(lines_with(slurp("run/verify/errors.csv"), ""), 11);
   }
-  EXPECT_TRUE(contains(shell(rbvi_online("run/model.h5")).out, "over 10 parameters"));
+  EXPECT_TRUE(contains(shell(rbvi_online("run/model.h5")).out, "over 18 parameters"));
+  EXPECT_TRUE(contains(output_of(rbvi_online("run/model.h5 --mu 0.101,0.049,0.049")),
+                       "nearer to a corner or a face of the box"));
   fs::remove_all("run/verify");
   for (const std::string command : {"verify", "bench"})
     expect_failure(shell(rbvi(2, command + " -out run -sweep_max_failures 0")),

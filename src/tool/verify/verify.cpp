@@ -234,7 +234,7 @@ void command_verify(const ToolOptions &given) {
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
     check_errors(model, problem.w_product(), truths, boundary, out);
-    look_for_other_answers(model, problem.scene(), truths.mu);
+    look_for_other_answers(model, problem.scene(), from_columns(model.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
