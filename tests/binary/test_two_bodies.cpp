@@ -115,7 +115,7 @@ TEST_F(TwoBodies, BadInputIsRefused) {
        {disks + "-radius 0,1.4", "is 0: its range of validity is [0.45, 10]"},
        {disks + "-radius 0.7,1e300", "is 1e+300: its range of validity is [0.45, 10]"},
        {disks + "-indentation deep", "'deep': not a number"},
-       {disks + "-load -25", "unknown option -load"},
+       {disks + "-load -25", "option -load is of another scene"},
        {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
        {disks + "-hf_method vi", "needs a bound at each node"},
        {"offline -scene two_disks -cone_type mcpg -out run",
