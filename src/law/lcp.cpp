@@ -19,13 +19,13 @@ BasicSolution solve_basis(LazyColumns &columns, const Vector &q, std::vector<Ind
   columns.require(basic.active);
   const Matrix block = columns.block(basic.active);
   const Vector diagonal = block.diagonal();
-  const Eigen::LLT<Matrix> cholesky(block);
-  basic.regular = basic.active.empty() || cholesky.info() == Eigen::Success;
+  Matrix lower = block;
+  basic.regular = cholesky_in_place(lower);
   if (!basic.regular) return basic;
   if (!basic.active.empty()) {
     const Vector right = q(basic.active);
-    basic.x = -cholesky.solve(right);
-    basic.x -= cholesky.solve(Vector(block.selfadjointView<Eigen::Lower>() * basic.x + right));
+    basic.x = -cholesky_solve(lower, right);
+    basic.x -= cholesky_solve(lower, block.selfadjointView<Eigen::Lower>() * basic.x + right);
   }
   auto [product, sizes] = columns.multiply(basic.active, basic.x);
   basic.w = product + q;

@@ -82,13 +82,6 @@ Handle<Vec> wrapped_column(Matrix &matrix, Index column) {
   return vector;
 }
 
-/// A square matrix with the same singular values: LAPACK's SVD forms vectors of full length.
-Matrix triangular_factor(const Matrix &matrix) {
-  if (matrix.rows() <= matrix.cols()) return matrix;
-  const Eigen::HouseholderQR<Matrix> qr(matrix);
-  return qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
-}
-
 } // namespace
 
 Handle<SVD> make_small_svd(const char *prefix) {
@@ -137,18 +130,17 @@ SmallSvd of_few_rows(const Matrix &matrix, const char *prefix) {
 SmallSvd small_svd(const Matrix &matrix, const char *prefix) {
   if (matrix.size() == 0) return {Vector(0), Matrix(matrix.rows(), 0), Matrix(matrix.cols(), 0)};
   if (matrix.rows() <= matrix.cols()) return of_few_rows(matrix, prefix);
-  const Eigen::HouseholderQR<Matrix> qr(matrix);
-  SmallSvd result =
-      of_few_rows(qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>(), prefix);
-  result.left.conservativeResizeLike(Matrix::Zero(matrix.rows(), matrix.cols()));
-  result.left.applyOnTheLeft(qr.householderQ());
+  const auto [q, r] = thin_qr(matrix);
+  SmallSvd result = of_few_rows(r, prefix);
+  result.left = q * result.left;
   return result;
 }
 
 Vector singular_values(const Matrix &matrix, const char *prefix) {
   Vector values(std::min(matrix.rows(), matrix.cols()));
   if (values.size() == 0) return values;
-  const Matrix factor = triangular_factor(matrix);
+  // A square matrix with the same singular values: LAPACK's SVD forms vectors of full length.
+  const Matrix factor = matrix.rows() > matrix.cols() ? triangular_factor(matrix) : matrix;
   const std::optional<SVD> svd = solved(factor, prefix);
   if (!svd) return by_rotations(factor).values;
   for (Index k = 0; k < values.size(); ++k)

@@ -137,13 +137,12 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
     stiffness_of(model_, theta_a, a_);
     if (anew) enrich();
     l_ = a_;
-    const Eigen::LLT<Eigen::Ref<Matrix>> factor(l_);
-    if (factor.info() != Eigen::Success) throw stiffness_not_definite();
+    if (!cholesky_in_place(l_)) throw stiffness_not_definite();
     theta_a_ = theta_a;
   }
   if (a_ratio == 0 || b_ratio == 0) {
     y_ = b_.transpose();
-    l_.triangularView<Eigen::Lower>().solveInPlace(y_);
+    solve_lower(l_, y_);
     ++y_number_;
     qp_.reset();
   }
@@ -154,7 +153,7 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
   if (changed_)
     changed_->solve_root(c_);
   else
-    l_.triangularView<Eigen::Lower>().solveInPlace(c_);
+    solve_lower(l_, c_);
   // The columns of the true Y are those kept, times `scale`: x takes the factor instead.
   const double scale = b_scale_ / a_scale_;
   const NonnegativeQpReport report = qp_.solve(y_, c_, g_ / scale);
@@ -170,7 +169,7 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
   if (changed_)
     changed_->solve_transposed(solution.u);
   else
-    l_.transpose().triangularView<Eigen::Upper>().solveInPlace(solution.u);
+    solve_lower_transposed(l_, solution.u);
 }
 
 void OnlineSolver::check(ReducedSolution &solution) {

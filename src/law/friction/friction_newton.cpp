@@ -54,18 +54,19 @@ bool is_negative(const Eigen::PartialPivLU<Matrix> &lu) {
 /// With one step of refinement. Empty if the matrix is singular or, where it is symmetric, not
 /// positive definite. `negative`: of the determinant.
 Vector solve(const Matrix &matrix, const Vector &right, bool symmetric, bool &negative) {
-  const auto refined = [&](const auto &factors) {
-    Vector u = factors.solve(right);
-    u -= factors.solve(Vector(matrix * u - right));
+  const auto refined = [&](const auto &solved) {
+    Vector u = solved(right);
+    u -= solved(matrix * u - right);
     return u.allFinite() ? u : Vector();
   };
   if (!symmetric) {
     const Eigen::PartialPivLU<Matrix> lu(matrix);
     negative = is_negative(lu);
-    return refined(lu);
+    return refined([&](const Vector &r) -> Vector { return lu.solve(r); });
   }
-  const Eigen::LLT<Matrix> cholesky(matrix);
-  return cholesky.info() == Eigen::Success ? refined(cholesky) : Vector();
+  Matrix lower = matrix;
+  if (!cholesky_in_place(lower)) return {};
+  return refined([&](const Vector &r) { return cholesky_solve(lower, r); });
 }
 
 /// The verdict on a point, node by node.

@@ -229,16 +229,15 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
     for (Index k = 0; k < h.cols(); ++k)
       for (Index j = 0; j <= k; ++j)
         h(k, j) = at_.b.row(active[at(k)]).dot(of_active.col(j));
-    const Eigen::LLT<Matrix> factor(h);
-    if (!active.empty() && factor.info() != Eigen::Success) return std::nullopt;
-    const Vector x0 = -factor.solve(q_(active));
+    if (!cholesky_in_place(h)) return std::nullopt;
+    const Vector x0 = -cholesky_solve(h, q_(active));
     const Vector right = free_(dofs) - near * x0 - state_(dofs);
     const Vector d = fixed_point(right, tolerance, [&](const Vector &change) -> Vector {
       const Vector z = curvature(change);
-      return local * z - near * factor.solve(near.transpose() * z);
+      return local * z - near * cholesky_solve(h, near.transpose() * z);
     });
     const Vector z = curvature(d);
-    const Vector x = x0 - factor.solve(near.transpose() * z);
+    const Vector x = x0 - cholesky_solve(h, near.transpose() * z);
     Vector u = free_ - of_active * x;
     LoadedColumns by_curvature;
     for (std::size_t k = 0; k < dofs.size(); ++k)

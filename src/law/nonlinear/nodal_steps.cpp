@@ -96,9 +96,7 @@ void NodalSteps::set_tangent(const std::vector<Index> &active) {
       q_(a, b) = across.col(a).dot(under_tau.col(under));
     }
   }
-  factor_.compute(h);
-  if (n > 0 && factor_.info() != Eigen::Success)
-    throw failure("the compliance between the nodes in contact is not positive definite");
+  factor_ = cholesky(std::move(h), "the compliance between the nodes in contact");
 }
 
 /// With t the tangential displacements, z = rotation t, y the change of x on the active nodes:
@@ -123,13 +121,13 @@ Eigen::Matrix2Xd NodalSteps::newton_on_active(double tolerance, Vector &x) const
     slip[a] = tangent(node).normalized().dot(e.col(a));
     rotation[a] = here_.rotation[node];
   }
-  const Vector right = slip + p_ * factor_.solve(gap);
+  const Vector right = slip + p_ * cholesky_solve(factor_, gap);
   const Vector t = fixed_point(right, tolerance, [&](const Vector &moved) -> Vector {
     const Vector z = rotation.cwiseProduct(moved);
-    return p_ * factor_.solve(p_.transpose() * z) - q_ * z;
+    return p_ * cholesky_solve(factor_, p_.transpose() * z) - q_ * z;
   });
   const Vector z = rotation.cwiseProduct(t);
-  const Vector y = factor_.solve(p_.transpose() * z - gap);
+  const Vector y = cholesky_solve(factor_, p_.transpose() * z - gap);
   for (Index a = 0; a < n; ++a) {
     const Index node = active_[at(a)];
     x[contact_.laws.normal[at(node)]] += y[a];

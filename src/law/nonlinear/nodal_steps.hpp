@@ -64,7 +64,7 @@ private:
   // Without friction, between the active nodes: H, its factor; tangential displacements under
   // normal (p_) and tangential (q_) loads.
   std::vector<Index> active_;
-  Eigen::LLT<Matrix> factor_;
+  Matrix factor_;
   Matrix p_, q_;
 };
 

@@ -3,8 +3,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -41,12 +39,6 @@ double condition(const Matrix &triangular) {
       triangular.cols() > large ? iterated_values(triangular) : singular_values(triangular);
   const double ratio = values[0] / values[values.size() - 1];
   return ratio * ratio;
-}
-
-Matrix triangular_factor(const Matrix &coordinates) {
-  const Index rows = std::min(coordinates.rows(), coordinates.cols());
-  const Eigen::HouseholderQR<Matrix> qr(coordinates);
-  return qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
 }
 
 } // namespace
@@ -158,9 +150,7 @@ double Distances::update(Index p, const Eigen::Ref<const Matrix> &coordinates) {
 Matrix span_coordinates(const Matrix &snapshots, const SparseMatrix &product) {
   const Matrix factor = product_factor(product);
   if (snapshots.cols() >= snapshots.rows()) return factor;
-  const Eigen::HouseholderQR<Matrix> qr(factor * snapshots);
-  const Matrix span = qr.householderQ() * Matrix::Identity(snapshots.rows(), snapshots.cols());
-  return span.transpose() * factor;
+  return thin_qr(factor * snapshots).q.transpose() * factor;
 }
 
 GreedyCone::GreedyCone(const Matrix &snapshots, Matrix map, const ConeOptions &options)

@@ -40,10 +40,7 @@ const std::vector<std::string> &cone_type_names() {
 }
 
 Matrix product_factor(const SparseMatrix &product) {
-  const Eigen::LLT<Matrix> cholesky{Matrix(product)};
-  if (cholesky.info() != Eigen::Success)
-    throw failure("the inner product of the multipliers is not positive definite");
-  return cholesky.matrixU();
+  return cholesky(Matrix(product), "the inner product of the multipliers").transpose();
 }
 
 Cone projected_greedy_cone(const Matrix &snapshots, const SparseMatrix &product,

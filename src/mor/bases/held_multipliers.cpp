@@ -68,11 +68,11 @@ Matrix hold_by_columns(const ColumnSource &condensed, const std::vector<Index> &
     result.middleRows(place, columns.cols()) = -columns.transpose() * others;
   }
   block = ((block + block.transpose()) / 2).eval();
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(block);
-  if (factor.info() != Eigen::Success)
+  if (!cholesky_in_place(block))
     throw failure("the condensed operator is not positive definite on the nodes in permanent "
                   "contact: try another -reference_mu");
-  factor.solveInPlace(result);
+  solve_lower(block, result);
+  solve_lower_transposed(block, result);
   return result;
 }
 

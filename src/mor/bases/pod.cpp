@@ -150,7 +150,7 @@ private:
     if (fit.least < much_removed) remove(block, count);
     const Matrix again = gram_of(block, count)(fit.columns, fit.columns);
     rotate(block, count, fit.columns, Vector::Ones(again.cols()),
-           Eigen::LLT<Matrix>(again).matrixL());
+           cholesky(again, "the Gram matrix of fields that are nearly orthonormal"));
     for (const Index j : fit.columns)
       taken[static_cast<std::size_t>(j)] = true;
     return taken;

@@ -41,7 +41,7 @@ public:
       const Matrix residuals = solver_.point_residuals();
       for (Index q = 0; q < residuals.cols(); ++q)
         if (!residuals.col(q).isZero(0)) met[static_cast<std::size_t>(q)] = 1;
-      const Vector skew = Eigen::PartialPivLU<Matrix>(solver_.tangent()).solve(residuals * sign);
+      const Vector skew = lu_solve(solver_.tangent(), residuals * sign);
       symmetric_ = symmetric_ && skew.norm() <= mirrored * answers_.col(p).norm();
     }
     for (Index q = 0; q < x.size(); ++q)
@@ -57,7 +57,7 @@ public:
   Matrix effects(Index p) {
     const double size = std::max(solve(p).norm(), 1e-300);
     const Matrix residuals = solver_.point_residuals()(Eigen::all, points_);
-    return share() / size * Eigen::PartialPivLU<Matrix>(solver_.tangent()).solve(residuals);
+    return share() / size * lu_solve(solver_.tangent(), residuals);
   }
 
 private:

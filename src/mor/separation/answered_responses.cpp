@@ -42,11 +42,11 @@ bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
 }
 
 ResponseDirections::ResponseDirections(const Matrix &compliance) {
-  const Eigen::LLT<Matrix> factor((compliance + compliance.transpose()) / 2);
-  if (factor.info() != Eigen::Success)
+  root_ = (compliance + compliance.transpose()) / 2;
+  if (!cholesky_in_place(root_))
     throw failure("the responses of the body to its contact loads are dependent: use "
                   "-response_compression 0");
-  root_ = factor.matrixU();
+  root_.transposeInPlace();
 }
 
 Matrix ResponseDirections::remainder(Matrix moved) const {
@@ -88,8 +88,7 @@ double ResponseDirections::left(const Matrix &answers) const {
 }
 
 Matrix ResponseDirections::coefficients(double tolerance) const {
-  return root_.triangularView<Eigen::Upper>().solve(space_ *
-                                                    leading_vectors(parts_, tolerance * largest_));
+  return solve_upper(root_, space_ * leading_vectors(parts_, tolerance * largest_));
 }
 
 int append_answered_responses(Problem &problem, const CondensedLoads &loads,

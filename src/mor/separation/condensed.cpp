@@ -191,7 +191,7 @@ Matrix weights_of(const Matrix &multipliers) {
   const Matrix covariance =
       multipliers * multipliers.transpose() / static_cast<double>(multipliers.cols()) +
       node * node * Matrix::Identity(m, m);
-  return Eigen::LLT<Matrix>(covariance).matrixL();
+  return cholesky(covariance, "the covariance of the multipliers");
 }
 
 /// H at single mu, each A factorised; what `condense` appends to the modes on the way.

@@ -132,11 +132,10 @@ public:
     with_columns(0, known_,
                  [&](Mat columns) { rest.noalias() -= BorrowedRows(columns).rows() * inside; });
     const Handle<Mat> outside = dense_like(fields, rest);
-    const Eigen::SelfAdjointEigenSolver<Matrix> gram(
-        projected(outside.get(), product_, outside.get()));
-    const Vector lengths = gram.eigenvalues().cwiseMax(0).cwiseSqrt();
+    const EigenPairs gram = eigen_pairs(projected(outside.get(), product_, outside.get()));
+    const Vector lengths = gram.values.cwiseMax(0).cwiseSqrt();
     const Index count = (lengths.array() > least).count();
-    const Matrix directions = rest * gram.eigenvectors().rightCols(count).rowwise().reverse();
+    const Matrix directions = rest * gram.vectors.rightCols(count).rowwise().reverse();
     if (count > 0) append_orthonormalised(basis_, dense_like(fields, directions).get(), 1e-10);
     keep_up();
     return {lengths.tail(1)[0], count};
@@ -312,11 +311,11 @@ Matrix ReducedResponses::compliance(const FullMu &all_parameters) const {
   Matrix sum = theta[0] * terms_[0];
   for (std::size_t q = 1; q < theta.size(); ++q)
     sum += theta[q] * terms_[q];
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(sum);
-  if (factor.info() != Eigen::Success)
+  if (!cholesky_in_place(sum))
     throw failure("the stiffness is not positive definite at " +
                   describe(scene.parameters, all_parameters));
-  const Matrix half = factor.matrixL().solve(loads_);
+  Matrix half = loads_;
+  solve_lower(sum, half);
   return half.transpose() * half;
 }
 

@@ -51,10 +51,11 @@ PairConstants high_fidelity_pair(const Problem &problem, const RieszSpace &space
                        w = chosen * SparseMatrix(problem.w_product() * chosen.transpose());
     return {sparse->constant(b, w), largest_stretch(space.factor, b, w)};
   }
-  const Eigen::LLT<Matrix> w(Matrix(problem.w_product())(rows, rows));
-  if (w.info() != Eigen::Success) throw failure("the W product is not positive definite");
-  Matrix x = Matrix::Zero(problem.dual_size(), static_cast<Index>(rows.size()));
-  x(rows, Eigen::all) = Matrix(w.matrixU().solve(Matrix::Identity(x.cols(), x.cols())));
+  const Matrix w = cholesky(Matrix(problem.w_product())(rows, rows), "the W product");
+  Matrix inverse = Matrix::Identity(w.rows(), w.cols());
+  solve_lower_transposed(w, inverse);
+  Matrix x = Matrix::Zero(problem.dual_size(), w.cols());
+  x(rows, Eigen::all) = inverse;
   const Vector stretch = singular_values(supremizer_coordinates(space, op.b, x));
   const bool enough = stretch.size() == x.cols(); // else V holds fewer directions than W
   return {enough ? stretch(stretch.size() - 1) : 0, stretch(0)};

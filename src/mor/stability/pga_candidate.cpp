@@ -89,7 +89,7 @@ bool PgaCandidate::certainly_below(const PgaSpace &space, double needed) {
   if (square < cancellation * built_) return false;
   Matrix shifted = -gram_;
   shifted.diagonal().array() += square;
-  return Eigen::LLT<Eigen::Ref<Matrix>>(shifted).info() == Eigen::Success;
+  return cholesky_in_place(shifted);
 }
 
 double PgaCandidate::evaluate(const PgaSpace &space, SmallEigen &eigen) {

@@ -20,13 +20,6 @@ Vector stretches(const Matrix &matrix) {
   return singular_values(matrix, "infsup_");
 }
 
-Matrix lower_cholesky(const Matrix &matrix, const char *what) {
-  const Eigen::LLT<Matrix> cholesky(matrix);
-  if (!matrix.allFinite() || cholesky.info() != Eigen::Success)
-    throw failure(std::string(what) + " is not positive definite");
-  return cholesky.matrixL();
-}
-
 } // namespace
 
 RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<Index> &dofs,
@@ -39,17 +32,18 @@ RieszSpace make_riesz_space(Mat product, const Trace &trace, const std::vector<I
   const Index size = space.trace.size;
   if (loads.cols() > 0 && 2 * loads.cols() <= size) {
     const Matrix gram = loads.transpose() * space.solver->responses(loads);
-    const Eigen::LLT<Matrix> cholesky((gram + gram.transpose()) / 2);
-    const Vector pivots = Matrix(cholesky.matrixL()).diagonal();
-    if (cholesky.info() == Eigen::Success && pivots.minCoeff() > dependent * pivots.maxCoeff()) {
+    space.factor = (gram + gram.transpose()) / 2;
+    const bool definite = cholesky_in_place(space.factor);
+    const auto pivots = space.factor.diagonal();
+    if (definite && pivots.minCoeff() > dependent * pivots.maxCoeff()) {
+      space.factor.triangularView<Eigen::StrictlyUpper>().setZero();
       space.loads = loads;
-      space.factor = cholesky.matrixL();
       return space;
     }
   }
   const Matrix traces = space.solver->responses(Matrix::Identity(size, size));
-  space.factor = lower_cholesky((traces + traces.transpose()) / 2,
-                                "the inverse V product on the contact dofs");
+  space.factor =
+      cholesky((traces + traces.transpose()) / 2, "the inverse V product on the contact dofs");
   return space;
 }
 
@@ -70,14 +64,13 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   Matrix top = restrict_to(space.trace, columns);
   RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
   if (space.loads.size() > 0) top = (space.loads.transpose() * top).eval();
-  space.factor.triangularView<Eigen::Lower>().solveInPlace(top);
-  const Eigen::SelfAdjointEigenSolver<Matrix> rest(Matrix::Identity(count, count) -
-                                                   top.transpose() * top);
-  if (rest.info() != Eigen::Success || !(rest.eigenvalues()(0) > -1e-8))
+  solve_lower(space.factor, top);
+  const EigenPairs rest = eigen_pairs(Matrix::Identity(count, count) - top.transpose() * top);
+  if (!(rest.values(0) > -1e-8))
     throw failure("the primal basis is not orthonormal in the V product of the supremizers");
-  const Vector roots = rest.eigenvalues().cwiseMax(0).cwiseSqrt();
+  const Vector roots = rest.values.cwiseMax(0).cwiseSqrt();
   coordinates.topRows(contact) = top;
-  coordinates.bottomRows(count) = roots.asDiagonal() * rest.eigenvectors().transpose();
+  coordinates.bottomRows(count) = roots.asDiagonal() * rest.vectors.transpose();
   return coordinates;
 }
 
@@ -95,15 +88,15 @@ Matrix gram_of(const Matrix &x, const SparseMatrix &w_product) {
 Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_product) {
   constexpr double well = 1e-2;
   if (columns.cols() == 0) return {};
-  Matrix basis = columns;
+  Matrix rows = columns.transpose();
   for (int pass = 0; pass < 2; ++pass) {
-    const Eigen::LLT<Matrix> cholesky(gram_of(basis, w_product));
-    if (cholesky.info() != Eigen::Success) return {};
-    const Vector pivots = Matrix(cholesky.matrixL()).diagonal();
+    Matrix factor = gram_of(rows.transpose(), w_product);
+    if (!cholesky_in_place(factor)) return {};
+    const auto pivots = factor.diagonal();
     if (!(pivots.minCoeff() > well * pivots.maxCoeff())) return {};
-    cholesky.matrixU().solveInPlace<Eigen::OnTheRight>(basis);
+    solve_lower(factor, rows);
   }
-  return basis;
+  return rows.transpose();
 }
 
 } // namespace
@@ -174,22 +167,10 @@ Matrix orthonormal_range(const Matrix &vectors) {
   if (!vectors.allFinite()) throw failure("supremizers with entries that are not finite");
   if (size == 0) return Matrix(vectors.rows(), 0);
   // Blocked, then pivoted on the small factor: pivoting the tall matrix costs several times more.
-  const Eigen::HouseholderQR<Matrix> qr(vectors);
-  const Matrix triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
-  Eigen::ColPivHouseholderQR<Matrix> small;
-  Index rank = size;
-  if (!clearly_regular(triangle)) {
-    small.compute(triangle);
-    small.setThreshold(range_tolerance);
-    rank = small.maxPivot() > 0 ? small.rank() : 0;
-  }
-  Matrix basis = Matrix::Zero(vectors.rows(), rank);
-  if (rank == size)
-    basis.topRows(size).setIdentity();
-  else
-    basis.topRows(size) = small.householderQ() * Matrix::Identity(size, rank);
-  basis.applyOnTheLeft(qr.householderQ());
-  return basis;
+  const auto [q, triangle] = thin_qr(vectors);
+  if (clearly_regular(triangle)) return q;
+  const Matrix part = pivoted_range(triangle, range_tolerance);
+  return part.cols() == size ? q : Matrix(q * part);
 }
 
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,
@@ -224,17 +205,16 @@ void add_rows(Matrix &factor, const Matrix &rows) {
     factor = stacked;
     return;
   }
-  const Eigen::HouseholderQR<Matrix> qr(stacked);
-  factor = qr.matrixQR().topRows(rows.cols()).triangularView<Eigen::Upper>();
+  factor = triangular_factor(stacked);
 }
 
 } // namespace
 
 double high_fidelity_constant(const RieszSpace &space, const SparseMatrix &b_contact,
                               const SparseMatrix &w_product) {
-  Matrix x = lower_cholesky(Matrix(w_product), "the W product");
-  x = Matrix(
-      x.transpose().triangularView<Eigen::Upper>().solve(Matrix::Identity(x.rows(), x.cols())));
+  const Matrix lower = cholesky(Matrix(w_product), "the W product");
+  Matrix x = Matrix::Identity(lower.rows(), lower.cols());
+  solve_lower_transposed(lower, x);
   return smallest_stretch(supremizer_coordinates(space, b_contact, x));
 }
 

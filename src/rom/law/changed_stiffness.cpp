@@ -15,14 +15,12 @@ ChangedStiffness::ChangedStiffness(const ReducedModel &model)
     : model_(model), a_(model.primal_size(), model.primal_size()) {
   unpack(model.a.reduced.col(0), a_);
   l_ = a_;
-  const Eigen::LLT<Eigen::Ref<Matrix>> factor(l_);
-  if (factor.info() != Eigen::Success) throw stiffness_not_definite();
+  if (!cholesky_in_place(l_)) throw stiffness_not_definite();
   Matrix range = model.a_change.range;
   solve_fixed(range);
-  const Eigen::HouseholderQR<Matrix> qr(range);
-  const Index size = std::min(range.rows(), range.cols()); // of a leading part fewer rows
-  u_ = qr.householderQ() * Matrix::Identity(range.rows(), size);
-  along_ = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+  ThinQr qr = thin_qr(range);
+  u_ = std::move(qr.q);
+  along_ = std::move(qr.r);
 }
 
 double ChangedStiffness::set(const Vector &theta) {
@@ -32,17 +30,16 @@ double ChangedStiffness::set(const Vector &theta) {
   core_ = unpacked(change.cores * theta, change.rank());
   const Index size = along_.rows();
   const Matrix k = along_ * (core_ / scale_) * along_.transpose();
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(Matrix::Identity(size, size) + k);
-  if (solver.info() != Eigen::Success || !(solver.eigenvalues()[0] > 0))
-    throw stiffness_not_definite();
-  const Vector inverse_roots = solver.eigenvalues().cwiseSqrt().cwiseInverse();
-  inverse_ = solver.eigenvectors() * (inverse_roots.array() - 1).matrix().asDiagonal() *
-             solver.eigenvectors().transpose();
+  const EigenPairs pairs = eigen_pairs(Matrix::Identity(size, size) + k);
+  if (!(pairs.values[0] > 0)) throw stiffness_not_definite();
+  const Vector inverse_roots = pairs.values.cwiseSqrt().cwiseInverse();
+  inverse_ =
+      pairs.vectors * (inverse_roots.array() - 1).matrix().asDiagonal() * pairs.vectors.transpose();
   return scale_;
 }
 
 void ChangedStiffness::solve_fixed(Matrix &x) const {
-  l_.triangularView<Eigen::Lower>().solveInPlace(x);
+  solve_lower(l_, x);
 }
 
 void ChangedStiffness::solve_change(Matrix &x) const {
@@ -51,13 +48,13 @@ void ChangedStiffness::solve_change(Matrix &x) const {
 }
 
 void ChangedStiffness::solve_root(Vector &x) const {
-  l_.triangularView<Eigen::Lower>().solveInPlace(x);
+  solve_lower(l_, x);
   x += u_ * (inverse_ * (u_.transpose() * x));
 }
 
 void ChangedStiffness::solve_transposed(Vector &x) const {
   x += u_ * (inverse_ * (u_.transpose() * x));
-  l_.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+  solve_lower_transposed(l_, x);
 }
 
 Vector ChangedStiffness::times(const Vector &u) const {

@@ -25,11 +25,9 @@ FullMu corner(const ParameterSpace &space, double Parameter::*bound) {
 
 Matrix enriched_subspace(const Matrix &b, Index modes) {
   const Index n = b.cols(), added = std::min(n - modes, b.rows());
-  const Eigen::HouseholderQR<Matrix> qr(b.rightCols(n - modes).transpose());
   Matrix subspace = Matrix::Zero(n, modes + added);
   subspace.topLeftCorner(modes, modes).setIdentity();
-  subspace.bottomRightCorner(n - modes, added) =
-      qr.householderQ() * Matrix::Identity(n - modes, added);
+  subspace.bottomRightCorner(n - modes, added) = thin_qr(b.rightCols(n - modes).transpose()).q;
   return subspace;
 }
 
@@ -46,20 +44,20 @@ void ReducedStiffness::find_common_eigenvectors() {
     return unpacked(a.reduced * affine_coefficients(a, scene_.a, scene_, mu), n);
   };
   const Matrix first = stiffness_at(corner(scene_.parameters, &Parameter::lower));
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(
-      a.size() == 1 ? first : stiffness_at(corner(scene_.parameters, &Parameter::upper)),
-      a.size() == 1 ? Matrix(Matrix::Identity(n, n)) : first);
-  if (solver.info() != Eigen::Success) return;
+  const EigenPairs pairs =
+      a.size() == 1
+          ? eigen_pairs(first)
+          : eigen_pairs(stiffness_at(corner(scene_.parameters, &Parameter::upper)), first);
+  if (pairs.values.size() == 0) return;
   Matrix eigenvalues(n, a.size());
   for (Index q = 0; q < a.size(); ++q) {
-    Matrix term =
-        solver.eigenvectors().transpose() *
-        (unpacked(a.reduced.col(q), n).selfadjointView<Eigen::Lower>() * solver.eigenvectors());
+    Matrix term = pairs.vectors.transpose() *
+                  (unpacked(a.reduced.col(q), n).selfadjointView<Eigen::Lower>() * pairs.vectors);
     eigenvalues.col(q) = term.diagonal();
     term.diagonal().setZero();
     if (!(term.cwiseAbs().maxCoeff() <= 1e-10 * eigenvalues.col(q).cwiseAbs().maxCoeff())) return;
   }
-  eigenvectors_ = solver.eigenvectors();
+  eigenvectors_ = pairs.vectors;
   eigenvalues_ = std::move(eigenvalues);
   b_.resize(model_.generators, n * model_.b.size());
   for (Index p = 0; p < model_.b.size(); ++p)
@@ -83,8 +81,8 @@ void ReducedStiffness::set(const FullMu &all_parameters) {
 }
 
 void ReducedStiffness::factorise(const Matrix &stiffness) {
-  factor_.compute(stiffness);
-  if (factor_.info() != Eigen::Success) throw stiffness_not_definite();
+  lower_ = stiffness;
+  if (!cholesky_in_place(lower_)) throw stiffness_not_definite();
 }
 
 void ReducedStiffness::restrict_to(Matrix subspace) {
@@ -106,8 +104,9 @@ Vector ReducedStiffness::response(const Vector &theta_b, const Vector &x) const 
 }
 
 Vector ReducedStiffness::response(const Vector &load) const {
-  if (model_.online_enriched) return subspace_ * factor_.solve(subspace_.transpose() * load);
-  if (eigenvectors_.size() == 0) return factor_.solve(load);
+  if (model_.online_enriched)
+    return subspace_ * cholesky_solve(lower_, subspace_.transpose() * load);
+  if (eigenvectors_.size() == 0) return cholesky_solve(lower_, load);
   return eigenvectors_ * (eigenvectors_.transpose() * load).cwiseQuotient(diagonal_);
 }
 
@@ -127,15 +126,18 @@ Vector ReducedStiffness::response_of_turned(const Vector &load) const {
 }
 
 Matrix ReducedStiffness::half_response(const Matrix &loads) const {
-  if (model_.online_enriched) return factor_.matrixL().solve(subspace_.transpose() * loads);
-  if (eigenvectors_.size() == 0) return factor_.matrixL().solve(loads);
-  return diagonal_.cwiseSqrt().cwiseInverse().asDiagonal() * (eigenvectors_.transpose() * loads);
+  if (eigenvectors_.size() > 0)
+    return diagonal_.cwiseSqrt().cwiseInverse().asDiagonal() * (eigenvectors_.transpose() * loads);
+  Matrix half = model_.online_enriched ? Matrix(subspace_.transpose() * loads) : loads;
+  solve_lower(lower_, half);
+  return half;
 }
 
 Vector ReducedStiffness::transposed_half_response(const Vector &half) const {
-  if (model_.online_enriched) return subspace_ * factor_.matrixU().solve(half);
-  if (eigenvectors_.size() == 0) return factor_.matrixU().solve(half);
-  return eigenvectors_ * half.cwiseQuotient(diagonal_.cwiseSqrt());
+  if (eigenvectors_.size() > 0) return eigenvectors_ * half.cwiseQuotient(diagonal_.cwiseSqrt());
+  Vector whole = half;
+  solve_lower_transposed(lower_, whole);
+  return model_.online_enriched ? Vector(subspace_ * whole) : whole;
 }
 
 } // namespace rbvi

@@ -126,7 +126,7 @@ int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vect
       ++steps;
       const Matrix slope =
           printed ? tangent(faces, system, system.u) : derivative(faces, system, system.u);
-      const Vector d = -Eigen::PartialPivLU<Matrix>(slope).solve(here.residual);
+      const Vector d = -lu_solve(slope, here.residual);
       if (!d.allFinite()) break;
       double t = 1;
       Terms next = terms(faces, system, system.u + d);

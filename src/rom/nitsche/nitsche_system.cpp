@@ -206,12 +206,12 @@ void ReducedNitsche::System::predict(const Vector &start, const Vector &state) {
   turn_to(state);
   const Vector d = weighted(&PointTerm::curvature, at);
   const Vector forces = weighted(&PointTerm::slope, at) + d.cwiseProduct(offsets - start);
-  const Eigen::LLT<Matrix> factor(tangent_at(at));
-  if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
+  Matrix tangent = tangent_at(at);
+  if (!cholesky_in_place(tangent)) throw failure(tangent_not_definite);
   Vector right = quadratic.f - functionals * forces;
   if (!at_rest.facing.empty())
     right += along_tau * turning_at(at).cwiseProduct(along_tau.transpose() * state);
-  set(factor.solve(right));
+  set(cholesky_solve(tangent, right));
   bounds = bounds_at(pressures);
 }
 
@@ -223,9 +223,9 @@ int ReducedNitsche::System::minimise() {
     if (relative <= residual_accuracy) return step;
     if (step > 0 && relative <= round_off && relative > 0.1 * before) return step;
     before = relative;
-    const Eigen::LLT<Matrix> factor(tangent_at(pressures));
-    if (factor.info() != Eigen::Success) throw failure(tangent_not_definite);
-    const Vector d = -factor.solve(r);
+    Matrix tangent = tangent_at(pressures);
+    if (!cholesky_in_place(tangent)) throw failure(tangent_not_definite);
+    const Vector d = -cholesky_solve(tangent, r);
     NitscheLine line{weights, gamma, pressures, Matrix::Zero(points, 2), bounds};
     line.change.reshaped().head(functionals.cols()) = functionals.transpose() * d;
     double of_turning = 0;
@@ -265,7 +265,7 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
     const Matrix shear = functionals.rightCols(points)(Eigen::all, slipping);
     Matrix tangent = tangent_at(pressures);
     tangent.noalias() += (shear * rate.asDiagonal()) * normal.transpose();
-    const Vector start = u, d = -Eigen::PartialPivLU<Matrix>(tangent).solve(r);
+    const Vector start = u, d = -lu_solve(tangent, r);
     if (!d.allFinite()) return std::nullopt;
     for (double t = 1; t >= shortest_step; t /= 2) { // the shortest one is taken whatever it gives
       set(start + t * d);

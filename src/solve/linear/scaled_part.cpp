@@ -98,14 +98,14 @@ ScaledPart::ScaledPart(const Problem &problem) : problem_(problem), contact_(pro
       condensed_by_loads(lower.get(), both_, "hf_", Matrix::Identity(c + n, c + n), solver_.get());
   const Matrix g_upper = condensed_by_loads(upper.get(), interface_, "hf_", Matrix::Identity(n, n));
   // G_ii(upper) w = theta^-1 G_ii(lower) w, theta = 1 + width * sigma.
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> solver(g_upper, g.bottomRightCorner(n, n));
-  if (solver.info() != Eigen::Success)
+  const EigenPairs pairs = eigen_pairs(g_upper, g.bottomRightCorner(n, n));
+  if (pairs.values.size() == 0)
     throw failure("the stiffness matrix is not positive definite on the interface of the part "
                   "that a parameter scales");
   compliance_ = g.topLeftCorner(c, c);
-  w_ = solver.eigenvectors();
+  w_ = pairs.vectors;
   y_ = g.topRightCorner(c, n) * w_;
-  sigma_ = (solver.eigenvalues().cwiseInverse().array() - 1).max(0);
+  sigma_ = (pairs.values.cwiseInverse().array() - 1).max(0);
 }
 
 void ScaledPart::set(const Operators &op) {

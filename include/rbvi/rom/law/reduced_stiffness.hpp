@@ -50,7 +50,7 @@ private:
   Vector diagonal_;     ///< of A_N at mu
   Matrix a_;            ///< A_N, its lower triangle
   Matrix subspace_;     ///< enriched online: the columns it is restricted to
-  Eigen::LLT<Matrix> factor_;
+  Matrix lower_;
 };
 
 } // namespace rbvi

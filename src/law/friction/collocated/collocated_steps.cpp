@@ -63,15 +63,16 @@ State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
 /// and delta of both signs: with H = L L^T, Y = L^-1 [-E_n, T^T, -T^T], c = -L^-1 q, g = (0, s, s).
 class FrozenBounds {
 public:
-  explicit FrozenBounds(const ScaledProblem &p) : p_(p), qp_(p.q.size()), cholesky_(p.h) {
-    if (cholesky_.info() != Eigen::Success) throw not_positive_definite();
+  explicit FrozenBounds(const ScaledProblem &p) : p_(p), qp_(p.q.size()), lower_(p.h) {
+    if (!cholesky_in_place(lower_)) throw not_positive_definite();
     const Index r = p.generators(), s = p.modes(), m = p.nodes();
     y_.setZero(r + s, r + 2 * m);
     y_.topLeftCorner(r, r) = -Matrix::Identity(r, r);
     y_.block(r, r, s, m) = p.tangential.transpose() * p.size.cwiseInverse().asDiagonal();
     y_.block(r, r + m, s, m) = -y_.block(r, r, s, m);
-    if (y_.cols() > 0) cholesky_.matrixL().solveInPlace(y_);
-    c_ = cholesky_.matrixL().solve(-p.q);
+    solve_lower(lower_, y_);
+    c_ = -p.q;
+    solve_lower(lower_, c_);
   }
   void start_from(const ActiveSets &sets) {
     std::vector<Index> active;
@@ -89,7 +90,8 @@ public:
     linear << Vector::Zero(r), g, g;
     qp_.solve(y_, c_, linear);
     State point;
-    point.x = cholesky_.matrixU().solve(qp_.residual());
+    point.x = qp_.residual();
+    solve_lower_transposed(lower_, point.x);
     point.x.head(r) = point.x.head(r).cwiseMax(0);
     for (const Index column : qp_.active())
       if (column < r) point.x[column] = 0;
@@ -109,7 +111,7 @@ public:
 private:
   const ScaledProblem &p_;
   NonnegativeQp qp_;
-  Eigen::LLT<Matrix> cholesky_;
+  Matrix lower_;
   Matrix y_;
   Vector c_;
 };
