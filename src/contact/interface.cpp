@@ -124,6 +124,7 @@ void pressure_outputs(double images, const Vector &weights, const Vector &lambda
   outputs.normal_force = images * weights.dot(lambda);
   outputs.contact_measure = images * active.select(weights, 0).sum();
   outputs.contact_nodes = images * static_cast<double>(active.count());
+  outputs.free_nodes = images * static_cast<double>(lambda.size() - active.count());
   outputs.peak_pressure = lambda.maxCoeff();
 }
 

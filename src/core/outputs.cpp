@@ -70,10 +70,10 @@ void add_contact(const Outputs &one, Outputs &all) {
   for (const auto member :
        {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::reaction,
         &Outputs::horizontal_reaction, &Outputs::contact_measure, &Outputs::contact_nodes,
-        &Outputs::stick_nodes, &Outputs::ends_in_contact})
+        &Outputs::stick_nodes, &Outputs::ends_in_contact, &Outputs::free_nodes})
     combine(member, true);
-  for (const auto member :
-       {&Outputs::peak_pressure, &Outputs::max_penetration, &Outputs::friction_violation})
+  for (const auto member : {&Outputs::peak_pressure, &Outputs::max_penetration,
+                            &Outputs::friction_violation, &Outputs::slip_directions})
     combine(member, false);
 }
 
@@ -129,10 +129,13 @@ std::string resolution_warning(const Outputs &outputs) {
   constexpr double fewest_in_contact = 9, fewest_that_stick = 5;
   if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(1, 1, "");
   const double contact = outputs.contact_nodes.value_or(0);
-  const bool narrow = contact > 0 && contact < fewest_in_contact;
-  const bool slips = contact > 0 && outputs.stick_nodes &&
-                     *outputs.stick_nodes < fewest_that_stick &&
-                     outputs.tangential_force.value_or(0) > 0;
+  // Where all nodes are in contact it has no edge that the mesh could miss, and where all slip in
+  // one direction the slip does not turn.
+  const bool narrow =
+      contact > 0 && contact < fewest_in_contact && outputs.free_nodes.value_or(1) > 0;
+  const bool slips =
+      contact > 0 && outputs.stick_nodes && *outputs.stick_nodes < fewest_that_stick &&
+      outputs.tangential_force.value_or(0) > 0 && outputs.slip_directions.value_or(2) > 1;
   if (!narrow && !slips) return "";
   std::string text = "only " + short_number(contact) + " nodes are in contact";
   if (slips)

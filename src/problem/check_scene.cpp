@@ -208,14 +208,14 @@ void visit_terms(const Scene &scene, Cells &&cells, Check &&check) {
               sum == &scene.v_product);
 }
 
-/// Normals of one interface, and how many of them point into the body.
-struct Normals {
-  PetscInt all = 0, inward = 0;
+/// The smallest |gap| of one interface where its normal points out of the body, and where into it.
+struct Nearest {
+  double outward = std::numeric_limits<double>::infinity(), inward = outward;
 };
 
 /// At the middle of a facet, the displacement zero.
 void check_normal(const ContactInterface &interface, const FullMu &mu, const Cell &facet,
-                  const std::string &what, Normals &normals) {
+                  const std::string &what, Nearest &nearest) {
   const FacetMeasure measure = facet_measure(facet.dim, facet.mapped);
   const Point &a = facet.reference[0], &b = facet.reference[1];
   const Point x{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0};
@@ -234,8 +234,9 @@ void check_normal(const ContactInterface &interface, const FullMu &mu, const Cel
   if (!(std::abs(length - 1) <= 1e-6))
     throw bad_input(what + " has a normal of the length " + short_number(length) + " at (" +
                     short_number(x[0]) + ", " + short_number(x[1]) + "): it must be 1");
-  ++normals.all;
-  if (n[0] * measure.normal[0] + n[1] * measure.normal[1] <= 0) ++normals.inward;
+  double &of_side =
+      n[0] * measure.normal[0] + n[1] * measure.normal[1] > 0 ? nearest.outward : nearest.inward;
+  of_side = std::min(of_side, std::abs(at.gap));
   if (!interface.follows_state()) return;
   // gap = distance + direction . displacement
   const double closer = at.gap - (nearer.gap - step * (n[0] * m[0] + n[1] * m[1]));
@@ -245,18 +246,18 @@ void check_normal(const ContactInterface &interface, const FullMu &mu, const Cel
 }
 
 /// Of the interface of a body with something rigid along a curve.
-Normals normals_of(const Problem &problem, std::size_t i) {
+Nearest nearest_of(const Problem &problem, std::size_t i) {
   const Scene &scene = problem.scene();
   const InterfaceEntities &entities = scene.contacts[i].entities;
-  Normals normals;
-  if (entities.kind == InterfaceEntities::Kind::cells || entities.parts.size() != 1) return normals;
+  Nearest nearest;
+  if (entities.kind == InterfaceEntities::Kind::cells || entities.parts.size() != 1) return nearest;
   const FullMu mu = generic_point(scene.parameters);
   const std::string what = "scene " + scene.name + ": contact on '" + entities.parts.front() + "'";
   for (const auto &[cell, facet] : some_of(problem.mesh().facets.at(entities.parts.front())))
     check_normal(*problem.contact().interfaces[i], mu,
                  mapped_at(scene, mu, facet_cell(cell_of(problem.mesh(), cell), facet)), what,
-                 normals);
-  return normals;
+                 nearest);
+  return nearest;
 }
 
 } // namespace
@@ -275,22 +276,22 @@ void check_exact_kernels(const Scene &scene) {
 void check_scene(const Problem &problem) {
   const Scene &scene = problem.scene();
   const FullMu mu = generic_point(scene.parameters);
-  std::vector<PetscInt> all, inward;
+  std::vector<double> outward, inward;
   collectively(problem.comm(), [&] {
     visit_terms(
         scene, [&](const Form &form) { return cells_of(problem.mesh(), form); },
         [&](const SampledTerm &term, bool of_product) { check_term(term, mu, of_product); });
     for (std::size_t i = 0; i < scene.contacts.size(); ++i) {
-      const Normals normals = normals_of(problem, i);
-      all.push_back(normals.all);
-      inward.push_back(normals.inward);
+      const Nearest nearest = nearest_of(problem, i);
+      outward.push_back(nearest.outward);
+      inward.push_back(nearest.inward);
     }
   });
-  over_ranks(problem.comm(), MPI_SUM, all);
-  over_ranks(problem.comm(), MPI_SUM, inward);
-  // Single points may face a rigid body from behind; a wrong sign shows at all of them.
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (all[i] > 0 && 2 * inward[i] >= all[i])
+  over_ranks(problem.comm(), MPI_MIN, outward);
+  over_ranks(problem.comm(), MPI_MIN, inward);
+  // Points far from a small rigid body may face it from behind, those next to it do not.
+  for (std::size_t i = 0; i < inward.size(); ++i)
+    if (inward[i] < outward[i])
       throw bad_input("scene " + scene.name + ": contact on '" +
                       scene.contacts[i].entities.parts.front() +
                       "' has normals that point into the body: they must point out of it");

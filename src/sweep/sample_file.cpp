@@ -12,7 +12,7 @@ namespace rbvi {
 
 namespace {
 
-constexpr int sample_schema = 7;
+constexpr int sample_schema = 8;
 
 /// The outputs that a sample stores, in the order of their file record.
 constexpr std::array stored_outputs{&Outputs::energy,
@@ -29,6 +29,8 @@ constexpr std::array stored_outputs{&Outputs::energy,
                                     &Outputs::contact_nodes,
                                     &Outputs::stick_nodes,
                                     &Outputs::ends_in_contact,
+                                    &Outputs::free_nodes,
+                                    &Outputs::slip_directions,
                                     &Outputs::kkt_residual,
                                     &Outputs::max_penetration,
                                     &Outputs::friction_violation,

@@ -343,6 +343,7 @@ TEST(ObstacleInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
   EXPECT_DOUBLE_EQ(*out.normal_force, 2 * op.weights.dot(lambda));
   EXPECT_DOUBLE_EQ(*out.contact_measure, 2 * op.weights[4]);
   EXPECT_EQ(*out.contact_nodes, 2);
+  EXPECT_EQ(*out.free_nodes, 16);
   EXPECT_EQ(*out.ends_in_contact, 0);
   EXPECT_EQ(*out.peak_pressure, 3);
   lambda[0] = 1; // a corner

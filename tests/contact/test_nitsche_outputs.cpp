@@ -24,6 +24,7 @@ std::vector<NitscheFace> faces_on(const Curve &curve) {
     NitscheFace face{};
     for (NitschePoint &point : face.points) {
       point.weight = edge / 4;
+      point.body_normal = point.facing.normal = {n[0], n[1], 0};
       point.n.setZero();
       point.tau.setZero();
       for (Index i = 0; i < 6; ++i) { // each node has a third
@@ -81,6 +82,17 @@ TEST(NitscheOutputs, AStraightCurveWithoutFriction) {
   EXPECT_EQ(*o.law_error_normal, 0);
   EXPECT_FALSE(o.tangential_force || o.stick_half_width || o.friction_violation ||
                o.law_error_tangential || o.law_error_tau_over_n);
+}
+
+TEST(NitscheOutputs, ABodyThatIsPressedFromInsideIsRefused) {
+  std::vector<NitscheFace> faces = straight;
+  faces[3].points[2].body_normal[1] *= -1;
+  const CurveFields fields = constant_fields(5, 2);
+  EXPECT_NO_THROW(
+      outputs_of(faces, pressures_of({{-2, 0}, {-2, 0}, {-1, 0}, {3, 0}}), fields, frictionless));
+  EXPECT_THROW(
+      outputs_of(faces, pressures_of({{-2, 0}, {-2, 0}, {-1, 0}, {-1, 0}}), fields, frictionless),
+      Error);
 }
 
 /// Bounds 0.6, 0.6, 0.3 and 0: the first edge sticks, the others slip.

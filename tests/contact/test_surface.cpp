@@ -36,7 +36,7 @@ struct Surfaces {
   explicit Surfaces(int degree, bool friction = true) : curve(support_curve(arc(6, 0.7), degree)) {
     scene.components = 2;
     scene.degree = degree;
-    scene.parameters.all = {{"depth", "", 0, 2, 1}, {"offset", "", -1, 1, 0}};
+    scene.parameters.all = {{"depth", "", 0, 2, 0.1}, {"offset", "", -1, 1, 0}};
     scene.map = identity();
     scene.motion = [](const FullMu &mu, const Point &) { return Point{0, -mu[0], 0}; };
     if (friction) surface.friction = {FrictionLaw::coulomb, [](const FullMu &) { return 0.3; }};
@@ -225,6 +225,19 @@ TEST(RigidSurface, ReactionsAreTheWorkOfItsForces) {
   EXPECT_NEAR(*out.horizontal_reaction, along(1, 0), 1e-14);
   EXPECT_EQ(*out.ends_in_contact, 2);
   EXPECT_NE(resolution_warning(out).find("end of its boundary"), std::string::npos);
+}
+
+/// Beyond the centre of the disk the next point of it is behind the body.
+TEST(RigidSurface, ABodyThatIsPressedFromInsideIsRefused) {
+  Surfaces of(2);
+  of.make();
+  const ContactOperators op = of.at({1.2, 0}, {});
+  Vector lambda = Vector::Zero(op.g.size());
+  Outputs out;
+  EXPECT_NO_THROW(of.interface->outputs({1.2, 0}, op, lambda, 0, out));
+  lambda[3] = 1; // the lowest vertex
+  EXPECT_THROW(of.interface->outputs({1.2, 0}, op, lambda, 0, out), Error);
+  EXPECT_NO_THROW(of.interface->outputs({0.9, 0}, of.at({0.9, 0}, {}), lambda, 0, out));
 }
 
 TEST(RigidSurface, AFileNamesIt) {

@@ -104,6 +104,21 @@ TEST(ResolutionWarning, NamesTheZoneThatIsTooSmall) {
   EXPECT_TRUE(says(frictionless, "only 8 nodes"));
 }
 
+/// Contact everywhere has no edge that a mesh could miss, and full slip in one direction does not
+/// turn.
+TEST(ResolutionWarning, IsEmptyWhereNoZoneEnds) {
+  Outputs outputs = zones(5, 5, 1);
+  outputs.free_nodes = 0;
+  EXPECT_EQ(resolution_warning(outputs), "");
+  outputs.free_nodes = 1;
+  EXPECT_NE(resolution_warning(outputs), "");
+  outputs = zones(20, 0, 1);
+  outputs.slip_directions = 1;
+  EXPECT_EQ(resolution_warning(outputs), "");
+  outputs.slip_directions = 2;
+  EXPECT_NE(resolution_warning(outputs), "");
+}
+
 TEST(ResolutionWarning, IsEmptyWhereThereAreEnoughNodesOrNoZone) {
   EXPECT_EQ(resolution_warning({}), "");
   EXPECT_EQ(resolution_warning(zones(9, 5, 1)), "");

@@ -89,6 +89,15 @@ TEST(CheckScene, NormalsOfLengthOneOutOfTheBody) {
   EXPECT_FALSE(refused(block(), "", normal(-1)));
 }
 
+/// The sides of a body ten times larger, far from the disk that the middle touches.
+TEST(CheckScene, APartFarAwayMayFaceARigidBodyFromBehind) {
+  Scene scene = make_scene("rigid_disk", {{"kinematics", "large"}, {"arc_edges", "16"}});
+  Parameter &radius = scene.parameters.all.front();
+  radius.lower = 5;
+  radius.upper = radius.value = 10;
+  EXPECT_NO_THROW(check(scene));
+}
+
 TEST(CheckScene, TheNormalOfASurfaceIsTheGradientOfItsDistance) {
   const auto ground = [](double slope, double y) {
     return [=](Scene &s) {

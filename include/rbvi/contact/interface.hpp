@@ -187,7 +187,8 @@ Vector at_columns(const InterfaceMesh &mesh, const Vector &nodal);
 Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Point> &points);
 
 /// Forces and measures of a pressure without friction: normal_force, contact_measure (the weights
-/// of the active nodes), contact_nodes, peak_pressure; of `images` mirror images together.
+/// of the active nodes), contact_nodes, free_nodes, peak_pressure; of `images` mirror images
+/// together.
 void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
                       Outputs &outputs);
 

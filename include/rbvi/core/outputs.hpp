@@ -23,8 +23,12 @@ struct Outputs {
   /// Nodes (or macro-edges of a pair) with pressure, and those of them below the bound of friction:
   /// how well the mesh resolves the two zones.
   std::optional<double> contact_nodes, stick_nodes;
-  /// Large deformations: ends of the contact boundary that carry pressure.
+  /// Ends of the contact boundary (of a region nodes on its rim) that carry pressure, beside which
+  /// the body goes on.
   std::optional<double> ends_in_contact;
+  /// For resolution_warning alone, without columns: nodes without pressure, and the number of
+  /// directions, along the curve or against it, that the tangential stress has in contact.
+  std::optional<double> free_nodes, slip_directions;
   std::optional<double> min_u;
   /// Residual of the problem that was solved, relative: stationarity, feasibility, complementarity;
   /// of a reduced answer that of the reduced problem, by Nitsche's method that of its equation.

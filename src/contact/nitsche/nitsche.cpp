@@ -11,12 +11,12 @@ namespace rbvi {
 
 namespace {
 
-/// Stress on `face`, a normal, and displacement at a point, along n and tau, by the dofs of the
+/// Stress on the body's normal and displacement at a point, along n and tau, by the dofs of the
 /// cell: values and gradients of its nodes.
 void set_functionals(std::size_t nodes, std::span<const double> values,
-                     std::span<const std::array<double, 3>> gradients, const Point &face,
-                     const Lame &material, NitschePoint &point) {
-  const Point &n = point.facing.normal, tau{-n[1], n[0], 0};
+                     std::span<const std::array<double, 3>> gradients, const Lame &material,
+                     NitschePoint &point) {
+  const Point &face = point.body_normal, &n = point.facing.normal, tau{-n[1], n[0], 0};
   const auto [lambda, shear] = material;
   const double turned_n = face[0] * n[0] + face[1] * n[1],
                turned_tau = face[0] * tau[0] + face[1] * tau[1];
@@ -86,9 +86,9 @@ NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, cons
   std::array<std::array<double, 3>, most_nodes> gradients{};
   lagrange_values(2, scene.degree, barycentric, values);
   lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
+  point.body_normal =
+      facing.body_normal ? facing.body_normal(mu, x) : outward_normal(cell.mapped, begin, end);
   set_functionals(static_cast<std::size_t>(nodes_per_cell(2, scene.degree)), values, gradients,
-                  facing.body_normal ? facing.body_normal(mu, x)
-                                     : outward_normal(cell.mapped, begin, end),
                   material, point);
   return point;
 }

@@ -39,6 +39,8 @@ Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, cons
     double force = 0, length = 0;
     for (const NitschePoint &point : face.points) {
       const double pressure = std::max(0.0, -pressures(number, 0)), shear = pressures(number, 1);
+      const Point &n = point.facing.normal, &out = point.body_normal;
+      if (pressure > 0) check_pressed_side(n[0] * out[0] + n[1] * out[1], point.x);
       const double bound = bounds.size() > 0 ? bounds[number] : 0;
       const double held = std::clamp(shear, -bound, bound);
       force += point.weight * pressure;
@@ -107,6 +109,7 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
       sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
   outputs.contact_nodes = static_cast<double>((fields.p_n.array() < 0).count());
+  outputs.free_nodes = static_cast<double>(fields.p_n.size()) - *outputs.contact_nodes;
   LawErrors errors;
   errors.add(fields, law);
   errors.set(outputs);
@@ -114,6 +117,7 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
 
   const Vector bounds = bounds_at(fields, law);
   outputs.tangential_force = sums.tangential;
+  outputs.slip_directions = direction_count(fields.p_tau, -fields.p_n);
   outputs.stick_half_width = sums.stick / 2;
   outputs.stick_nodes = static_cast<double>(
       (fields.p_n.array() < 0 && fields.p_tau.array().abs() < bounds.array()).count());

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rbvi {
 
@@ -26,6 +27,12 @@ std::vector<TracePoint> trace_points(int degree, bool lumped) {
   for (const EdgePoint &at : edge_quadrature)
     points.push_back(trace_point(degree, at));
   return points;
+}
+
+/// n . the normal of the mapped edge that points down where the edge goes to the right.
+double downwards(const Cell &edge, const Point &n) {
+  const Point &begin = edge.mapped[0], &end = edge.mapped[1];
+  return n[0] * (end[1] - begin[1]) - n[1] * (end[0] - begin[0]);
 }
 
 } // namespace
@@ -47,6 +54,26 @@ CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh, Fri
   const std::vector<Point> points(mesh_.points.begin(), mesh_.points.begin() + vertices);
   const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
   set_dual(vertices, copies, lumped, linear_gram(points, copies));
+}
+
+void CurveSupport::find_side() {
+  FullMu mu;
+  for (const Parameter &parameter : scene_.parameters.all)
+    mu.push_back(parameter.value);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    try {
+      Cell edge = reference_entity(e);
+      for (std::size_t i = 0; i < 2; ++i)
+        edge.mapped[i] = scene_.map(mu, edge.reference[i]);
+      const TracePoint &at = points_.front();
+      const SupportPoint here = support_at(mu, edge, at, point_on(edge, at));
+      if (!(std::abs(here.gap) < nearest)) continue;
+      nearest = std::abs(here.gap);
+      side_ = std::copysign(1, downwards(edge, here.normal));
+    } catch (const std::exception &) { // it faces nothing at these values
+    }
+  }
 }
 
 void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const {
@@ -91,7 +118,8 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
       edge.mapped[static_cast<std::size_t>(i)] = {mapped(e + i, 0), mapped(e + i, 1), 0};
     const double whole = length_of(edge);
     for (const TracePoint &at : points_) {
-      const Point n = normal_at(mu, edge, at, point_on(edge, at));
+      const Point x = point_on(edge, at), n = normal_at(mu, edge, at, x);
+      if (side_ != 0) check_pressed_side(side_ * downwards(edge, n), x);
       for (std::size_t a = 0; a < 2; ++a) {
         if (rows[a] < 0) continue;
         const double eta = at.weight * whole * at.eta[a];

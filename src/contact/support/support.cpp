@@ -2,6 +2,8 @@
 
 #include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/support/curve_support.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 namespace rbvi {
 
@@ -11,7 +13,9 @@ class SupportInterface : public CurveSupport {
 public:
   SupportInterface(const Scene &scene, InterfaceMesh interface_mesh, Support support)
       : CurveSupport(scene, std::move(interface_mesh), support.friction, support.lumped),
-        support_(std::move(support)) {}
+        support_(std::move(support)) {
+    find_side();
+  }
 
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &) const override {
@@ -46,6 +50,15 @@ SupportPoint support_point(const Scene &scene, const Support &support, const Ful
     point.slip = motion[1] * n[0] - motion[0] * n[1];
   }
   return point;
+}
+
+void check_pressed_side(double cosine, const Point &x) {
+  if (!(cosine > 0))
+    throw failure(
+        "contact through the body: it is pressed at (" + short_number(x[0]) + ", " +
+        short_number(x[1]) +
+        ") of its boundary from inside, as what it faces there lies behind it; move less, "
+        "or pose contact on a shorter boundary");
 }
 
 Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,

@@ -38,6 +38,13 @@ double centre_pressure(const Vector &pressure, const Vector &s, double half_widt
   return count < 3 ? pressure[next] : (p * xx - xp * x) / (count * xx - x * x);
 }
 
+double direction_count(const Vector &tangential, const Vector &pressure) {
+  const auto in_contact = [&](const auto &of_sign) {
+    return (of_sign && pressure.array() > 0).any() ? 1.0 : 0.0;
+  };
+  return in_contact(tangential.array() > 0) + in_contact(tangential.array() < 0);
+}
+
 void support_outputs(const SupportState &state, Outputs &outputs) {
   const Index count = state.weights.size();
   const Vector pressure = state.lambda.head(count);
@@ -45,6 +52,7 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
   for (Index i = 0; i < count; ++i)
     if (pressure[i] > 0) contact += state.weights[i];
   outputs.contact_nodes = static_cast<double>((pressure.array() > 0).count());
+  outputs.free_nodes = static_cast<double>(count) - *outputs.contact_nodes;
   outputs.normal_force = state.weights.dot(pressure);
   outputs.reaction = -state.lift.dot(state.lambda);
   outputs.horizontal_reaction = -state.push.dot(state.lambda);
@@ -62,6 +70,7 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
       stick += state.weights[i];
       ++sticking;
     }
+  outputs.slip_directions = direction_count(state.lambda.tail(count), pressure);
   outputs.tangential_force = state.weights.dot(shear);
   outputs.stick_half_width = stick / 2;
   outputs.stick_nodes = sticking;

@@ -40,7 +40,9 @@ class SurfaceInterface : public CurveSupport {
 public:
   SurfaceInterface(const Scene &scene, InterfaceMesh interface_mesh, RigidSurface surface)
       : CurveSupport(scene, std::move(interface_mesh), surface.friction, surface.lumped),
-        surface_(std::move(surface)) {}
+        surface_(std::move(surface)) {
+    find_side();
+  }
 
   bool follows_state() const override { return true; }
   const EntitySum *entity_sum() const override { return nullptr; }

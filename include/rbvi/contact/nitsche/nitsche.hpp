@@ -55,6 +55,7 @@ struct NitschePoint {
   Row sigma_n, sigma_tau, n, tau; ///< stress and displacement
   Point x{};                      ///< reference
   SupportPoint facing{};          ///< at the state
+  Point body_normal{};            ///< at rest
   double turning = 0;             ///< sigma_n < 0 times the curvature of what is faced, there
 };
 

@@ -39,6 +39,9 @@ public:
 protected:
   /// Throws bad_input unless the mesh is a curve with displacements of two components.
   CurveSupport(const Scene &scene, InterfaceMesh mesh, Friction friction, bool lumped);
+  /// On which side of the curve the body ends, as the normal of the edge that is nearest to the
+  /// support at the values of the scene's parameters says. For the constructors of what has normals.
+  void find_side();
   /// At a quadrature point of an edge, x in reference coordinates. `edge`: with its displacement.
   virtual SupportPoint support_at(const FullMu &mu, const Cell &edge, const TracePoint &at,
                                   const Point &x) const = 0;
@@ -58,6 +61,7 @@ private:
 
   Friction friction_;
   std::vector<TracePoint> points_;
+  double side_ = 0; ///< 1: the body is above the curve, -1: below, 0: not known
 };
 
 } // namespace rbvi

@@ -51,6 +51,10 @@ struct SupportPoint {
 SupportPoint support_point(const Scene &scene, const Support &support, const FullMu &mu,
                            const Point &x);
 
+/// Throws failure where a body is pressed at x (reference) along a normal that points into it, so
+/// that it would have to be behind what it touches. `cosine`: between that normal and the body's.
+void check_pressed_side(double cosine, const Point &x);
+
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields.
 Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,

@@ -21,10 +21,13 @@ struct SupportState {
   const Matrix &points; ///< mapped vertices x dim, in the order of the curve
 };
 
+/// The signs, 0 to 2 of them, that the tangential stress has where there is pressure.
+double direction_count(const Vector &tangential, const Vector &pressure);
+
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
-/// horizontal_reaction, peak_pressure, centre_pressure and, with friction, tangential_force,
-/// stick_half_width, friction_violation (a pressure). A node sticks where it is below its bound by
-/// more than that.
+/// horizontal_reaction, peak_pressure, centre_pressure, the numbers of nodes and, with friction,
+/// tangential_force, stick_half_width, friction_violation (a pressure). A node sticks where it is
+/// below its bound by more than that.
 void support_outputs(const SupportState &state, Outputs &outputs);
 
 } // namespace rbvi
