@@ -102,11 +102,11 @@ void add_starts(ReducedModel &model, const Problem &problem) {
 }
 
 void compress_responses(Problem &problem, const std::vector<Sample> &samples,
-                        const AffineOperators &affine, double tolerance, ReducedBases &bases,
-                        ReducedModel &model, StageTable &stages) {
+                        const AffineOperators &affine, ReducedBases &bases, ReducedModel &model,
+                        StageTable &stages) {
   timed(stages, stage::condensation, [&] {
-    bases.responses +=
-        append_answered_responses(problem, *bases.awaiting, model, tolerance, bases.pod.basis);
+    bases.responses += append_answered_responses(problem, *bases.awaiting, model,
+                                                 answered_tolerance, bases.pod.basis);
     ++bases.factorisations;
   });
   bases.awaiting.reset();

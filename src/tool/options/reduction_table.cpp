@@ -169,15 +169,10 @@ std::vector<Option> of_multipliers() {
       kept(with_law,
            number("condensed_tolerance", relative_error, RBVI_AT(reduce.condensed.tolerance),
                   "relative error that the condensed operator may have as a function of mu")),
-      kept(with_law, number("condensed_ring", positive, RBVI_AT(reduce.condensed.ring),
-                            "condensed: keep multipliers up to this distance from where "
-                            "contact was seen, as a fraction of the extent of contact")),
       number("response_tolerance", relative_error, RBVI_AT(reduce.condensed.responses),
-             "responses A^-1 B^T join the modes: first those of one A, then of others until "
-             "this relative error is left; 0: none join"),
-      number("response_compression", relative_error, RBVI_AT(reduce.condensed.compression),
-             "if A is constant and all responses would take more than 160 MB: only those to "
-             "answers of the law join, to this relative error; 0: all join"),
+             "responses A^-1 B^T join the modes: first those of one A (if it is constant and they "
+             "would take more than 160 MB only those to answers of the law, to 1e-5 in the "
+             "energy), then of others until this relative error is left; 0: none join"),
       kept(with_law,
            choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
                   RBVI_AT(reduce.multipliers.reduction), "how the multipliers are reduced")),
