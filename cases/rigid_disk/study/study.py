@@ -172,7 +172,8 @@ def jobs_of(study):
             ("radius", "generators"): ["-cone_tolerance", "1e-10"]}
     for variant in ("radius", "rigid"):
         for count in (61, 150):
-            jobs[variant, f"grid {count}"] = [*SEPARATED, "-train", f"grid:{count}"]
+            train = [] if study.options else ["-train", f"grid:{count}"]
+            jobs[variant, f"grid {count}"] = [*SEPARATED, *train]
     if not study.options:
         for variant, (_, grid) in FREE.items():
             jobs[variant, "random"] = [*DEFAULT, "-train", RANDOM]
