@@ -76,9 +76,7 @@ def law_panels(run):
         collocated = "gcns" in model["histories/values"]
     panels = [*along_size("normal stress in its cone", "functions of the cone",
                           "largest relative error (-)", history(run, "normal_cone/error")),
-              *along_size("friction bound less stress, in its cone", "functions of the cone",
-                          "largest relative error (-)", history(run, "bound_cone/error")),
-              *along_size("modes of the multipliers", "modes", "relative error (-)",
+              *along_size("modes of the tangential stress", "modes", "relative error (-)",
                           history(run, "tangential/error"))]
     if collocated:
         panels.append(convergence("friction bound at chosen nodes (e_GCNS)", "nodes",

@@ -111,7 +111,8 @@ void verify_seal(const Path &path, const std::string &kind, int schema) {
                       kind + " file");
   if (get(block, schema_at) != static_cast<std::uint64_t>(schema))
     throw OtherVersion(name + " has schema version " + std::to_string(get(block, schema_at)) +
-                       "; this build reads version " + std::to_string(schema) + ": make it again");
+                       "; this build reads version " + std::to_string(schema) +
+                       ": make it again by rbvi offline");
 }
 
 } // namespace rbvi

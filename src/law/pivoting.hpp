@@ -10,7 +10,7 @@
 //   `patience` bases in a row without a new least violation block exchange is lost
 //
 // and what then takes over is the solver's own: a single exchange by least index (Murty), which
-// ends where the matrix is a P-matrix, Lemke's method, or a convex problem with frozen bounds.
+// ends where the matrix is a P-matrix, or a convex problem with frozen bounds.
 #pragma once
 
 #include "index.hpp"

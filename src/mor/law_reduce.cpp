@@ -10,21 +10,6 @@
 
 namespace rbvi {
 
-namespace {
-
-/// Of the columns of the nodal dual basis, at every mu.
-std::vector<NodeLaws> laws_at(const Problem &problem, const Matrix &nodal,
-                              const std::vector<Mu> &set) {
-  const ColumnLaws columns = laws_of_columns(problem.contact(), nodal);
-  std::vector<NodeLaws> laws;
-  for (const Mu &mu : set)
-    laws.push_back(
-        rbvi::laws_at(columns, problem.contact(), expand(problem.scene().parameters, mu)));
-  return laws;
-}
-
-} // namespace
-
 MultiplierReduction reduction_of(const Scene &scene, MultiplierReduction chosen) {
   if (chosen != MultiplierReduction::automatic) return chosen;
   return keeps_nodes(scene) ? MultiplierReduction::condensed : MultiplierReduction::cone;
@@ -39,18 +24,16 @@ void check_reduction(const Scene &scene, const ReduceOptions &options) {
   if (!has_multipliers(scene)) return;
   if (reduction == MultiplierReduction::cone && has_friction(scene))
     throw bad_input("-multiplier_reduction cone is for contact without friction: use condensed, "
-                    "collocated, cones or joint");
-  if (reduction == MultiplierReduction::condensed) return;
-  if (follows_state(scene) && keeps_law(reduction))
+                    "collocated");
+  if (reduction != MultiplierReduction::collocated) return;
+  if (follows_state(scene))
     throw bad_input(
         "H of contact that follows the displacement changes with every step, so that it "
         "has no terms on fewer functions: use -multiplier_reduction condensed, or "
         "without friction cone");
-  if (!keeps_law(reduction)) return;
-  if (options.cone.type == ConeType::hybrid && reduction != MultiplierReduction::joint)
+  if (options.cone.type == ConeType::hybrid)
     throw bad_input("-cone_type hybrid has functions of either sign: use mcpg with "
-                    "-multiplier_reduction " +
-                    multiplier_reduction_names()[static_cast<std::size_t>(reduction)]);
+                    "-multiplier_reduction collocated");
 }
 
 ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &samples,
@@ -66,7 +49,7 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   bases.mended = choice.exact;
   add_modes(problem, samples, options.pod, bases, stages);
   bases.nodal_dual = nodal_dual_basis(problem, multipliers, options.cone.level);
-  if (choice.reduction == MultiplierReduction::condensed && !follows_state(scene)) {
+  if (!collocated && !follows_state(scene)) {
     const std::vector<Index> near = columns_near_contact(problem.contact(), bases.nodal_dual,
                                                          multipliers, options.condensed.ring);
     bases.dropped = bases.nodal_dual.cols() - std::ssize(near);
@@ -75,11 +58,9 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   const Matrix &nodal = bases.nodal_dual;
   if (will_run(stages, stage::condensation)) {
     const Stage stage(stages, stage::condensation);
-    LinearBasis *modes = choice.exact && !collocated ? &bases.pod.basis : nullptr;
     CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
-    const bool awaits = choice.reduction == MultiplierReduction::condensed && modes != nullptr &&
-                        awaits_answers(problem, loads, options.condensed);
-    if (awaits) modes = nullptr;
+    const bool awaits = !collocated && awaits_answers(problem, loads, options.condensed);
+    LinearBasis *modes = collocated || awaits ? nullptr : &bases.pod.basis;
     Condensation made =
         condense(problem, loads, separable_contact(scene) ? nodal.cols() : loads.columns.cols(),
                  expand(scene.parameters, training.front()), options.condensed, modes,
@@ -95,9 +76,9 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   {
     const Stage stage(stages, stage::multipliers);
     const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
-    bases.multipliers =
-        make_multiplier_basis(nodal_coefficients(nodal, multipliers), w,
-                              laws_at(problem, nodal, training), choice, options.cone);
+    bases.multipliers = make_multiplier_basis(
+        nodal_coefficients(nodal, multipliers),
+        laws_of_columns(problem.contact(), nodal).laws.nodes(), w, choice.tangential, options.cone);
   }
   if (!will_run(stages, stage::pga)) return bases;
   std::vector<ContactPoint> points = contact_points(samples);
@@ -121,11 +102,11 @@ void add_starts(ReducedModel &model, const Problem &problem) {
 }
 
 void compress_responses(Problem &problem, const std::vector<Sample> &samples,
-                        const AffineOperators &affine, double tolerance, ReducedBases &bases,
-                        ReducedModel &model, StageTable &stages) {
+                        const AffineOperators &affine, ReducedBases &bases, ReducedModel &model,
+                        StageTable &stages) {
   timed(stages, stage::condensation, [&] {
-    bases.responses +=
-        append_answered_responses(problem, *bases.awaiting, model, tolerance, bases.pod.basis);
+    bases.responses += append_answered_responses(problem, *bases.awaiting, model,
+                                                 answered_tolerance, bases.pod.basis);
     ++bases.factorisations;
   });
   bases.awaiting.reset();

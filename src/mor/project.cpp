@@ -276,7 +276,6 @@ void store_histories(const AffineOperators &affine, const ReducedBases &bases,
   histories["cone/e_orth"] = cone.e_orth;
   histories["cone/gram_condition"] = cone.gram_condition;
   histories["normal_cone/error"] = bases.multipliers.normal.error;
-  histories["bound_cone/error"] = bases.multipliers.left_to_bound.error;
   histories["tangential/error"] = bases.multipliers.tangential;
   histories["pga/sigma"] = bases.pga.sigma;
   if (bases.infsup_tolerance > 0) histories["pga/tolerance"] = {bases.infsup_tolerance};

@@ -296,8 +296,7 @@ void make_law(Problem &problem, const std::vector<Sample> &samples, const Reduce
     if (result.bases.condensed.terms.size() > 0) add_starts(result.model, problem);
   }
   if (result.bases.awaiting)
-    compress_responses(problem, samples, result.affine, options.condensed.compression, result.bases,
-                       result.model, result.stages);
+    compress_responses(problem, samples, result.affine, result.bases, result.model, result.stages);
   if (will_run(result.stages, stage::collocation))
     add_collocation(problem, samples, options.gcns, result);
 }

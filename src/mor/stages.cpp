@@ -146,20 +146,13 @@ StageRow sweep_of_supremizers_row(const Scene &scene, const ReduceOptions &optio
           part};
 }
 
-/// Functions of the multipliers of a further reduction.
-std::string multiplier_text(const ReduceOptions &options, const Reduction *made) {
-  const MultiplierReduction reduction = options.multipliers.reduction;
-  const std::string name = multiplier_reduction_names()[static_cast<std::size_t>(reduction)];
-  if (made == nullptr) return name;
+/// The functions of the multipliers.
+std::string multiplier_text(const Reduction *made) {
+  if (made == nullptr) return "collocated";
   const MultiplierBasis &basis = made->bases.multipliers.basis;
-  if (reduction == MultiplierReduction::joint)
-    return name + ": " + counted(basis.normal.cols(), "mode") + ", " +
-           counted(std::ssize(basis.nodes), "node");
-  const std::string normal = name + ": R = " + counted(basis.normal.cols(), "generator");
+  const std::string normal = "collocated: R = " + counted(basis.normal.cols(), "generator");
   if (basis.tangential.size() == 0) return normal;
-  const bool cones = reduction == MultiplierReduction::cones;
-  return normal + ", " + (cones ? "M = " : "S = ") +
-         counted(basis.tangential.cols(), cones ? "generator" : "mode");
+  return normal + ", S = " + counted(basis.tangential.cols(), "mode");
 }
 
 StageRow condensation_row(const ReduceOptions &options, const Reduction *made) {
@@ -185,9 +178,8 @@ constexpr StageName pair_stages("cone, PGA");
 /// The law at nodes: the condensed operator in place of a reduced pair, or beside it.
 void add_law_rows(const Scene &scene, const ReduceOptions &options, const Reduction *made,
                   StageTable &rows) {
-  const MultiplierReduction reduction = options.multipliers.reduction;
   rows.push_back(condensation_row(options, made));
-  if (reduction == MultiplierReduction::condensed)
+  if (options.multipliers.reduction == MultiplierReduction::condensed) {
     rows.push_back({pair_stages,
                     "the multipliers keep a coefficient at every node" +
                         (options.cone.level > 0 ? " of the mesh refined " +
@@ -195,11 +187,11 @@ void add_law_rows(const Scene &scene, const ReduceOptions &options, const Reduct
                                                 : std::string()) +
                         ": nothing to stabilise",
                     skipped});
-  else
-    rows.push_back({stage::multipliers, multiplier_text(options, made)});
-  const bool collocated = reduction == MultiplierReduction::collocated;
-  if (collocated) add_supremizer_rows(scene, options, made, rows);
-  if (collocated && has_friction(scene))
+    return;
+  }
+  rows.push_back({stage::multipliers, multiplier_text(made)});
+  add_supremizer_rows(scene, options, made, rows);
+  if (has_friction(scene))
     rows.push_back({stage::collocation,
                     made == nullptr ? "greedy (Algorithm 3), reduced problems solved exactly"
                                     : counted(std::ssize(made->collocation.nodes), "node") + ": " +

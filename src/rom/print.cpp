@@ -125,7 +125,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   print_parameters(out, model.parameters);
   print_failed(out, model);
   label(out, "modes") << model.modes << '\n';
-  const bool joined = model.law && model.law->reduction != MultiplierReduction::collocated;
+  const bool joined = model.law && model.law->reduction == MultiplierReduction::condensed;
   label(out, joined ? "responses" : "supremizers")
       << model.supremizers << (model.online_enriched ? " (the space is made online)" : "") << '\n';
   if (!model.has_multipliers())
@@ -166,7 +166,7 @@ void print_several_answers(std::ostream &out, const ReducedModel &model) {
   std::vector<double> known = model.histories.at("self_check/other");
   for (double &value : known)
     value = parse_number(short_number(value), "parameter");
-  const bool reduced = model.law->reduction != MultiplierReduction::condensed;
+  const bool reduced = model.law->reduction == MultiplierReduction::collocated;
   out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, "
       << short_number(known.front()) << " of the largest multiplier apart at "
       << describe(model.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "

@@ -68,7 +68,7 @@ TEST_F(Nitsche, FulfilsTheLawsAlongAnyNormal) {
 TEST_F(Nitsche, BadInputIsSaidInOneLine) {
   const std::string offline = "offline -case disk.yaml -out run ";
   expect_all_refused({{offline + "-hf_method uzawa", "mixed formulation"},
-                      {offline + "-multiplier_reduction joint", "for the mixed formulation"},
+                      {offline + "-multiplier_reduction collocated", "for the mixed formulation"},
                       {offline + "-nitsche_gamma0 -1", "nitsche_gamma0"},
                       {offline + "-nitsche_gamma 5", "-nitsche_gamma0"},
                       {offline + "-formulation mixed -nitsche_quadrature full", "-formulation"},

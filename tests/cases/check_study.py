@@ -30,7 +30,7 @@ RUNS = {  # more accurate, less accurate
     "membrane_obstacle": [(f"{disc_map}/hybrid.offline", f"{disc_map}/mcpg.offline")
                           for disc_map in ("similarity", "graded")],
     "two_disks": [("intersection/hybrid_1e-3_energy", "intersection/mcpg_1e-2")],
-    "rigid_disk": [("radius/default", "radius/collocated_mended_no")],
+    "rigid_disk": [("radius/default", "radius/collocated")],
     "rigid_disk/nitsche_study": [("mixed/default", "none/default"), ("none/default", "pair/10_5")],
     "rigid_disk/large_study": [("none/default", "none/published")]}
 

@@ -191,8 +191,7 @@ TEST(LargeModel, IterationsAreTimedByTheMethodsThatTheLawHas) {
 TEST(LargeModel, OtherReductionsAreRefused) {
   Reduced r(large_disk("coulomb", "indentation", {{"arc_edges", "24"}}), "grid:2");
   for (const MultiplierReduction reduction :
-       {MultiplierReduction::cone, MultiplierReduction::collocated, MultiplierReduction::cones,
-        MultiplierReduction::joint})
+       {MultiplierReduction::cone, MultiplierReduction::collocated})
     EXPECT_THROW(r.reduce(by(reduction)), Error);
 }
 

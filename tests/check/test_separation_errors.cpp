@@ -195,7 +195,6 @@ TEST(SeparationErrors, OverTheTrainingSetAreThoseOfTheGreedy) {
   expect_training_errors(r, {"b_normal", "b_tangential", "g"}); // A is an exact sum
   ReduceOptions condensed = published();
   condensed.multipliers.reduction = MultiplierReduction::condensed;
-  condensed.multipliers.exact = true;
   r.reduce(condensed);
   expect_training_errors(r, {"b", "g"});
   ReduceOptions obstacle;

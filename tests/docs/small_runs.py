@@ -34,8 +34,6 @@ RUNS = {
     "disk_none": [*DISK, "-train", "grid:9", "-friction", "none"],
     "disk_condensed": [*DISK, "-train", "grid:3,3", "-parameters", "radius,core_stiffness"],
     "disk_collocated": [*DISK, "-train", "grid:15", "-normal", "rigid", REDUCED, "collocated"],
-    "disk_cones": [*DISK, "-train", "grid:9", REDUCED, "cones"],
-    "disk_joint": [*DISK, "-train", "grid:9", REDUCED, "joint"],
     "disk_large": ["-case", CASES / "rigid_disk/large.yaml", "-train", "random:8:1"],
     "disk_large_cone": ["-case", CASES / "rigid_disk/large.yaml", "-train", "random:8:1",
                         "-arc_edges", "40", REDUCED, "cone"],

@@ -40,7 +40,7 @@ TEST(OptionTable, AModelKeepsWhatItDependsOn) {
   ToolOptions disk = options_of("rigid_disk");
   disk.reduce.multipliers.reduction = MultiplierReduction::condensed;
   const std::set<std::string> of_supports =
-      both(of_all, {"condensed_ring", "condensed_tolerance", "multiplier_reduction", "cone_level"});
+      both(of_all, {"condensed_tolerance", "multiplier_reduction", "cone_level"});
   EXPECT_EQ(names_kept(disk), of_supports);
   disk.reduce.multipliers.reduction = MultiplierReduction::collocated;
   disk.reduce.eim_normal = 1e-3;

@@ -35,13 +35,11 @@ FREE = {  # parameters, and a grid of about as many
 }
 TEXT = [*pair_options((30, 20)), "-tangential_tolerance", "2e-4"]  # (30, 20, 20)
 SEPARATED = ["-eim_tolerance", "1e-13", "-pga_tolerance", "1e-3"]
-DEFAULT = ["-multiplier_reduction", "condensed", "-multiplier_exact", "yes",
-           "-pod_tolerance", "1e-7"]
+DEFAULT = ["-multiplier_reduction", "condensed", "-pod_tolerance", "1e-7"]
 REDUCTIONS = {
     "condensed": ["-multiplier_reduction", "condensed"],
-    "joint 1e-10": ["-multiplier_reduction", "joint", "-tangential_tolerance", "1e-10"],
-    "joint 1e-6": ["-multiplier_reduction", "joint", "-tangential_tolerance", "1e-6"],
-    "cones 1e-3": ["-multiplier_reduction", "cones"],
+    "condensed, no responses": ["-multiplier_reduction", "condensed", "-response_tolerance", "0"],
+    "collocated, mended": ["-multiplier_exact", "yes"],
     "collocated": [],
 }
 COLLOCATED = {"text": "(30, 20, 20)", "published": "published.yaml"}
@@ -108,22 +106,19 @@ def functions_of(run):
     nodes = len(stored(run, "law/basis/nodes"))
     if normal.size == 0:
         return [f"{stored(run, 'size/generators')}", "all"]
-    joint = int(stored(run, "law/reduction")) == 3
-    count = f"{normal.shape[1]}" if joint else f"{normal.shape[1]} + {tangential.shape[1]}"
-    return [count, f"{nodes}" if nodes else "all"]
+    return [f"{normal.shape[1]} + {tangential.shape[1]}", f"{nodes}"]
 
 
 def reductions(runs):
     rows = []
-    keys = [(name, mended) for name in REDUCTIONS for mended in ("yes", "no")]
-    for key in [*keys, ("as published", )]:
-        run = runs["radius", *key]
+    for name in [*REDUCTIONS, "as published"]:
+        run = runs["radius", name]
         s = summary(run)
-        rows.append([key[0], key[-1] if len(key) > 1 else "no", f"{s['N']:.0f} + {s['S']:.0f}",
+        rows.append([name, f"{s['N']:.0f} + {s['S']:.0f}",
                      *functions_of(run), *(short(value) for value in largest_errors(run)),
                      f"{1e3 * s['seconds']:.2f}"])
     return markdown("Reductions of the multipliers: largest errors, ms per query",
-                    ["reduction", "mended", "N + further", "functions of the multipliers",
+                    ["reduction", "N + further", "functions of the multipliers",
                      "pairs of nodes", "u", "lambda_n", "lambda_tau", "ms"], rows)
 
 
@@ -174,10 +169,11 @@ def jobs_of(study):
     """What runs two at a time."""
     jobs = {("radius", "text"): TEXT,
             ("radius", "as published"): [*TEXT, "-gcns_max_nodes", "20"],
-            ("radius", "generators"): [*REDUCTIONS["cones 1e-3"], "-cone_tolerance", "1e-10"]}
+            ("radius", "generators"): ["-cone_tolerance", "1e-10"]}
     for variant in ("radius", "rigid"):
         for count in (61, 150):
-            jobs[variant, f"grid {count}"] = [*SEPARATED, "-train", f"grid:{count}"]
+            train = [] if study.options else ["-train", f"grid:{count}"]
+            jobs[variant, f"grid {count}"] = [*SEPARATED, *train]
     if not study.options:
         for variant, (_, grid) in FREE.items():
             jobs[variant, "random"] = [*DEFAULT, "-train", RANDOM]
@@ -189,12 +185,9 @@ def all_runs(study):
     """Every run directory by what it is; the reductions alone, to be timed."""
     runs = study.run_all(jobs_of(study))
     for name, options in REDUCTIONS.items():
-        for mended in ("yes", "no"):
-            runs["radius", name, mended] = study.run(
-                "radius", f"{name}, mended {mended}", [*options, "-multiplier_exact", mended],
-                (name, mended) == ("collocated", "no"))
+        runs["radius", name] = study.run("radius", name, options, name == "collocated")
     runs["radius", "default"] = study.run("radius", "default", DEFAULT)
-    runs["radius", "published"] = runs["radius", "collocated", "no"]
+    runs["radius", "published"] = runs["radius", "collocated"]
     return runs
 
 

@@ -54,22 +54,18 @@ def bases(runs, directory):
     """Projection errors over the training set (figure 3.4)."""
     figure, axes = plt.subplots(1, 3, figsize=(13, 3.4), constrained_layout=True)
     floor = 1e-15
-    for axis, run, name, label, colour in (
-            (axes[0], ("text", ), "pod/error", None, BLUE),
-            (axes[1], ("generators", ), "normal_cone/error", None, BLUE),
-            (axes[2], ("text", ), "tangential/error", r"$\lambda_\tau$ alone", BLUE),
-            (axes[2], ("joint 1e-10", "no"), "tangential/error",
-             r"$(\lambda_n, \lambda_\tau)$", GREEN)):
-        error = history(runs["radius", *run], name)
+    for axis, run, name in ((axes[0], "text", "pod/error"),
+                            (axes[1], "generators", "normal_cone/error"),
+                            (axes[2], "text", "tangential/error")):
+        error = history(runs["radius", run], name)
         error = error[error > floor]
-        axis.plot(np.arange(len(error)), error, color=colour, label=label)
+        axis.plot(np.arange(len(error)), error, color=BLUE)
     for axis, size, error in zip(axes, (30, 20, 20), (1e-6, 1e-3, 1e-4)):
         as_published(axis, size, error)
     log_axis(axes[0], "modes N", "relative error", "displacement, POD")
     log_axis(axes[1], "generators R", "largest relative error", r"$\lambda_n$, mCPG")
     log_axis(axes[2], "modes S", "relative error", r"$\lambda_\tau$, POD")
     axes[0].legend(fontsize=8)
-    axes[2].legend(fontsize=8)
     save(figure, directory, "bases.png")
 
 

@@ -119,8 +119,8 @@ void add_starts(ReducedModel &model, const Problem &problem);
 /// Lets the responses that bases.awaiting waits for join the modes, by the answers of `model`,
 /// which is projected again. Collective.
 void compress_responses(Problem &problem, const std::vector<Sample> &samples,
-                        const AffineOperators &affine, double tolerance, ReducedBases &bases,
-                        ReducedModel &model, StageTable &stages);
+                        const AffineOperators &affine, ReducedBases &bases, ReducedModel &model,
+                        StageTable &stages);
 
 /// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
 /// functions that span the dual space, dual dofs x any number. Collective.

@@ -38,14 +38,14 @@ bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options) {
   const double numbers = static_cast<double>(loads.joining()) * problem.dofs().total_free;
   return (!loads.units.empty() || loads.join) && constant_stiffness(problem.scene()) &&
-         options.responses > 0 && options.compression > 0 && numbers > options.large_fields;
+         options.responses > 0 && numbers > options.large_fields;
 }
 
 ResponseDirections::ResponseDirections(const Matrix &compliance) {
   root_ = (compliance + compliance.transpose()) / 2;
   if (!cholesky_in_place(root_))
     throw failure("the responses of the body to its contact loads are dependent: use "
-                  "-response_compression 0");
+                  "-response_tolerance 0");
   root_.transposeInPlace();
 }
 
@@ -116,7 +116,7 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
     if (set.empty())
       throw failure("the responses to the answers of the law go on after " +
                     std::to_string(most_queries) +
-                    " of them: use -response_compression 0 or a larger one");
+                    " of them: use a smaller box, or -response_tolerance 0");
     answers = answers_at(problem, loads, solver, set);
   } while (directions.left(answers) > between * tolerance);
   ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");

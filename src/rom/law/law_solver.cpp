@@ -31,14 +31,12 @@ bool has_several_answers(const ReducedModel &model) {
 LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                      const QueryOptions &options)
     : model_(model), scene_(scene), contact_(contact), options_(options),
-      by_rule_(model.law && model.law->reduction == MultiplierReduction::condensed &&
-               !options.warm && has_several_answers(model)),
+      reduced_(model.law && model.law->reduction == MultiplierReduction::collocated),
+      by_rule_(model.law && !reduced_ && !options.warm && has_several_answers(model)),
       reduced_starts_(scene.parameters, model.law ? model.law->starts_mu : Matrix()),
       columns_(laws_of_columns(contact, model.dual_basis)), stiffness_(model, scene) {
   if (!model.law) throw bad_input("the model has no law of contact at nodes");
   options_.looks_for_others = options.looks_for_others || by_rule_;
-  if (model.law->reduction != MultiplierReduction::condensed)
-    law_.emplace(*model.law, columns_, !model.evaluates_contact());
   samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
   edge_ = edge_of_nodes(contact, model.dual_basis);
   if (model.evaluates_contact()) {
@@ -52,7 +50,7 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
     if (!dofs.empty()) compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
   }
   if (!follows_state(contact)) return;
-  if (law_)
+  if (reduced_)
     throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
   nodal_is_identity_ = model.dual_basis.isIdentity(0);
   const ContactInterface *nodal = nodal_interface(contact);
@@ -131,7 +129,7 @@ BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, con
   }
   const Vector &theta_b = answer.theta_b;
   if (law.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
-  const bool with_b = law.reduction == MultiplierReduction::collocated || model_.f.size() > 0;
+  const bool with_b = reduced_ || model_.f.size() > 0;
   if (with_b && model_.evaluates_contact())
     body.b = body.b_contact * trace_;
   else if (with_b)
@@ -169,16 +167,6 @@ Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Inde
   return body.b_contact * moved;
 }
 
-Matrix LawSolver::condensed_product(const BodyAtMu &body, const Matrix &x) {
-  const Matrix loads = body.b_contact.transpose() * x;
-  Matrix moved = Matrix::Zero(loads.rows(), loads.cols());
-  compliance_->set(body.terms);
-  for (Index k = 0; k < loads.cols(); ++k)
-    for (Index dof = 0; dof < loads.rows(); ++dof)
-      if (loads(dof, k) != 0) compliance_->add(dof, loads(dof, k), moved.col(k));
-  return body.b_contact * moved;
-}
-
 LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) {
   std::vector<Index> all(static_cast<std::size_t>(model_.generators));
   std::iota(all.begin(), all.end(), 0);
@@ -195,30 +183,29 @@ Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x, const 
   return at_all_nodes(body, x).start;
 }
 
-ReducedLawStart LawSolver::reduced_start(const Vector &here) {
-  if (!law_) return {};
+Vector LawSolver::reduced_start(const Vector &here) {
+  if (!reduced_) return {};
   if (options_.warm) return last_reduced_;
   return reduced_starts_.nearest(here, [&](Index sample) {
     const Vector mu = model_.law->starts_mu.col(sample);
     LawAnswer unused;
     const BodyAtMu body = body_at(expand(scene_.parameters, {mu.begin(), mu.end()}), unused);
-    return law_->solve(body, [&](const Matrix &x) { return condensed_product(body, x); }).start;
+    return solve_reduced_law(model_.law->basis, body).coefficients;
   });
 }
 
-bool LawSolver::solve_reduced_law(const BodyAtMu &body, const ReducedLawStart &start,
-                                  LawAnswer &answer) {
+bool LawSolver::answer_reduced_law(const BodyAtMu &body, const Vector &start, LawAnswer &answer) {
+  const MultiplierBasis &basis = model_.law->basis;
   const bool checks = model_.law->condensed.terms.size() > 0;
   const bool mends = model_.law->mended && checks;
-  const CondensedProduct product = [&](const Matrix &x) { return condensed_product(body, x); };
   try {
-    ReducedLawAnswer reduced = law_->solve(body, product, start);
+    ReducedLawAnswer reduced = solve_reduced_law(basis, body, start);
     if (options_.looks_for_others)
-      answer.to_other = distance_of_answers(reduced.x, law_->solve(body, product).x);
+      answer.to_other = distance_of_answers(reduced.x, solve_reduced_law(basis, body).x);
     answer.x = std::move(reduced.x);
     answer.residual = reduced.residual;
     answer.iterations = reduced.iterations;
-    last_reduced_ = std::move(reduced.start);
+    last_reduced_ = std::move(reduced.coefficients);
   } catch (const Error &) {
     if (!mends) throw;
     return false;
@@ -259,10 +246,10 @@ LawAnswer LawSolver::solve(const FullMu &all_parameters) {
     return answer;
   }
   const Vector here = parts_of_box(scene_.parameters, all_parameters);
-  const ReducedLawStart start = reduced_start(here);
+  const Vector start = reduced_start(here);
   LawAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer);
-  if (!law_ || !solve_reduced_law(body, start, answer)) solve_at_nodes(body, here, answer);
+  if (!reduced_ || !answer_reduced_law(body, start, answer)) solve_at_nodes(body, here, answer);
   check_edge(answer.x);
   if (model_.evaluates_contact()) {
     answer.reaction = body.b_contact.transpose() * answer.x;

@@ -118,7 +118,7 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
   const Index size = model.evaluates_contact() ? std::ssize(condensed.dofs) : m;
   require(law.normal > 0 && law.normal <= m, "law/normal does not fit");
   require(law.reduction >= MultiplierReduction::condensed &&
-              law.reduction <= MultiplierReduction::joint,
+              law.reduction <= MultiplierReduction::collocated,
           "law/reduction is none that this build has");
   for (const ChebyshevAxis &axis : condensed.axes)
     require(axis.points > 0 && axis.lower < axis.upper && axis.parameter >= 0 &&
@@ -131,13 +131,11 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
   } else {
     require(law.reduction == MultiplierReduction::collocated, "it has no condensed operator");
   }
-  if (law.reduction != MultiplierReduction::condensed) {
+  if (law.reduction == MultiplierReduction::collocated) {
     const MultiplierBasis &basis = law.basis;
     require_shape(basis.normal, law.normal, basis.normal.cols(), "law/basis/normal");
     require_shape(basis.tangential, m - law.normal, basis.tangential.cols(),
                   "law/basis/tangential");
-    if (law.reduction == MultiplierReduction::cones)
-      require_shape(basis.slip, m - law.normal, 1, "law/basis/slip");
     require_indices(basis.nodes, law.normal, "law/basis/nodes");
   }
   const int apart = law.apart.normal, all = model.b.size();
@@ -192,8 +190,7 @@ void check_model(const ReducedModel &model) {
 }
 
 const std::vector<std::string> &multiplier_reduction_names() {
-  static const std::vector<std::string> names{"auto",       "cone",  "condensed",
-                                              "collocated", "cones", "joint"};
+  static const std::vector<std::string> names{"auto", "cone", "condensed", "collocated"};
   return names;
 }
 

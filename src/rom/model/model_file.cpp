@@ -213,7 +213,6 @@ void write_law(H5Writer &file, const std::optional<NodalLaw> &law) {
   file.write("law/mended", law->mended ? 1 : 0);
   file.write("law/basis/normal", law->basis.normal);
   file.write("law/basis/tangential", law->basis.tangential);
-  file.write("law/basis/slip", law->basis.slip);
   file.write("law/basis/nodes", law->basis.nodes);
   file.write("law/starts", law->starts);
   file.write("law/starts_mu", law->starts_mu);
@@ -240,7 +239,6 @@ std::optional<NodalLaw> read_law(const H5Reader &file) {
   law.mended = file.integer("law/mended") != 0;
   law.basis.normal = file.matrix("law/basis/normal");
   law.basis.tangential = file.matrix("law/basis/tangential");
-  law.basis.slip = file.vector("law/basis/slip");
   law.basis.nodes = file.ints("law/basis/nodes");
   law.starts = file.matrix("law/starts");
   law.starts_mu = file.matrix("law/starts_mu");

@@ -23,13 +23,12 @@ bool with_law(const ToolOptions &options) {
   return mixed(options) && keeps_law(options.reduce.multipliers.reduction);
 }
 
-bool with_reduced_law(const ToolOptions &options) {
-  return with_law(options) &&
-         options.reduce.multipliers.reduction != MultiplierReduction::condensed;
+bool collocated(const ToolOptions &options) {
+  return mixed(options) && options.reduce.multipliers.reduction == MultiplierReduction::collocated;
 }
 
 bool with_dual_basis(const ToolOptions &options) {
-  return mixed(options) && (!with_law(options) || with_reduced_law(options));
+  return mixed(options) && options.reduce.multipliers.reduction != MultiplierReduction::condensed;
 }
 
 Option pga_tolerance() {
@@ -78,7 +77,7 @@ std::vector<Option> of_bases() {
   const std::vector<std::string> cones{
       "snapshots of the pressure, each the one farthest from the cone of those before (B.2)",
       "the same, each without the largest part that the cone holds already (Algorithm 2); default "
-      "of every -multiplier_reduction except cone",
+      "of -multiplier_reduction collocated",
       "snapshots, each the one at the largest angle to the span of those before (Haasdonk, "
       "Salomon, Wohlmuth 2012)",
       "non-negative factorisation of the snapshots (Lee, Seung 2000), by HALS",
@@ -145,12 +144,12 @@ std::vector<Option> of_separation() {
       number("eim_max_size", basis_size, RBVI_AT(reduce.eim.max_size),
              "largest number of terms; 0: no limit"),
       otherwise("-eim_tolerance",
-                kept(with_reduced_law,
+                kept(collocated,
                      number("eim_normal_tolerance", relative_error, RBVI_AT(reduce.eim_normal),
                             "collocated: the same for B^n, the rows of lambda_n (3.61a)"))),
       otherwise(
           "-eim_tolerance",
-          kept(with_reduced_law,
+          kept(collocated,
                number("eim_tangential_tolerance", relative_error, RBVI_AT(reduce.eim_tangential),
                       "collocated: the same for B^tau, the rows of lambda_tau (3.61b)")))};
 }
@@ -165,36 +164,23 @@ std::vector<Option> of_multipliers() {
       "the published method: a cone (-cone_type mcpg) for lambda_n, modes for lambda_tau, "
       "supremizers, the friction bound at nodes chosen greedily (Algorithm 3), B^n and B^tau "
       "interpolated apart unless B is a multiple of one form; without friction the cone and B^n "
-      "alone",
-      "a cone for lambda_n and one for the friction bound less |lambda_tau|: Coulomb's bound holds "
-      "at every node",
-      "modes of both multipliers, with the law in the least-squares sense at nodes chosen by "
-      "pivoted QR"};
+      "alone"};
   return {
       kept(with_law,
            number("condensed_tolerance", relative_error, RBVI_AT(reduce.condensed.tolerance),
                   "relative error that the condensed operator may have as a function of mu")),
-      kept(with_law, number("condensed_ring", positive, RBVI_AT(reduce.condensed.ring),
-                            "condensed: keep multipliers up to this distance from where "
-                            "contact was seen, as a fraction of the extent of contact")),
       number("response_tolerance", relative_error, RBVI_AT(reduce.condensed.responses),
-             "responses A^-1 B^T join the modes: first those of one A, then of others until "
-             "this relative error is left; 0: none join"),
-      number("response_compression", relative_error, RBVI_AT(reduce.condensed.compression),
-             "if A is constant and all responses would take more than 160 MB: only those to "
-             "answers of the law join, to this relative error; 0: all join"),
+             "responses A^-1 B^T join the modes: first those of one A (if it is constant and they "
+             "would take more than 160 MB only those to answers of the law, to 1e-5 in the "
+             "energy), then of others until this relative error is left; 0: none join"),
       kept(with_law,
            choice("multiplier_reduction", choices(multiplier_reduction_names(), reductions),
                   RBVI_AT(reduce.multipliers.reduction), "how the multipliers are reduced")),
       flag("multiplier_exact", RBVI_AT(reduce.multipliers.exact),
-           "collocated, cones, joint: an answer that breaks the law at some node is corrected "
-           "by exact steps"),
-      kept(with_reduced_law,
+           "collocated: an answer that breaks the law at some node is corrected by exact steps"),
+      kept(collocated,
            number("tangential_tolerance", relative_error, RBVI_AT(reduce.multipliers.tangential),
-                  "relative error that the modes of lambda_tau (collocated) or of both "
-                  "multipliers (joint) may leave")),
-      number("joint_extra_nodes", basis_size, RBVI_AT(reduce.multipliers.extra_nodes),
-             "joint: how many more collocation nodes there are than modes"),
+                  "collocated: relative error that the modes of lambda_tau may leave")),
       number("gcns_tolerance", positive, RBVI_AT(reduce.gcns.tolerance),
              "collocated: no more nodes are chosen at this e_GCNS; 0: all are tried, and the "
              "best number is kept"),

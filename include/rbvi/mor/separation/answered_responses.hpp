@@ -7,8 +7,12 @@
 
 namespace rbvi {
 
-/// Whether the responses are compressed, to options.compression: where their fields, one by one,
-/// have more than options.large_fields numbers. `loads`: of condensed_loads.
+/// Of append_answered_responses in reduce(). Multipliers do not depend on it, and u is then known
+/// to 1e-5 (cases/two_disks/README.md): a mesh so large that it matters is not finer than that.
+inline constexpr double answered_tolerance = 1e-5;
+
+/// Whether only the responses to answers join the modes: where the fields of all, one by one, have
+/// more than options.large_fields numbers. `loads`: of condensed_loads.
 bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
                     const CondensedOptions &options);
 

@@ -15,9 +15,9 @@ struct CondensedOptions {
   double tolerance = 1e-9; ///< of the interpolation, relative
   int max_points = 33;     ///< along one parameter
   double responses = 3e-3; ///< of those of further A: see condense; 0: none are appended
-  double ring = 0.5;       ///< of columns_near_contact
-  /// Of responses whose fields are large: see append_answered_responses; 0: all are appended.
-  double compression = 1e-5;
+  /// Of columns_near_contact. The training samples only have to say roughly where contact is: where
+  /// a query of the self-check finds it at the edge, reduce() keeps all columns.
+  double ring = 0.5;
   double large_fields = 2e7; ///< numbers: 160 MB
 };
 

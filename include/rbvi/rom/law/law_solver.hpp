@@ -71,11 +71,9 @@ private:
   AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x);
   /// H(:, which), m x which.size().
   Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which);
-  /// H X where B does not separate, m x columns of X.
-  Matrix condensed_product(const BodyAtMu &body, const Matrix &x);
-  ReducedLawStart reduced_start(const Vector &here);
+  Vector reduced_start(const Vector &here);
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
-  bool solve_reduced_law(const BodyAtMu &body, const ReducedLawStart &start, LawAnswer &answer);
+  bool answer_reduced_law(const BodyAtMu &body, const Vector &start, LawAnswer &answer);
   void solve_at_nodes(const BodyAtMu &body, const Vector &here, LawAnswer &answer);
   /// Empty: from rest.
   Vector start_at(const Vector &here) const;
@@ -90,10 +88,10 @@ private:
   const Scene &scene_;
   const Contact &contact_;
   QueryOptions options_;
+  bool reduced_; ///< MultiplierReduction::collocated
   bool by_rule_; ///< the law at all nodes
-  std::optional<ReducedLaw> law_;
-  SampleStarts<ReducedLawStart> reduced_starts_;
-  ReducedLawStart last_reduced_;
+  SampleStarts<Vector> reduced_starts_;
+  Vector last_reduced_; ///< ReducedLawAnswer::coefficients
   /// The columns of B that the condensed operator knows. Throws failure where it meets others.
   SparseMatrix known_columns(const SparseMatrix &b) const;
   void check_edge(const Vector &x) const;

@@ -120,24 +120,21 @@ struct CondensedOperator {
 
 /// What the multipliers are combined from.
 enum class MultiplierReduction {
-  automatic,  ///< condensed where every interface keeps its nodes (ContactRecipe), else cone
-  cone,       ///< a cone, stable with supremizers; without friction
-  condensed,  ///< every node: the law of contact and friction is exact, the body is reduced
-  collocated, ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
-  cones,      ///< cones for lambda_n and for what is left to the bound of friction
-  joint       ///< modes of both together, by least squares on the law at collocation nodes
+  automatic, ///< condensed where every interface keeps its nodes (ContactRecipe), else cone
+  cone,      ///< a cone, stable with supremizers; without friction
+  condensed, ///< every node: the law of contact and friction is exact, the body is reduced
+  collocated ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
 };
 
-/// "auto", "cone", "condensed", "collocated", "cones", "joint".
+/// "auto", "cone", "condensed", "collocated".
 const std::vector<std::string> &multiplier_reduction_names();
 
-/// The functions of these reductions by their coefficients in the nodal dual basis: k nodes, t of
-/// them of interfaces with friction.
+/// The functions of MultiplierReduction::collocated by their coefficients in the nodal dual basis:
+/// k nodes, t of them of interfaces with friction.
 struct MultiplierBasis {
-  Matrix normal;          ///< k x R: a cone; joint: k x modes
-  Matrix tangential;      ///< collocated: t x S modes; cones: t x M, a cone; joint: t x modes
-  Vector slip;            ///< cones: t, the direction of the slip at each node, -1 or 1
-  std::vector<int> nodes; ///< collocated, joint: the collocation nodes
+  Matrix normal;          ///< k x R, a cone
+  Matrix tangential;      ///< t x S, modes
+  std::vector<int> nodes; ///< the collocation nodes
 };
 
 /// Where B^n and B^tau, the rows of lambda_n and those of lambda_tau, are interpolated apart.
@@ -180,7 +177,7 @@ struct ReducedModel {
   std::string mesh_fingerprint;
 
   int modes = 0;       ///< N
-  int supremizers = 0; ///< S, or (cones, joint, condensed) the responses that join the modes
+  int supremizers = 0; ///< S, or (condensed) the responses that join the modes
   int generators = 0;  ///< R
   int free_modes = 0;  ///< the last of the R: their coefficients take either sign
   /// V_N + S_R(mu) is made for each mu (2.17); the supremizers span S_R(mu) for every mu.
@@ -227,7 +224,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 16;
+inline constexpr int model_schema = 17;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).

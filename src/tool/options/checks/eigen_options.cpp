@@ -25,9 +25,8 @@ bool is_ineffective(const std::string &name) {
 
 /// Whether there is a reduced pair of spaces.
 bool has_pair(const ToolOptions &options) {
-  const MultiplierReduction reduction = options.reduce.multipliers.reduction;
   return has_multipliers(options.scene) &&
-         (reduction == MultiplierReduction::cone || reduction == MultiplierReduction::collocated);
+         options.reduce.multipliers.reduction != MultiplierReduction::condensed;
 }
 
 /// Why a run makes no supremizers; "" where it does.

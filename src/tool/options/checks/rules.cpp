@@ -89,8 +89,8 @@ bool has_law(const Scene &scene, FrictionLaw law) {
                              [&](const ContactRecipe &c) { return c.friction == law; });
 }
 
-bool reduces_by(const ToolOptions &options, std::initializer_list<MultiplierReduction> any) {
-  return std::ranges::find(any, options.reduce.multipliers.reduction) != any.end();
+bool collocates(const ToolOptions &options) {
+  return options.reduce.multipliers.reduction == MultiplierReduction::collocated;
 }
 
 /// Options of one method, by how they begin, and what they are for.
@@ -100,7 +100,6 @@ struct OfMethod {
   const char *is_for;
 };
 
-using Reduction = MultiplierReduction;
 constexpr const char *without_multipliers =
     "the mixed formulation: Nitsche's method has no multipliers";
 const OfMethod of_methods[] = {
@@ -123,20 +122,9 @@ const OfMethod of_methods[] = {
      "-hf_method uzawa"},
     {"nonlinear_", [](const ToolOptions &o) { return follows_state(o.scene); },
      "contact that follows the displacement: set -kinematics large"},
-    {"gcns_", [](const ToolOptions &o) { return reduces_by(o, {Reduction::collocated}); },
-     "-multiplier_reduction collocated"},
-    {"joint_", [](const ToolOptions &o) { return reduces_by(o, {Reduction::joint}); },
-     "-multiplier_reduction joint"},
-    {"tangential_",
-     [](const ToolOptions &o) {
-       return reduces_by(o, {Reduction::collocated, Reduction::joint});
-     },
-     "-multiplier_reduction collocated or joint"},
-    {"multiplier_exact",
-     [](const ToolOptions &o) {
-       return reduces_by(o, {Reduction::collocated, Reduction::cones, Reduction::joint});
-     },
-     "-multiplier_reduction collocated, cones or joint"},
+    {"gcns_", collocates, "-multiplier_reduction collocated"},
+    {"tangential_", collocates, "-multiplier_reduction collocated"},
+    {"multiplier_exact", collocates, "-multiplier_reduction collocated"},
     {"friction_bound", [](const ToolOptions &o) { return has_law(o.scene, FrictionLaw::tresca); },
      "-friction tresca"},
     {"friction_", [](const ToolOptions &o) { return has_friction(o.scene); },

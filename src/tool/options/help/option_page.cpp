@@ -69,8 +69,8 @@ functions of mu, exactly where the scene says how, otherwise by empirical interp
                                                         {"Multipliers", R"(
 The law is the set of conditions at a node: no penetration, no tension, and with friction a bound on the
 tangential stress. lambda_n are the normal multipliers, lambda_tau the tangential ones. A response is the
-displacement A^-1 B^T e that a unit load on one multiplier causes. At its collocation nodes, and only
-there, a reduced model holds the bound of friction (collocated) or the law (joint).
+displacement A^-1 B^T e that a unit load on one multiplier causes. `collocated` holds the bound of
+friction at its collocation nodes alone.
 )"},
                                                         {"Nitsche's method", R"(
 With `-formulation nitsche` contact and friction are terms of one equation for u, without multipliers.
