@@ -7,7 +7,6 @@
 
 namespace Eigen {
 template class LLT<MatrixXd>;
-template class LDLT<MatrixXd>;
 template class PartialPivLU<MatrixXd>;
 template class HouseholderSequence<MatrixXd, VectorXd>;
 template class HouseholderQR<MatrixXd>;

@@ -16,7 +16,6 @@
 // For the few files that need more of a decomposition than the functions below.
 namespace Eigen {
 extern template class LLT<MatrixXd>;
-extern template class LDLT<MatrixXd>;
 extern template class PartialPivLU<MatrixXd>;
 extern template class HouseholderSequence<MatrixXd, VectorXd>;
 extern template class HouseholderQR<MatrixXd>;
