@@ -6,6 +6,8 @@
 //   b(mu; u, eta)                  <= g(mu; eta)    for all eta in W+                         (2.7)
 //
 //   mpirun -n 2 build/bin/example run/example       # exit status 0: the reduced answer is right
+#include "catalogue.hpp"
+
 #include "rbvi/check/errors.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/fields.hpp"
@@ -50,8 +52,8 @@ ReducedBases bases_of(Problem &problem, const std::vector<Sample> &samples) {
   StageTable stages{{stage::pod, "displacements to 1e-6"}};
   add_modes(problem, samples, {.tolerance = 1e-6}, bases, stages);
   const Operators &op = problem.assemble(box_centre(problem.scene().parameters));
-  bases.cone = build_cone(multipliers_of(samples), problem.w_product(), {.ring = 0},
-                          holding(problem, op));
+  bases.cone =
+      build_cone(multipliers_of(samples), problem.w_product(), {.ring = 0}, holding(problem, op));
   return bases;
 }
 

@@ -107,7 +107,7 @@ std::function<PointValue> gap_function(const std::string &kind, bool from_arc,
 
 /// "closest", "ray", "vertical".
 Maker<PointValue> gaps(const std::string &kind) {
-  return {"rigid_disk/gap_" + kind, 1, [kind](const Record &of) {
+  return {"rigid_disk/gap_" + kind, 1, [kind](const Stored &of) {
             return gap_function(kind, number(of, "from_arc") != 0,
                                 made<PointMap>(part(of, "normal")));
           }};

@@ -33,14 +33,14 @@ void add_friction(const Friction &friction, Record &record) {
   part.parts["value"] = friction.value.record;
 }
 
-Friction friction_in(const Record &record) {
-  const auto found = record.parts.find("friction");
-  if (found == record.parts.end()) return {};
-  const Record &of = found->second;
-  if (of.name != "coulomb" && of.name != "tresca")
-    throw bad_input("friction '" + of.name + "' is not in this build: make the model again");
-  return {of.name == "coulomb" ? FrictionLaw::coulomb : FrictionLaw::tresca,
-          made<Coefficient>(part(of, "value")), number(of, "only_in_contact") != 0};
+Friction friction_in(const Stored &of) {
+  if (!of.record.parts.contains("friction")) return {};
+  const Stored friction = part(of, "friction");
+  const std::string &law = friction.record.name;
+  if (law != "coulomb" && law != "tresca")
+    throw bad_input("friction '" + law + "' is not in this build: make the model again");
+  return {law == "coulomb" ? FrictionLaw::coulomb : FrictionLaw::tresca,
+          made<Coefficient>(part(friction, "value")), number(friction, "only_in_contact") != 0};
 }
 
 } // namespace rbvi

@@ -7,34 +7,6 @@
 
 namespace rbvi {
 
-bool has_friction(const Scene &scene) {
-  return std::ranges::any_of(scene.contacts, [](const ContactRecipe &contact) {
-    return contact.friction != FrictionLaw::none;
-  });
-}
-
-bool has_multipliers(const Scene &scene) {
-  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
-    return contact.formulation == Formulation::mixed;
-  });
-}
-
-bool separable_contact(const Scene &scene) {
-  return std::ranges::all_of(scene.contacts, &ContactRecipe::separable);
-}
-
-bool follows_state(const Scene &scene) {
-  return std::ranges::any_of(scene.contacts, &ContactRecipe::follows_state);
-}
-
-bool keeps_nodes(const Scene &scene) {
-  return std::ranges::all_of(scene.contacts, &ContactRecipe::keeps_nodes);
-}
-
-bool bounds_nodes(const Scene &scene) {
-  return std::ranges::all_of(scene.contacts, &ContactRecipe::nodal) && !has_friction(scene);
-}
-
 FrictionBound ContactInterface::bound(const FullMu &) const {
   return {};
 }

@@ -1,6 +1,7 @@
 #include "rbvi/core/functions.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/scene.hpp"
 
 #include <cmath>
 
@@ -54,12 +55,14 @@ FunctionLibrary common_functions() {
           constant_maker, identity_maker, value_maker,       vector_maker,      material_maker};
 }
 
-template <class Signature> Named<Signature> made(const Record &record) {
+template <class Signature> Named<Signature> made(const Stored &stored) {
+  const Record &record = stored.record;
   const Maker<Signature> *other = nullptr;
-  for (const AnyMaker &any : function_library())
+  const FunctionLibrary none;
+  for (const AnyMaker &any : stored.registry == nullptr ? none : stored.registry->functions)
     if (const auto *maker = std::get_if<Maker<Signature>>(&any);
         maker != nullptr && maker->name == record.name) {
-      if (maker->version == record.version) return {maker->make(record), record};
+      if (maker->version == record.version) return {maker->make(stored), record};
       other = maker;
     }
   throw bad_input(
@@ -69,15 +72,15 @@ template <class Signature> Named<Signature> made(const Record &record) {
       ": make the model again, or use the build that made it");
 }
 
-template Named<NumberMap> made(const Record &);
-template Named<Coefficient> made(const Record &);
-template Named<Check> made(const Record &);
-template Named<PointValue> made(const Record &);
-template Named<PointMap> made(const Record &);
-template Named<Surface> made(const Record &);
-template Named<Material> made(const Record &);
-template Named<Kernel> made(const Record &);
-template Named<Traction> made(const Record &);
+template Named<NumberMap> made(const Stored &);
+template Named<Coefficient> made(const Stored &);
+template Named<Check> made(const Stored &);
+template Named<PointValue> made(const Stored &);
+template Named<PointMap> made(const Stored &);
+template Named<Surface> made(const Stored &);
+template Named<Material> made(const Stored &);
+template Named<Kernel> made(const Stored &);
+template Named<Traction> made(const Stored &);
 
 Named<NumberMap> logarithm() {
   return log_maker();

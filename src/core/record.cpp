@@ -46,6 +46,10 @@ const Record &part(const Record &record, const std::string &name) {
   return member(record, record.parts, name);
 }
 
+Stored part(const Stored &stored, const std::string &name) {
+  return {part(stored.record, name), stored.registry};
+}
+
 bool is_complete(const Record &record) {
   return !record.name.empty() &&
          std::ranges::all_of(record.parts, [](const auto &p) { return is_complete(p.second); });

@@ -34,6 +34,34 @@ Scene made(const SceneEntry &entry, const SceneOptions &options) {
 
 } // namespace
 
+bool has_friction(const Scene &scene) {
+  return std::ranges::any_of(scene.contacts, [](const ContactRecipe &contact) {
+    return contact.friction != FrictionLaw::none;
+  });
+}
+
+bool has_multipliers(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, [](const ContactRecipe &contact) {
+    return contact.formulation == Formulation::mixed;
+  });
+}
+
+bool separable_contact(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, &ContactRecipe::separable);
+}
+
+bool follows_state(const Scene &scene) {
+  return std::ranges::any_of(scene.contacts, &ContactRecipe::follows_state);
+}
+
+bool keeps_nodes(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, &ContactRecipe::keeps_nodes);
+}
+
+bool bounds_nodes(const Scene &scene) {
+  return std::ranges::all_of(scene.contacts, &ContactRecipe::nodal) && !has_friction(scene);
+}
+
 bool is_symmetric(const Scene &scene) {
   if (!scene.symmetric || scene.skewed_by < 0) return scene.symmetric;
   const ParameterSpace &space = scene.parameters;
@@ -49,30 +77,31 @@ double number_in(const SceneOptions &options, const std::string &name) {
   return parse_number(options.at(name), "option " + name);
 }
 
-Scene make_scene(const std::string &name, const SceneOptions &options) {
-  const auto &catalogue = scene_catalogue();
-  const auto entry = std::find_if(catalogue.begin(), catalogue.end(),
-                                  [&](const SceneEntry &e) { return e.name == name; });
-  if (entry == catalogue.end()) {
-    std::vector<std::string> names;
-    for (const SceneEntry &e : catalogue)
-      names.push_back(e.name);
-    throw bad_input("unknown scene '" + name + "': this build has " + joined(names));
+const SceneEntry &entry_of(const Registry &registry, const std::string &scene) {
+  std::vector<std::string> names;
+  for (const SceneEntry &entry : registry.scenes) {
+    if (entry.name == scene) return entry;
+    names.push_back(entry.name);
   }
+  throw bad_input("unknown scene '" + scene + "': this build has " +
+                  (names.empty() ? "none" : joined(names)));
+}
+
+Scene make_scene(const SceneEntry &entry, const SceneOptions &options) {
   SceneOptions resolved;
-  for (const SceneOption &option : entry->options)
+  for (const SceneOption &option : entry.options)
     resolved[option.name] = option.default_value;
   for (const auto &[key, value] : options) {
-    const auto option = std::find_if(entry->options.begin(), entry->options.end(),
+    const auto option = std::find_if(entry.options.begin(), entry.options.end(),
                                      [&key = key](const SceneOption &o) { return o.name == key; });
-    if (option == entry->options.end())
-      throw bad_input("scene " + name + " has no option '" + key + "'");
+    if (option == entry.options.end())
+      throw bad_input("scene " + entry.name + " has no option '" + key + "'");
     check_option(*option, value);
     resolved[key] = value;
   }
-  Scene scene = made(*entry, resolved);
-  scene.name = entry->name;
-  scene.summary = entry->summary;
+  Scene scene = made(entry, resolved);
+  scene.name = entry.name;
+  scene.summary = entry.summary;
   scene.options = resolved;
   return scene;
 }

@@ -70,10 +70,10 @@ std::function<Kernel> elastic_kernel(const std::function<Material> &material, in
   };
 }
 
-const Maker<Kernel> elasticity_maker{
-    "elasticity", 1, [](const Record &record) {
-      return elastic_kernel(made<Material>(part(record, "material")), integer(record, "degree"));
-    }};
+const Maker<Kernel> elasticity_maker{"elasticity", 1, [](const Stored &of) {
+                                       return elastic_kernel(made<Material>(part(of, "material")),
+                                                             integer(of, "degree"));
+                                     }};
 
 /// One of Lame's constants.
 Maker<Coefficient> lame_maker(const std::string &name, double Lame::*constant) {

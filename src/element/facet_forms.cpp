@@ -84,10 +84,10 @@ const Maker<Traction> pressure_maker{
       };
     }};
 
-const Maker<Kernel> traction_maker{"traction_load", 1, [](const Record &record) {
-                                     return traction_kernel(
-                                         made<Traction>(part(record, "traction")),
-                                         integer(record, "components"), integer(record, "degree"));
+const Maker<Kernel> traction_maker{"traction_load", 1, [](const Stored &of) {
+                                     return traction_kernel(made<Traction>(part(of, "traction")),
+                                                            integer(of, "components"),
+                                                            integer(of, "degree"));
                                    }};
 
 const Maker<Kernel> spring_maker{"spring", 1, [](const Record &record) {

@@ -6,7 +6,6 @@
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/mor/separation/stiffness_change.hpp"
 #include "rbvi/rom/model/packed.hpp"
-#include "rbvi/rom/model/scene_record.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "separation/dense_rows.hpp"
@@ -154,10 +153,8 @@ void add_separation(const AffineOperators &affine,
 ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   const Scene &scene = problem.scene();
   ReducedModel model;
-  model.scene_name = scene.name;
-  model.scene_record = record_of(scene);
+  model.scene = scene;
   model.settings[whole_scene] = scene_text(scene, problem.contact());
-  model.scene_options = scene.options;
   model.parameters = scene.parameters;
   model.modes = bases.modes;
   model.supremizers = bases.supremizers + bases.responses;

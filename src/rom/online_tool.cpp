@@ -5,6 +5,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/overwrite.hpp"
+#include "rbvi/io/system_error.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
@@ -14,6 +15,7 @@
 #include <chrono>
 #include <cmath>
 #include <iomanip>
+#include <iostream>
 #include <set>
 #include <sstream>
 
@@ -188,9 +190,8 @@ void check_files(const OnlineArguments &arguments) {
   }
 }
 
-} // namespace
-
-void run_online(const OnlineArguments &arguments, std::ostream &out) {
+/// Does what the arguments say. Everything is computed before a file is written.
+void run(const OnlineArguments &arguments, const Registry &registry, std::ostream &out) {
   if (arguments.help) {
     out << usage();
     return;
@@ -201,7 +202,7 @@ void run_online(const OnlineArguments &arguments, std::ostream &out) {
   }
   check_files(arguments);
   const bool fields = arguments.full || !arguments.vtu.empty();
-  ReducedModel model = read_model(arguments.model, fields);
+  ReducedModel model = read_model(arguments.model, registry, fields);
   if (arguments.decorrelated) model = leading(model, model.modes, model.generators);
   if (arguments.mu.empty() && arguments.queries.empty()) {
     print_model(out, model);
@@ -212,6 +213,24 @@ void run_online(const OnlineArguments &arguments, std::ostream &out) {
     answer_one(arguments, solver, out);
   else
     answer_many(arguments, solver, out);
+}
+
+} // namespace
+
+int rbvi_online_main(int argc, char **argv, const Registry &registry) {
+  const auto refused = [](const std::exception &error, Status status) {
+    std::cerr << "rbvi-online: " << in_plain_words(error.what()) << '\n';
+    return static_cast<int>(status);
+  };
+  try {
+    run(parse_online_arguments({argv + 1, argv + argc}), registry, std::cout);
+    if (!std::cout.flush()) throw cannot_write("to standard output");
+    return static_cast<int>(Status::done);
+  } catch (const Error &error) {
+    return refused(error, error.status());
+  } catch (const std::exception &error) {
+    return refused(error, Status::failed);
+  }
 }
 
 } // namespace rbvi

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/rom/law/law_solver.hpp"
+#include "rbvi/rom/model/scene_record.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/self_check.hpp"
@@ -118,10 +119,10 @@ void print_expected_errors(std::ostream &out, const ReducedModel &model) {
 }
 
 void print_model(std::ostream &out, const ReducedModel &model) {
-  const std::string unnamed = first_unnamed(model.scene_record);
-  label(out, "scene") << model.scene_name
+  const std::string unnamed = first_unnamed(record_of(model.scene));
+  label(out, "scene") << model.scene.name
                       << (unnamed.empty() ? "" : ", whose code it needs: for " + unnamed) << '\n';
-  label(out, "options") << joined(model.scene_options) << '\n';
+  label(out, "options") << joined(model.scene.options) << '\n';
   print_parameters(out, model.parameters);
   print_failed(out, model);
   label(out, "modes") << model.modes << '\n';

@@ -121,7 +121,7 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   if (vi_fits(options.scene)) {
     SceneOptions lumped = options.scene.options;
     lumped["lumped"] = "yes";
-    Scene scene = make_scene(options.scene.name, lumped);
+    Scene scene = make_scene(entry_of(*options.registry, options.scene.name), lumped);
     scene.parameters = options.scene.parameters;
     Problem vertex_quadrature(PETSC_COMM_SELF, scene, options.mesh);
     std::vector<Mu> set = parameters_of(truths);
@@ -149,7 +149,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
     rows.push_back(std::move(row));
 
   std::ostringstream head;
-  head << "Scene " << model.scene_name << ", " << problem.mesh().total_nodes << " nodes, "
+  head << "Scene " << model.scene.name << ", " << problem.mesh().total_nodes << " nodes, "
        << truths.size() << " validation parameters, timed on 1 of " << ranks << " ranks.\n"
        << "Errors are relative to the samples of the run (vi: of the lumped scene), u in V, lambda "
           "in W; "
@@ -176,7 +176,7 @@ void command_bench(const ToolOptions &given) {
   if (!given.growth.empty()) return command_growth(given);
   const MPI_Comm world = PETSC_COMM_WORLD;
   const int rank = rank_of(world), ranks = ranks_of(world);
-  const ReducedModel model = model_of_run(world, given.out);
+  const ReducedModel model = model_of_run(world, given);
   const ToolOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::none);
   collectively(world, [&] {

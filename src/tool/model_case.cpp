@@ -90,25 +90,25 @@ std::vector<std::string> differences(const ToolOptions &given, const ToolOptions
 
 } // namespace
 
-ReducedModel model_of_run(MPI_Comm world, const fs::path &out) {
-  if (out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
-  const fs::path file = out / "model.h5";
+ReducedModel model_of_run(MPI_Comm world, const ToolOptions &options) {
+  if (options.out.empty()) throw bad_input("no run directory is named: use -out run/NAME");
+  const fs::path file = options.out / "model.h5";
   ReducedModel model;
   collectively(world, [&] {
     if (!fs::exists(file))
       throw bad_input(file.string() + " does not exist: make it by rbvi offline first");
-    model = read_model(file);
+    model = read_model(file, *options.registry);
   });
   return model;
 }
 
 ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
   const ToolOptions given = options;
-  if (model.scene_name != options.scene.name)
+  if (model.scene.name != options.scene.name)
     throw bad_input("the model in " + options.out.string() + " is one of scene " +
-                    model.scene_name + ", the case names " + options.scene.name +
+                    model.scene.name + ", the case names " + options.scene.name +
                     ": leave out -case, or use another -out");
-  options.scene = whole_scene_of(model);
+  options.scene = scene_by_code(model.scene, *options.registry);
   options.mesh = mesh_of(model, options.mesh);
   std::string line;
   for (const std::string &difference : differences(given, options, model))

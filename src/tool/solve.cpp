@@ -75,13 +75,13 @@ void command_solve(const ToolOptions &options) {
   });
 }
 
-void command_list() {
-  for (const SceneEntry &scene : scene_catalogue())
+void command_list(const Registry &registry) {
+  for (const SceneEntry &scene : registry.scenes)
     std::printf("%-20s %s\n", scene.name.c_str(), scene.summary.c_str());
 }
 
-void command_inspect(const std::string &file) {
-  const ReducedModel model = read_model(file, false);
+void command_inspect(const std::string &file, const Registry &registry) {
+  const ReducedModel model = read_model(file, registry, false);
   print_model(std::cout, model);
   std::printf("Stage times of the offline run (s)\n");
   for (const auto &[stage, seconds] : model.stage_seconds)

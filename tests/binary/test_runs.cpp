@@ -1,4 +1,5 @@
 // Whole runs: what the tools print, the same model from any ranks, resume after a kill.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/parameters.hpp"
 #include "rbvi/rom/model/model.hpp"
 #include "run.hpp"
@@ -69,8 +70,8 @@ TEST_F(Runs, TheSameModelFromAnyRanks) {
     for (int ranks = 2; ranks <= 4; ++ranks) {
       offline(ranks, common + std::to_string(ranks));
       expect_same(map + std::to_string(ranks), expected);
-      expect_same_greedy(read_model(map + std::to_string(ranks) + "/model.h5"),
-                         read_model(map + "1/model.h5"));
+      expect_same_greedy(read_model(map + std::to_string(ranks) + "/model.h5", catalogue()),
+                         read_model(map + "1/model.h5", catalogue()));
     }
     offline(2, common + "_together -sweep_ranks_per_solve 2");
     expect_same(map + "_together", expected);
@@ -159,7 +160,8 @@ TEST_F(Runs, ManyHatFunctionsAndThoseOfACoarserMesh) {
   spill("case.yaml", "scene: membrane_obstacle\nmesh_refine: 1\ntrain: random:12:1\n");
   offline(2, "-out fine");
   offline(2, "-cone_level 1 -out coarse");
-  const ReducedModel fine = read_model("fine/model.h5"), coarse = read_model("coarse/model.h5");
+  const ReducedModel fine = read_model("fine/model.h5", catalogue()),
+                     coarse = read_model("coarse/model.h5", catalogue());
   EXPECT_GT(fine.a_change.rank(), 0);
   EXPECT_LT(fine.a_change.rank(), fine.primal_size() / 3);
   EXPECT_FALSE(fine.trace_dofs.empty());
@@ -167,7 +169,7 @@ TEST_F(Runs, ManyHatFunctionsAndThoseOfACoarserMesh) {
   EXPECT_LT(2 * coarse.generators, fine.generators);
   output_of(rbvi(1, "solve -case case.yaml -mu 0.19,0.01,-0.02 -csv truth.csv"));
   for (const std::string run : {"fine", "coarse"}) {
-    EXPECT_TRUE(read_model(run + "/model.h5").self_check.clean());
+    EXPECT_TRUE(read_model(run + "/model.h5", catalogue()).self_check.clean());
     output_of(rbvi_online(run + "/model.h5 --mu 0.19,0.01,-0.02 --out " + run + ".csv"));
     for (const char *output : {"energy", "normal_force"}) {
       const double truth = in_table("truth.csv", output);

@@ -2,6 +2,7 @@
 #include "../law/random_matrix.hpp"
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/answered_responses.hpp"
 #include "rbvi/solve/linear/vectors.hpp"

@@ -1,3 +1,4 @@
+#include "cases/catalogue.hpp"
 #include "rbvi/check/bench.hpp"
 #include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"

@@ -2,6 +2,7 @@
 // parameters that they have not seen; stability over all pairs of a parameter and a step.
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/bench.hpp"
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/check/stability_report.hpp"
@@ -163,7 +164,7 @@ TEST(LargeModel, AFileGivesTheSameModelWithoutTheScenesCode) {
             PETSC_COMM_SELF);
   r.reduce(by(MultiplierReduction::automatic));
   write_model(r.model, path);
-  const ReducedModel read = read_model(path);
+  const ReducedModel read = read_model(path, catalogue());
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
   OnlineSolver one(r.model), other(read);

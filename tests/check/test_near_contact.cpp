@@ -1,4 +1,5 @@
 // Models whose multipliers are those near contact alone.
+#include "cases/catalogue.hpp"
 #include "disk.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/bases/near_contact.hpp"

@@ -3,6 +3,7 @@
 #include "../mesh/gmsh_writer.hpp"
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/output_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
@@ -281,7 +282,7 @@ TEST(NitscheReduced, AFileGivesTheSameModelAndItsLeadingPart) {
   for (const CurveRule rule : {CurveRule::empirical, CurveRule::full, CurveRule::interpolated}) {
     r.reduce(with(rule));
     write_model(r.model, file);
-    const ReducedModel read = read_model(file);
+    const ReducedModel read = read_model(file, catalogue());
     const Vector u = OnlineSolver(r.model).solve({0.87}).u;
     EXPECT_EQ(OnlineSolver(read).solve({0.87}).u, u);
     EXPECT_EQ(read.nitsche->points, r.model.nitsche->points);

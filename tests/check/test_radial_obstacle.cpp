@@ -1,4 +1,5 @@
 // The high-fidelity solution against a closed form: a membrane on a disc over a paraboloid.
+#include "cases/catalogue.hpp"
 #include "rbvi/check/radial_obstacle.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/core/error.hpp"

@@ -2,6 +2,7 @@
 // on supports, with loads; and models of scenes that no catalogue has.
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/core/error.hpp"
@@ -243,13 +244,13 @@ TEST_F(ModelOfAnotherScene, IsAnsweredWhereItsFunctionsHaveNames) {
   Reduced r(block(), "grid:3", PETSC_COMM_SELF);
   r.reduce({});
   write_model(r.model, path);
-  const ReducedModel read = read_model(path, false);
+  const ReducedModel read = read_model(path, catalogue(), false);
   OnlineSolver with_code(r.model, r.problem.scene()), without(read);
   const Mu mu{0.0321};
   const ReducedSolution one = with_code.solve(mu), two = without.solve(mu);
   EXPECT_EQ(one.u, two.u);
   EXPECT_EQ(with_code.multiplier(one), without.multiplier(two));
-  EXPECT_THROW((void)whole_scene_of(read), Error);
+  EXPECT_THROW((void)scene_by_code(read.scene, catalogue()), Error);
 }
 
 TEST_F(ModelOfAnotherScene, SaysWhoseCodeItNeedsWhereOneHasNone) {
@@ -261,7 +262,7 @@ TEST_F(ModelOfAnotherScene, SaysWhoseCodeItNeedsWhereOneHasNone) {
   gather_fields(r.problem, made.bases.pod.basis, made.model);
   write_model(made.model, path);
   try {
-    (void)read_model(path);
+    (void)read_model(path, catalogue());
     FAIL() << "accepted";
   } catch (const Error &error) {
     const std::string message = error.what();

@@ -3,6 +3,7 @@
 #include "disk.hpp"
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
@@ -163,7 +164,7 @@ TEST(CondensedModel, SurvivesItsFile) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("rigid_disk." + std::to_string(rank) + ".h5");
   write_model(r.model, path);
-  const ReducedModel again = read_model(path);
+  const ReducedModel again = read_model(path, catalogue());
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
   OnlineSolver a(r.model), b(again);

@@ -1,6 +1,7 @@
 // B^n and B^tau interpolated apart, from snapshots to answers; what the terms of a model leave.
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/separation_errors.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
@@ -159,7 +160,7 @@ TEST(RowsApart, SurviveTheirFile) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("rows_apart." + std::to_string(rank) + ".h5");
   write_model(r.model, path);
-  ReducedModel again = read_model(path);
+  ReducedModel again = read_model(path, catalogue());
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
   const TermsApart &was = r.model.law->apart, &is = again.law->apart;

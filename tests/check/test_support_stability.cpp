@@ -3,6 +3,7 @@
 #include "disk.hpp"
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/mor/bases/nodal_dual_basis.hpp"

@@ -3,6 +3,7 @@
 #include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"

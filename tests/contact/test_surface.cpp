@@ -1,6 +1,6 @@
 // Contact with a rigid surface at the current position: B and the curvature are derivatives, a
 // plane has no curvature, and the slip is that of the angles.
-#include "rbvi/contact/catalogue/kinds.hpp"
+#include "rbvi/contact/catalogue/registry.hpp"
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"

@@ -1,6 +1,7 @@
 // Ranges of validity of every scene's parameters and options, alone and together.
 #include "refuses.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/io/overwrite.hpp"
@@ -16,7 +17,7 @@ namespace {
 /// Every choice of every option, the others by default.
 std::vector<Scene> all_scenes() {
   std::vector<Scene> scenes;
-  for (const SceneEntry &entry : scene_catalogue()) {
+  for (const SceneEntry &entry : catalogue().scenes) {
     scenes.push_back(make_scene(entry.name));
     for (const SceneOption &option : entry.options)
       for (const std::string &choice : option.choices)
@@ -43,7 +44,7 @@ TEST(Validity, EveryParameterHasARangeThatHoldsItsBox) {
 }
 
 TEST(Validity, EveryNumericOptionHasARangeThatHoldsItsDefault) {
-  for (const SceneEntry &entry : scene_catalogue())
+  for (const SceneEntry &entry : catalogue().scenes)
     for (const SceneOption &option : entry.options) {
       if (!option.choices.empty()) continue;
       SCOPED_TRACE(entry.name + " " + option.name);

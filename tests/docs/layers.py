@@ -3,7 +3,7 @@
 
 A layer is src/NAME with include/rbvi/NAME; a room is one folder of a layer without its subfolders.
 - A layer includes itself and layers above it in the table "Layers" alone; the scenes of cases
-  include layers of the online program alone.
+  include layers of the online program alone, and of all files the two mains alone include cases.
 - Rooms do not include each other in a circle.
 - No layer asks which kind of contact it has: outside of the layer contact and of the scenes, no file
   includes a folder of it or casts to one of its classes. Nitsche's method has files and rooms of
@@ -63,6 +63,8 @@ def check_includes(root):
             wrong.append(f"{path.relative_to(root)}: src/README.md has no layer {layer}")
             continue
         for name, target in included(path, root):
+            if layer == "bin" and name == "cases/catalogue.hpp":
+                continue
             if target is None:
                 wrong.append(f"{path.relative_to(root)} includes {name}, which is nowhere")
                 continue
@@ -105,7 +107,9 @@ def check_nitsche(root):
     """Lines of code that ask for Nitsche's method where they should ask for what contact has."""
     wrong = []
     for path in sources(root, ["src", "include/rbvi"]):
-        if "nitsche" in str(path.relative_to(root)) or room_of(path, root).split("/")[0] == "contact":
+        name = str(path.relative_to(root))
+        if ("nitsche" in name or room_of(path, root).split("/")[0] == "contact"
+                or name == "src/core/scene.cpp"):  # which says what contact has
             continue
         code = [line.split("//")[0] for line in path.read_text(encoding="utf-8").splitlines()]
         wrong += [f"{path.relative_to(root)}:{number} asks for Nitsche's method: ask for what contact "

@@ -1,5 +1,6 @@
 // A program of others, on the serial library alone and without its flags: with the address
 // sanitizer, which sees what is freed. embedded MODEL...: answers the middle of the box of each.
+#include "cases/catalogue.hpp"
 #include "rbvi/rom/model/model.hpp"
 #include "rbvi/rom/online.hpp"
 
@@ -9,7 +10,7 @@
 int main(int count, char **arguments) {
   using namespace rbvi;
   for (int i = 1; i < count; ++i) {
-    ReducedModel model = read_model(arguments[i]);
+    ReducedModel model = read_model(arguments[i], catalogue());
     OnlineSolver solver(model);
     Mu mu;
     for (int k = 0; k < model.parameters.size(); ++k)

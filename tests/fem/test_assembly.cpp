@@ -1,4 +1,5 @@
 // Dof numbering and COO assembly: against closed forms, at any number of ranks.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/assembly.hpp"
 

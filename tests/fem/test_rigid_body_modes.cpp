@@ -1,6 +1,7 @@
 // Displacements of rigid bodies: orthonormal, and without strain.
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"

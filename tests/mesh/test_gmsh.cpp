@@ -1,3 +1,4 @@
+#include "cases/catalogue.hpp"
 #include "gmsh_writer.hpp"
 #include "rbvi/core/error.hpp"
 #include "temporary_file.hpp"

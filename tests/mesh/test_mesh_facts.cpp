@@ -1,5 +1,6 @@
 // What a scene asks of its mesh: the built-in ones have it, meshes of another size, place or shape
 // are refused by the name of the part that is wrong.
+#include "cases/catalogue.hpp"
 #include "gmsh_writer.hpp"
 #include "rbvi/contact/pair/pair.hpp"
 #include "rbvi/core/error.hpp"

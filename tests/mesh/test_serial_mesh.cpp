@@ -1,3 +1,4 @@
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "triangles.hpp"
 

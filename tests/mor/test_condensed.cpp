@@ -1,5 +1,6 @@
 // The condensed operator of contact with a rigid support, against B A^-1 B^T at single mu.
 #include "../linear_algebra.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/separation/condensed.hpp"

@@ -1,4 +1,5 @@
 // Sums of exact and of interpolated terms: the coefficients of a query reproduce the operators.
+#include "cases/catalogue.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/mor/separation/affine.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"

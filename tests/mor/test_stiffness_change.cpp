@@ -1,4 +1,5 @@
 // Terms of the stiffness that differ on few functions, against the projection of every term.
+#include "cases/catalogue.hpp"
 #include "rbvi/mor/separation/affine.hpp"
 #include "rbvi/mor/separation/stiffness_change.hpp"
 #include "rbvi/par/collective.hpp"

@@ -1,6 +1,7 @@
 // Each mistake of whoever writes a scene is refused in one line; the scenes of this build have
 // none.
 #include "../core/refuses.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/element/elastic_forms.hpp"
@@ -48,7 +49,7 @@ SceneOptions with(const SceneEntry &entry, SceneOptions options) {
 
 TEST(CheckScene, EverySceneWithEachOfItsChoicesPasses) {
   if (ranks_of(PETSC_COMM_WORLD) > 1) GTEST_SKIP() << "on one rank, for the time that it takes";
-  for (const SceneEntry &entry : scene_catalogue()) {
+  for (const SceneEntry &entry : catalogue().scenes) {
     EXPECT_NO_THROW(check(make_scene(entry.name, with(entry, {})))) << entry.name;
     for (const SceneOption &option : entry.options)
       for (const std::string &choice : option.choices) {

@@ -1,5 +1,6 @@
 // The contact side over the ranks: whose a multiplier is, and that B, g and the weights do what
 // those of a single rank do, evaluated whole or each rank its part.
+#include "cases/catalogue.hpp"
 #include "rbvi/problem/problem.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // The assembled problem: facts of the mapped disc, and independence of the number of ranks.
 #include "../core/refuses.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/problem/problem.hpp"

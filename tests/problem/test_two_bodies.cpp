@@ -1,5 +1,6 @@
 // The assembled problem of two bodies: what depends on the parameter, what does not, and what the
 // rigid motion stands for.
+#include "cases/catalogue.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/problem/problem.hpp"
 

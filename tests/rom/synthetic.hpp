@@ -2,6 +2,7 @@
 // given numbers, for tests that compute the answer another way.
 #pragma once
 
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
@@ -108,8 +109,7 @@ inline void scale_terms(AffineTerms &terms, const Vector &theta_in_the_middle) {
 /// Scene and sizes alone.
 template <class Sizes> ReducedModel named_model(const Scene &scene, const Sizes &sizes) {
   ReducedModel model;
-  model.scene_name = scene.name;
-  model.scene_options = scene.options;
+  model.scene = scene;
   model.parameters = scene.parameters;
   model.modes = sizes.modes;
   model.supremizers = sizes.supremizers;

@@ -4,6 +4,8 @@
 
 #include "brute_force.hpp"
 
+#include "cases/catalogue.hpp"
+#include "rbvi/contact/elastic_pair/elastic_pair.hpp"
 #include "rbvi/contact/pair/pair.hpp"
 
 #include <algorithm>

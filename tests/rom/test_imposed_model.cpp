@@ -2,6 +2,7 @@
 // mesh.
 #include "synthetic.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +31,8 @@ TEST(ImposedInModelFile, ComesBack) {
                     ("rbvi_imposed_" + std::to_string(::getpid()) + ".h5");
   const ReducedModel model = model_with_imposed();
   write_model(model, path);
-  const ReducedModel copy = read_model(path), answers = read_model(path, false);
+  const ReducedModel copy = read_model(path, catalogue()),
+                     answers = read_model(path, catalogue(), false);
   std::filesystem::remove(path);
   EXPECT_EQ(copy.imposed_energy.reduced, model.imposed_energy.reduced);
   EXPECT_EQ(copy.imposed_energy.interpolation, model.imposed_energy.interpolation);

@@ -1,5 +1,6 @@
 #include "brute_force.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/contact_area.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"

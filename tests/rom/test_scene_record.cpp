@@ -1,5 +1,7 @@
 // What model files hold of scenes: every function of every scene has a name, and is the same when
 // made again from it.
+#include "../core/refuses.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
 
 #include "rbvi/core/error.hpp"
@@ -13,7 +15,7 @@ namespace {
 /// Each scene of the catalogue as it is, and with each choice of each of its options.
 std::vector<Scene> all_scenes() {
   std::vector<Scene> scenes;
-  for (const SceneEntry &entry : scene_catalogue()) {
+  for (const SceneEntry &entry : catalogue().scenes) {
     scenes.push_back(make_scene(entry.name));
     for (const SceneOption &option : entry.options)
       for (const std::string &choice : option.choices) {
@@ -27,7 +29,7 @@ std::vector<Scene> all_scenes() {
 }
 
 Scene made_again(const Scene &scene) {
-  Scene again = scene_in(record_in(lines_of(record_of(scene))));
+  Scene again = scene_in({record_in(lines_of(record_of(scene))), &catalogue()});
   again.parameters = scene.parameters;
   return again;
 }
@@ -124,11 +126,14 @@ TEST(SceneRecord, CoefficientsAndKernelsMadeAgainAreTheSame) {
 
 TEST(SceneRecord, ConstantsTellFunctionsOfOneNameApart) {
   const FullMu mu{0.25, 4};
-  EXPECT_EQ(made<Coefficient>(parameter(1).record)(mu), 4);
-  EXPECT_EQ(made<Coefficient>(affine(1, -2, 0).record)(mu), 0.5);
-  EXPECT_EQ(made<Coefficient>(constant(0.1 + 0.2).record)(mu), 0.1 + 0.2);
-  EXPECT_EQ(made<PointMap>(everywhere(Point{1, 2, 3}).record)(mu, {}), (Point{1, 2, 3}));
-  EXPECT_EQ(made<PointValue>(everywhere(7.0).record)(mu, {}), 7);
+  const auto again = []<class Signature>(const Named<Signature> &function) {
+    return made<Signature>({function.record, &catalogue()});
+  };
+  EXPECT_EQ(again(parameter(1))(mu), 4);
+  EXPECT_EQ(again(affine(1, -2, 0))(mu), 0.5);
+  EXPECT_EQ(again(constant(0.1 + 0.2))(mu), 0.1 + 0.2);
+  EXPECT_EQ(again(everywhere(Point{1, 2, 3}))(mu, {}), (Point{1, 2, 3}));
+  EXPECT_EQ(again(everywhere(7.0))(mu, {}), 7);
 }
 
 TEST(SceneRecord, AFunctionWithoutANameIsFound) {
@@ -146,7 +151,7 @@ TEST(SceneRecord, WhatThisBuildDoesNotHaveIsNamed) {
     Record record = record_of(make_scene("two_disks"));
     change(record);
     try {
-      (void)scene_in(record);
+      (void)scene_in({record, &catalogue()});
     } catch (const Error &error) {
       EXPECT_EQ(error.status(), Status::bad_input);
       return error.what();
@@ -172,9 +177,22 @@ TEST(SceneRecord, WhatThisBuildDoesNotHaveIsNamed) {
             std::string::npos);
 }
 
+TEST(SceneRecord, ARegistryHasTheFunctionsOfItsScenesAlone) {
+  const Registry none = registry_of({});
+  const Record own = record_of(make_scene("two_disks"));
+  EXPECT_TRUE(refuses("function 'two_disks/placed' version 1 is not in this build", [&] {
+    (void)scene_in({own, &none});
+  }));
+  EXPECT_TRUE(refuses("contact 'two_bodies' version 2 is not in this build",
+                      [&] { (void)contact_in({own.parts.at("contact_0")}); }));
+  EXPECT_EQ(made<Coefficient>({parameter(1).record, &none})(FullMu{0.25, 4}), 4);
+  EXPECT_TRUE(refuses("unknown scene 'roller': this build has none",
+                      [&] { (void)entry_of(none, "roller"); }));
+}
+
 TEST(SceneRecord, MakersHaveNamesOfTheirOwn) {
   std::set<std::pair<std::size_t, std::string>> names;
-  for (const AnyMaker &maker : function_library())
+  for (const AnyMaker &maker : catalogue().functions)
     EXPECT_TRUE(
         names.emplace(maker.index(), std::visit([](const auto &m) { return m.name; }, maker))
             .second)

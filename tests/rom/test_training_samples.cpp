@@ -1,5 +1,6 @@
 #include "synthetic.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
 #include "rbvi/rom/print.hpp"
@@ -65,7 +66,7 @@ TEST(TrainingSamples, TheModelFileKeepsThem) {
   model.trained_mu = as_columns({{0.18, 0.05}, {0.24, 0}}, 2);
   model.failed_mu = as_columns({{0.2, 0}}, 2);
   write_model(model, path);
-  const ReducedModel back = read_model(path, false);
+  const ReducedModel back = read_model(path, catalogue(), false);
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
   EXPECT_EQ(back.trained_mu, model.trained_mu);

@@ -4,6 +4,7 @@
 #include "files.hpp"
 #include "synthetic_pair.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/rom/online.hpp"
 #include "rbvi/rom/print.hpp"
@@ -283,12 +284,12 @@ TEST_F(PairFile, ReturnsTheModel) {
   for (const Scene &scene : {p0(), p1()}) {
     const ReducedModel model = synthetic::random_pair_model({}, 10, scene);
     write_model(model, directory / "model.h5");
-    const ReducedModel copy = read_model(directory / "model.h5"),
-                       bare = read_model(directory / "model.h5", false);
+    const ReducedModel copy = read_model(directory / "model.h5", catalogue()),
+                       bare = read_model(directory / "model.h5", catalogue(), false);
     EXPECT_TRUE(copy.evaluates_contact());
     EXPECT_TRUE(synthetic::same(copy.interfaces, model.interfaces));
     EXPECT_TRUE(synthetic::same(bare.interfaces, model.interfaces));
-    EXPECT_EQ(copy.scene_options, scene.options);
+    EXPECT_EQ(copy.scene.options, scene.options);
     EXPECT_EQ(copy.dual_basis, model.dual_basis);
     EXPECT_EQ(copy.contact_trace, model.contact_trace);
     EXPECT_EQ(copy.b.size(), 0);

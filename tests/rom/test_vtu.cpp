@@ -1,4 +1,5 @@
 // VTU files by a reader of its own, in both formats; stresses and bodies on cells.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/cell_fields.hpp"
 #include "rbvi/io/vtu.hpp"

@@ -1,6 +1,7 @@
 // The condensed operator that is kept while B alone changes: the same as the one made anew, and
 // every column of E^T A^-1 E solved for once.
 #include "../linear_algebra.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Answers do not depend on whether contact interfaces are gathered, nor on the number of ranks.
+#include "cases/catalogue.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Contact by eliminated displacements is contact by condensed multipliers.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"

@@ -3,6 +3,7 @@
 #include "../coarse_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
 #include "block_on_support.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/error.hpp"

@@ -1,4 +1,5 @@
 // The high-fidelity solvers agree with each other, with exact values, and across ranks.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 

@@ -4,6 +4,7 @@
 #include "../core/refuses.hpp"
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/largest.hpp"

@@ -1,5 +1,6 @@
 // Contact of the deformed body: against values found by another code, by the work of its forces,
 // and with other methods, starts, meshes and ranks.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mesh/mesh.hpp"
 #include "rbvi/solve/high_fidelity.hpp"

@@ -1,6 +1,7 @@
 // The solution of contact that follows the displacement is the minimum (A.1) that a general-purpose
 // optimiser finds: TAO's augmented Lagrangian, which knows the energy, the weighted distances and
 // their derivatives alone.
+#include "cases/catalogue.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"
 

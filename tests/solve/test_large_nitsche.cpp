@@ -1,5 +1,6 @@
 // Contact of the deformed body by Nitsche's method: against values found by another code, the mixed
 // method, and with other loops, starts and ranks.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 

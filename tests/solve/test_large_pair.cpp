@@ -1,4 +1,5 @@
 // Two deformed bodies: known values, work and energy, and a patch test with a finite motion.
+#include "cases/catalogue.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 

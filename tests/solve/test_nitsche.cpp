@@ -1,6 +1,7 @@
 // Hertz contact with a rigid disk by Nitsche's method: against values found independently and
 // against the mixed formulation, by symmetry, by the balance of work, and where the parameters go
 // to their ends.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 

@@ -1,6 +1,7 @@
 // Obstacles under displacements of degree 2: the pressure keeps the hats of the vertices.
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/scalar_forms.hpp"

@@ -1,4 +1,5 @@
 // Responses by a factor on every rank and by one that the ranks share.
+#include "cases/catalogue.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/problem/problem.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"

@@ -1,5 +1,6 @@
 // Hertz contact with friction on a rigid disk: against values found by another code, by symmetry,
 // by the balance of forces and work, and where the parameters go to their ends.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"

@@ -1,5 +1,6 @@
 // Two elastic disks: against values found by another code, by the balance of forces and work, by
 // symmetry, and by Hertz's formulas where the contact is small.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/solve/high_fidelity.hpp"

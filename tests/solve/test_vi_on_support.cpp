@@ -1,6 +1,7 @@
 // Vertex quadrature on a rigid support: the constraint is one at each vertex, every solver takes
 // it, and the bound-constrained primal problem in local frames has the same solution.
 #include "block_on_support.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/methods.hpp"
 

@@ -1,5 +1,6 @@
 // 100000 random queries of a model file: every KKT residual <= 1e-10, and an answer does not
 // depend on the queries before it.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/rom/online.hpp"
@@ -43,7 +44,7 @@ int main(int argc, char **argv) {
     return 2;
   }
   try {
-    const Extremes worst = query(read_model(argv[1], false));
+    const Extremes worst = query(read_model(argv[1], catalogue(), false));
     std::printf("largest over 100000 queries: KKT residual %.1e, active-set updates %d; warm "
                 "against cold: u %.1e, lambda %.1e\n",
                 worst.kkt, worst.iterations, worst.u, worst.lambda);

@@ -1,4 +1,5 @@
 // How many ranks share a solve.
+#include "cases/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/sweep/grouping.hpp"
@@ -75,7 +76,7 @@ TEST(Grouping, EveryNodeTellsItsMemory) {
 
 /// The default sizes of every scene: each rank its own solves.
 TEST(Grouping, DefaultSizesAreSolvedByOneRankEach) {
-  for (const SceneEntry &entry : scene_catalogue()) {
+  for (const SceneEntry &entry : catalogue().scenes) {
     const Scene scene = make_scene(entry.name);
     const std::size_t samples = parse_set(scene.parameters, scene.training).size();
     const Grouping grouping = group_ranks(PETSC_COMM_WORLD, scene, {}, samples, 0);

@@ -1,6 +1,7 @@
 // Samples of a set, by any groups of ranks.
 #include "sweep_test.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 
 namespace rbvi::sweep_test {

@@ -1,6 +1,7 @@
 // Samples and models know the whole scene that they are of, its code among it.
 #include "sweep_test.hpp"
 
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"

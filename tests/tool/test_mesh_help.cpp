@@ -1,4 +1,5 @@
 // What -help says of a mesh is what make_mesh asks for.
+#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/tool/finish.hpp"
 #include "rbvi/tool/options/options.hpp"
@@ -10,7 +11,7 @@ namespace {
 
 std::string printed(const std::string &scene) {
   testing::internal::CaptureStdout();
-  print_help(scene);
+  print_help(catalogue(), scene);
   std::fflush(stdout);
   return testing::internal::GetCapturedStdout();
 }
@@ -23,7 +24,7 @@ void expect_contract(const std::string &text, const MeshRecipe &recipe) {
 }
 
 TEST(MeshHelp, OneSceneIsItsOptionsParametersAndMesh) {
-  for (const SceneEntry &entry : scene_catalogue()) {
+  for (const SceneEntry &entry : catalogue().scenes) {
     const std::string text = printed(entry.name), all = printed("");
     const Scene scene = make_scene(entry.name);
     expect_contract(text, scene.mesh);
@@ -45,7 +46,7 @@ TEST(MeshHelp, AnOptionThatChangesTheMeshHasItsOwnContract) {
 }
 
 TEST(MeshHelp, AnUnknownSceneIsBadInput) {
-  EXPECT_THROW(print_help("moebius"), Error);
+  EXPECT_THROW(print_help(catalogue(), "moebius"), Error);
 }
 
 TEST(MeshHelp, TheCommandLineNamesTheScene) {

@@ -1,6 +1,7 @@
 // Offline runs of scenes that make no sense somewhere: refused before anything is written where
 // training parameters are concerned, and counted by the self-check where only queries are.
 #include "../core/refuses.hpp"
+#include "cases/catalogue.hpp"
 #include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"

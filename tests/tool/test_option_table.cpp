@@ -1,4 +1,5 @@
 // The table of options: what models keep of it, and its page.
+#include "cases/catalogue.hpp"
 #include "rbvi/tool/options/options.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +64,7 @@ TEST(OptionTable, ValuesAreKeptAsText) {
 }
 
 TEST(OptionTable, ThePageHasRangesChoicesAndScenes) {
-  const std::string page = options_page();
+  const std::string page = options_page(catalogue());
   for (const char *line :
        {"| `-pod_tolerance` | 1e-6 | 0 to 0.5 |", "| `-mesh_refine` | 0 | integer, 0 to 6 |",
         "| `hybrid` | hat functions", "| `-load` | -25 | [-1e+06, 1e+06] |",

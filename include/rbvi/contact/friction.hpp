@@ -23,6 +23,6 @@ void add_friction(const Friction &friction, ContactRecipe &recipe);
 
 /// What files store of it, as the part "friction" of a record; none without friction.
 void add_friction(const Friction &friction, Record &record);
-Friction friction_in(const Record &record);
+Friction friction_in(const Stored &of);
 
 } // namespace rbvi

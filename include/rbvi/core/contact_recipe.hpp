@@ -68,19 +68,7 @@ struct ContactRecipe {
 struct ContactKind {
   std::string name;
   int version;
-  std::function<ContactRecipe(const Record &)> make;
+  std::function<ContactRecipe(const Stored &)> make;
 };
-
-/// Whether some interface has friction.
-bool has_friction(const Scene &scene);
-/// Whether multipliers hold contact in all of them, B u <= g: there are laws, cones, supremizers.
-/// Otherwise Nitsche's method does.
-bool has_multipliers(const Scene &scene);
-bool separable_contact(const Scene &scene);
-/// Whether some interface follows the state.
-bool follows_state(const Scene &scene);
-bool keeps_nodes(const Scene &scene);
-/// Whether every interface bounds single nodes, without friction.
-bool bounds_nodes(const Scene &scene);
 
 } // namespace rbvi

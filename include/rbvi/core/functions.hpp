@@ -1,6 +1,6 @@
 // The functions that scenes are made of, by what they take and return, and those that many scenes
-// share. Each has a maker under a name of its own; function_library() lists the makers of this
-// build, so that a model file names its functions and holds no code.
+// share. Each has a maker under a name of its own; a registry lists the makers of a program, so
+// that a model file names its functions and holds no code.
 #pragma once
 
 #include "rbvi/core/parameters.hpp"
@@ -57,15 +57,12 @@ using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>
                               Maker<Traction>>;
 using FunctionLibrary = std::vector<AnyMaker>;
 
-/// The makers of this build: those of core and element, then each scene's; cases/catalogue.cpp.
-const FunctionLibrary &function_library();
-
 /// The makers of the functions below.
 FunctionLibrary common_functions();
 
-/// The function of a record. Throws bad_input for one that this build does not have, or has in
+/// The function of a record. Throws bad_input for one that the registry does not have, or has in
 /// another version.
-template <class Signature> Named<Signature> made(const Record &record);
+template <class Signature> Named<Signature> made(const Stored &stored);
 
 /// Coordinates of parameters: x -> log x and back, x -> log(1 - 2 x) and back.
 Named<NumberMap> logarithm();

@@ -1,6 +1,6 @@
 // Functions that a file can name. A *record* holds the name, the version and the constants of a
 // function; a *maker* of that name and version makes the same function from them in every build
-// that has it (core/library.hpp lists them).
+// that has it (Registry in core/scene.hpp).
 #pragma once
 
 #include <functional>
@@ -20,6 +20,15 @@ struct Record {
   std::map<std::string, Record> parts{}; ///< functions that it is made of
 };
 
+struct Registry;
+
+/// A record that is read, and where the names in it are looked up; null: nowhere.
+struct Stored {
+  const Record &record;
+  const Registry *registry = nullptr;
+  operator const Record &() const { return record; }
+};
+
 /// One number of a record, several, a text. Throws bad_input, naming the record, where they are not
 /// there.
 double number(const Record &record, const std::string &name);
@@ -27,6 +36,7 @@ int integer(const Record &record, const std::string &name);
 const std::vector<double> &numbers(const Record &record, const std::string &name);
 const std::string &text(const Record &record, const std::string &name);
 const Record &part(const Record &record, const std::string &name);
+Stored part(const Stored &stored, const std::string &name);
 
 /// Whether the record and all its parts have names; else "map", "contact 0/height", ...: the first
 /// part that has none.
@@ -47,12 +57,12 @@ public:
 template <class Signature> struct Maker {
   std::string name;
   int version;
-  std::function<std::function<Signature>(const Record &)> make;
+  std::function<std::function<Signature>(const Stored &)> make;
 
   /// The function of these constants.
   Named<Signature> operator()(std::map<std::string, std::vector<double>> numbers = {}) const {
     Record record{name, version, std::move(numbers)};
-    return {make(record), record};
+    return {make({record}), record};
   }
   /// A function made of others, which need not have names themselves.
   Named<Signature> named(std::function<Signature> callable,

@@ -124,6 +124,25 @@ struct SceneEntry {
   FunctionLibrary functions{}; ///< those of its own that files know by name
 };
 
+/// What a program knows by name, and finds in model files (contact/catalogue/registry.hpp).
+struct Registry {
+  std::vector<SceneEntry> scenes;
+  std::vector<ContactKind> kinds;
+  FunctionLibrary functions; ///< their makers
+};
+
+/// Whether some interface has friction.
+bool has_friction(const Scene &scene);
+/// Whether multipliers hold contact in all of them, B u <= g: there are laws, cones, supremizers.
+/// Otherwise Nitsche's method does.
+bool has_multipliers(const Scene &scene);
+bool separable_contact(const Scene &scene);
+/// Whether some interface follows the state.
+bool follows_state(const Scene &scene);
+bool keeps_nodes(const Scene &scene);
+/// Whether every interface bounds single nodes, without friction.
+bool bounds_nodes(const Scene &scene);
+
 /// Whether data and solutions are symmetric about x = 0 for all free parameters.
 bool is_symmetric(const Scene &scene);
 
@@ -133,11 +152,11 @@ bool constant_stiffness(const Scene &scene);
 /// The number in an option.
 double number_in(const SceneOptions &options, const std::string &name);
 
-/// The scenes of this build; defined in cases/catalogue.cpp.
-const std::vector<SceneEntry> &scene_catalogue();
+/// Throws bad_input for an unknown scene, naming those that exist.
+const SceneEntry &entry_of(const Registry &registry, const std::string &scene);
 
 /// Makes a scene; options that are left out take their default. Throws bad_input for an unknown
-/// scene (naming those that exist), an unknown option or a value that is not allowed.
-Scene make_scene(const std::string &name, const SceneOptions &options = {});
+/// option or a value that is not allowed.
+Scene make_scene(const SceneEntry &entry, const SceneOptions &options = {});
 
 } // namespace rbvi

@@ -46,7 +46,7 @@ class OnlineSolver {
 public:
   explicit OnlineSolver(const ReducedModel &model, const QueryOptions &options = {});
   OnlineSolver(const OnlineSolver &) = delete;
-  /// With the forms, map and obstacle of `scene` instead of those of the catalogue.
+  /// With the forms, map and obstacle of `scene` instead of those of the model.
   OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options = {});
   /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`. Throws
   /// failure, saying what to try, if the reduced constraints contradict each other, if the reduced

@@ -1,7 +1,8 @@
-// The command line of rbvi-online.
+// rbvi-online: answers parameters from a reduced model, on one core.
 #pragma once
 
-#include <ostream>
+#include "rbvi/core/scene.hpp"
+
 #include <string>
 #include <vector>
 
@@ -28,7 +29,8 @@ const std::vector<OnlineOption> &online_options();
 /// `--name=value`. Throws bad_input, naming the nearest option.
 OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments);
 
-/// Does what they say. Everything is computed before a file is written. Throws bad_input, failure.
-void run_online(const OnlineArguments &arguments, std::ostream &out);
+/// The whole program, for models whose scenes and functions the registry has. Returns the exit
+/// status.
+int rbvi_online_main(int argc, char **argv, const Registry &registry);
 
 } // namespace rbvi

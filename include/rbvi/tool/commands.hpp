@@ -21,7 +21,7 @@ void command_bench(const ToolOptions &options);
 /// What offline takes on several meshes, by several ranks per solve. Collective on the world.
 void command_growth(const ToolOptions &options);
 
-void command_list();
-void command_inspect(const std::string &file);
+void command_list(const Registry &registry);
+void command_inspect(const std::string &file, const Registry &registry);
 
 } // namespace rbvi

@@ -5,8 +5,8 @@
 
 namespace rbvi {
 
-/// The model in the run directory. Throws bad_input. Collective.
-ReducedModel model_of_run(MPI_Comm world, const std::filesystem::path &out);
+/// The model in the run directory of the options. Throws bad_input. Collective.
+ReducedModel model_of_run(MPI_Comm world, const ToolOptions &options);
 
 /// Takes scene, options, fixed values, box and mesh of the options from the model. Rank 0 prints
 /// one line that says where they differed. Throws bad_input for a model of another scene.

@@ -8,6 +8,8 @@
 
 namespace rbvi {
 
+namespace {
+
 std::vector<SceneOption> pair_options() {
   return {{"multiplier",
            "p0",
@@ -18,6 +20,8 @@ std::vector<SceneOption> pair_options() {
            "contact integrals: edges intersected, or Gauss points of the upper body alone",
            {"intersection", "direct"}}};
 }
+
+} // namespace
 
 PairDiscretisation pair_discretisation(const SceneOptions &options) {
   return {options.at("multiplier") == "p1" ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,

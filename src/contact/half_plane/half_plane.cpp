@@ -33,20 +33,20 @@ Record record_of(const HalfPlane &plane) {
 
 } // namespace
 
-HalfPlane half_plane_in(const Record &record) {
+HalfPlane half_plane_in(const Stored &of) {
   const auto point = [&](const std::string &name) -> Point {
-    const std::vector<double> &x = numbers(record, name);
+    const std::vector<double> &x = numbers(of, name);
     if (x.size() != 3) throw bad_input("'" + name + "' of a half-plane is not three numbers");
     return {x[0], x[1], x[2]};
   };
-  HalfPlane plane{text(record, "boundary"), point("normal"), point("pivot"),
-                  made<Coefficient>(part(record, "position"))};
-  if (record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(record, "tilt"));
-  if (record.parts.contains("surface")) plane.surface = made<PointMap>(part(record, "surface"));
-  plane.friction = friction_in(record);
-  plane.lumped = number(record, "lumped") != 0;
-  if (record.parts.contains("body_normal"))
-    plane.body_normal = made<PointMap>(part(record, "body_normal"));
+  HalfPlane plane{text(of, "boundary"), point("normal"), point("pivot"),
+                  made<Coefficient>(part(of, "position"))};
+  if (of.record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(of, "tilt"));
+  if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
+  plane.friction = friction_in(of);
+  plane.lumped = number(of, "lumped") != 0;
+  if (of.record.parts.contains("body_normal"))
+    plane.body_normal = made<PointMap>(part(of, "body_normal"));
   return plane;
 }
 
@@ -77,7 +77,7 @@ ContactRecipe half_plane(HalfPlane plane, const SupportContact &by) {
 }
 
 ContactKind half_plane_kind() {
-  return {"half_plane", 1, [](const Record &record) { return half_plane(half_plane_in(record)); }};
+  return {"half_plane", 1, [](const Stored &of) { return half_plane(half_plane_in(of)); }};
 }
 
 } // namespace rbvi

@@ -179,21 +179,19 @@ ContactRecipe nitsche_surface(RigidSurface surface, double gamma0) {
 }
 
 ContactKind nitsche_support_kind() {
-  return {"nitsche_support", 2, [](const Record &record) {
-            return nitsche_support(support_in(record), number(record, "gamma0"));
-          }};
+  return {"nitsche_support", 2,
+          [](const Stored &of) { return nitsche_support(support_in(of), number(of, "gamma0")); }};
 }
 
 ContactKind nitsche_half_plane_kind() {
-  return {"nitsche_half_plane", 2, [](const Record &record) {
-            return nitsche_half_plane(half_plane_in(record), number(record, "gamma0"));
+  return {"nitsche_half_plane", 2, [](const Stored &of) {
+            return nitsche_half_plane(half_plane_in(of), number(of, "gamma0"));
           }};
 }
 
 ContactKind nitsche_surface_kind() {
-  return {"nitsche_surface", 1, [](const Record &record) {
-            return nitsche_surface(surface_in(record), number(record, "gamma0"));
-          }};
+  return {"nitsche_surface", 1,
+          [](const Stored &of) { return nitsche_surface(surface_in(of), number(of, "gamma0")); }};
 }
 
 std::vector<SceneOption> nitsche_options() {

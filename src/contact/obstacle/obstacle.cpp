@@ -151,9 +151,9 @@ ContactRecipe obstacle(Obstacle obstacle) {
 }
 
 ContactKind obstacle_kind() {
-  return {"obstacle", 1, [](const Record &record) {
-            return obstacle({text(record, "region"), made<PointValue>(part(record, "height")),
-                             number(record, "lumped") != 0});
+  return {"obstacle", 1, [](const Stored &of) {
+            return obstacle({text(of, "region"), made<PointValue>(part(of, "height")),
+                             number(of, "lumped") != 0});
           }};
 }
 

@@ -95,8 +95,7 @@ ContactRecipe rigid_support(Support support) {
 }
 
 ContactKind rigid_support_kind() {
-  return {"rigid_support", 1,
-          [](const Record &record) { return rigid_support(support_in(record)); }};
+  return {"rigid_support", 1, [](const Stored &of) { return rigid_support(support_in(of)); }};
 }
 
 Record record_of(const Support &support) {
@@ -111,15 +110,15 @@ Record record_of(const Support &support) {
   return record;
 }
 
-Support support_in(const Record &record) {
-  Support support{text(record, "boundary"),
-                  made<PointMap>(part(record, "normal")),
-                  made<PointValue>(part(record, "gap")),
-                  friction_in(record),
-                  number(record, "lumped") != 0,
-                  record.numbers.contains("closed_ends")};
-  if (record.parts.contains("body_normal"))
-    support.body_normal = made<PointMap>(part(record, "body_normal"));
+Support support_in(const Stored &of) {
+  Support support{text(of, "boundary"),
+                  made<PointMap>(part(of, "normal")),
+                  made<PointValue>(part(of, "gap")),
+                  friction_in(of),
+                  number(of, "lumped") != 0,
+                  of.record.numbers.contains("closed_ends")};
+  if (of.record.parts.contains("body_normal"))
+    support.body_normal = made<PointMap>(part(of, "body_normal"));
   return support;
 }
 

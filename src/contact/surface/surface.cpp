@@ -279,13 +279,13 @@ Record record_of(const RigidSurface &surface) {
   return record;
 }
 
-RigidSurface surface_in(const Record &record) {
-  RigidSurface surface{text(record, "boundary"), made<Surface>(part(record, "surface"))};
-  if (record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(record, "at_rest"));
-  if (record.parts.contains("body_normal"))
-    surface.body_normal = made<PointMap>(part(record, "body_normal"));
-  surface.friction = friction_in(record);
-  surface.lumped = number(record, "lumped") != 0;
+RigidSurface surface_in(const Stored &of) {
+  RigidSurface surface{text(of, "boundary"), made<Surface>(part(of, "surface"))};
+  if (of.record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(of, "at_rest"));
+  if (of.record.parts.contains("body_normal"))
+    surface.body_normal = made<PointMap>(part(of, "body_normal"));
+  surface.friction = friction_in(of);
+  surface.lumped = number(of, "lumped") != 0;
   return surface;
 }
 
@@ -304,8 +304,7 @@ ContactRecipe rigid_surface(RigidSurface surface) {
 }
 
 ContactKind rigid_surface_kind() {
-  return {"rigid_surface", 1,
-          [](const Record &record) { return rigid_surface(surface_in(record)); }};
+  return {"rigid_surface", 1, [](const Stored &of) { return rigid_surface(surface_in(of)); }};
 }
 
 } // namespace rbvi

@@ -6,7 +6,6 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/rom/model/packed.hpp"
-#include "rbvi/rom/model/scene_record.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -251,29 +250,19 @@ Contact contact_of(const ReducedModel &model, const Scene &scene) {
 }
 
 Scene scene_of(const ReducedModel &model) {
-  const Record &record = model.scene_record;
-  if (is_complete(record)) {
-    Scene scene = scene_in(record);
-    scene.options = model.scene_options;
-    scene.parameters = model.parameters;
-    check_box(scene);
-    return scene;
-  }
-  try {
-    return whole_scene_of(model);
-  } catch (const Error &error) {
-    throw bad_input(std::string(error.what()) + "; the model needs the code of its scene: for '" +
-                    first_unnamed(record) + "', which has no name in files");
-  }
+  Scene scene = model.scene;
+  scene.parameters = model.parameters;
+  check_box(scene);
+  return scene;
 }
 
-Scene whole_scene_of(const ReducedModel &model) {
-  Scene scene = make_scene(model.scene_name, model.scene_options);
+Scene scene_by_code(const Scene &stored, const Registry &registry) {
+  Scene scene = make_scene(entry_of(registry, stored.name), stored.options);
   const auto same = [](const Parameter &p, const Parameter &q) { return p.name == q.name; };
-  if (!std::ranges::equal(scene.parameters.all, model.parameters.all, same))
-    throw bad_input("the parameters of the model are not those of scene " + model.scene_name +
+  if (!std::ranges::equal(scene.parameters.all, stored.parameters.all, same))
+    throw bad_input("the parameters of the model are not those of scene " + stored.name +
                     " in this build");
-  const ParameterSpace of_scene = std::exchange(scene.parameters, model.parameters);
+  const ParameterSpace of_scene = std::exchange(scene.parameters, stored.parameters);
   for (std::size_t i = 0; i < of_scene.all.size(); ++i)
     scene.parameters.all[i].valid = of_scene.all[i].valid;
   check_box(scene);

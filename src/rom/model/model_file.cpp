@@ -262,12 +262,22 @@ void read_contact(const H5Reader &file, ReducedModel &model) {
   if (model.interfaces.empty()) throw bad_input("it has no contact interface");
 }
 
-ReducedModel read_members(const H5Reader &file) {
+Scene read_scene(const H5Reader &file, const Registry &registry) {
+  const Record record = record_in(read_texts(file, "scene/functions"));
+  const std::string unnamed = first_unnamed(record);
+  Scene scene = unnamed.empty() ? scene_in({record, &registry}) : Scene{};
+  scene.name = file.string("scene/name");
+  scene.options = read_texts(file, "scene/options");
+  scene.parameters = read_parameters(file);
+  if (unnamed.empty()) return scene;
+  return while_doing("making the scene by its code, for '" + unnamed + "' has no name in files",
+                     [&] { return scene_by_code(scene, registry); });
+}
+
+ReducedModel read_members(const H5Reader &file, const Registry &registry) {
   ReducedModel model;
-  model.scene_name = file.string("scene/name");
-  model.scene_options = read_texts(file, "scene/options");
-  model.scene_record = record_in(read_texts(file, "scene/functions"));
-  model.parameters = read_parameters(file);
+  model.scene = read_scene(file, registry);
+  model.parameters = model.scene.parameters;
   model.settings = read_texts(file, "settings");
   model.mesh_fingerprint = file.string("mesh/fingerprint");
   model.modes = file.integer("size/modes");
@@ -288,8 +298,8 @@ ReducedModel read_members(const H5Reader &file) {
   return model;
 }
 
-/// Throws bad_input for functions that this build does not have, or that have other values in it
-/// than in the build that made the model, where it tells them.
+/// Throws bad_input for functions that have other values than in the build that made the model,
+/// where it tells them.
 void check_functions_of(const ReducedModel &model) {
   const Scene scene = scene_of(model);
   const auto text = model.settings.find(whole_scene);
@@ -308,9 +318,9 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   check_model(model);
   write_fields(model, path);
   H5Writer file;
-  file.write("scene/name", model.scene_name);
-  write_texts(file, "scene/options", model.scene_options);
-  write_texts(file, "scene/functions", lines_of(model.scene_record));
+  file.write("scene/name", model.scene.name);
+  write_texts(file, "scene/options", model.scene.options);
+  write_texts(file, "scene/functions", lines_of(record_of(model.scene)));
   write_parameters(file, model.parameters);
   write_texts(file, "settings", model.settings);
   file.write("mesh/fingerprint", model.mesh_fingerprint);
@@ -335,10 +345,11 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   file.commit(path, "model", model_schema);
 }
 
-ReducedModel read_model(const std::filesystem::path &path, bool with_fields) {
+ReducedModel read_model(const std::filesystem::path &path, const Registry &registry,
+                        bool with_fields) {
   const H5Reader file(path, "model", model_schema);
   try {
-    ReducedModel model = read_members(file);
+    ReducedModel model = read_members(file, registry);
     model.fields_key = file.string("fields/key");
     if (with_fields) read_fields(path, model.fields_key, model);
     check_model(model);

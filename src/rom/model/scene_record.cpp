@@ -1,6 +1,6 @@
 #include "rbvi/rom/model/scene_record.hpp"
 
-#include "rbvi/contact/catalogue/kinds.hpp"
+#include "rbvi/contact/catalogue/registry.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
@@ -33,9 +33,9 @@ void add_list(const std::string &name, const List &list, Record &record, RecordO
 }
 
 template <class List, class MadeOf>
-void read_list(const std::string &name, const Record &record, List &list, MadeOf &&made_of) {
-  for (std::size_t i = 0; record.parts.contains(numbered(name, i)); ++i)
-    list.push_back(made_of(part(record, numbered(name, i))));
+void read_list(const std::string &name, const Stored &of, List &list, MadeOf &&made_of) {
+  for (std::size_t i = 0; of.record.parts.contains(numbered(name, i)); ++i)
+    list.push_back(made_of(part(of, numbered(name, i))));
 }
 
 Record record_of(const Factor &factor) {
@@ -51,13 +51,13 @@ Record record_of(const Factor &factor) {
   return record;
 }
 
-Factor factor_in(const Record &record) {
-  Factor factor{text(record, "name"), made<Coefficient>(part(record, "value")),
-                as_integers(numbers(record, "parameters"))};
+Factor factor_in(const Stored &of) {
+  Factor factor{text(of, "name"), made<Coefficient>(part(of, "value")),
+                as_integers(numbers(of, "parameters"))};
   for (const int parameter : factor.parameters)
-    if (const std::string own = std::to_string(parameter); record.parts.contains("of_" + own))
-      factor.coordinates[parameter] = {made<NumberMap>(part(record, "of_" + own)),
-                                       made<NumberMap>(part(record, "back_" + own))};
+    if (const std::string own = std::to_string(parameter); of.record.parts.contains("of_" + own))
+      factor.coordinates[parameter] = {made<NumberMap>(part(of, "of_" + own)),
+                                       made<NumberMap>(part(of, "back_" + own))};
   return factor;
 }
 
@@ -66,9 +66,9 @@ void add_factors(const std::vector<Factor> &factors, Record &record) {
   add_list("factor", factors, record, [](const Factor &f) { return record_of(f); });
 }
 
-std::vector<Factor> factors_in(const Record &record) {
+std::vector<Factor> factors_in(const Stored &of) {
   std::vector<Factor> factors;
-  read_list("factor", record, factors, factor_in);
+  read_list("factor", of, factors, factor_in);
   return factors;
 }
 
@@ -88,12 +88,12 @@ Record record_of(const Term &term, bool with_kernel) {
   return record;
 }
 
-Term term_in(const Record &record) {
+Term term_in(const Stored &of) {
   Form form;
-  if (record.parts.contains("kernel"))
-    form = {text(record, "region"), made<Kernel>(part(record, "kernel")), text(record, "boundary")};
-  if (record.name == "exact") return exact_term(std::move(form), factors_in(record));
-  return mapped_term(std::move(form), parameters_in(record));
+  if (of.record.parts.contains("kernel"))
+    form = {text(of, "region"), made<Kernel>(part(of, "kernel")), text(of, "boundary")};
+  if (of.record.name == "exact") return exact_term(std::move(form), factors_in(of));
+  return mapped_term(std::move(form), parameters_in(of));
 }
 
 Record record_of(const ImposedTerm &value) {
@@ -104,12 +104,12 @@ Record record_of(const ImposedTerm &value) {
   return record;
 }
 
-ImposedTerm imposed_in(const Record &record) {
-  ImposedTerm value{made<PointMap>(part(record, "value"))};
-  if (record.name == "exact")
-    value.theta = factors_in(record);
+ImposedTerm imposed_in(const Stored &of) {
+  ImposedTerm value{made<PointMap>(part(of, "value"))};
+  if (of.record.name == "exact")
+    value.theta = factors_in(of);
   else
-    value.parameters = parameters_in(record);
+    value.parameters = parameters_in(of);
   return value;
 }
 
@@ -120,9 +120,9 @@ Record record_of(const FixedBoundary &boundary) {
   return record;
 }
 
-FixedBoundary fixed_in(const Record &record) {
-  FixedBoundary boundary{text(record, "name"), as_integers(numbers(record, "components"))};
-  read_list("value", record, boundary.values, imposed_in);
+FixedBoundary fixed_in(const Stored &of) {
+  FixedBoundary boundary{text(of, "name"), as_integers(numbers(of, "components"))};
+  read_list("value", of, boundary.values, imposed_in);
   return boundary;
 }
 
@@ -177,23 +177,23 @@ Record record_of(const Scene &scene) {
   return record;
 }
 
-Scene scene_in(const Record &record) {
+Scene scene_in(const Stored &of) {
   Scene scene;
-  scene.name = record.name;
-  scene.dim = integer(record, "dim");
-  scene.components = integer(record, "components");
-  scene.degree = integer(record, "degree");
-  scene.symmetric = integer(record, "symmetric") != 0;
-  scene.skewed_by = integer(record, "skewed_by");
-  scene.mirror_images = number(record, "mirror_images");
-  scene.map = made<PointMap>(part(record, "map"));
-  if (record.parts.contains("motion")) scene.motion = made<PointMap>(part(record, "motion"));
-  if (record.parts.contains("material")) scene.material = made<Material>(part(record, "material"));
-  if (record.parts.contains("check")) scene.check_parameters = made<Check>(part(record, "check"));
-  read_list("contact", record, scene.contacts, contact_in);
-  read_list("a", record, scene.a, term_in);
-  read_list("f", record, scene.f, term_in);
-  read_list("fixed", record, scene.fixed, fixed_in);
+  scene.name = of.record.name;
+  scene.dim = integer(of, "dim");
+  scene.components = integer(of, "components");
+  scene.degree = integer(of, "degree");
+  scene.symmetric = integer(of, "symmetric") != 0;
+  scene.skewed_by = integer(of, "skewed_by");
+  scene.mirror_images = number(of, "mirror_images");
+  scene.map = made<PointMap>(part(of, "map"));
+  if (of.record.parts.contains("motion")) scene.motion = made<PointMap>(part(of, "motion"));
+  if (of.record.parts.contains("material")) scene.material = made<Material>(part(of, "material"));
+  if (of.record.parts.contains("check")) scene.check_parameters = made<Check>(part(of, "check"));
+  read_list("contact", of, scene.contacts, contact_in);
+  read_list("a", of, scene.a, term_in);
+  read_list("f", of, scene.f, term_in);
+  read_list("fixed", of, scene.fixed, fixed_in);
   return scene;
 }
 

@@ -53,11 +53,12 @@ using Origin = std::map<std::string, std::string>;
 
 /// Refuses names that are neither ours, of the scene nor of a solver of PETSc's, and options of
 /// ours without a value that need one.
-void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene);
+void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene,
+                 const Registry &registry);
 
 /// "needs -bodies one", what an option or parameter of that name is missing in this scene; "" where
 /// nothing knows it.
-std::string what_needs(const std::string &name, const Scene &scene);
+std::string what_needs(const std::string &name, const Scene &scene, const Registry &registry);
 
 /// Refuses options on the command line that are of another command.
 void check_command(const std::string &command, const std::vector<std::string> &command_line);

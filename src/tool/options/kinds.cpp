@@ -109,7 +109,7 @@ std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry) {
       if (choice == option.default_value) continue;
       try {
         found.emplace_back(std::string("-").append(option.name).append(" ").append(choice),
-                           make_scene(entry.name, {{option.name, choice}}));
+                           make_scene(entry, {{option.name, choice}}));
       } catch (const Error &) { // this choice asks for others beside it
       }
     }
@@ -119,7 +119,7 @@ std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry) {
 std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry) {
   std::vector<std::pair<Parameter, std::string>> all;
   std::vector<std::pair<std::string, Scene>> scenes = variants(entry);
-  scenes.insert(scenes.begin(), {"", make_scene(entry.name)});
+  scenes.insert(scenes.begin(), {"", make_scene(entry)});
   for (const auto &[choice, scene] : scenes)
     for (const Parameter &parameter : scene.parameters.all)
       if (std::none_of(all.begin(), all.end(),

@@ -42,12 +42,13 @@ std::string advice(const std::string &name, std::vector<std::string> known) {
 }
 
 Error unknown_option(const std::string &name, const std::string &where,
-                     const std::vector<std::string> &known, const Scene &scene) {
+                     const std::vector<std::string> &known, const Scene &scene,
+                     const Registry &registry) {
   const std::string option = "option -" + name + where;
   if (contains(petsc_names, name))
     return bad_input(option + " is PETSc's own, which reads it as it starts: give it on the "
                               "command line");
-  const std::string needed = what_needs(name, scene);
+  const std::string needed = what_needs(name, scene, registry);
   return bad_input(needed.empty() ? "unknown " + option + ": " + advice(name, known)
                                   : option + " " + needed);
 }
@@ -76,9 +77,9 @@ std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds) {
   return prefixes;
 }
 
-std::string what_needs(const std::string &name, const Scene &scene) {
+std::string what_needs(const std::string &name, const Scene &scene, const Registry &registry) {
   std::string others;
-  for (const SceneEntry &entry : scene_catalogue()) {
+  for (const SceneEntry &entry : registry.scenes) {
     bool found = std::ranges::find(entry.options, name, &SceneOption::name) != entry.options.end();
     for (const auto &[parameter, choice] : parameters_of(entry)) {
       if (parameter.name != name) continue;
@@ -91,7 +92,8 @@ std::string what_needs(const std::string &name, const Scene &scene) {
   return others.empty() ? "" : "is of another scene (" + others + "), and this is " + scene.name;
 }
 
-void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene) {
+void check_names(const std::vector<std::string> &names, const Origin &origin, const Scene &scene,
+                 const Registry &registry) {
   std::vector<std::string> known;
   for (const Option &option : tool_options())
     known.push_back(option.name);
@@ -103,7 +105,7 @@ void check_names(const std::vector<std::string> &names, const Origin &origin, co
     const auto found = origin.find(name);
     const std::string where = found == origin.end() ? "" : found->second;
     if (starts_with_any(name, solver_prefixes())) continue;
-    if (!contains(known, name)) throw unknown_option(name, where, known, scene);
+    if (!contains(known, name)) throw unknown_option(name, where, known, scene, registry);
     if (!is_flag(name) && text_of(name).empty())
       throw bad_input("option -" + name + where + " has no value");
   }

@@ -30,17 +30,19 @@ std::string case_file_name() {
 }
 
 /// Throws bad_input where -scene is not the one of the case file, or there is no such scene.
-void check_scene_of_case(const std::string &file, const std::string &scene) {
+void check_scene_of_case(const std::string &file, const std::string &scene,
+                         const Registry &registry) {
   const std::string given = text_of("scene");
   if (given == scene) return;
-  (void)make_scene(given);
+  (void)entry_of(registry, given);
   throw bad_input("-scene is " + given + ", and " + file + " is a case of " + scene +
                   ": leave out -scene, or name another -case or -out");
 }
 
 /// Puts the case file below the command line and above what comes from outside. Returns where its
 /// options stand.
-Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_line) {
+Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_line,
+                        const Registry &registry) {
   std::string file;
   collectively(comm, [&] { file = case_file_name(); });
   Origin origin;
@@ -50,7 +52,7 @@ Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_l
       throw bad_input("a case file cannot name another: line " + std::to_string(entry.line) +
                       " of " + file);
     if (contains(command_line, entry.name)) {
-      if (entry.name == "scene") check_scene_of_case(file, entry.value);
+      if (entry.name == "scene") check_scene_of_case(file, entry.value, registry);
       continue;
     }
     const std::string value = beside_case(entry.name, entry.value, file);
@@ -61,14 +63,11 @@ Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_l
   return origin;
 }
 
-SceneOptions scene_options_of(const std::string &scene) {
+Scene given_scene(const SceneEntry &entry) {
   SceneOptions options;
-  for (const SceneEntry &entry : scene_catalogue()) {
-    if (entry.name != scene) continue;
-    for (const SceneOption &option : entry.options)
-      if (is_given(option.name)) options[option.name] = text_of(option.name);
-  }
-  return options;
+  for (const SceneOption &option : entry.options)
+    if (is_given(option.name)) options[option.name] = text_of(option.name);
+  return make_scene(entry, options);
 }
 
 enum class Given { nothing, value, bounds };
@@ -100,7 +99,7 @@ Given adapt_parameter(Parameter &parameter) {
 
 /// "-parameters" says which are free; without it those with two bounds and those that the scene
 /// frees, less those with one value.
-void adapt_parameters(Scene &scene) {
+void adapt_parameters(Scene &scene, const Registry &registry) {
   ParameterSpace &space = scene.parameters;
   std::string unfixed;
   std::vector<std::string> fixed;
@@ -116,7 +115,7 @@ void adapt_parameters(Scene &scene) {
   const std::string named = text_of("parameters");
   for (const std::string &part : split(named, ',')) {
     const std::string name = trimmed(part);
-    const std::string needed = what_needs(name, scene);
+    const std::string needed = what_needs(name, scene, registry);
     if (!needed.empty() && std::ranges::find(space.all, name, &Parameter::name) == space.all.end())
       throw bad_input("parameter '" + name + "' " + needed);
   }
@@ -197,16 +196,17 @@ std::string described(const std::vector<Foreign> &foreign, const Origin &case_fi
 
 /// Everything but where it comes from. `names`: all options that are given.
 ToolOptions read_values(const std::vector<std::string> &names, const Origin &origin,
-                        const std::vector<std::string> &command_line) {
+                        const std::vector<std::string> &command_line, const Registry &registry) {
   ToolOptions options;
+  options.registry = &registry;
   options.command_line = command_line;
   const std::string scene = text_of("scene");
   if (scene.empty())
     throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
-  options.scene = make_scene(scene, scene_options_of(scene));
-  check_names(names, origin, options.scene);
+  options.scene = given_scene(entry_of(registry, scene));
+  check_names(names, origin, options.scene, registry);
   options.case_file = as_case_file(names);
-  adapt_parameters(options.scene);
+  adapt_parameters(options.scene, registry);
   check_functions(options.scene);
   check_box_of_run(options.scene);
   options.train = options.scene.training;
@@ -222,7 +222,7 @@ ToolOptions read_values(const std::vector<std::string> &names, const Origin &ori
 
 } // namespace
 
-ToolOptions read_options(MPI_Comm comm, const std::string &command) {
+ToolOptions read_options(MPI_Comm comm, const std::string &command, const Registry &registry) {
   const std::vector<Foreign> foreign = foreign_options(comm);
   std::vector<std::string> command_line;
   for (const auto &[name, value] : unread_values())
@@ -231,7 +231,7 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command) {
   std::string outside = described(foreign, {});
   try {
     check_command(command, command_line);
-    Origin origin = insert_case_file(comm, command_line);
+    Origin origin = insert_case_file(comm, command_line, registry);
     outside = described(foreign, origin);
     if (!outside.empty() && rank_of(comm) == 0)
       std::printf("Options from outside: %s\n", outside.c_str());
@@ -240,7 +240,7 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command) {
     std::vector<std::string> names = command_line;
     for (const auto &[name, where] : origin)
       names.push_back(name);
-    return read_values(names, origin, command_line);
+    return read_values(names, origin, command_line, registry);
   } catch (const Error &error) {
     if (outside.empty()) throw;
     throw Error(error.status(), error.what() + ("; options from outside: " + outside));

@@ -205,7 +205,7 @@ std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Probl
 
 void command_verify(const ToolOptions &given) {
   const MPI_Comm world = PETSC_COMM_WORLD;
-  ReducedModel model = model_of_run(world, given.out);
+  ReducedModel model = model_of_run(world, given);
   const ToolOptions options = adopt_model(given, model);
   check_eigen_options(options, EigenUse::constants);
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);

@@ -30,7 +30,7 @@ using SupportContact = std::function<ContactRecipe(const Support &)>;
 ContactRecipe half_plane(HalfPlane plane, const SupportContact &by = rigid_support);
 
 /// The half-plane of a record.
-HalfPlane half_plane_in(const Record &record);
+HalfPlane half_plane_in(const Stored &of);
 
 /// "half_plane" in files.
 ContactKind half_plane_kind();

@@ -38,10 +38,6 @@ struct PairDiscretisation {
   PairQuadrature quadrature = PairQuadrature::intersection;
 };
 
-/// The options `multiplier` and `integration` of scenes with a pair, and what they say.
-std::vector<SceneOption> pair_options();
-PairDiscretisation pair_discretisation(const SceneOptions &options);
-
 /// The constraint, weak and at vertices. Columns are the vertical displacements of the slave nodes,
 /// then of the master nodes, each in the order of their curve; eta are the basis functions of the
 /// multipliers. A slave point beyond the ends of the master curve has no partner and contributes

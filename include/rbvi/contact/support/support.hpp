@@ -39,7 +39,7 @@ ContactKind rigid_support_kind();
 
 /// What files store of a support, and the support of a record.
 Record record_of(const Support &support);
-Support support_in(const Record &record);
+Support support_in(const Stored &of);
 
 /// normal . w <= gap at a point of the reference boundary, and the slip of the motion there.
 struct SupportPoint {

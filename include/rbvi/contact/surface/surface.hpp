@@ -39,7 +39,7 @@ SupportPoint surface_point(const Scene &scene, const RigidSurface &surface, cons
 
 /// What files store of a surface, and the surface of a record.
 Record record_of(const RigidSurface &surface);
-RigidSurface surface_in(const Record &record);
+RigidSurface surface_in(const Stored &of);
 
 /// "rigid_surface" in files.
 ContactKind rigid_surface_kind();

@@ -167,11 +167,9 @@ struct InterfaceModel {
 };
 
 struct ReducedModel {
-  std::string scene_name;
-  SceneOptions scene_options;
-  /// What the model needs of its scene (scene_record.hpp). Where all its functions have names, the
-  /// model is answered without the scene's code.
-  Record scene_record;
+  /// Read from a file, what its record holds (scene_record.hpp), or by the scene's code where a
+  /// function has no name. Its parameters are those below.
+  Scene scene;
   ParameterSpace parameters;
   std::map<std::string, std::string> settings; ///< tolerances and options that made it
   std::string mesh_fingerprint;
@@ -239,10 +237,11 @@ std::filesystem::path fields_file(const std::filesystem::path &model);
 /// not for a model without fields. Throws failure (check_model, H5Writer::commit).
 void write_model(const ReducedModel &model, const std::filesystem::path &path);
 
-/// Throws bad_input (see H5Reader), also for functions or a scene that this build does not have, or
-/// parameters that are not those of the scene, and where the fields are asked for and are not there
-/// or another model's. `with_fields` false leaves them out.
-ReducedModel read_model(const std::filesystem::path &path, bool with_fields = true);
+/// Throws bad_input (see H5Reader), also for functions or a scene that the registry does not have,
+/// or parameters that are not those of the scene, and where the fields are asked for and are not
+/// there or another model's. `with_fields` false leaves them out.
+ReducedModel read_model(const std::filesystem::path &path, const Registry &registry,
+                        bool with_fields = true);
 
 /// The model with the first n primal columns alone (n = modes: the decorrelated basis) and
 /// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
@@ -263,12 +262,12 @@ Point point_of(const Matrix &points, Index i);
 /// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.
 Contact contact_of(const ReducedModel &model, const Scene &scene);
 
-/// What the online program needs of the scene of the model, with the model's free and fixed
-/// parameters: from its record, or by the code of the scene where a function has no name. Throws
-/// bad_input for what this build does not have.
+/// The scene of the model, with the model's free and fixed parameters. Throws bad_input where their
+/// box is not valid.
 Scene scene_of(const ReducedModel &model);
 
-/// The whole scene, with its options, by its code.
-Scene whole_scene_of(const ReducedModel &model);
+/// The whole scene of this name, these options and parameters, by its code; ranges of validity are
+/// those of the code. Throws bad_input for what the registry does not have.
+Scene scene_by_code(const Scene &stored, const Registry &registry);
 
 } // namespace rbvi

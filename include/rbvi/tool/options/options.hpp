@@ -14,6 +14,7 @@
 namespace rbvi {
 
 struct ToolOptions {
+  const Registry *registry = nullptr; ///< of the program
   Scene scene; ///< with its parameters as freed, fixed and bounded by the options
   MeshOptions mesh;
   std::string train, valid; ///< as parse_set reads them
@@ -42,9 +43,10 @@ std::vector<std::string> normalised_arguments(int argc, char **argv);
 
 /// Collective. Inserts the case file under the command line, above PETSc's files and variables,
 /// and reads everything for a command of rbvi; rank 0 prints one line of options from these files
-/// and variables. Throws bad_input for an unknown option (naming the nearest one), one of another
-/// command, a missing or malformed case file, or a value that does not fit.
-ToolOptions read_options(MPI_Comm comm, const std::string &command);
+/// and variables. `registry` must outlive the options. Throws bad_input for an unknown option
+/// (naming the nearest one), one of another command, a missing or malformed case file, or a value
+/// that does not fit.
+ToolOptions read_options(MPI_Comm comm, const std::string &command, const Registry &registry);
 
 /// The options that a model keeps among its settings, by the names that they have there.
 std::map<std::string, std::string> kept_settings(const ToolOptions &options);
@@ -79,10 +81,11 @@ void check_eigen_options(const ToolOptions &options, EigenUse use);
 /// Prints the usage, the options above and those of the scenes; or, where one is named, options,
 /// parameters and mesh of that scene alone; or, of a command, its usage and its options alone.
 /// Throws bad_input for an unknown scene.
-void print_help(const std::string &scene, const std::string &command = "");
+void print_help(const Registry &registry, const std::string &scene,
+                const std::string &command = "");
 
 /// All options of both programs and of the scenes, explained: the page cases/OPTIONS.md.
-std::string options_page();
+std::string options_page(const Registry &registry);
 
 /// Prints the names and facts that a mesh file for the scene must have.
 void print_mesh_contract(const SceneEntry &entry);

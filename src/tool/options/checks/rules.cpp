@@ -14,12 +14,11 @@ namespace {
 /// Throws bad_input for a mesh file beside an option of the built-in mesh.
 void check_mesh_options(const ToolOptions &options) {
   if (options.mesh.file.empty()) return;
-  for (const SceneEntry &entry : scene_catalogue())
-    for (const SceneOption &option : entry.options)
-      if (entry.name == options.scene.name && option.built_in_mesh && is_given(option.name))
-        throw bad_input("-" + option.name +
-                        " is of the built-in mesh and has no effect on that of -mesh: leave out "
-                        "one of the two");
+  for (const SceneOption &option : entry_of(*options.registry, options.scene.name).options)
+    if (option.built_in_mesh && is_given(option.name))
+      throw bad_input("-" + option.name +
+                      " is of the built-in mesh and has no effect on that of -mesh: leave out "
+                      "one of the two");
 }
 
 /// Throws bad_input for tolerances of B^n and of B^tau where they are not apart.

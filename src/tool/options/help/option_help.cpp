@@ -63,13 +63,8 @@ void print_solver_objects() {
 
 } // namespace
 
-void print_help(const std::string &scene, const std::string &command) {
-  if (!scene.empty()) {
-    (void)make_scene(scene);
-    for (const SceneEntry &entry : scene_catalogue())
-      if (entry.name == scene) print_scene(entry);
-    return;
-  }
+void print_help(const Registry &registry, const std::string &scene, const std::string &command) {
+  if (!scene.empty()) return print_scene(entry_of(registry, scene));
   for (const Command &known : commands())
     if (known.name == command) return print_command(known);
   std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n");
@@ -79,7 +74,7 @@ void print_help(const std::string &scene, const std::string &command) {
               "  -help -scene NAME     options, parameters and mesh of one scene\n"
               "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n\n");
   print_options();
-  for (const SceneEntry &entry : scene_catalogue())
+  for (const SceneEntry &entry : registry.scenes)
     print_scene(entry);
   std::printf("\nOutputs (columns of tables):\n");
   for (const OutputColumn &column : output_columns())

@@ -185,7 +185,7 @@ std::string table_of_parameters(const SceneEntry &entry) {
   for (const auto &[p, choice] : parameters_of(entry))
     text += row({code("-" + p.name), p.unit, describe(Range{p.lower, p.upper}),
                  short_number(p.value), describe(p.valid), choice.empty() ? "" : "with " + choice});
-  const Scene scene = make_scene(entry.name);
+  const Scene scene = make_scene(entry);
   return text + "\nFree by default: " + names_of(scene.parameters) + "; `-train " + scene.training +
          "`, `-valid " + scene.validation + "`.\n";
 }
@@ -210,9 +210,9 @@ std::string table_of_prefixes() {
 
 } // namespace
 
-std::string options_page() {
+std::string options_page(const Registry &registry) {
   std::string text = introduction + tables_of_groups() + of_scenes;
-  for (const SceneEntry &entry : scene_catalogue())
+  for (const SceneEntry &entry : registry.scenes)
     text += section_of(entry);
   text += of_petsc + table_of_prefixes() + of_petsc_more + of_online;
   text += head({"option", "value", ""});

@@ -1,0 +1,15 @@
+// What a program knows by name: the scenes that it is given, and what the library has.
+#pragma once
+
+#include "rbvi/core/scene.hpp"
+
+namespace rbvi {
+
+/// Scenes with their functions, beside the kinds of contact and the functions of the library.
+Registry registry_of(std::vector<SceneEntry> scenes);
+
+/// The contact of a record. Throws bad_input for a kind that the registry does not have, or has in
+/// another version.
+ContactRecipe contact_in(const Stored &stored);
+
+} // namespace rbvi

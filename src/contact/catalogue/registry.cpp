@@ -1,0 +1,42 @@
+#include "rbvi/contact/catalogue/registry.hpp"
+
+#include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/contact/large_pair/large_pair.hpp"
+#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/obstacle/obstacle.hpp"
+#include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/surface/surface.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/facet_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+
+namespace rbvi {
+
+Registry registry_of(std::vector<SceneEntry> scenes) {
+  Registry registry{std::move(scenes),
+                    {obstacle_kind(), two_bodies_kind(), rigid_support_kind(),
+                     nitsche_support_kind(), half_plane_kind(), nitsche_half_plane_kind(),
+                     rigid_surface_kind(), nitsche_surface_kind(), deformed_bodies_kind()},
+                    common_functions()};
+  const auto add = [&](const FunctionLibrary &more) {
+    registry.functions.insert(registry.functions.end(), more.begin(), more.end());
+  };
+  for (const FunctionLibrary &more : {scalar_functions(), elastic_functions(), facet_functions()})
+    add(more);
+  for (const SceneEntry &scene : registry.scenes)
+    add(scene.functions);
+  return registry;
+}
+
+ContactRecipe contact_in(const Stored &stored) {
+  const Record &record = stored.record;
+  const std::vector<ContactKind> none;
+  for (const ContactKind &kind : stored.registry == nullptr ? none : stored.registry->kinds)
+    if (kind.name == record.name && kind.version == record.version) return kind.make(stored);
+  throw bad_input("contact '" + record.name + "' version " + std::to_string(record.version) +
+                  " is not in this build: make the model again, or use the build that made it");
+}
+
+} // namespace rbvi
