@@ -209,6 +209,8 @@ struct Interruption {
 };
 
 TEST_F(Kept, ASignalEndsInOneLineAndNothingIsLost) {
+  // What mpirun hands on before it kills: the default, which the other tests do without.
+  setenv("OMPI_MCA_odls_base_sigkill_timeout", "1", 1);
   // Long enough for mpirun to hand the signal on.
   const std::string sweep = "offline -case case.yaml -mesh_refine 2 -train grid:6,6,6 "
                             "-pod_tolerance 1e-3 -cone_type mcpg -cone_tolerance 1e-1 -out stopped";

@@ -4,6 +4,7 @@
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/quadrature.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>
@@ -212,9 +213,11 @@ TEST(HighFidelity, GradientsConvergeToTheRadialSolutionOnASquare) {
   const double c = 1.25 / (0.2 * 0.2);
   const RadialObstacle exact = radial_obstacle(0.55, load, c);
   ASSERT_LT(exact.s, 0.2) << "in the reference disc";
+  int turn = 0; // each rank takes its share: orders do not depend on their number
   for (const auto &[degree, lumped, least, most, error] :
        {Order{"1", "no", 0.9, 1.1, 0.12}, Order{"1", "yes", 0.9, 1.1, 0.12},
-        Order{"2", "no", 1.35, 1.75, 0.01}, Order{"2", "yes", 0.9, 1.1, 0.12}}) {
+        Order{"2", "yes", 0.9, 1.1, 0.12}, Order{"2", "no", 1.35, 1.75, 0.01}}) {
+    if (turn++ % ranks_of(PETSC_COMM_WORLD) != rank_of(PETSC_COMM_WORLD)) continue;
     SCOPED_TRACE(std::string("degree ") + degree + ", lumped " + lumped);
     Scene scene = make_scene("membrane_obstacle",
                              {{"degree", degree}, {"lumped", lumped}, {"circle_edges", "24"}});
@@ -224,7 +227,7 @@ TEST(HighFidelity, GradientsConvergeToTheRadialSolutionOnASquare) {
                                    std::vector<Factor>{}}};
     std::vector<double> errors;
     for (const int refine : {0, 1, 2}) {
-      Problem problem(PETSC_COMM_WORLD, scene, {"", refine});
+      Problem problem(PETSC_COMM_SELF, scene, {"", refine});
       const HfSolution s = HighFidelity(problem, {}).solve({0.2, 0, 0});
       errors.push_back(gradient_error(problem, s.u, exact));
     }
