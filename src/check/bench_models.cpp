@@ -101,7 +101,7 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
   with("outputs",
        [](const Mu &mu, OnlineSolver &solver) { solver.outputs(mu, solver.solve(mu, true)); });
   with("outputs, field", [](const Mu &mu, OnlineSolver &solver) {
-    const ReducedSolution answer = solver.solve(mu, true);
+    const ReducedAnswer answer = solver.solve(mu, true);
     solver.outputs(mu, answer);
     solver.field(answer);
   });

@@ -72,7 +72,7 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
   errors.lambda_floor.resize(count);
   errors.tangential_floor.resize(truths.tangential_norm.size());
   for (Index p = 0; p < count; ++p) {
-    ReducedSolution projected;
+    ReducedAnswer projected;
     projected.mu = expand(model.parameters, truths.mu[static_cast<std::size_t>(p)]);
     projected.u = projections.col(p);
     const Vector difference = solver.multiplier(projected) - truths.lambda.col(p);
@@ -97,7 +97,7 @@ Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const S
 }
 
 /// The answer at one validation mu, nothing if the model has none.
-std::optional<ReducedSolution> answer_at(OnlineSolver &solver, const Truths &truths, Index p) {
+std::optional<ReducedAnswer> answer_at(OnlineSolver &solver, const Truths &truths, Index p) {
   try {
     return solver.solve(truths.mu[static_cast<std::size_t>(p)], true);
   } catch (const Error &) {
@@ -212,13 +212,13 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
     errors.u[p] = errors.lambda[p] = std::numeric_limits<double>::infinity();
     if (friction) errors.tangential[p] = errors.u[p];
     const auto start = Clock::now();
-    const std::optional<ReducedSolution> answer = answer_at(solver, truths, p);
+    const std::optional<ReducedAnswer> answer = answer_at(solver, truths, p);
     if (!answer) {
       ++errors.failed;
       continue;
     }
     seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    errors.kkt_residual = std::max(errors.kkt_residual, answer->kkt_residual);
+    errors.kkt_residual = std::max(errors.kkt_residual, answer->residual);
     Vector c = Vector::Zero(truths.coordinates.rows());
     if (embedding.size() > 0)
       c = embedding * answer->u;

@@ -60,7 +60,7 @@ bool has(const std::vector<Outputs> &rows, Member member) {
 } // namespace
 
 Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
-                           const ReducedSolution &solution) {
+                           const ReducedAnswer &solution) {
   Outputs outputs = solver.outputs(mu, solution);
   if (solver.scene().components == 1 && solver.model().primal_basis.rows() > 0)
     outputs.min_u = solver.field(solution).minCoeff();

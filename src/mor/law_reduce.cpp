@@ -129,7 +129,7 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
-    LawAnswer unused;
+    ReducedAnswer unused;
     const BodyAtMu body = solver.body_at(all, unused);
     CollocatedProblem reduced = collocated_problem(law.basis, body);
     problems.push_back({std::move(reduced.h), std::move(reduced.q),

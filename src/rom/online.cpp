@@ -5,6 +5,7 @@
 #include "rbvi/law/nonlinear/anderson.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/rom/law/reduced_stiffness.hpp"
@@ -96,7 +97,7 @@ void OnlineSolver::enrich() {
   b_ = (b_ * enrichment_).eval();
 }
 
-void OnlineSolver::evaluate_contact(const Vector &state, ReducedSolution &solution) {
+void OnlineSolver::evaluate_contact(const Vector &state, ReducedAnswer &solution) {
   ContactOperators &op = solution.contact;
   assemble(contact_, solution.mu, {state}, op);
   const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
@@ -148,7 +149,7 @@ void OnlineSolver::update_operators(const Vector &theta_a, const Vector &theta_b
   }
 }
 
-void OnlineSolver::solve_dual(ReducedSolution &solution) {
+void OnlineSolver::solve_dual(ReducedAnswer &solution) {
   c_ = f_ / a_scale_;
   if (changed_)
     changed_->solve_root(c_);
@@ -164,7 +165,7 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
     throw failure("the reduced problem did not converge in " + std::to_string(report.iterations) +
                   " active-set updates: reduce again with fewer generators (-cone_tolerance)");
   solution.iterations = report.iterations;
-  solution.x = qp_.x() / scale;
+  solution.lambda = qp_.x() / scale;
   solution.u = qp_.residual() / a_scale_;
   if (changed_)
     changed_->solve_transposed(solution.u);
@@ -172,20 +173,21 @@ void OnlineSolver::solve_dual(ReducedSolution &solution) {
     solve_lower_transposed(l_, solution.u);
 }
 
-void OnlineSolver::check(ReducedSolution &solution) {
+void OnlineSolver::finish(ReducedAnswer &solution) {
   const Vector au =
       changed_ ? changed_->times(solution.u)
                : a_scale_ * a_scale_ * (a_.selfadjointView<Eigen::Lower>() * solution.u).eval();
-  const Vector btx = b_scale_ * (b_.transpose() * solution.x);
+  const Vector btx = b_scale_ * (b_.transpose() * solution.lambda);
   const Vector bu = b_scale_ * (b_ * solution.u);
   solution.energy = 0.5 * solution.u.dot(au) - f_.dot(solution.u);
   const double terms = b_scale_ * (b_.cwiseAbs() * solution.u.cwiseAbs()).maxCoeff();
-  solution.kkt_residual = kkt_residual(au, btx, f_, bu, g_, solution.x, model_.free_modes, terms);
-  if (!(solution.kkt_residual <= largest_residual))
+  solution.residual = kkt_residual(au, btx, f_, bu, g_, solution.lambda, model_.free_modes, terms);
+  if (!(solution.residual <= largest_residual))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
-                   << solution.kkt_residual
+                   << solution.residual
                    << ": reduce again with fewer generators or more supremizers")
                       .str());
+  solution.u = in_primal_basis(solution.u);
   if (positive_) return;
   const Vector pressure = multiplier(solution);
   Index node = 0;
@@ -200,7 +202,7 @@ void OnlineSolver::check(ReducedSolution &solution) {
                     .str());
 }
 
-void OnlineSolver::solve_pair(const Vector &state, ReducedSolution &solution) {
+void OnlineSolver::solve_pair(const Vector &state, ReducedAnswer &solution) {
   const auto theta = [&](const AffineTerms &terms, const auto &form) {
     return affine_coefficients(terms, form, scene_, solution.mu);
   };
@@ -217,12 +219,14 @@ void OnlineSolver::solve_pair(const Vector &state, ReducedSolution &solution) {
   if (model_.online_enriched) f_ = (enrichment_.transpose() * f_).eval();
   if (model_.g.size() > 0) g_.noalias() = model_.g.reduced * of_contact(model_.g, Part::g);
   solve_dual(solution);
-  check(solution);
-  if (model_.online_enriched) solution.u = (enrichment_ * solution.u).eval();
+}
+
+Vector OnlineSolver::in_primal_basis(const Vector &u) const {
+  return model_.online_enriched ? Vector(enrichment_ * u) : u;
 }
 
 /// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm.
-void OnlineSolver::solve_following(ReducedSolution &solution) {
+void OnlineSolver::solve_following(ReducedAnswer &solution) {
   constexpr int most_steps = 60;
   constexpr double tolerance = 1e-9;
   Vector state = undeformed(contact_, scene_, solution.mu), last_x;
@@ -233,17 +237,17 @@ void OnlineSolver::solve_following(ReducedSolution &solution) {
   for (int k = 0; k < most_steps; ++k) {
     solve_pair(state, solution);
     iterations += solution.iterations;
-    images.push_back(model_.contact_trace * solution.u);
+    images.push_back(model_.contact_trace * in_primal_basis(solution.u));
     const Vector change = images.back() - state;
     const bool settled = change.norm() <= tolerance * images.back().norm() && last_x.size() > 0 &&
-                         (solution.x - last_x).norm() <= tolerance * solution.x.norm();
+                         (solution.lambda - last_x).norm() <= tolerance * solution.lambda.norm();
     if (settled) {
       solution.iterations = iterations;
       solution.contraction = last_change > 0 ? change.norm() / last_change : 0;
       assemble(contact_, solution.mu, {images.back()}, solution.contact);
       return;
     }
-    last_x = solution.x;
+    last_x = solution.lambda;
     last_change = change.norm();
     const Vector shares = anderson.combine(change);
     if (std::ssize(images) > shares.size()) images.erase(images.begin());
@@ -256,48 +260,29 @@ void OnlineSolver::solve_following(ReducedSolution &solution) {
                 " steps: reduce again with -multiplier_reduction condensed");
 }
 
-ReducedSolution OnlineSolver::solve_at(const FullMu &all_parameters) {
-  ReducedSolution solution;
+ReducedAnswer OnlineSolver::solve_at(const FullMu &all_parameters) {
+  if (nitsche_) return nitsche_->solve(all_parameters);
+  if (law_) return law_->solve(all_parameters);
+  ReducedAnswer solution;
   solution.mu = all_parameters;
-  if (nitsche_) {
-    NitscheAnswer answer = nitsche_->solve(all_parameters);
-    solution.u = std::move(answer.u);
-    solution.energy = answer.energy;
-    solution.kkt_residual = answer.residual;
-    solution.iterations = answer.iterations;
-    return solution;
-  }
-  if (law_) {
-    LawAnswer answer = law_->solve(all_parameters);
-    solution.u = std::move(answer.u);
-    solution.x = std::move(answer.x);
-    solution.theta_b = std::move(answer.theta_b);
-    solution.contact = std::move(answer.contact);
-    solution.energy = answer.energy;
-    solution.kkt_residual = answer.residual;
-    solution.iterations = answer.iterations;
-    solution.load_steps = answer.load_steps;
-    solution.contraction = answer.contraction;
-    solution.to_other = answer.to_other;
-    return solution;
-  }
   if (!options_.warm) start_cone(all_parameters);
   solve_cone(solution);
   return solution;
 }
 
-void OnlineSolver::solve_cone(ReducedSolution &solution) {
+void OnlineSolver::solve_cone(ReducedAnswer &solution) {
   if (follows_state(contact_))
     solve_following(solution);
   else
     solve_pair({}, solution);
+  finish(solution);
 }
 
 void OnlineSolver::start_cone(const FullMu &all_parameters) {
   const Vector here = parts_of_box(model_.parameters, all_parameters);
   const ConeStart &start = starts_.nearest(here, [&](Index sample) {
     const Vector mu = model_.trained_mu.col(sample);
-    ReducedSolution unused;
+    ReducedAnswer unused;
     unused.mu = expand(model_.parameters, {mu.begin(), mu.end()});
     qp_.start_from({});
     solve_cone(unused);
@@ -311,10 +296,10 @@ void OnlineSolver::start_cone(const FullMu &all_parameters) {
     qp_.start_from(start.active);
 }
 
-ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
+ReducedAnswer OnlineSolver::solve(const Mu &mu, bool extrapolate) {
   check_query(scene_, mu, extrapolate);
   return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu), [&] {
-    ReducedSolution solution = solve_at(expand(scene_.parameters, mu));
+    ReducedAnswer solution = solve_at(expand(scene_.parameters, mu));
     if (const AffineTerms &imposed = model_.imposed_energy; imposed.size() > 0)
       solution.energy += imposed.reduced.row(0).dot(
           affine_coefficients(imposed, imposed_energy_, scene_, solution.mu));
@@ -322,12 +307,13 @@ ReducedSolution OnlineSolver::solve(const Mu &mu, bool extrapolate) {
   });
 }
 
-Vector OnlineSolver::multiplier(const ReducedSolution &solution) const {
+Vector OnlineSolver::multiplier(const ReducedAnswer &solution) const {
   if (nitsche_) return nitsche_->multiplier(solution.mu, solution.u);
-  return law_ ? Vector(nodal_basis_ * solution.x) : Vector(model_.dual_basis * solution.x);
+  return law_ ? Vector(nodal_basis_ * solution.lambda)
+              : Vector(model_.dual_basis * solution.lambda);
 }
 
-ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution,
+ContactOperators OnlineSolver::nodal_operators(const ReducedAnswer &solution,
                                                const Vector &lambda) const {
   if (model_.evaluates_contact()) return solution.contact;
   ContactOperators operators;
@@ -335,12 +321,12 @@ ContactOperators OnlineSolver::nodal_operators(const ReducedSolution &solution,
   return operators;
 }
 
-Vector OnlineSolver::contact_gap(const ReducedSolution &solution) const {
+Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
   const ContactOperators operators = nodal_operators(solution, multiplier(solution));
   return trace_->gap_left(operators, solution.u);
 }
 
-Vector OnlineSolver::field(const ReducedSolution &solution) const {
+Vector OnlineSolver::field(const ReducedAnswer &solution) const {
   if (model_.primal_basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
   Vector field = model_.primal_basis * solution.u;
@@ -351,11 +337,11 @@ Vector OnlineSolver::field(const ReducedSolution &solution) const {
   return field + imposed_values(scene_, solution.mu, nodes, model_.imposed_by);
 }
 
-Outputs OnlineSolver::outputs(const Mu &mu, const ReducedSolution &solution) const {
+Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {
   Outputs result;
   const double images = scene_.mirror_images;
   result.energy = images * solution.energy;
-  result.kkt_residual = solution.kkt_residual;
+  result.kkt_residual = solution.residual;
   result.iterations = solution.iterations;
   result.load_steps = solution.load_steps;
   result.contraction = solution.contraction;

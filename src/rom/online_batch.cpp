@@ -132,7 +132,7 @@ Outputs example(OnlineSolver &solver, const OnlineArguments &arguments) {
   std::vector<Mu> candidates = parse_set(solver.scene().parameters, "random:100:1");
   for (Index p = trained.cols(); p-- > 0;)
     candidates.insert(candidates.begin(), Mu(trained.col(p).begin(), trained.col(p).end()));
-  ReducedSolution solution;
+  ReducedAnswer solution;
   for (const Mu &mu : candidates) {
     try {
       return answer(solver, mu, arguments, solution);
@@ -160,7 +160,7 @@ std::optional<Mu> next_query(ParameterReader &reader, OutputTable &table, Tally 
 void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
                 const OnlineArguments &arguments, OutputTable &table, Tally &tally) {
   try {
-    ReducedSolution solution;
+    ReducedAnswer solution;
     const Outputs outputs = answer(solver, mu, arguments, solution);
     const bool inside = in_box(solver.scene().parameters, mu);
     table.add(mu, outputs, inside, id);

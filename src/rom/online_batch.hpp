@@ -9,7 +9,7 @@ namespace rbvi {
 /// Its `seconds` are those of theta, assembly and solution, the checks and the outputs, and with
 /// `full` of the field. Throws as OnlineSolver::solve.
 Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
-               ReducedSolution &solution);
+               ReducedAnswer &solution);
 
 /// The largest violation of the laws of contact and friction at any node, relative.
 double violation(const Outputs &outputs);

@@ -94,7 +94,7 @@ const std::vector<OnlineOption> &online_options() {
 }
 
 Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
-               ReducedSolution &solution) {
+               ReducedAnswer &solution) {
   const auto start = std::chrono::steady_clock::now();
   solution = solver.solve(mu, arguments.extrapolate);
   Outputs outputs = solver.outputs(mu, solution);
@@ -108,7 +108,7 @@ namespace {
 
 void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
   const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
-  ReducedSolution solution;
+  ReducedAnswer solution;
   const Outputs outputs = answer(solver, mu, arguments, solution);
   std::vector<std::filesystem::path> written;
   if (!arguments.vtu.empty())

@@ -48,7 +48,7 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries)
   double peak = 0;
   for (const Mu &mu : set) {
     try {
-      const ReducedSolution solution = solver.solve(mu);
+      const ReducedAnswer solution = solver.solve(mu);
       const Outputs outputs = solver.outputs(mu, solution);
       raise(check.residual, outputs.kkt_residual.value_or(0), mu);
       raise(check.penetration, outputs.max_penetration.value_or(0), mu);

@@ -129,7 +129,7 @@ template <class Found> void take(Found &&found, MethodResult &result) {
 MethodResult solve_condensed(const ColumnSource &columns, const Vector &q, const Operators &op,
                              const Start &start) {
   MethodResult result;
-  RBVI_CALL(VecDuplicate(op.f, result.u.put()));
+  RBVI_CALL(VecDuplicate(op.f, result.free_u.put()));
   if (!op.laws.has_tangents()) {
     take(solve_lcp(columns, q, start.active), result);
   } else {
@@ -161,14 +161,14 @@ MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, 
       },
       q, op, start);
   if (result.lambda.size() == 0) return result; // not converged: there is no displacement either
-  solve_linear(ksp, reaction_rhs(trace, op, result.lambda).get(), result.u.get());
+  solve_linear(ksp, reaction_rhs(trace, op, result.lambda).get(), result.free_u.get());
   return result;
 }
 
 MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start) {
   MethodResult result = solve_condensed(
       [&](const std::vector<Index> &which) { return part.columns(which); }, op.g, op, start);
-  if (result.lambda.size() > 0) part.displacement(result.lambda, result.u.get());
+  if (result.lambda.size() > 0) part.displacement(result.lambda, result.free_u.get());
   return result;
 }
 

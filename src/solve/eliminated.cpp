@@ -289,7 +289,7 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
   // Ties follow B, which changes with mu.
   if (tied_ || !constant_stiffness(problem_.scene())) of_another_a_ = true;
   MethodResult result;
-  result.u = like(op.f);
+  result.free_u = like(op.f);
   if (!u_) {
     u_ = like(op.f);
     RBVI_CALL(VecZeroEntries(u_.get()));
@@ -302,10 +302,10 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
     over_ranks(layout_.comm, MPI_MAX, values);
   };
   const FrictionResult found = solve_by_sets(
-      solver, diagonal_of(layout_, contact, op.a, result.u.get()), own_laws(layout_, op.laws),
+      solver, diagonal_of(layout_, contact, op.a, result.free_u.get()), own_laws(layout_, op.laws),
       start.size() > 0 ? Vector(start(layout_.rows)) : Vector(), {.tolerance = accuracy}, largest,
       by_rule);
-  RBVI_CALL(VecCopy(u_.get(), result.u.get()));
+  RBVI_CALL(VecCopy(u_.get(), result.free_u.get()));
   result.iterations = found.iterations;
   result.converged = found.converged;
   result.reason = found.reason;

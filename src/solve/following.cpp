@@ -66,7 +66,7 @@ MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compli
     throw failure(failure_at(contact, op.mu, at_state, steps.last_x, steps.reason));
   assemble(contact, op.mu, {steps.state, slip}, op);
   MethodResult result;
-  RBVI_CALL(VecDuplicate(op.f, result.u.put()));
+  RBVI_CALL(VecDuplicate(op.f, result.free_u.put()));
   result.lambda = steps.x;
   result.start = steps.start;
   result.active = steps.active;
@@ -74,7 +74,7 @@ MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compli
   result.columns = static_cast<int>(compliance.count());
   result.converged = true;
   result.reason = steps.reason;
-  solve_linear(ksp, reaction_rhs(problem.trace(), op, result.lambda).get(), result.u.get());
+  solve_linear(ksp, reaction_rhs(problem.trace(), op, result.lambda).get(), result.free_u.get());
   return result;
 }
 

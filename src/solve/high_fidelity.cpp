@@ -22,20 +22,22 @@ namespace {
 
 constexpr double largest_residual = 1e-10; ///< KKT, of an active-set method
 
-/// `weights`: of all normal multipliers.
-Outputs measure(const Problem &problem, const Operators &op, const Vector &weights,
-                const MethodResult &result, const HfSolution &solution) {
+/// Sets the outputs, but for what the method itself knows. `weights`: of all normal multipliers.
+void measure(const Problem &problem, const Operators &op, const Vector &weights,
+             MethodResult &result) {
   const Handle<Vec> au = like(op.f);
-  RBVI_CALL(MatMult(op.a, result.u.get(), au.get()));
+  RBVI_CALL(MatMult(op.a, result.free_u.get(), au.get()));
   PetscScalar quadratic = 0, linear = 0;
-  RBVI_CALL(VecDot(au.get(), result.u.get(), &quadratic));
-  RBVI_CALL(VecDot(op.f, result.u.get(), &linear));
+  RBVI_CALL(VecDot(au.get(), result.free_u.get(), &quadratic));
+  RBVI_CALL(VecDot(op.f, result.free_u.get(), &linear));
 
   const double images = problem.scene().mirror_images;
-  Outputs outputs;
+  Outputs &outputs = result.outputs;
+  result.residual = result.kkt.largest();
   outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy);
-  outputs.kkt_residual = solution.kkt.largest();
-  const Vector excess = op.nodal_b * restrict_to(problem.trace(), result.u.get()) - op.nodal_gap;
+  outputs.kkt_residual = result.residual;
+  const Vector excess =
+      op.nodal_b * restrict_to(problem.trace(), result.free_u.get()) - op.nodal_gap;
   std::array<double, 1> penetration{excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0};
   over_ranks(problem.comm(), MPI_MAX, penetration);
   outputs.max_penetration = penetration.front();
@@ -44,14 +46,13 @@ Outputs measure(const Problem &problem, const Operators &op, const Vector &weigh
   of_outputs.weights = weights;
   of_outputs.state = op.state;
   contact_outputs(problem.contact(), op.mu, of_outputs, result.lambda, 0, outputs);
-  return outputs;
 }
 
 /// The history of friction that a solution leaves, all rows of B on this rank.
 Vector slip_left(const Problem &problem, const Operators &op, const Vector &before,
                  const MethodResult &result) {
   if (tangential_size(problem.contact()) == 0) return {};
-  return slip_of(problem.contact(), op.b * restrict_to(problem.trace(), result.u.get()) - op.g,
+  return slip_of(problem.contact(), op.b * restrict_to(problem.trace(), result.free_u.get()) - op.g,
                  op.weights, before);
 }
 
@@ -141,22 +142,21 @@ Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
   return nearest(mu)->start;
 }
 
-MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, const Vector &slip,
-                                         HfSolution &solution) {
+MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, const Vector &slip) {
   if (part_) part_->set(op);
   MethodResult result = part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
                               : solve_active_set(ksp_.get(), problem_.trace(), op,
                                                  nearest_start(mu, op), compliance_.get());
   if (!result.converged) return result;
-  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
-  solution.outputs = measure(problem_, op, op.weights, result, solution);
-  solution.slip = slip_left(problem_, op, slip, result);
+  result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+  measure(problem_, op, op.weights, result);
+  result.slip = slip_left(problem_, op, slip, result);
   return result;
 }
 
 /// Without a result where elimination does not meet the laws, which then says why in `complaint`.
 std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Operators &op,
-                                                         const Vector &slip, HfSolution &solution,
+                                                         const Vector &slip,
                                                          std::string &complaint) {
   try {
     const Vector start = solved_.empty() ? Vector() : nearest(mu)->start.lambda;
@@ -164,10 +164,9 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
     if (!result.converged) {
       complaint = result.reason;
     } else {
-      measure_over_ranks(op, distribute(problem_.dual_layout(), op, op.laws), slip, result,
-                         solution);
-      if (solution.kkt.largest() <= largest_residual) return result;
-      complaint = "a KKT residual of " + short_number(solution.kkt.largest());
+      measure_over_ranks(op, distribute(problem_.dual_layout(), op, op.laws), slip, result);
+      if (result.residual <= largest_residual) return result;
+      complaint = "a KKT residual of " + short_number(result.residual);
     }
   } catch (const Error &error) { // of every rank
     complaint = error.what();
@@ -177,18 +176,17 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
 }
 
 MethodResult HighFidelity::run_eliminated_or_condensed(const Mu &mu, const Operators &op,
-                                                       const Vector &slip, HfSolution &solution) {
+                                                       const Vector &slip) {
   std::string complaint;
-  if (std::optional<MethodResult> result = run_eliminated(mu, op, slip, solution, complaint))
+  if (std::optional<MethodResult> result = run_eliminated(mu, op, slip, complaint))
     return std::move(*result);
-  MethodResult result =
-      run_condensed(mu, problem_.assemble(mu, ContactRows::all, slip), slip, solution);
+  MethodResult result = run_condensed(mu, problem_.assemble(mu, ContactRows::all, slip), slip);
   result.reason += ", condensed because elimination failed: " + complaint;
   return result;
 }
 
-MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest, const Vector &slip,
-                                         HfSolution &solution) {
+MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
+                                         const Vector &slip) {
   NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), at_rest.mu), {}};
   if (!solved_.empty() && !bounds_follow_pressure(at_rest.laws))
     start = {nearest(mu)->state, nearest(mu)->start.lambda};
@@ -197,33 +195,31 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
   NonlinearResult steps;
   MethodResult result = solve_following(ksp_.get(), problem_, compliance_ ? *compliance_ : own, op,
                                         slip, start, options_.nonlinear, steps);
-  solution.kkt = kkt_residual(problem_.trace(), op, result.u.get(), result.lambda);
-  solution.outputs = measure(problem_, op, op.weights, result, solution);
-  solution.outputs.load_steps = steps.load_steps;
-  solution.slip = slip_left(problem_, op, slip, result);
-  solution.outputs.contraction = steps.rate;
-  solution.states = std::move(steps.iterates);
-  solution.states.push_back(std::move(steps.state));
+  result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+  measure(problem_, op, op.weights, result);
+  result.load_steps = result.outputs.load_steps = steps.load_steps;
+  result.slip = slip_left(problem_, op, slip, result);
+  result.contraction = result.outputs.contraction = steps.rate;
+  result.states = std::move(steps.iterates);
+  result.states.push_back(std::move(steps.state));
   return result;
 }
 
 void HighFidelity::measure_over_ranks(const Operators &op, const DistributedContact &contact,
-                                      const Vector &slip, const MethodResult &result,
-                                      HfSolution &solution) {
+                                      const Vector &slip, MethodResult &result) {
   const DualLayout &layout = problem_.dual_layout();
   const Handle<Vec> lambda = distribute(layout, result.lambda);
-  solution.kkt = kkt_residual(contact, op, result.u.get(), lambda.get());
+  result.kkt = kkt_residual(contact, op, result.free_u.get(), lambda.get());
   const Vector weights = on_every_rank(layout, contact.weights.get())(op.laws.normal);
-  solution.outputs = measure(problem_, op, weights, result, solution);
+  measure(problem_, op, weights, result);
   if (tangential_size(problem_.contact()) == 0) return;
   const Handle<Vec> excess = like(contact.g.get());
-  RBVI_CALL(MatMult(contact.b.get(), result.u.get(), excess.get()));
+  RBVI_CALL(MatMult(contact.b.get(), result.free_u.get(), excess.get()));
   RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
-  solution.slip = slip_of(problem_.contact(), on_every_rank(layout, excess.get()), weights, slip);
+  result.slip = slip_of(problem_.contact(), on_every_rank(layout, excess.get()), weights, slip);
 }
 
-MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &slip,
-                                          HfSolution &solution) {
+MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &slip) {
   const DualLayout &layout = problem_.dual_layout();
   const DistributedContact contact = distribute(layout, op, op.laws);
   if (!w_product_) w_product_ = distribute(layout, problem_.w_product());
@@ -233,7 +229,7 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &sli
           : solve_uzawa(ksp_.get(), layout, contact, op.f, w_product_.get(), options_);
   if (!result.converged) return result;
   result.active = in_contact(op.laws, result.lambda);
-  measure_over_ranks(op, contact, slip, result, solution);
+  measure_over_ranks(op, contact, slip, result);
   return result;
 }
 
@@ -285,38 +281,32 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
     return solution;
   }
   set_operator(ksp_.get(), op.a);
-  HfSolution solution;
   const bool follows = follows_state(problem_.contact());
   if (condensed) complete_compliance(op.a);
-  const MethodResult result = follows     ? run_following(mu, op, slip, solution)
-                              : grids_    ? run_eliminated_or_condensed(mu, op, slip, solution)
-                              : condensed ? run_condensed(mu, op, slip, solution)
-                                          : run_over_ranks(op, slip, solution);
+  MethodResult result = follows     ? run_following(mu, op, slip)
+                        : grids_    ? run_eliminated_or_condensed(mu, op, slip)
+                        : condensed ? run_condensed(mu, op, slip)
+                                    : run_over_ranks(op, slip);
   if (!result.converged)
     throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
-  solution.u = whole_displacement(problem_, mu, result.u.get());
-  if (problem_.scene().components == 1) solution.outputs.min_u = solution.u.minCoeff();
-  solution.lambda = result.lambda;
-  solution.active = result.active;
-  solution.iterations = result.iterations;
-  solution.columns = result.columns;
-  solution.reason = result.reason;
-  solution.outputs.seconds = MPI_Wtime() - start;
-  check_finite(solution.outputs);
+  result.u = whole_displacement(problem_, mu, result.free_u.get());
+  if (problem_.scene().components == 1) result.outputs.min_u = result.u.minCoeff();
+  result.outputs.seconds = MPI_Wtime() - start;
+  check_finite(result.outputs);
   const double allowed =
       follows ? std::max(largest_residual, 10 * options_.nonlinear.tolerance) : largest_residual;
-  if (by_sets && !(solution.kkt.largest() <= allowed))
-    throw failure("the KKT residual is " + short_number(solution.kkt.largest()) + ", above " +
+  if (by_sets && !(result.residual <= allowed))
+    throw failure("the KKT residual is " + short_number(result.residual) + ", above " +
                   short_number(allowed) +
                   ": is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps, or with an iterative -hf_ksp_type a "
                   "smaller -hf_ksp_rtol");
   solved_.push_back({mu,
-                     {solution.active, result.start.size() > 0 ? result.start : solution.lambda},
+                     {result.active, result.start.size() > 0 ? result.start : result.lambda},
                      {},
                      {},
-                     follows ? solution.states.back() : Vector{}});
-  return solution;
+                     follows ? result.states.back() : Vector{}});
+  return std::move(static_cast<HfSolution &>(result));
 }
 
 } // namespace rbvi

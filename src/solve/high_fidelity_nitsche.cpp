@@ -32,7 +32,7 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
                   found.pressures, solution.outputs);
   solution.kkt.stationarity = found.residual;
   solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
-  solution.outputs.kkt_residual = found.residual;
+  solution.residual = *(solution.outputs.kkt_residual = found.residual);
   solution.outputs.iterations = solution.iterations = found.iterations;
   solution.reason = found.reason + ", " + std::to_string(found.iterations) + " Newton steps in " +
                     std::to_string(found.outer_iterations) + " loops, " +

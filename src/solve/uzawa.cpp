@@ -93,8 +93,8 @@ void extrapolate(Vec next, Vec change, double &momentum, Vec extrapolated) {
 MethodResult solve_uzawa(KSP ksp, const DualLayout &layout, const DistributedContact &contact,
                          Vec f, Mat w_product, const HfOptions &options) {
   MethodResult result;
-  result.u = like(f);
-  Vec u = result.u.get();
+  result.free_u = like(f);
+  Vec u = result.free_u.get();
   const double step =
       options.uzawa_step > 0 ? options.uzawa_step : 1 / largest_eigenvalue(ksp, contact, u);
   const SmallChange small_change(w_product, contact.laws, options.uzawa_tolerance);

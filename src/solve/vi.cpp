@@ -164,8 +164,8 @@ Handle<SNES> make_snes(MPI_Comm comm, double scale) {
 /// The unknowns of `primal`, and how SNES ended.
 MethodResult minimise(MPI_Comm comm, PrimalProblem &primal) {
   MethodResult result;
-  result.u = like(primal.f);
-  RBVI_CALL(VecZeroEntries(result.u.get()));
+  result.free_u = like(primal.f);
+  RBVI_CALL(VecZeroEntries(result.free_u.get()));
   const Handle<Vec> r = like(primal.f);
   Handle<Mat> tangent;
   RBVI_CALL(MatDuplicate(primal.a, MAT_COPY_VALUES, tangent.put()));
@@ -179,7 +179,7 @@ MethodResult minimise(MPI_Comm comm, PrimalProblem &primal) {
                                    &semismooth));
   if (semismooth == PETSC_FALSE) RBVI_CALL(SNESSetObjective(snes.get(), energy, &primal));
   RBVI_CALL(SNESVISetVariableBounds(snes.get(), primal.lower.get(), primal.upper.get()));
-  RBVI_CALL(SNESSolve(snes.get(), nullptr, result.u.get()));
+  RBVI_CALL(SNESSolve(snes.get(), nullptr, result.free_u.get()));
 
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscInt iterations = 0;
@@ -213,10 +213,10 @@ MethodResult solve_vi(Problem &problem, const DistributedContact &contact, const
   }
   PrimalProblem primal = frames ? problem_in_frames(op, *frames) : scalar_problem(contact, op);
   MethodResult result = minimise(problem.comm(), primal);
-  if (frames) result.u = frames->turned_back(result.u.get());
+  if (frames) result.free_u = frames->turned_back(result.free_u.get());
   std::array<double, 1> gap{op.nodal_gap.size() > 0 ? op.nodal_gap.cwiseAbs().maxCoeff() : 0};
   over_ranks(problem.comm(), MPI_MAX, gap);
-  const Handle<Vec> lambda = recover_multiplier(contact, op, gap.front(), result.u.get());
+  const Handle<Vec> lambda = recover_multiplier(contact, op, gap.front(), result.free_u.get());
   result.lambda = on_every_rank(layout, lambda.get());
   return result;
 }

@@ -27,10 +27,10 @@ void measure(const rbvi::synthetic::Sizes &sizes) {
   const auto queries = rbvi::parse_set(model.parameters, "random:400:1");
   for (const rbvi::Mu &mu : queries) {
     const auto query_start = Clock::now();
-    const rbvi::ReducedSolution solution = solver.solve(mu);
+    const rbvi::ReducedAnswer solution = solver.solve(mu);
     seconds.push_back(seconds_since(query_start));
-    residual = std::max(residual, solution.kkt_residual);
-    active += static_cast<double>((solution.x.array() > 0).count());
+    residual = std::max(residual, solution.residual);
+    active += static_cast<double>((solution.lambda.array() > 0).count());
     iterations += solution.iterations;
   }
   std::sort(seconds.begin(), seconds.end());

@@ -118,7 +118,7 @@ std::pair<double, double> differences(Reduced &r, const std::vector<Sample> &tru
   const SparseMatrix &w = r.problem.w_product();
   double u = 0, lambda = 0;
   for (const Sample &sample : truth) {
-    const ReducedSolution answer = solver.solve(sample.mu);
+    const ReducedAnswer answer = solver.solve(sample.mu);
     const Vector off = solver.multiplier(answer) - sample.lambda;
     u = larger(u, (solver.field(answer) - sample.u).norm() / sample.u.norm());
     lambda = larger(lambda, std::sqrt(off.dot(w * off) / sample.lambda.dot(w * sample.lambda)));

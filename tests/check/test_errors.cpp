@@ -25,7 +25,7 @@ TEST(ModelErrors, AreNumbersWhereTheAnswerIsZero) {
   Truths truths{set, Matrix(5, 3), Vector::Zero(3), Vector(3), Matrix(3, 3), Vector(3), {}, {}};
   const SparseMatrix w = Matrix(Matrix::Identity(3, 3)).sparseView();
   for (Index p = 0; p < 3; ++p) {
-    const ReducedSolution solution = solver.solve(set[static_cast<std::size_t>(p)]);
+    const ReducedAnswer solution = solver.solve(set[static_cast<std::size_t>(p)]);
     const double size = p == 1 ? 0 : 1;
     truths.coordinates.col(p) = size * solution.u;
     truths.lambda.col(p) = size * solver.multiplier(solution);
@@ -37,7 +37,7 @@ TEST(ModelErrors, AreNumbersWhereTheAnswerIsZero) {
   const ModelErrors errors = model_errors(model, {}, truths, w);
   EXPECT_EQ(errors.failed, 0);
   EXPECT_LE(errors.u[0] + errors.u[2] + errors.lambda[0] + errors.lambda[2], 1e-12);
-  const ReducedSolution wrong = solver.solve(set[1]);
+  const ReducedAnswer wrong = solver.solve(set[1]);
   EXPECT_NEAR(errors.u[1], wrong.u.norm() / (1e-2 * truths.largest_u), 1e-9 * errors.u[1]);
   EXPECT_GT(errors.lambda[1], 0);
   EXPECT_TRUE(errors.lambda.allFinite() && errors.u_floor.allFinite() &&

@@ -97,7 +97,7 @@ TEST(NearContact, GivesTheAnswersOfAllNodes) {
     const ParameterSpace &space = near.problem.scene().parameters;
     OnlineSolver with_all(all), with_near(near.model);
     for (const Mu &mu : parse_set(space, "random:10:5")) {
-      const ReducedSolution expected = with_all.solve(mu), found = with_near.solve(mu);
+      const ReducedAnswer expected = with_all.solve(mu), found = with_near.solve(mu);
       const Vector lambda = with_all.multiplier(expected);
       EXPECT_LE((with_near.multiplier(found) - lambda).norm(), 1e-9 * lambda.norm());
       const Vector u = with_all.field(expected);

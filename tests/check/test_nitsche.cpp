@@ -165,7 +165,7 @@ TEST(NitscheReduced, RoughlyInterpolatedOperatorsAnswerTheWholeBox) {
     r.reduce(options);
     OnlineSolver online(r.model);
     for (const Mu &mu : parse_set(r.problem.scene().parameters, "grid:61"))
-      EXPECT_LE(online.solve(mu).kkt_residual, 1e-8) << mu[0]; // (4.26): u within 1e-10
+      EXPECT_LE(online.solve(mu).residual, 1e-8) << mu[0]; // (4.26): u within 1e-10
   }
 }
 
@@ -221,7 +221,7 @@ TEST(NitscheReduced, OutputsAreThoseOfTheSnapshots) {
   r.reduce(with(CurveRule::full));
   OnlineSolver online(r.model);
   for (const Sample &truth : r.samples) {
-    const ReducedSolution solution = online.solve(truth.mu);
+    const ReducedAnswer solution = online.solve(truth.mu);
     const Outputs found = online.outputs(truth.mu, solution);
     for (const auto quantity :
          {&Outputs::energy, &Outputs::normal_force, &Outputs::reaction, &Outputs::tangential_force,
@@ -265,8 +265,8 @@ TEST(NitscheReduced, OutputsTellHowFarTheIntegralsAreMissed) {
     options.curve.tolerance = tolerance;
     r.reduce(options);
     OnlineSolver online(r.model);
-    const ReducedSolution solution = online.solve({0.93});
-    EXPECT_LE(solution.kkt_residual, 1e-9) << "of its own problem";
+    const ReducedAnswer solution = online.solve({0.93});
+    EXPECT_LE(solution.residual, 1e-9) << "of its own problem";
     const double missed = *online.outputs({0.93}, solution).quadrature_residual;
     EXPECT_LT(missed, last);
     last = missed;

@@ -32,7 +32,7 @@ TEST_P(BothMaps, OutputsOfTheReducedModelAreThoseOfItsSnapshots) {
   Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", everything());
   OnlineSolver online(r.model);
   for (const Sample &sample : r.samples) {
-    const ReducedSolution answer = online.solve(sample.mu);
+    const ReducedAnswer answer = online.solve(sample.mu);
     const Outputs outputs = online.outputs(sample.mu, answer);
     EXPECT_NEAR(*outputs.energy, *sample.outputs.energy, 1e-9 * std::abs(*sample.outputs.energy));
     EXPECT_NEAR(*outputs.normal_force, *sample.outputs.normal_force, 1e-7);
@@ -66,7 +66,7 @@ Scene framed(const std::string &free, const SceneOptions &options) {
   return scene;
 }
 
-void expect_same_outputs(const OnlineSolver &online, const ReducedSolution &answer,
+void expect_same_outputs(const OnlineSolver &online, const ReducedAnswer &answer,
                          const Sample &sample, double tolerance) {
   const Outputs outputs = online.outputs(sample.mu, answer);
   EXPECT_NEAR(*outputs.energy, *sample.outputs.energy,
@@ -130,7 +130,7 @@ TEST(ImposedModel, OfARigidMotionIsThatOfTheMotion) {
     r.reduce(everything());
     OnlineSolver online(r.model, r.problem.scene());
     for (const Mu &mu : {Mu{0.775}, Mu{1.3}}) {
-      const ReducedSolution answer = online.solve(mu);
+      const ReducedAnswer answer = online.solve(mu);
       outputs.push_back(online.outputs(mu, answer));
       pressures.push_back(online.multiplier(answer));
     }
@@ -218,7 +218,7 @@ TEST(Reduce, ErrorsAgreeWithADirectComputation) {
   const Truths truths = make_truths(r.problem, r.model, valid);
   const ModelErrors errors = model_errors(r.model, {}, truths, r.problem.w_product());
   OnlineSolver online(r.model);
-  const ReducedSolution answer = online.solve(valid[0].mu);
+  const ReducedAnswer answer = online.solve(valid[0].mu);
   const auto norm = [&](const Vector &natural) {
     const Handle<Vec> x = from_natural(r.problem.dofs(), natural),
                       y = make_vector(r.problem.dofs());

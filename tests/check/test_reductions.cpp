@@ -247,7 +247,7 @@ TEST_F(ModelOfAnotherScene, IsAnsweredWhereItsFunctionsHaveNames) {
   const ReducedModel read = read_model(path, catalogue(), false);
   OnlineSolver with_code(r.model, r.problem.scene()), without(read);
   const Mu mu{0.0321};
-  const ReducedSolution one = with_code.solve(mu), two = without.solve(mu);
+  const ReducedAnswer one = with_code.solve(mu), two = without.solve(mu);
   EXPECT_EQ(one.u, two.u);
   EXPECT_EQ(with_code.multiplier(one), without.multiplier(two));
   EXPECT_THROW((void)scene_by_code(read.scene, catalogue()), Error);

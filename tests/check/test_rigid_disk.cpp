@@ -119,12 +119,12 @@ TEST(CondensedModel, KeepsTheLawOnTheHatsOfACoarserMesh) {
   EXPECT_EQ(hats.rows(), 2 * (2 * nodes - 1));
   OnlineSolver online(r.model);
   for (const Sample &truth : solve_all(r.problem, {{0.83}, {1.21}})) {
-    const ReducedSolution solution = online.solve(truth.mu);
+    const ReducedAnswer solution = online.solve(truth.mu);
     const Operators &op = r.problem.assemble(truth.mu);
     ResponseSolver body(op.a, r.problem.trace(), "hf_");
-    const Vector lambda = hats * solution.x;
+    const Vector lambda = hats * solution.lambda;
     const Vector w = hats.transpose() * (op.g + op.b * body.responses(op.b.transpose() * lambda));
-    const Vector &x = solution.x;
+    const Vector &x = solution.lambda;
     const Index k = hats.cols() / 2;
     EXPECT_GE(x.head(k).minCoeff(), 0);
     EXPECT_GE(w.head(k).minCoeff(), -1e-8 * w.maxCoeff());
@@ -169,8 +169,8 @@ TEST(CondensedModel, SurvivesItsFile) {
   std::filesystem::remove(fields_file(path));
   OnlineSolver a(r.model), b(again);
   for (const Mu &mu : {Mu{0.8, 0.7}, Mu{1.2, 3}}) {
-    const ReducedSolution x = a.solve(mu), y = b.solve(mu);
-    EXPECT_EQ(x.x, y.x);
+    const ReducedAnswer x = a.solve(mu), y = b.solve(mu);
+    EXPECT_EQ(x.lambda, y.lambda);
     EXPECT_EQ(x.u, y.u);
     EXPECT_EQ(b.field(y), a.field(x));
   }
@@ -270,7 +270,7 @@ TEST(MultiplierReductions, OnlineEnrichmentFollowsTheNormal) {
   const Matrix functions = multiplier_coefficients(r.model.law->basis);
   OnlineSolver solver(r.model);
   for (const Sample &truth : unseen) {
-    const ReducedSolution answer = solver.solve(truth.mu);
+    const ReducedAnswer answer = solver.solve(truth.mu);
     const Matrix b =
         functions.transpose() *
         (r.model.b.reduced * answer.theta_b).reshaped(r.model.generators, r.model.primal_size());
@@ -300,7 +300,7 @@ TEST(MultiplierReductions, CollocatedOrCondensedWithALoad) {
       OnlineSolver online(r.model);
       for (const Mu &mu : {Mu{0.037, 0.01}, Mu{0.081, 0.19}}) { // sticks, slips
         const Sample truth = solve_all(r.problem, {mu}).front();
-        const ReducedSolution answer = online.solve(mu);
+        const ReducedAnswer answer = online.solve(mu);
         const Outputs found = online.outputs(mu, answer);
         const double pressure = 15 * (1 - 0.35) / (1.35 * 0.3) * mu[0] / 0.5;
         EXPECT_NEAR(*found.peak_pressure, pressure, 1e-10 * pressure);

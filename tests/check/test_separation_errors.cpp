@@ -68,7 +68,7 @@ double difference(const ReducedModel &one, const ReducedModel &other) {
   OnlineSolver a(one), b(other);
   double largest = 0;
   for (const double radius : {0.713, 0.86, 1.027, 1.288}) {
-    const ReducedSolution x = a.solve({radius}), y = b.solve({radius});
+    const ReducedAnswer x = a.solve({radius}), y = b.solve({radius});
     largest = rbvi::largest({largest, (x.u - y.u).norm() / x.u.norm(),
                              (a.multiplier(x) - b.multiplier(y)).norm() / a.multiplier(x).norm()});
   }
@@ -121,7 +121,7 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
     Vector up = Vector::Zero(op.b.cols());
     for (Index i = 1; i < up.size(); i += 2)
       up[i] = 1;
-    const ReducedSolution answer = online.solve({radius});
+    const ReducedAnswer answer = online.solve({radius});
     const double reaction = online.multiplier(answer).dot(op.b * up);
     EXPECT_NEAR(*online.outputs({radius}, answer).reaction, -reaction, 1e-12 * std::abs(reaction));
   }

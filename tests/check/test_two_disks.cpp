@@ -58,7 +58,7 @@ TEST_F(NineDisks, ABasisOfAllSnapshotsReturnsThem) {
     EXPECT_LE(errors.kkt_residual, 1e-10);
     OnlineSolver online(r->model);
     for (const Sample &sample : r->samples) {
-      const ReducedSolution answer = online.solve(sample.mu);
+      const ReducedAnswer answer = online.solve(sample.mu);
       const Outputs out = online.outputs(sample.mu, answer);
       EXPECT_NEAR(*out.energy, *sample.outputs.energy, 1e-8);
       EXPECT_NEAR(*out.normal_force, *sample.outputs.normal_force, 1e-7);
@@ -127,7 +127,7 @@ TEST(ReducedDisks, AnswersDoNotDependOnTheNumberOfRanks) {
     EXPECT_EQ(alone.model.generators, world.model.generators);
     OnlineSolver a(alone.model), w(world.model);
     for (const Mu &mu : parse_set(scene.parameters, "random:5:9")) {
-      const ReducedSolution one = a.solve(mu), many = w.solve(mu);
+      const ReducedAnswer one = a.solve(mu), many = w.solve(mu);
       EXPECT_LE((a.field(one) - w.field(many)).norm(), 1e-9 * a.field(one).norm());
       EXPECT_LE((a.multiplier(one) - w.multiplier(many)).norm(), 1e-8 * a.multiplier(one).norm());
     }
@@ -218,7 +218,7 @@ TEST(ReducedBlocks, SamplesWithoutContactTakePart) {
     EXPECT_EQ(r.model.free_modes, 0) << "no node is always in contact";
     OnlineSolver online(r.model, r.problem.scene());
     for (const double indentation : {0.01, 0.03, 0.039, 0.041, 0.07, 0.1}) {
-      const ReducedSolution answer = online.solve({indentation});
+      const ReducedAnswer answer = online.solve({indentation});
       const double pressure = 15 * 0.65 / (1.35 * 0.3) * std::max(0.0, indentation - 0.04);
       const Vector lambda = online.multiplier(answer);
       EXPECT_LE((lambda.array() - pressure).abs().maxCoeff(), 1e-8) << indentation;

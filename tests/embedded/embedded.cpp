@@ -15,11 +15,11 @@ int main(int count, char **arguments) {
     Mu mu;
     for (int k = 0; k < model.parameters.size(); ++k)
       mu.push_back((model.parameters.at(k).lower + model.parameters.at(k).upper) / 2);
-    ReducedSolution solution = solver.solve(mu);
+    ReducedAnswer solution = solver.solve(mu);
     const double energy = solver.outputs(mu, solution).energy.value_or(NAN);
     const Vector field = solver.field(solution);
     // Memory of either side, freed or made larger by the other.
-    solution.x.conservativeResize(2 * solution.x.size() + 1);
+    solution.lambda.conservativeResize(2 * solution.lambda.size() + 1);
     solution.u = Vector::Ones(2 * solution.u.size() + 1);
     model.trained_mu = Matrix::Zero(7, 9);
     const ReducedModel smaller = leading(model, model.modes, model.generators);

@@ -46,13 +46,13 @@ inline Operators assemble(const ReducedModel &model, double (*value)(int, int, c
   return result;
 }
 
-struct Answer {
+struct PairAnswer {
   Vector u, x;
 };
 
 /// Tries every active set: the one whose KKT system gives x >= 0 and B u <= g holds the solution.
 /// The last `free` rows are equations, their multipliers of either sign.
-inline Answer brute_force_pair(const Operators &o, Index free = 0) {
+inline PairAnswer brute_force_pair(const Operators &o, Index free = 0) {
   const Index n = o.a.rows(), r = o.b.rows(), bounded = r - free;
   for (int set = 0; set < (1 << bounded); ++set) {
     std::vector<Index> active;

@@ -159,7 +159,7 @@ TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
   EXPECT_EQ(without.primal_basis.size(), 0);
   OnlineSolver a(with), b(without);
   const Mu mu{0.2, 0.01};
-  const ReducedSolution solution = a.solve(mu);
+  const ReducedAnswer solution = a.solve(mu);
   EXPECT_EQ(solution.u, b.solve(mu).u);
   EXPECT_EQ(*a.outputs(mu, solution).max_penetration, *b.outputs(mu, solution).max_penetration);
   EXPECT_THROW(b.field(solution), Error);

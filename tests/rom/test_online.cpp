@@ -22,15 +22,16 @@ template <synthetic::Value value> void expect_exact(const synthetic::Sizes &size
     const ReducedModel model = toy_model(sizes, seed);
     OnlineSolver solver(model, synthetic::toy_scene<value>());
     for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
-      const ReducedSolution solution = solver.solve(mu);
+      const ReducedAnswer solution = solver.solve(mu);
       const Operators o = assemble(model, value, mu);
       const Vector u = brute_force(o);
       EXPECT_LE((solution.u - u).norm(), 1e-10 * (u.norm() + 1e-3));
-      EXPECT_GE(solution.x.minCoeff(), 0);
-      EXPECT_LE((o.a * solution.u + o.b.transpose() * solution.x - o.f).norm(), 1e-11 * o.f.norm());
+      EXPECT_GE(solution.lambda.minCoeff(), 0);
+      EXPECT_LE((o.a * solution.u + o.b.transpose() * solution.lambda - o.f).norm(),
+                1e-11 * o.f.norm());
       EXPECT_NEAR(solution.energy, 0.5 * u.dot(o.a * u) - o.f.dot(u), 1e-10 * std::abs(o.f.dot(u)));
-      EXPECT_LE(solution.kkt_residual, 1e-11);
-      active += (solution.x.array() > 0).any();
+      EXPECT_LE(solution.residual, 1e-11);
+      active += (solution.lambda.array() > 0).any();
     }
   }
   EXPECT_GT(active, 20) << "the constraints were hardly ever tested";
@@ -77,11 +78,11 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
     OnlineSolver part_solver(part, synthetic::toy_scene<smooth>()),
         other_part(part_of_changed, synthetic::toy_scene<smooth>());
     for (const Mu &mu : parse_set(model.parameters, "random:8:" + std::to_string(seed))) {
-      const ReducedSolution a = solver.solve(mu), b = other.solve(mu);
+      const ReducedAnswer a = solver.solve(mu), b = other.solve(mu);
       EXPECT_LE((a.u - b.u).norm(), 1e-11 * a.u.norm());
-      EXPECT_LE((a.x - b.x).norm(), 1e-10 * a.x.norm());
+      EXPECT_LE((a.lambda - b.lambda).norm(), 1e-10 * a.lambda.norm());
       EXPECT_NEAR(a.energy, b.energy, 1e-11 * std::abs(a.energy));
-      EXPECT_LE(b.kkt_residual, 1e-11);
+      EXPECT_LE(b.residual, 1e-11);
       const Vector u = part_solver.solve(mu).u;
       EXPECT_LE((other_part.solve(mu).u - u).norm(), 1e-11 * u.norm());
     }
@@ -99,7 +100,7 @@ TEST(OnlineSolver, TraceOfSomeNodes) {
   check_model(partial);
   OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
       other(partial, synthetic::toy_scene<smooth>());
-  const ReducedSolution a = solver.solve({0.2, 0, 0}), b = other.solve({0.2, 0, 0});
+  const ReducedAnswer a = solver.solve({0.2, 0, 0}), b = other.solve({0.2, 0, 0});
   EXPECT_EQ(a.u, b.u);
   const Vector all = solver.contact_gap(a), some = other.contact_gap(b);
   EXPECT_DOUBLE_EQ(some[0], all[0]);
@@ -217,8 +218,8 @@ TEST(Outputs, AreIntegralsOverTheContactRegion) {
   model.validation_enriched = {10, 1e-3, 2e-3, 3e-3, 4e-3};
   OnlineSolver solver(model);
   const Mu mu{0.19, 0.01, 0.02};
-  ReducedSolution solution = solver.solve(mu);
-  solution.x << 1, 0, 2, 0;
+  ReducedAnswer solution = solver.solve(mu);
+  solution.lambda << 1, 0, 2, 0;
   const Outputs outputs = solver.outputs(mu, solution);
   const Vector lambda = model.dual_basis.col(0) + 2 * model.dual_basis.col(2);
   // A triangle of area 0.01, scaled from radius 0.2 to 0.19.
@@ -243,7 +244,7 @@ TEST(Outputs, AreIntegralsOverTheContactRegion) {
   EXPECT_FALSE(outputs.min_u);
   EXPECT_FALSE(solver.outputs({0.26, 0, 0}, solution).expected_error_u);
 
-  solution.x.setZero();
+  solution.lambda.setZero();
   EXPECT_EQ(*solver.outputs(mu, solution).contact_measure, 0);
 }
 
@@ -254,8 +255,8 @@ TEST(Outputs, OfAConsistentMassCountWholeWeights) {
       synthetic::random_model({}, 8, make_scene("membrane_obstacle", {{"lumped", "no"}}));
   OnlineSolver solver(model);
   const Mu mu{0.19, 0.01, 0.02};
-  ReducedSolution solution = solver.solve(mu);
-  solution.x << 1, 0, 2, 0;
+  ReducedAnswer solution = solver.solve(mu);
+  solution.lambda << 1, 0, 2, 0;
   const double whole = 0.01 * std::pow(0.19 / 0.2, 2); // of the triangle
   EXPECT_NEAR(*solver.outputs(mu, solution).contact_measure, whole, 1e-13 * std::abs(whole));
 }

@@ -28,17 +28,18 @@ template <synthetic::Value value> void expect_exact(const synthetic::Sizes &size
     const ReducedModel model = model_with_modes(sizes, seed, free);
     OnlineSolver solver(model, synthetic::toy_scene<value>());
     for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
-      const ReducedSolution solution = solver.solve(mu);
+      const ReducedAnswer solution = solver.solve(mu);
       const Operators o = assemble(model, value, mu);
-      const Answer exact = brute_force_pair(o, free);
+      const PairAnswer exact = brute_force_pair(o, free);
       const Index signed_ones = sizes.generators - free;
       EXPECT_LE((solution.u - exact.u).norm(), 1e-10 * (exact.u.norm() + 1e-3));
-      EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * (exact.x.norm() + 1e-3));
+      EXPECT_LE((solution.lambda - exact.x).norm(), 1e-9 * (exact.x.norm() + 1e-3));
       EXPECT_LE((o.b * solution.u - o.g).tail(free).norm(), 1e-11 * (o.g.norm() + 1));
-      EXPECT_LE((o.a * solution.u + o.b.transpose() * solution.x - o.f).norm(), 1e-10 * o.f.norm());
-      EXPECT_LE(solution.kkt_residual, 1e-11);
-      bounded += (solution.x.head(signed_ones).array() > 0).any();
-      negative += (solution.x.tail(free).array() < 0).any();
+      EXPECT_LE((o.a * solution.u + o.b.transpose() * solution.lambda - o.f).norm(),
+                1e-10 * o.f.norm());
+      EXPECT_LE(solution.residual, 1e-11);
+      bounded += (solution.lambda.head(signed_ones).array() > 0).any();
+      negative += (solution.lambda.tail(free).array() < 0).any();
     }
   }
   EXPECT_GT(negative, 20) << "the modes were hardly ever negative";
@@ -98,7 +99,7 @@ TEST(FreeModes, APulledNodeIsAFailureThatNamesTheRing) {
     model.dual_basis = two_nodes(model);
     OnlineSolver solver(model, synthetic::toy_scene<smooth>());
     const Mu mu{0.19, 0.01, 0};
-    const Answer exact = brute_force_pair(assemble(model, smooth, mu), 1);
+    const PairAnswer exact = brute_force_pair(assemble(model, smooth, mu), 1);
     const Vector pressure = model.dual_basis * exact.x;
     try {
       solver.solve(mu);
@@ -125,7 +126,7 @@ TEST(FreeModes, ANegativeGeneratorIsWatchedWithoutModes) {
   model.dual_basis.row(0).setOnes();
   OnlineSolver good(model, synthetic::toy_scene<smooth>());
   const Mu mu{0.19, 0.01, 0};
-  ASSERT_GT(good.solve(mu).x.sum(), 0) << "nothing is in contact";
+  ASSERT_GT(good.solve(mu).lambda.sum(), 0) << "nothing is in contact";
   model.dual_basis.row(1).setConstant(-0.5);
   OnlineSolver bad(model, synthetic::toy_scene<smooth>());
   EXPECT_THROW(bad.solve(mu), Error);
@@ -154,17 +155,17 @@ template <synthetic::Value value> void expect_enriched(const synthetic::Sizes &s
     OnlineSolver solver(online, synthetic::toy_scene<value>());
     double changed = 0;
     for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
-      const ReducedSolution solution = solver.solve(mu);
+      const ReducedAnswer solution = solver.solve(mu);
       const Operators o = assemble(model, value, mu);
       const Matrix c = compressed(o.b, sizes.modes);
-      const Answer inside =
+      const PairAnswer inside =
           brute_force_pair({c.transpose() * o.a * c, o.b * c, c.transpose() * o.f, o.g}, free);
       const Vector u = c * inside.u;
       ASSERT_EQ(solution.u.size(), model.primal_size());
       EXPECT_LE((solution.u - u).norm(), 1e-10 * u.norm());
-      EXPECT_LE((solution.x - inside.x).norm(), 1e-9 * (inside.x.norm() + 1e-3));
+      EXPECT_LE((solution.lambda - inside.x).norm(), 1e-9 * (inside.x.norm() + 1e-3));
       EXPECT_NEAR(solution.energy, 0.5 * u.dot(o.a * u) - o.f.dot(u), 1e-10 * std::abs(o.f.dot(u)));
-      EXPECT_LE(solution.kkt_residual, 1e-11);
+      EXPECT_LE(solution.residual, 1e-11);
       changed = std::max(changed, (plain.solve(mu).u - u).norm() / u.norm());
     }
     if (sizes.supremizers > sizes.generators) {

@@ -109,7 +109,7 @@ TEST_F(OnlineBinary, AnswersOne) {
   EXPECT_EQ(run.status, 0);
   OnlineSolver solver(model);
   const Mu mu{0.18, 0.02, -0.01};
-  const ReducedSolution solution = solver.solve(mu);
+  const ReducedAnswer solution = solver.solve(mu);
   std::istringstream in(run.out);
   std::map<std::string, double> values;
   std::string line;

@@ -27,16 +27,16 @@ TEST(OrderOfQueries, DoesNotMatter) {
     const ReducedModel model = model_of_dependent_generators(trained);
     const std::vector<Mu> set = parse_set(model.parameters, "random:40:1");
     OnlineSolver forwards(model), backwards(model);
-    std::vector<ReducedSolution> first;
+    std::vector<ReducedAnswer> first;
     for (const Mu &mu : set)
       first.push_back(forwards.solve(mu));
     for (std::size_t k = set.size(); k-- > 0;) {
-      const ReducedSolution again = backwards.solve(set[k]);
-      EXPECT_LE(distance(again.x, first[k].x), 1e-12);
+      const ReducedAnswer again = backwards.solve(set[k]);
+      EXPECT_LE(distance(again.lambda, first[k].lambda), 1e-12);
       EXPECT_LE(distance(again.u, first[k].u), 1e-12);
       EXPECT_EQ(again.iterations, first[k].iterations);
       if (k % 10 > 0) continue;
-      EXPECT_LE(distance(OnlineSolver(model).solve(set[k]).x, first[k].x), 1e-12);
+      EXPECT_LE(distance(OnlineSolver(model).solve(set[k]).lambda, first[k].lambda), 1e-12);
     }
   }
 }
@@ -45,7 +45,7 @@ TEST(OrderOfQueries, MattersWhereItIsAskedFor) {
   const ReducedModel model = model_of_dependent_generators(true);
   OnlineSolver warm(model, QueryOptions{.warm = true}), cold(model);
   const Mu mu{0.19, 0.01, 0.02};
-  const ReducedSolution first = warm.solve(mu), again = warm.solve(mu);
+  const ReducedAnswer first = warm.solve(mu), again = warm.solve(mu);
   EXPECT_GT(first.iterations, 0);
   EXPECT_EQ(again.iterations, 0) << "its own active set";
   EXPECT_LT((again.u - cold.solve(mu).u).norm(), 1e-10 * again.u.norm());

@@ -36,7 +36,7 @@ TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
     set.push_back(mu);
   double displacement = 0;
   for (const Mu &mu : set) {
-    const ReducedSolution solution = solver.solve(mu);
+    const ReducedAnswer solution = solver.solve(mu);
     EXPECT_LE(*solver.outputs(mu, solution).max_penetration, check.penetration.value + 1e-9);
     displacement = std::max(displacement, (model.contact_trace * solution.u).cwiseAbs().maxCoeff());
   }

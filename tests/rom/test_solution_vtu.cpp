@@ -20,7 +20,7 @@ TEST_F(ModelVtu, VtuHoldsTheMappedFieldAndContact) {
   const ReducedModel model = full_model();
   OnlineSolver solver(model);
   const Mu mu{0.18, 0.02};
-  const ReducedSolution solution = solver.solve(mu);
+  const ReducedAnswer solution = solver.solve(mu);
   const auto write = [&](const std::filesystem::path &file) {
     return write_vtu(file, solver.scene(), expand(model.parameters, mu), model,
                      solver.field(solution), solver.multiplier(solution));
@@ -83,7 +83,7 @@ struct Written {
 struct PairVtu : InOwnDirectory {
   Written write(const ReducedModel &model, const Scene &scene, const Mu &mu) const {
     OnlineSolver solver(model, scene);
-    const ReducedSolution solution = solver.solve(mu);
+    const ReducedAnswer solution = solver.solve(mu);
     Written result{"",
                    "",
                    solver.field(solution),
@@ -207,7 +207,7 @@ TEST_F(PairVtu, TheLastMacroEdgeMayHaveThreeEdges) {
 TEST_F(PairVtu, WithoutFieldsNothingIsWritten) {
   ReducedModel model = synthetic::random_pair_model({}, 13, p0());
   OnlineSolver solver(model, p0());
-  const ReducedSolution solution = solver.solve({1});
+  const ReducedAnswer solution = solver.solve({1});
   const Vector w = solver.field(solution), lambda = solver.multiplier(solution);
   model.mesh_points.resize(0, 0);
   model.mesh_cells.clear();

@@ -24,14 +24,14 @@ int expect_agreement(const ReducedModel &model, const Scene &scene) {
   int touching = 0;
   OnlineSolver solver(model, scene);
   for (const Mu &mu : radii) {
-    const ReducedSolution solution = solver.solve(mu);
+    const ReducedAnswer solution = solver.solve(mu);
     const brute::Operators o = synthetic::pair_operators(model, scene, mu);
-    const brute::Answer exact = brute::brute_force_pair(o, model.free_modes);
+    const brute::PairAnswer exact = brute::brute_force_pair(o, model.free_modes);
     touching += exact.x.norm() > 0;
     EXPECT_LE((solution.u - exact.u).norm(), 1e-10 * exact.u.norm());
-    EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * exact.x.norm());
+    EXPECT_LE((solution.lambda - exact.x).norm(), 1e-9 * exact.x.norm());
     EXPECT_NEAR(solution.energy, 0.5 * exact.u.dot(o.a * exact.u), 1e-10 * solution.energy);
-    EXPECT_LE(solution.kkt_residual, 1e-11);
+    EXPECT_LE(solution.residual, 1e-11);
   }
   return touching;
 }
@@ -70,15 +70,15 @@ TEST(OnlinePair, FreeModesAreEquations) {
     OnlineSolver solver(model, p0());
     for (const Mu &mu : radii) {
       const brute::Operators o = synthetic::pair_operators(model, p0(), mu);
-      const brute::Answer exact = brute::brute_force_pair(o, 2);
+      const brute::PairAnswer exact = brute::brute_force_pair(o, 2);
       const Vector pressure = model.dual_basis * exact.x;
       if (pressure.minCoeff() < -0.01 * pressure.maxCoeff()) {
         EXPECT_THROW(solver.solve(mu), Error);
         ++refused;
         continue;
       }
-      const ReducedSolution solution = solver.solve(mu);
-      EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * exact.x.norm());
+      const ReducedAnswer solution = solver.solve(mu);
+      EXPECT_LE((solution.lambda - exact.x).norm(), 1e-9 * exact.x.norm());
       EXPECT_LE((o.b * solution.u - o.g).tail(2).norm(), 1e-10 * o.g.norm());
       ++answered;
     }
@@ -100,10 +100,10 @@ TEST(OnlinePair, OnlineEnrichmentFollowsTheOperatorOfTheQuery) {
     space.bottomRightCorner(6, 3) = o.b.rightCols(6).transpose();
     const brute::Operators small{space.transpose() * o.a * space, o.b * space, Vector::Zero(6),
                                  o.g};
-    const brute::Answer exact = brute::brute_force_pair(small);
-    const ReducedSolution solution = solver.solve(mu);
+    const brute::PairAnswer exact = brute::brute_force_pair(small);
+    const ReducedAnswer solution = solver.solve(mu);
     EXPECT_LE((solution.u - space * exact.u).norm(), 1e-9 * solution.u.norm());
-    EXPECT_LE((solution.x - exact.x).norm(), 1e-9 * exact.x.norm());
+    EXPECT_LE((solution.lambda - exact.x).norm(), 1e-9 * exact.x.norm());
   }
 }
 
@@ -111,7 +111,7 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
   const ReducedModel model = synthetic::random_pair_model({}, 5, p0());
   OnlineSolver solver(model, p0());
   for (const Mu &mu : radii) {
-    const ReducedSolution solution = solver.solve(mu);
+    const ReducedAnswer solution = solver.solve(mu);
     const Vector w = solver.field(solution), gap = solver.contact_gap(solution);
     const FullMu all = expand(p0().parameters, mu);
     std::vector<Point> slave, master;
@@ -141,14 +141,14 @@ TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
   quarter.mirror_images = 1;
   OnlineSolver whole_solver(model, p0()), quarter_solver(model, quarter);
   const Mu mu{0.9};
-  const ReducedSolution solution = whole_solver.solve(mu);
+  const ReducedAnswer solution = whole_solver.solve(mu);
   const Outputs whole = whole_solver.outputs(mu, solution),
                 part = quarter_solver.outputs(mu, quarter_solver.solve(mu));
   EXPECT_EQ(*whole.energy, 2 * *part.energy);
   EXPECT_EQ(*whole.normal_force, 2 * *part.normal_force);
   EXPECT_EQ(*whole.contact_measure, 2 * *part.contact_measure);
   EXPECT_EQ(*whole.peak_pressure, *part.peak_pressure);
-  const Vector lambda = model.dual_basis * solution.x;
+  const Vector lambda = model.dual_basis * solution.lambda;
   EXPECT_EQ(*part.energy, solution.energy);
   EXPECT_NEAR(*part.normal_force, lambda.dot(solution.contact.weights), 1e-14 * *part.normal_force);
   EXPECT_EQ(*part.peak_pressure, lambda.maxCoeff());
@@ -295,7 +295,7 @@ TEST_F(PairFile, ReturnsTheModel) {
     EXPECT_EQ(copy.b.size(), 0);
     EXPECT_EQ(copy.g.size(), 0);
     OnlineSolver from_file(copy), without_fields(bare), original(model);
-    const ReducedSolution solution = from_file.solve({0.77});
+    const ReducedAnswer solution = from_file.solve({0.77});
     EXPECT_EQ(solution.u, original.solve({0.77}).u);
     EXPECT_EQ(solution.u, without_fields.solve({0.77}).u);
     EXPECT_EQ(from_file.contact_gap(solution), without_fields.contact_gap(solution));

@@ -23,12 +23,12 @@ Extremes query(const ReducedModel &model) {
   OnlineSolver warm(model);
   Extremes worst;
   for (std::size_t k = 0; k < queries.size(); ++k) {
-    const ReducedSolution answer = warm.solve(queries[k]);
-    worst.kkt = larger(worst.kkt, answer.kkt_residual);
+    const ReducedAnswer answer = warm.solve(queries[k]);
+    worst.kkt = larger(worst.kkt, answer.residual);
     worst.iterations = std::max(worst.iterations, answer.iterations);
     if (k % cold_every != 0) continue;
     OnlineSolver cold(model);
-    const ReducedSolution again = cold.solve(queries[k]);
+    const ReducedAnswer again = cold.solve(queries[k]);
     const Vector lambda = cold.multiplier(again);
     worst.u = larger(worst.u, (answer.u - again.u).norm() / again.u.norm());
     worst.lambda = larger(worst.lambda, (warm.multiplier(answer) - lambda).norm() / lambda.norm());

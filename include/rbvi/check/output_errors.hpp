@@ -8,8 +8,7 @@
 namespace rbvi {
 
 /// One answer with all outputs, min_u among them where the model has its fields.
-Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
-                           const ReducedSolution &solution);
+Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu, const ReducedAnswer &solution);
 
 /// The outputs of the model at each mu, in or out of its box; nothing is set where it has no
 /// answer. Serial.

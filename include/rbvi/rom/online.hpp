@@ -26,20 +26,6 @@ static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64 && alignof(Eigen::Matrix<double, 8
               "include headers of rbvi before those of Eigen, or define EIGEN_MAX_ALIGN_BYTES and "
               "EIGEN_MAX_STATIC_ALIGN_BYTES as 64 in the whole program: both share memory");
 
-struct ReducedSolution {
-  FullMu mu;
-  Vector u;                 ///< n coefficients
-  Vector x;                 ///< R coefficients, >= 0 but for those of the free modes
-  Vector theta_b;           ///< coefficients of b at this mu, where it separates
-  ContactOperators contact; ///< at this mu, where they do not separate
-  double energy = 0;        ///< a(u,u)/2 - f(u), of the domain alone (not its mirror images)
-  double kkt_residual = 0;  ///< see kkt_residual(); on a support that of the laws at all nodes
-  int iterations = 0;       ///< active-set updates, or Newton steps
-  /// Where contact follows the displacement: as in Outputs.
-  std::optional<double> load_steps{}, contraction{};
-  double to_other = 0; ///< LawAnswer
-};
-
 /// Answers queries on a model that it does not own. An answer depends on its mu and the model, to
 /// round-off, not on the queries before (but QueryOptions::warm).
 class OnlineSolver {
@@ -52,41 +38,45 @@ public:
   /// failure, saying what to try, if the reduced constraints contradict each other, if the reduced
   /// stiffness is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the
   /// dual basis takes to be in contact is pulled at by more than 1 % of the peak pressure.
-  ReducedSolution solve(const Mu &mu, bool extrapolate = false);
+  ReducedAnswer solve(const Mu &mu, bool extrapolate = false);
   /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
   /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
   /// Throws failure (check_finite).
-  Outputs outputs(const Mu &mu, const ReducedSolution &solution) const;
+  Outputs outputs(const Mu &mu, const ReducedAnswer &solution) const;
   /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
-  Vector multiplier(const ReducedSolution &solution) const;
+  Vector multiplier(const ReducedAnswer &solution) const;
   /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap); infinite where
   /// the model has no displacement (ReducedModel::trace_dofs).
-  Vector contact_gap(const ReducedSolution &solution) const;
+  Vector contact_gap(const ReducedAnswer &solution) const;
   /// At all dofs, without the motion of the scene, with the values that boundaries impose. Throws
   /// failure if the model was read without its fields.
-  Vector field(const ReducedSolution &solution) const;
+  Vector field(const ReducedAnswer &solution) const;
   const ReducedModel &model() const { return model_; }
   const Scene &scene() const { return scene_; }
   const Contact &contact() const { return contact_; }
 
 private:
-  ReducedSolution solve_at(const FullMu &all_parameters);
-  void solve_cone(ReducedSolution &solution);
+  ReducedAnswer solve_at(const FullMu &all_parameters);
+  void solve_cone(ReducedAnswer &solution);
   /// Sets qp_ to where a query starts.
   void start_cone(const FullMu &all_parameters);
-  void evaluate_contact(const Vector &state, ReducedSolution &solution);
+  void evaluate_contact(const Vector &state, ReducedAnswer &solution);
   /// The pair at mu; contact, where it follows the displacement, at a state.
-  void solve_pair(const Vector &state, ReducedSolution &solution);
+  void solve_pair(const Vector &state, ReducedAnswer &solution);
   /// Kacanov's iteration with the pair, accelerated.
-  void solve_following(ReducedSolution &solution);
+  void solve_following(ReducedAnswer &solution);
   void update_operators(const Vector &theta_a, const Vector &theta_b);
   /// The same where the terms of A differ on few functions; whether B was made anew.
   void update_changed(const Vector &theta_a, bool new_b);
   void enrich();
-  void solve_dual(ReducedSolution &solution);
-  void check(ReducedSolution &solution);
+  void solve_dual(ReducedAnswer &solution);
+  /// Sets the energy and the residual of an answer of solve_pair, and u in the n functions. Throws
+  /// failure where it is none.
+  void finish(ReducedAnswer &solution);
+  /// u of solve_pair in the n functions.
+  Vector in_primal_basis(const Vector &u) const;
   /// weights, nodal_b and nodal_gap.
-  ContactOperators nodal_operators(const ReducedSolution &solution, const Vector &lambda) const;
+  ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
 
   const ReducedModel &model_;
   const Scene scene_; ///< with_imposed_loads

@@ -18,6 +18,7 @@
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/law/answer.hpp"
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/par/groups.hpp"
 #include "rbvi/problem/problem.hpp"
@@ -63,20 +64,17 @@ struct KktResidual {
   double largest() const;
 };
 
-struct HfSolution {
-  Vector u;      ///< all dofs in natural order, on every rank; without the motion,
-                 ///< with the values that boundaries impose
-  Vector lambda; ///< dual dofs
+/// u: in natural order, on every rank, without the motion, with the values that boundaries impose;
+/// residual: kkt.largest().
+struct HfSolution : Answer {
   Vector slip; ///< the history of friction that it leaves (contact/history.hpp); empty without any
   std::vector<Index> active; ///< normal multipliers in contact
   KktResidual kkt;
   Outputs outputs;
-  int iterations = 0;
   int columns = 0; ///< active_set: columns of the condensed operator
   /// Where contact follows the displacement: the states at the contact dofs at which its condition
   /// was linearised, that of the solution last.
   std::vector<Vector> states;
-  std::string reason; ///< why the solver stopped
 };
 
 struct MethodResult;
@@ -124,17 +122,14 @@ private:
   Start nearest_start(const Mu &mu, const Operators &op);
   /// All columns of the compliance at once, where that takes less than those that are needed.
   void complete_compliance(Mat a);
-  MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip,
-                             HfSolution &solution);
-  MethodResult run_condensed(const Mu &mu, const Operators &op, const Vector &slip,
-                             HfSolution &solution);
+  MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip);
+  MethodResult run_condensed(const Mu &mu, const Operators &op, const Vector &slip);
   std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op, const Vector &slip,
-                                             HfSolution &solution, std::string &complaint);
-  MethodResult run_eliminated_or_condensed(const Mu &mu, const Operators &op, const Vector &slip,
-                                           HfSolution &solution);
-  MethodResult run_over_ranks(const Operators &op, const Vector &slip, HfSolution &solution);
+                                             std::string &complaint);
+  MethodResult run_eliminated_or_condensed(const Mu &mu, const Operators &op, const Vector &slip);
+  MethodResult run_over_ranks(const Operators &op, const Vector &slip);
   void measure_over_ranks(const Operators &op, const DistributedContact &contact,
-                          const Vector &slip, const MethodResult &result, HfSolution &solution);
+                          const Vector &slip, MethodResult &result);
   Matrix predicted_pressures(const Mu &mu) const;
   HfSolution solve_nitsche(const Mu &mu, const Operators &op);
 

@@ -13,16 +13,11 @@ const std::vector<std::string> &hf_method_names();
 /// "auto", "condensed", "eliminated".
 const std::vector<std::string> &hf_contact_names();
 
-/// What a method returns: the free displacement, the multiplier, and how it ended.
-struct MethodResult {
-  Handle<Vec> u;
-  Vector lambda;
-  Vector start; ///< for a nearby problem, as Start::lambda; empty: lambda itself
-  std::vector<Index> active;
-  int iterations = 0;
-  int columns = 0;
+/// What a method returns: the free displacement over the ranks in place of u, without what is
+/// measured on it.
+struct MethodResult : HfSolution {
+  Handle<Vec> free_u;
   bool converged = false;
-  std::string reason;
 };
 
 /// At all dofs in natural order, the imposed values among them. Collective.

@@ -22,9 +22,9 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver
   Matrix answers = Matrix::Zero(loads.columns.cols(), std::ssize(set));
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
     try {
-      const LawAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
+      const ReducedAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
       answers.col(static_cast<Index>(p)) =
-          !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.x);
+          !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
     } catch (const Error &) { // the self-check tells of such mu
     }
   });

@@ -36,8 +36,8 @@ NonlinearStart LawSolver::following_start(const FullMu &all_parameters) const {
   return start;
 }
 
-LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
-  LawAnswer answer;
+ReducedAnswer LawSolver::solve_following(const FullMu &all_parameters) {
+  ReducedAnswer answer;
   if (compliance_->set(term_coefficients(all_parameters, {})) && nodal_compliance_)
     nodal_compliance_->forget();
   stiffness_.set(all_parameters);
@@ -91,7 +91,7 @@ LawAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   answer.iterations = found.steps;
   answer.load_steps = found.load_steps;
   answer.contraction = found.rate;
-  answer.x = found.x;
+  answer.lambda = found.x;
   answer.start = found.start;
   last_state_ = found.state;
   return answer;

@@ -115,7 +115,8 @@ Vector LawSolver::moved_by(const Vector &reaction) const {
   return stiffness_.response_of_turned(load);
 }
 
-BodyAtMu LawSolver::body_at(const FullMu &all_parameters, LawAnswer &answer, const Vector &state) {
+BodyAtMu LawSolver::body_at(const FullMu &all_parameters, ReducedAnswer &answer,
+                            const Vector &state) {
   const NodalLaw &law = *model_.law;
   BodyAtMu body;
   if (model_.evaluates_contact()) {
@@ -178,7 +179,7 @@ LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector
 }
 
 Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x, const Vector &state) {
-  LawAnswer answer;
+  ReducedAnswer answer;
   const BodyAtMu body = body_at(all_parameters, answer, state);
   return at_all_nodes(body, x).start;
 }
@@ -188,37 +189,40 @@ Vector LawSolver::reduced_start(const Vector &here) {
   if (options_.warm) return last_reduced_;
   return reduced_starts_.nearest(here, [&](Index sample) {
     const Vector mu = model_.law->starts_mu.col(sample);
-    LawAnswer unused;
+    ReducedAnswer unused;
     const BodyAtMu body = body_at(expand(scene_.parameters, {mu.begin(), mu.end()}), unused);
-    return solve_reduced_law(model_.law->basis, body).coefficients;
+    return solve_reduced_law(model_.law->basis, body).x;
   });
 }
 
-bool LawSolver::answer_reduced_law(const BodyAtMu &body, const Vector &start, LawAnswer &answer) {
+bool LawSolver::answer_reduced_law(const BodyAtMu &body, const Vector &start,
+                                   ReducedAnswer &answer) {
   const MultiplierBasis &basis = model_.law->basis;
   const bool checks = model_.law->condensed.terms.size() > 0;
   const bool mends = model_.law->mended && checks;
   try {
-    ReducedLawAnswer reduced = solve_reduced_law(basis, body, start);
+    CollocatedResult reduced = solve_reduced_law(basis, body, start);
+    const Matrix functions = multiplier_coefficients(basis);
+    answer.lambda = functions * reduced.x;
     if (options_.looks_for_others)
-      answer.to_other = distance_of_answers(reduced.x, solve_reduced_law(basis, body).x);
-    answer.x = std::move(reduced.x);
+      answer.to_other =
+          distance_of_answers(answer.lambda, functions * solve_reduced_law(basis, body).x);
     answer.residual = reduced.residual;
     answer.iterations = reduced.iterations;
-    last_reduced_ = std::move(reduced.coefficients);
+    last_reduced_ = std::move(reduced.x);
   } catch (const Error &) {
     if (!mends) throw;
     return false;
   }
   if (!checks) return true;
-  AtAllNodes nodes = at_all_nodes(body, answer.x);
-  answer.energy = 0.5 * (answer.x.dot(nodes.w - body.q) - body.load.squaredNorm());
-  answer.residual = natural_residual(answer.x, nodes.w, nodes.diagonal, body.laws);
+  AtAllNodes nodes = at_all_nodes(body, answer.lambda);
+  answer.energy = 0.5 * (answer.lambda.dot(nodes.w - body.q) - body.load.squaredNorm());
+  answer.residual = natural_residual(answer.lambda, nodes.w, nodes.diagonal, body.laws);
   answer.start = std::move(nodes.start);
   return !mends || answer.residual <= mended_above;
 }
 
-void LawSolver::solve_at_nodes(const BodyAtMu &body, const Vector &here, LawAnswer &answer) {
+void LawSolver::solve_at_nodes(const BodyAtMu &body, const Vector &here, ReducedAnswer &answer) {
   const auto columns = [&](const std::vector<Index> &which) {
     return condensed_columns(body, which);
   };
@@ -235,32 +239,35 @@ void LawSolver::solve_at_nodes(const BodyAtMu &body, const Vector &here, LawAnsw
   answer.energy = 0.5 * (found.x.dot(found.w - body.q) - body.load.squaredNorm());
   answer.residual = found.residual;
   answer.iterations += found.iterations;
-  answer.x = std::move(found.x);
+  answer.lambda = std::move(found.x);
   answer.start = std::move(found.start);
 }
 
-LawAnswer LawSolver::solve(const FullMu &all_parameters) {
+ReducedAnswer LawSolver::solve(const FullMu &all_parameters) {
   if (follows_state(contact_)) {
-    LawAnswer answer = solve_following(all_parameters);
+    ReducedAnswer answer = solve_following(all_parameters);
+    answer.mu = all_parameters;
     last_start_ = answer.start;
     return answer;
   }
   const Vector here = parts_of_box(scene_.parameters, all_parameters);
   const Vector start = reduced_start(here);
-  LawAnswer answer;
+  ReducedAnswer answer;
+  answer.mu = all_parameters;
   const BodyAtMu body = body_at(all_parameters, answer);
   if (!reduced_ || !answer_reduced_law(body, start, answer)) solve_at_nodes(body, here, answer);
-  check_edge(answer.x);
+  check_edge(answer.lambda);
   if (model_.evaluates_contact()) {
-    answer.reaction = body.b_contact.transpose() * answer.x;
+    answer.reaction = body.b_contact.transpose() * answer.lambda;
     answer.u = moved_by(answer.reaction);
   } else {
-    answer.u = -stiffness_.response(answer.theta_b, answer.x);
+    answer.u = -stiffness_.response(answer.theta_b, answer.lambda);
   }
   if (body.load.size() > 0) answer.u += stiffness_.transposed_half_response(body.load);
   if (model_.law->condensed.terms.size() == 0)
-    answer.energy = 0.5 * (stiffness_.half_response(body.b.transpose() * answer.x).squaredNorm() -
-                           body.load.squaredNorm());
+    answer.energy =
+        0.5 * (stiffness_.half_response(body.b.transpose() * answer.lambda).squaredNorm() -
+               body.load.squaredNorm());
   last_start_ = answer.start;
   return answer;
 }

@@ -55,14 +55,13 @@ double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal
   return size > 0 ? largest / size : largest;
 }
 
-ReducedLawAnswer solve_reduced_law(const MultiplierBasis &basis, const BodyAtMu &body,
+CollocatedResult solve_reduced_law(const MultiplierBasis &basis, const BodyAtMu &body,
                                    const Vector &start) {
   CollocatedResult found = solve_collocated(collocated_problem(basis, body), start);
   if (!found.converged)
     throw failure("the reduced law of contact is not solved: " + found.reason +
                   "; reduce again with -multiplier_reduction condensed, or with more functions");
-  return {multiplier_coefficients(basis) * found.x, found.residual, found.iterations,
-          std::move(found.x)};
+  return found;
 }
 
 } // namespace rbvi

@@ -74,11 +74,12 @@ Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_par
                    parts_of_box(space, all_parameters));
 }
 
-NitscheAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
+ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
   const NitscheModel &nitsche = *model_.nitsche;
   system.quadratic = quadratic_at(all_parameters);
-  NitscheAnswer answer;
+  ReducedAnswer answer;
+  answer.mu = all_parameters;
   if (interpolated_) {
     answer.iterations =
         interpolated_->solve(all_parameters, predicted(nitsche.starts, all_parameters), system);

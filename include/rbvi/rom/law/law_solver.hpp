@@ -8,6 +8,7 @@
 #include "rbvi/law/friction/several_answers.hpp"
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/rom/law/reduced_law.hpp"
+#include "rbvi/rom/model/answer.hpp"
 #include "rbvi/rom/model/sample_starts.hpp"
 
 namespace rbvi {
@@ -17,28 +18,11 @@ struct QueryOptions {
   /// Start from the last answer: queries that follow each other closely cost less, and where there
   /// are several answers the order decides. Else a start is a function of mu and the model alone.
   bool warm = false;
-  bool looks_for_others = false; ///< LawAnswer::to_other, from further starts
+  bool looks_for_others = false; ///< ReducedAnswer::to_other, from further starts
 };
 
-/// What a query gives.
-struct LawAnswer {
-  Vector u, x; ///< coefficients of the primal and of the dual basis
-  Vector theta_b;
-  Vector reaction;   ///< B^T x on CondensedOperator::dofs, where B does not separate
-  double energy = 0; ///< a(u,u)/2 - f(u)
-  double residual =
-      0; ///< largest relative violation of the laws, at all nodes where they are known
-  int iterations = 0;
-  /// Where contact follows the displacement: as in Outputs.
-  std::optional<double> load_steps{}, contraction{};
-  Vector start; ///< for a nearby query, as FrictionResult::start; empty where none is known
-  /// Largest distance to another answer that was seen, relative to the largest multiplier; 0: none.
-  double to_other = 0;
-  ContactOperators contact; ///< at mu, where they do not separate
-};
-
-/// Whether the self-check met another answer at some parameter: its distance (LawAnswer::to_other)
-/// and the parameter are the history "self_check/other".
+/// Whether the self-check met another answer at some parameter: its distance
+/// (ReducedAnswer::to_other) and the parameter are the history "self_check/other".
 bool has_several_answers(const ReducedModel &model);
 
 class ModelCompliance;
@@ -54,10 +38,10 @@ public:
             const QueryOptions &options = {});
   ~LawSolver();
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
-  LawAnswer solve(const FullMu &all_parameters);
+  ReducedAnswer solve(const FullMu &all_parameters);
   /// What the elastic body says at mu, contact at a state where it follows one; valid until the
   /// next call of either. Sets theta_b or contact of the answer.
-  BodyAtMu body_at(const FullMu &all_parameters, LawAnswer &answer, const Vector &state = {});
+  BodyAtMu body_at(const FullMu &all_parameters, ReducedAnswer &answer, const Vector &state = {});
   /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
   /// operator. `state`: the displacement at the contact dofs, where contact follows it.
   Vector start_of(const FullMu &all_parameters, const Vector &x, const Vector &state);
@@ -73,13 +57,13 @@ private:
   Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which);
   Vector reduced_start(const Vector &here);
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
-  bool answer_reduced_law(const BodyAtMu &body, const Vector &start, LawAnswer &answer);
-  void solve_at_nodes(const BodyAtMu &body, const Vector &here, LawAnswer &answer);
+  bool answer_reduced_law(const BodyAtMu &body, const Vector &start, ReducedAnswer &answer);
+  void solve_at_nodes(const BodyAtMu &body, const Vector &here, ReducedAnswer &answer);
   /// Empty: from rest.
   Vector start_at(const Vector &here) const;
   Vector load_at(const FullMu &all_parameters) const;
   NonlinearStart following_start(const FullMu &all_parameters) const;
-  LawAnswer solve_following(const FullMu &all_parameters);
+  ReducedAnswer solve_following(const FullMu &all_parameters);
   Vector term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const;
   /// -A_N^-1 of the forces on CondensedOperator::dofs.
   Vector moved_by(const Vector &reaction) const;
@@ -91,7 +75,7 @@ private:
   bool reduced_; ///< MultiplierReduction::collocated
   bool by_rule_; ///< the law at all nodes
   SampleStarts<Vector> reduced_starts_;
-  Vector last_reduced_; ///< ReducedLawAnswer::coefficients
+  Vector last_reduced_; ///< CollocatedResult::x of the last query
   /// The columns of B that the condensed operator knows. Throws failure where it meets others.
   SparseMatrix known_columns(const SparseMatrix &b) const;
   void check_edge(const Vector &x) const;

@@ -20,22 +20,16 @@ struct BodyAtMu {
   NodeLaws laws;                     ///< of the m multipliers
 };
 
-struct ReducedLawAnswer {
-  Vector x;            ///< m nodal coefficients
-  double residual = 0; ///< of the reduced law, relative
-  int iterations = 0;
-  Vector coefficients; ///< of the functions: where a nearby query starts from
-};
-
 /// The functions in coefficients of the nodal dual basis: m x (R + S).
 Matrix multiplier_coefficients(const MultiplierBasis &basis);
 
 /// The reduced problem; its rows are those of the collocation nodes.
 CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtMu &body);
 
-/// `start`: coefficients of a nearby query, or empty: from rest. Several answers are possible:
-/// `start` leads to one of them. Throws failure, saying what to try, where there is none.
-ReducedLawAnswer solve_reduced_law(const MultiplierBasis &basis, const BodyAtMu &body,
+/// Its solution, x the coefficients of the functions. `start`: those of a nearby query, or empty:
+/// from rest. Several answers are possible: `start` leads to one of them. Throws failure, saying
+/// what to try, where there is none.
+CollocatedResult solve_reduced_law(const MultiplierBasis &basis, const BodyAtMu &body,
                                    const Vector &start = {});
 
 /// Largest of |x - P(x - w / H_jj)| over max |x|, P the projection of the law: zero where x solves

@@ -12,18 +12,12 @@
 // points turn to those of every iterate.
 #pragma once
 
+#include "rbvi/rom/model/answer.hpp"
 #include "rbvi/rom/nitsche/layer_terms.hpp"
 
 #include <memory>
 
 namespace rbvi {
-
-struct NitscheAnswer {
-  Vector u;            ///< n coefficients
-  double energy = 0;   ///< a(u, u) / 2 - f(u)
-  double residual = 0; ///< of the reduced system, relative
-  int iterations = 0;  ///< Newton steps
-};
 
 class ReducedNitsche {
 public:
@@ -33,7 +27,7 @@ public:
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
   /// positive definite.
-  NitscheAnswer solve(const FullMu &all_parameters);
+  ReducedAnswer solve(const FullMu &all_parameters);
 
   /// What each point adds to the residual of the last answer, n x points, ...
   Matrix point_residuals() const;
