@@ -48,7 +48,8 @@ TEST_F(TwoBodies, KeepTheirNodesUnlessAskedOtherwise) {
       rbvi(2, "offline -scene two_disks -arc_edges 40 -train grid:5 -valid random:3:1 -out run"));
   EXPECT_TRUE(contains(offline, "\nwrote run/model.h5, run/model.fields.h5,")) << offline;
   const std::string verify = verified();
-  EXPECT_TRUE(contains(verify, "Inf-sup constants: none, -multiplier_reduction condensed")) << verify;
+  EXPECT_TRUE(contains(verify, "Inf-sup constants: none, -multiplier_reduction condensed"))
+      << verify;
   const std::string bare = output_of(rbvi_online("run/model.h5 --mu 0.85"));
   EXPECT_LE(value_of(bare, "expected_error_lambda"), 1e-9);
   EXPECT_LE(value_of(bare, "expected_error_u"), 1e-6);
@@ -62,6 +63,16 @@ TEST_F(TwoBodies, KeepTheirNodesUnlessAskedOtherwise) {
   EXPECT_EQ(shell(rbvi(1, "verify -out run")).status, 2);
   fs::rename("away.h5", "run/model.fields.h5");
   EXPECT_EQ(shell(rbvi_online("run/model.h5 --mu 0.85 --vtu u.vtu")).status, 0);
+}
+
+/// The bodies at rest, where the iteration of a query begins, open at nodes where its answer does
+/// not: no wider ring of nodes is needed.
+TEST_F(TwoBodies, AQueryIsJudgedByItsAnswerAlone) {
+  const std::string offline =
+      output_of(rbvi(2, "offline -scene two_disks -kinematics large -multiplier_reduction cone "
+                        "-radius 1,3 -indentation 0.2 -arc_edges 40 -train grid:15 -out run"));
+  EXPECT_TRUE(contains(offline, "202 answers to 202 queries")) << offline;
+  EXPECT_FALSE(contains(offline, "widened")) << offline;
 }
 
 TEST_F(TwoBodies, ThePlanSaysWhatIsSkipped) {

@@ -157,23 +157,6 @@ TEST(LargeModel, TwoBodiesKeepTheirLaw) {
   EXPECT_LE(errors.lambda.maxCoeff(), 1e-8);
 }
 
-/// The bodies at rest, where the iteration begins, open at nodes where they do not for any answer.
-TEST(LargeModel, AQueryIsJudgedByItsAnswerAlone) {
-  Scene scene = make_scene("two_disks",
-                           {{"kinematics", "large"}, {"arc_edges", "40"}, {"indentation", "0.2"}});
-  Parameter &radius = scene.parameters.all.front();
-  radius.lower = 1;
-  radius.upper = 3;
-  Reduced r(scene, "grid:15");
-  ReduceOptions options = by(MultiplierReduction::cone);
-  options.cone.type = ConeType::hybrid;
-  r.reduce(options);
-  EXPECT_GT(r.model.free_modes, 0);
-  const ModelErrors errors = r.errors_at(solve_all(r.problem, {{1.0263}, {1.0401}, {1.0628}}));
-  EXPECT_EQ(errors.failed, 0);
-  EXPECT_LE(errors.u.maxCoeff(), 1e-2);
-}
-
 TEST(LargeModel, AFileGivesTheSameModelWithoutTheScenesCode) {
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("large" + std::to_string(getpid()) + ".h5");
