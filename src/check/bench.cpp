@@ -41,7 +41,7 @@ private:
       largest = std::max(largest, size);
     Vector result(std::ssize(errors));
     for (Index p = 0; p < result.size(); ++p) {
-      const auto &[error, size] = errors[static_cast<std::size_t>(p)];
+      const auto &[error, size] = errors[p];
       result[p] = relative(error, size, largest);
     }
     return result;

@@ -73,7 +73,7 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
   errors.tangential_floor.resize(truths.tangential_norm.size());
   for (Index p = 0; p < count; ++p) {
     ReducedAnswer projected;
-    projected.mu = expand(model.parameters, truths.mu[static_cast<std::size_t>(p)]);
+    projected.mu = expand(model.parameters, truths.mu[p]);
     projected.u = projections.col(p);
     const Vector difference = solver.multiplier(projected) - truths.lambda.col(p);
     const PartNorms norms = part_norms(w, difference, normal);
@@ -99,7 +99,7 @@ Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const S
 /// The answer at one validation mu, nothing if the model has none.
 std::optional<ReducedAnswer> answer_at(OnlineSolver &solver, const Truths &truths, Index p) {
   try {
-    return solver.solve(truths.mu[static_cast<std::size_t>(p)], true);
+    return solver.solve(truths.mu[p], true);
   } catch (const Error &) {
     return std::nullopt;
   }
@@ -161,7 +161,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
   const Vector normal = normal_rows(problem.contact());
   if (has_friction(problem.scene())) truths.tangential_norm.resize(count);
   for (Index p = 0; p < count; ++p) {
-    const Sample &sample = samples[static_cast<std::size_t>(p)];
+    const Sample &sample = samples[p];
     const Handle<Vec> u = from_natural(problem.dofs(), sample.u);
     truths.u_norm[p] = displacement_norm(problem, sample.mu, sample.u);
     RBVI_CALL(MatMult(v, u.get(), scratch.get()));

@@ -91,7 +91,7 @@ Matrix functions_of(Problem &problem, const ReducedModel &model, const Separated
     throw failure("the model does not say where the terms of " + part.name + " are from");
   Matrix functions;
   for (Index i = 0; i < part.terms; ++i) {
-    const auto number = static_cast<Index>(selected[static_cast<std::size_t>(i)]);
+    const auto number = static_cast<Index>(selected[i]);
     if (number < 0 || number >= model.trained_mu.cols())
       throw failure("the terms of " + part.name + " are from no training parameter of the model");
     const Vector column = model.trained_mu.col(number);

@@ -110,12 +110,12 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
     const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
     const auto steps = stability_path(check.coordinates, check.modes, counts, t);
     for (Index k = 0; k < size; ++k) {
-      const auto &[bound, off] = steps[static_cast<std::size_t>(k)];
+      const auto &[bound, off] = steps[k];
       Vector here(static_cast<Index>(columns));
       here << bound.sigma, bound.sigma * bound.c / bound.on, -bound.classic / bound.on,
           -bound.sharp / bound.on, -off / bound.on, -off;
       worst.row(k) = worst.row(k).cwiseMax(here.transpose());
-      if (!(off >= bound.sharp - round_off * bound.c)) ++exceptions[static_cast<std::size_t>(k)];
+      if (!(off >= bound.sharp - round_off * bound.c)) ++exceptions[k];
     }
   });
   over_ranks(comm, MPI_MAX, worst);

@@ -206,7 +206,7 @@ NodeLaws laws_at(const Contact &contact, const FullMu &mu) {
     const DualSpace &dual = interface->dual();
     NodeLaws own = uniform_laws(dual.nodes(), dual.components, interface->bound(mu));
     for (const Index node : interface->partly_fixed())
-      own.bound[static_cast<std::size_t>(node)] = {};
+      own.bound[node] = {};
     append(own, laws);
   }
   return laws;

@@ -40,8 +40,7 @@ Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string
   }
   const int vertices = (nodes - 1) / mesh.degree + 1;
   for (int i = 1; i < vertices; ++i) {
-    const Point &before = mesh.points[static_cast<std::size_t>(first + i - 1)],
-                &here = mesh.points[static_cast<std::size_t>(first + i)];
+    const Point &before = mesh.points[first + i - 1], &here = mesh.points[first + i];
     if (!(before[0] < here[0]))
       throw bad_input("x must increase along the " + name + ", but vertex " + std::to_string(i) +
                       " at x = " + short_number(here[0]) +
@@ -61,8 +60,7 @@ Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string
 SparseMatrix linear_gram(const std::vector<Point> &points, int copies) {
   const auto vertices = static_cast<Index>(points.size()), rows = vertices * copies;
   const auto length = [&](Index edge) {
-    const Point &a = points[static_cast<std::size_t>(edge)],
-                &b = points[static_cast<std::size_t>(edge) + 1];
+    const Point &a = points[edge], &b = points[static_cast<std::size_t>(edge) + 1];
     return std::hypot(b[0] - a[0], b[1] - a[1]);
   };
   SparseMatrix product(rows, rows);
@@ -86,8 +84,8 @@ Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
   std::vector<int> edges;
   Vector of_nodes(3 * count);
   for (Index k = 0; k < count; ++k) {
-    const Index node = nodes[static_cast<std::size_t>(k)];
-    points.push_back(mesh.points[static_cast<std::size_t>(node)]);
+    const Index node = nodes[k];
+    points.push_back(mesh.points[node]);
     of_nodes.segment<3>(3 * k) = moved.segment<3>(3 * node);
     if (k > 0) edges.insert(edges.end(), {static_cast<int>(k) - 1, static_cast<int>(k)});
   }

@@ -35,8 +35,7 @@ EntitySum::EntitySum(const Scene &scene, InterfaceMesh interface_mesh, int entit
     : ContactInterface(scene, std::move(interface_mesh)), entity_dim_(entity_dim) {
   for (std::size_t i = 0; i < mesh_.entities.size() && !mesh_.imposed_by.empty(); ++i)
     for (int c = 0; c < mesh_.components; ++c)
-      imposed_by_.push_back(
-          mesh_.imposed_by[static_cast<std::size_t>(mesh_.entities[i] * mesh_.components + c)]);
+      imposed_by_.push_back(mesh_.imposed_by[mesh_.entities[i] * mesh_.components + c]);
 }
 
 void EntitySum::integrate_beside_imposed(const FullMu &mu, const Cell &entity,
@@ -69,8 +68,7 @@ void EntitySum::set_displacement(const FullMu &mu, Index entity, const ContactSt
 }
 
 std::span<const int> EntitySum::rows_of(Index entity) const {
-  return std::span(rows_).subspan(static_cast<std::size_t>(entity * rows()),
-                                  static_cast<std::size_t>(rows()));
+  return std::span(rows_).subspan(entity * rows(), static_cast<std::size_t>(rows()));
 }
 
 std::vector<Index> EntitySum::columns_of(Index entity) const {
@@ -78,7 +76,7 @@ std::vector<Index> EntitySum::columns_of(Index entity) const {
   std::vector<Index> result;
   for (int i = 0; i < mesh_.per_entity; ++i)
     for (int c = 0; c < mesh_.components; ++c)
-      result.push_back(mesh_.dofs[static_cast<std::size_t>(nodes[i] * mesh_.components + c)]);
+      result.push_back(mesh_.dofs[nodes[i] * mesh_.components + c]);
   return result;
 }
 
@@ -86,7 +84,7 @@ Cell EntitySum::reference_entity(Index entity) const {
   Cell cell{entity_dim_, {}, {}};
   const int *nodes = mesh_.nodes_of(entity);
   for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
-    cell.reference[i] = mesh_.points[static_cast<std::size_t>(nodes[i])];
+    cell.reference[i] = mesh_.points[nodes[i]];
   if (!imposed_by_.empty())
     cell.imposed_by = imposed_by_.data() + entity * mesh_.per_entity * mesh_.components;
   return cell;
@@ -99,10 +97,10 @@ bool EntitySum::can_move(int node) const {
 
 /// EntitySum::dual_of_vertex.
 std::vector<Index> EntitySum::dual_functions(Index vertices, bool lumped) const {
-  std::vector<Index> result(static_cast<std::size_t>(vertices), -1);
+  std::vector<Index> result(vertices, -1);
   Index count = 0;
   for (Index v = 0; v < vertices; ++v)
-    if (can_move(static_cast<int>(v))) result[static_cast<std::size_t>(v)] = count++;
+    if (can_move(static_cast<int>(v))) result[v] = count++;
   if (count == 0)
     throw bad_input(
         "scene " + scene_.name +
@@ -132,9 +130,7 @@ void EntitySum::set_rows() {
     const int *nodes = mesh_.nodes_of(e);
     const bool moves =
         std::any_of(nodes, nodes + mesh_.per_entity, [&](int node) { return can_move(node); });
-    const auto dual = [&](int a) {
-      return moves ? dual_of_vertex_[static_cast<std::size_t>(nodes[a])] : Index{-1};
-    };
+    const auto dual = [&](int a) { return moves ? dual_of_vertex_[nodes[a]] : Index{-1}; };
     for (int a = 0; a <= entity_dim_; ++a)
       rows_.push_back(static_cast<int>(dual(a)));
     for (int a = 0; a <= entity_dim_; ++a)
@@ -149,13 +145,13 @@ void EntitySum::set_dual(Index vertices, int components, bool lumped, const Spar
   for (Index v = 0; v < vertices; ++v) {
     if (!can_move(static_cast<int>(v))) continue;
     dual_.vertices.push_back(v);
-    dual_.points.push_back(mesh_.points[static_cast<std::size_t>(v)]);
+    dual_.points.push_back(mesh_.points[v]);
   }
   dual_.components = components;
   const Index tangents = components - 1;
   std::vector<Eigen::Triplet<double>> parts; // hats -> dual functions
   for (Index v = 0; v < vertices; ++v) {
-    const Index dual = dual_of_vertex_[static_cast<std::size_t>(v)];
+    const Index dual = dual_of_vertex_[v];
     if (dual < 0) continue;
     parts.emplace_back(dual, v, 1.0);
     for (Index k = 0; k < tangents; ++k)
@@ -169,11 +165,10 @@ void EntitySum::set_dual(Index vertices, int components, bool lumped, const Spar
 
 std::vector<bool> EntitySum::entities_at(const WantedNodes &wanted) const {
   if (wanted.empty()) return {};
-  std::vector<bool> result(static_cast<std::size_t>(mesh_.count()), false);
+  std::vector<bool> result(mesh_.count(), false);
   for (Index e = 0; e < mesh_.count(); ++e)
     for (const int dual : rows_of(e).first(static_cast<std::size_t>(entity_dim_) + 1))
-      if (dual >= 0 && wanted[static_cast<std::size_t>(dual)])
-        result[static_cast<std::size_t>(e)] = true;
+      if (dual >= 0 && wanted[dual]) result[e] = true;
   return result;
 }
 
@@ -188,7 +183,7 @@ void EntitySum::set_pattern(const WantedNodes &wanted) {
   std::vector<Eigen::Triplet<double>> entries;
   const auto visit = [&](auto &&add) {
     for (Index e = 0; e < mesh_.count(); ++e) {
-      if (!entities_.empty() && !entities_[static_cast<std::size_t>(e)]) continue;
+      if (!entities_.empty() && !entities_[e]) continue;
       const std::vector<Index> columns = columns_of(e);
       for (const Index row : rows_of(e))
         for (const Index column : columns)
@@ -214,7 +209,7 @@ std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu,
   std::vector<bool> needed(dual_of_vertex_.size(), entities.empty() || entity_dim_ == 1);
   for (std::size_t e = 0; e < entities.size(); ++e)
     for (int a = 0; a <= entity_dim_ && entities[e]; ++a)
-      needed[static_cast<std::size_t>(mesh_.nodes_of(static_cast<Index>(e))[a])] = true;
+      needed[mesh_.nodes_of(static_cast<Index>(e))[a]] = true;
   std::vector<Point> mapped(mesh_.points.begin(),
                             mesh_.points.begin() + std::ssize(dual_of_vertex_));
   for (std::size_t i = 0; i < mapped.size(); ++i)
@@ -227,11 +222,11 @@ void EntitySum::visit_entities(const FullMu &mu, const std::vector<Point> &mappe
                                const std::vector<bool> &entities, Visit &&visit) const {
   if (entity_dim_ == 1) check_lengths(mu, mapped);
   for (Index e = 0; e < mesh_.count(); ++e) {
-    if (!entities.empty() && !entities[static_cast<std::size_t>(e)]) continue;
+    if (!entities.empty() && !entities[e]) continue;
     Cell cell = reference_entity(e);
     const int *nodes = mesh_.nodes_of(e);
     for (std::size_t i = 0; i <= static_cast<std::size_t>(entity_dim_); ++i)
-      cell.mapped[i] = mapped[static_cast<std::size_t>(nodes[i])];
+      cell.mapped[i] = mapped[nodes[i]];
     if (entity_dim_ > 1) check_orientation(scene_, mu, cell);
     visit(e, cell);
   }
@@ -241,8 +236,7 @@ void EntitySum::check_lengths(const FullMu &mu, const std::vector<Point> &mapped
   Vector squared(mesh_.count());
   for (Index e = 0; e < mesh_.count(); ++e) {
     const int *nodes = mesh_.nodes_of(e);
-    const Point &a = mapped[static_cast<std::size_t>(nodes[0])],
-                &b = mapped[static_cast<std::size_t>(nodes[1])];
+    const Point &a = mapped[nodes[0]], &b = mapped[nodes[1]];
     squared[e] = (b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]);
   }
   const double least = 1e-24 * (squared.size() > 0 ? squared.maxCoeff() : 0);
@@ -289,7 +283,7 @@ void EntitySum::check_partly_fixed(const WantedNodes &wanted,
   constexpr double along = 1e-6; // of a unit normal
   for (const Index node : partly_fixed())
     if (is_wanted(wanted, node) && !(operators.nodal_b.row(node).norm() > along)) {
-      const Point &x = dual_.points[static_cast<std::size_t>(node)];
+      const Point &x = dual_.points[node];
       throw bad_input("the displacement is fixed along the normal of contact at " +
                       short_number(x[0]) + " " + short_number(x[1]) +
                       ", where contact cannot move it: fix it in all directions there");
@@ -304,7 +298,7 @@ void EntitySum::assemble_nodal(const FullMu &mu, const ContactState &state, cons
   WantedNodes loaded(lambda.size() > 0 ? static_cast<std::size_t>(dual_.nodes()) : 0, false);
   for (Index i = 0; i < std::ssize(loaded); ++i)
     if (lambda[i] != 0 || !lambda.segment(dual_.nodes() + i * tangents, tangents).isZero(0))
-      loaded[static_cast<std::size_t>(i)] = true;
+      loaded[i] = true;
   const std::vector<Point> mapped = mapped_vertices(mu, {});
   visit_entities(mu, mapped, entities_at(loaded), [&](Index e, const Cell &cell) {
     add_weights(mu, e, cell, values, operators.weights);
@@ -318,8 +312,7 @@ void EntitySum::add_weights(const FullMu &mu, Index entity, const Cell &cell, En
   weigh(mu, cell, values);
   const std::span<const int> rows = rows_of(entity);
   for (int a = 0; a <= entity_dim_; ++a)
-    if (const Index dual = rows[static_cast<std::size_t>(a)]; dual >= 0)
-      weights[dual] += values.weights[a];
+    if (const Index dual = rows[a]; dual >= 0) weights[dual] += values.weights[a];
 }
 
 } // namespace rbvi

@@ -50,21 +50,20 @@ void ContactInterface::set_constraints(const FullMu &mu, const std::vector<Point
   for (Index i = 0; i < rows; ++i) {
     b.startVec(i);
     if (!is_wanted(wanted, i)) continue;
-    const Index node = dual_.vertices[static_cast<std::size_t>(i)];
+    const Index node = dual_.vertices[i];
     Point displacement{};
     for (int c = 0; c < mesh_.components && state.displacement.size() > 0; ++c) {
       const Index at_node = node * mesh_.components + c;
-      const int dof = mesh_.dofs[static_cast<std::size_t>(at_node)];
-      if (dof >= 0) displacement[static_cast<std::size_t>(c)] = state.displacement[dof];
-      if (imposed.size() > 0) displacement[static_cast<std::size_t>(c)] += imposed[at_node];
+      const int dof = mesh_.dofs[at_node];
+      if (dof >= 0) displacement[c] = state.displacement[dof];
+      if (imposed.size() > 0) displacement[c] += imposed[at_node];
     }
-    const PointConstraint at = constraint_at(mu, mesh_.points[static_cast<std::size_t>(node)],
-                                             mapped[static_cast<std::size_t>(node)], displacement);
+    const PointConstraint at = constraint_at(mu, mesh_.points[node], mapped[node], displacement);
     operators.nodal_gap[i] = at.gap;
     for (int c = 0; c < mesh_.components; ++c) {
       const Index at_node = node * mesh_.components + c;
-      const double direction = at.direction[static_cast<std::size_t>(c)];
-      if (const int dof = mesh_.dofs[static_cast<std::size_t>(at_node)]; dof >= 0)
+      const double direction = at.direction[c];
+      if (const int dof = mesh_.dofs[at_node]; dof >= 0)
         b.insertBackByOuterInnerUnordered(i, dof) = direction;
       if (imposed.size() > 0) operators.nodal_gap[i] -= direction * imposed[at_node];
     }
@@ -83,9 +82,9 @@ Vector at_columns(const InterfaceMesh &mesh, const Vector &nodal) {
 Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Point> &points) {
   Matrix result(static_cast<Index>(points.size()), scene.dim);
   for (Index i = 0; i < result.rows(); ++i) {
-    const Point image = scene.map(mu, points[static_cast<std::size_t>(i)]);
+    const Point image = scene.map(mu, points[i]);
     for (Index k = 0; k < result.cols(); ++k)
-      result(i, k) = image[static_cast<std::size_t>(k)];
+      result(i, k) = image[k];
   }
   return result;
 }
@@ -104,10 +103,9 @@ Vector moved_nodes(const Scene &scene, const FullMu &mu, const InterfaceMesh &me
                    const Vector &nodal) {
   Vector moved = Vector::Zero(3 * mesh.nodes());
   for (Index i = 0; i < mesh.nodes(); ++i) {
-    const Point motion =
-        scene.motion ? scene.motion(mu, mesh.points[static_cast<std::size_t>(i)]) : Point{};
+    const Point motion = scene.motion ? scene.motion(mu, mesh.points[i]) : Point{};
     for (Index c = 0; c < mesh.components; ++c)
-      moved[3 * i + c] = motion[static_cast<std::size_t>(c)] + nodal[i * mesh.components + c];
+      moved[3 * i + c] = motion[c] + nodal[i * mesh.components + c];
   }
   return moved;
 }

@@ -9,10 +9,6 @@ namespace rbvi {
 
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// The node of the first boundary, or region, with a free dof that is nearest to the point.
 Index nearest_node(const InterfaceMesh &mesh, const Point &x) {
   Index nearest = -1;
@@ -21,7 +17,7 @@ Index nearest_node(const InterfaceMesh &mesh, const Point &x) {
     if (mesh.parts.size() > 1 && node >= mesh.parts.front()) break;
     const auto first = mesh.dofs.begin() + node * mesh.components;
     if (std::all_of(first, first + mesh.components, [](int dof) { return dof < 0; })) continue;
-    const Point &p = mesh.points[at(node)];
+    const Point &p = mesh.points[node];
     const double distance = std::hypot(p[0] - x[0], p[1] - x[1], p[2] - x[2]);
     if (nearest >= 0 && distance >= least) continue;
     nearest = node;
@@ -34,9 +30,9 @@ Index nearest_node(const InterfaceMesh &mesh, const Point &x) {
 
 ContactDofs contact_dofs(const Contact &contact) {
   ContactDofs dofs;
-  const auto columns = at(contact.interfaces.front()->mesh().columns);
+  const Index columns = contact.interfaces.front()->mesh().columns;
   dofs.node.assign(columns, -1);
-  dofs.row_node.assign(at(contact.dual_size()), -1);
+  dofs.row_node.assign(contact.dual_size(), -1);
   Index first_node = 0;
   for (std::size_t k = 0; k < contact.interfaces.size(); ++k) {
     const InterfaceMesh &mesh = contact.interfaces[k]->mesh();
@@ -44,13 +40,13 @@ ContactDofs contact_dofs(const Contact &contact) {
     for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
       if (mesh.dofs[i] < 0) continue;
       const auto node = static_cast<Index>(i) / mesh.components;
-      dofs.node[at(mesh.dofs[i])] = first_node + node;
+      dofs.node[mesh.dofs[i]] = first_node + node;
     }
     std::vector<Index> nodes = dual.vertices;
     for (Index i = std::ssize(nodes); i < dual.nodes(); ++i)
-      nodes.push_back(nearest_node(mesh, dual.points[at(i)]));
+      nodes.push_back(nearest_node(mesh, dual.points[i]));
     for (Index row = contact.first_row[k]; row < contact.first_row[k + 1]; ++row)
-      dofs.row_node[at(row)] = first_node + nodes[at(dual_row(contact, row).node)];
+      dofs.row_node[row] = first_node + nodes[dual_row(contact, row).node];
     first_node += mesh.nodes();
   }
   return dofs;
@@ -58,20 +54,20 @@ ContactDofs contact_dofs(const Contact &contact) {
 
 std::vector<Index> choose_pivots(const ContactDofs &dofs, const std::vector<Index> &rows,
                                  const SparseMatrix &c) {
-  std::vector<Index> pivots(at(c.rows()), -1);
+  std::vector<Index> pivots(c.rows(), -1);
   std::vector<char> taken(dofs.node.size(), 0);
   for (Index k = 0; k < c.rows(); ++k) {
-    const Index node = dofs.row_node[at(rows[at(k)])];
+    const Index node = dofs.row_node[rows[k]];
     double largest = 0;
     for (SparseMatrix::InnerIterator entry(c, k); entry; ++entry) {
-      const auto dof = at(entry.col());
+      const Index dof = entry.col();
       if (dofs.node[dof] != node || taken[dof] || !(std::abs(entry.value()) > largest)) continue;
       largest = std::abs(entry.value());
-      pivots[at(k)] = entry.col();
+      pivots[k] = entry.col();
     }
-    if (pivots[at(k)] < 0)
+    if (pivots[k] < 0)
       throw failure("an active constraint has no displacement of its own to eliminate");
-    taken[at(pivots[at(k)])] = 1;
+    taken[pivots[k]] = 1;
   }
   return pivots;
 }
@@ -94,12 +90,12 @@ void SquareFactor::compute(const Eigen::SparseMatrix<double> &matrix) {
 /// Whether there is one entry in each row and column; columns_ and values_ then hold them.
 bool SquareFactor::take_single_entries(const Eigen::SparseMatrix<double> &matrix) {
   if (matrix.nonZeros() != matrix.rows()) return false;
-  columns_.assign(at(matrix.rows()), -1);
+  columns_.assign(matrix.rows(), -1);
   values_.resize(matrix.rows());
   for (Index column = 0; column < matrix.cols(); ++column) {
     Eigen::SparseMatrix<double>::InnerIterator entry(matrix, column);
-    if (!entry || entry.value() == 0 || columns_[at(entry.row())] >= 0) return false;
-    columns_[at(entry.row())] = column;
+    if (!entry || entry.value() == 0 || columns_[entry.row()] >= 0) return false;
+    columns_[entry.row()] = column;
     values_[entry.row()] = entry.value();
   }
   return true;
@@ -120,15 +116,15 @@ Matrix SquareFactor::solve_transposed(const Matrix &right) const {
 }
 
 PivotBlock::PivotBlock(const SparseMatrix &c, const std::vector<Index> &pivots) {
-  std::vector<Index> position(at(c.cols()), -1), other(at(c.cols()), -1);
+  std::vector<Index> position(c.cols(), -1), other(c.cols(), -1);
   for (std::size_t k = 0; k < pivots.size(); ++k)
-    position[at(pivots[k])] = static_cast<Index>(k);
+    position[pivots[k]] = static_cast<Index>(k);
   std::vector<Eigen::Triplet<double>> block, rest;
   for (Index row = 0; row < c.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry) {
       if (entry.value() == 0) continue; // vertex quadrature keeps the pattern of a mass matrix
-      const bool pivot = position[at(entry.col())] >= 0;
-      Index &column = (pivot ? position : other)[at(entry.col())];
+      const bool pivot = position[entry.col()] >= 0;
+      Index &column = (pivot ? position : other)[entry.col()];
       if (column < 0) {
         column = std::ssize(coupled_);
         coupled_.push_back(entry.col());
@@ -154,7 +150,7 @@ SparseMatrix PivotBlock::ties(Index contact_dofs) const {
     for (Index k = 0; k < count; ++k)
       for (Index i = 0; i < tied.rows(); ++i)
         if (std::abs(tied(i, k)) > small)
-          entries.emplace_back(static_cast<int>(i), static_cast<int>(coupled_[at(first + k)]),
+          entries.emplace_back(static_cast<int>(i), static_cast<int>(coupled_[first + k]),
                                -tied(i, k));
   }
   SparseMatrix result(others_.rows(), contact_dofs);

@@ -82,7 +82,7 @@ private:
           const auto cube = cube_.find({centre[0] + i, centre[1] + j, centre[2] + k});
           if (cube == cube_.end()) continue;
           for (const Index p : cube->second)
-            found.push_back({squared_distance(x, points_[static_cast<std::size_t>(p)]), p});
+            found.push_back({squared_distance(x, points_[p]), p});
         }
   }
 
@@ -121,14 +121,14 @@ public:
     if (mesh.degree != 1 || mesh.per_entity > 3) return;
     std::vector<Index> dual_node(mesh.points.size(), -1);
     for (std::size_t i = 0; i < dual_.vertices.size(); ++i)
-      dual_node[static_cast<std::size_t>(dual_.vertices[i])] = static_cast<Index>(i);
+      dual_node[dual_.vertices[i]] = static_cast<Index>(i);
     for (Index e = 0; e < mesh.count(); ++e) {
       std::vector<Index> nodes;
       for (int k = 0; k < mesh.per_entity; ++k)
-        nodes.push_back(dual_node[static_cast<std::size_t>(mesh.nodes_of(e)[k])]);
+        nodes.push_back(dual_node[mesh.nodes_of(e)[k]]);
       if (std::ranges::any_of(nodes, [](Index node) { return node < 0; })) continue;
       for (const Index node : nodes)
-        around_[static_cast<std::size_t>(node)].push_back(nodes);
+        around_[node].push_back(nodes);
     }
   }
 
@@ -139,7 +139,7 @@ public:
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
     const std::vector<Index> *chosen = nullptr;
     for (const Neighbour &neighbour : near)
-      for (const std::vector<Index> &entity : around_[static_cast<std::size_t>(neighbour.point)]) {
+      for (const std::vector<Index> &entity : around_[neighbour.point]) {
         if (chosen != nullptr && best.minCoeff() >= 0) break;
         const Eigen::Vector3d weights = barycentric(x, entity);
         if (chosen != nullptr && !(weights.minCoeff() > best.minCoeff())) continue;
@@ -159,7 +159,7 @@ public:
 
 private:
   Eigen::Vector3d point(Index node) const {
-    return Eigen::Vector3d::Map(dual_.points[static_cast<std::size_t>(node)].data());
+    return Eigen::Vector3d::Map(dual_.points[node].data());
   }
   /// Of the projection of x onto the line or plane of the entity; the third is 1 on an edge.
   Eigen::Vector3d barycentric(const Point &x, const std::vector<Index> &entity) const {
@@ -199,7 +199,7 @@ SparseMatrix interpolation(const Contact &from, const Contact &to,
     const DualEntities entities(*from.interfaces[i]);
     for (Index node = 0; node < fine.nodes(); ++node) {
       if (!wanted.empty() && !is_wanted(wanted[i], node)) continue;
-      const Point &x = fine.points[static_cast<std::size_t>(node)];
+      const Point &x = fine.points[node];
       const std::vector<Neighbour> near = nearest.of(x, count);
       Weights weights;
       if (coincides(near))

@@ -41,7 +41,7 @@ std::vector<Mu> corners_and_faces(const ParameterSpace &space) {
   for (unsigned k = 0; k < 1U << std::min(size, all_corners); ++k) {
     unsigned long bits = 0;
     for (int i = 0; i < size; ++i)
-      bits |= (std::popcount(k & of[static_cast<std::size_t>(i)]) % 2UL) << i;
+      bits |= (std::popcount(k & of[i]) % 2UL) << i;
     set.push_back(corner(space, bits));
   }
   if (size == 1) return set; // its two faces are the corners

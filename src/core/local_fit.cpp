@@ -11,7 +11,7 @@ namespace rbvi {
 Vector parts_of_box(const ParameterSpace &space, const FullMu &all_parameters) {
   Vector values(space.size());
   for (int i = 0; i < space.size(); ++i)
-    values[i] = all_parameters[static_cast<std::size_t>(space.free[static_cast<std::size_t>(i)])];
+    values[i] = all_parameters[space.free[i]];
   return parts_of_box(space, Matrix(values));
 }
 
@@ -25,11 +25,11 @@ Vector local_fit(const Matrix &values, const Matrix &points, const Vector &here)
   constexpr double largest_weights = 3; // their sum of sizes; 1 inside the samples
   const Index d = points.rows(), count = std::min<Index>(points.cols(), 2 * (d + 1));
   const Vector distances = (points.colwise() - here).colwise().squaredNorm();
-  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
+  std::vector<Index> order(points.cols());
   std::iota(order.begin(), order.end(), 0);
   std::partial_sort(order.begin(), order.begin() + count, order.end(),
                     [&](Index a, Index b) { return distances[a] < distances[b]; });
-  order.resize(static_cast<std::size_t>(count));
+  order.resize(count);
   const Index nearest = order.front();
   if (count <= d || !(distances[nearest] > 0)) return values.col(nearest);
 

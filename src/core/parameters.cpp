@@ -113,7 +113,7 @@ FullMu expand(const ParameterSpace &space, const Mu &mu) {
   for (const Parameter &parameter : space.all)
     values.push_back(parameter.value);
   for (std::size_t i = 0; i < space.free.size(); ++i)
-    values[static_cast<std::size_t>(space.free[i])] = mu.at(i);
+    values[space.free[i]] = mu.at(i);
   return values;
 }
 

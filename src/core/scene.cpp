@@ -66,7 +66,7 @@ bool is_symmetric(const Scene &scene) {
   if (!scene.symmetric || scene.skewed_by < 0) return scene.symmetric;
   const ParameterSpace &space = scene.parameters;
   return std::ranges::find(space.free, scene.skewed_by) == space.free.end() &&
-         space.all[static_cast<std::size_t>(scene.skewed_by)].value == 0;
+         space.all[scene.skewed_by].value == 0;
 }
 
 bool constant_stiffness(const Scene &scene) {

@@ -29,13 +29,13 @@ std::vector<std::string> names_of(const std::vector<Factor> &factors,
                                   const std::vector<int> &which) {
   std::vector<std::string> names;
   for (const int i : which)
-    names.push_back(factors[static_cast<std::size_t>(i)].name);
+    names.push_back(factors[i].name);
   std::sort(names.begin(), names.end());
   return names;
 }
 
 const std::vector<Factor> &factors_of(const Sum &sum, int term) {
-  return *sum[static_cast<std::size_t>(term)].theta;
+  return *sum[term].theta;
 }
 
 } // namespace
@@ -55,7 +55,7 @@ SplitSum split_sum(const Sum &sum, const ParameterSpace &space) {
   SplitSum split;
   std::vector<std::vector<std::string>> names; // of the varying factors of each group
   for (int t = 0; t < static_cast<int>(sum.size()); ++t) {
-    if (!sum[static_cast<std::size_t>(t)].theta) {
+    if (!sum[t].theta) {
       split.mapped.push_back(t);
       continue;
     }
@@ -63,7 +63,7 @@ SplitSum split_sum(const Sum &sum, const ParameterSpace &space) {
     std::vector<int> varying;
     double weight = 1;
     for (int i = 0; i < static_cast<int>(factors.size()); ++i) {
-      const Factor &factor = factors[static_cast<std::size_t>(i)];
+      const Factor &factor = factors[i];
       if (varies(factor, space))
         varying.push_back(i);
       else
@@ -72,7 +72,7 @@ SplitSum split_sum(const Sum &sum, const ParameterSpace &space) {
     const std::vector<std::string> own = names_of(factors, varying);
     const auto found = std::find(names.begin(), names.end(), own);
     if (found != names.end()) {
-      split.exact[static_cast<std::size_t>(found - names.begin())].members.push_back({t, weight});
+      split.exact[found - names.begin()].members.push_back({t, weight});
       continue;
     }
     const auto at = varying.empty() ? 0 : std::ssize(names);
@@ -88,8 +88,7 @@ std::vector<double> exact_coefficients(const Sum &sum, const SplitSum &split,
   for (const ExactGroup &group : split.exact) {
     double product = 1;
     for (const int i : group.factors)
-      product *= value_of(factors_of(sum, group.members.front().term)[static_cast<std::size_t>(i)],
-                          space, all_parameters);
+      product *= value_of(factors_of(sum, group.members.front().term)[i], space, all_parameters);
     result.push_back(product);
   }
   return result;

@@ -79,7 +79,7 @@ void check_query(const Scene &scene, const Mu &mu, bool allow_outside) {
 void check_box(const Scene &scene) {
   const ParameterSpace &space = scene.parameters;
   for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
-    const Parameter &p = space.all[static_cast<std::size_t>(i)];
+    const Parameter &p = space.all[i];
     const bool is_free = std::find(space.free.begin(), space.free.end(), i) != space.free.end();
     if (!is_free) check_range(p.valid, p.value, "parameter " + p.name);
     if (is_free && !(inside(p.valid, p.lower) && inside(p.valid, p.upper) && p.lower < p.upper))

@@ -24,7 +24,7 @@ Cell cell_of(const Scene &scene, const FullMu &all_parameters, const Matrix &poi
   Cell cell{scene.dim, {}, {}};
   for (std::size_t i = 0; i <= static_cast<std::size_t>(scene.dim); ++i)
     for (Index k = 0; k < points.cols(); ++k)
-      cell.reference[i][static_cast<std::size_t>(k)] = points(nodes[i], k);
+      cell.reference[i][k] = points(nodes[i], k);
   map_cell(scene, all_parameters, cell);
   return cell;
 }
@@ -37,9 +37,9 @@ Tensor stress(const Lame &material, const Tensor &gradient) {
 
 /// The lowest node of a connected part; the path to it is shortened.
 int root_of(std::vector<int> &above, int node) {
-  while (above[static_cast<std::size_t>(node)] != node) {
-    int &parent = above[static_cast<std::size_t>(node)];
-    parent = above[static_cast<std::size_t>(parent)];
+  while (above[node] != node) {
+    int &parent = above[node];
+    parent = above[parent];
     node = parent;
   }
   return node;
@@ -69,7 +69,7 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
                   Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
     const Tensor sigma = stress(scene.material(all_parameters, reference_centre(cell)), gradient);
     for (Index c = 0; c < result.cols(); ++c) {
-      const auto [i, j] = places[static_cast<std::size_t>(c)];
+      const auto [i, j] = places[c];
       result(k, c) = sigma(i, j);
     }
   }
@@ -84,13 +84,13 @@ Vector von_mises(const Matrix &stresses) {
 }
 
 Vector body_numbers(const std::vector<int> &cells, int per_cell, Index nodes, int first_node) {
-  std::vector<int> above(static_cast<std::size_t>(nodes));
+  std::vector<int> above(nodes);
   std::iota(above.begin(), above.end(), 0);
   const auto step = static_cast<std::size_t>(per_cell);
   for (std::size_t k = 0; k < cells.size(); k += step)
     for (std::size_t i = 1; i < step; ++i) {
       const int a = root_of(above, cells[k]), b = root_of(above, cells[k + i]);
-      above[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+      above[std::max(a, b)] = std::min(a, b);
     }
   std::map<int, int> numbers{{root_of(above, first_node), 1}};
   Vector result(static_cast<Index>(cells.size() / step));

@@ -34,11 +34,10 @@ void quadratic_stiffness(const Cell &cell, const Lame &material, const Rule &rul
   Eigen::Matrix<double, size, dim + 1> gradients; // node and direction x point
   std::array<std::array<double, 3>, nodes> at_point;
   for (int q = 0; q <= dim; ++q) {
-    lagrange_gradients(dim, 2, rule[static_cast<std::size_t>(q)].barycentric, s, at_point);
+    lagrange_gradients(dim, 2, rule[q].barycentric, s, at_point);
     for (int i = 0; i < nodes; ++i)
       for (int c = 0; c < dim; ++c)
-        gradients(i * dim + c, q) =
-            at_point[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+        gradients(i * dim + c, q) = at_point[i][c];
   }
   const Eigen::Matrix<double, size, size> products = gradients.lazyProduct(gradients.transpose());
   const double weight = s.volume / (dim + 1);

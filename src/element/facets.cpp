@@ -36,8 +36,7 @@ std::vector<int> facet_nodes(int dim, int degree, int facet) {
   std::vector<int> nodes(order.begin(), order.begin() + dim);
   if (degree == 1) return nodes;
   for (std::size_t e = 0; e < (dim == 2 ? 1U : 3U); ++e) {
-    const std::array<int, 2> ends{order[static_cast<std::size_t>(simplex_edges[e][0])],
-                                  order[static_cast<std::size_t>(simplex_edges[e][1])]};
+    const std::array<int, 2> ends{order[simplex_edges[e][0]], order[simplex_edges[e][1]]};
     const auto edge = std::find_if(simplex_edges.begin(), simplex_edges.end(), [&](const auto &of) {
       return of == ends || (of[0] == ends[1] && of[1] == ends[0]);
     });

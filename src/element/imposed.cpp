@@ -76,7 +76,7 @@ Point sum_of(const std::vector<ImposedTerm> &terms, bool with_exact, const FullM
 /// All values together, or those that are not exact.
 Part sum_part(const Scene &scene, bool with_exact) {
   return [fixed = scene.fixed, with_exact](const FullMu &mu, int boundary, const Point &x) {
-    return sum_of(fixed[static_cast<std::size_t>(boundary)].values, with_exact, mu, x);
+    return sum_of(fixed[boundary].values, with_exact, mu, x);
   };
 }
 
@@ -96,7 +96,7 @@ CellVector values_on(const FormDofs &dofs, const Part &part, const FullMu &mu, c
   for (Index i = 0; i < result.size(); ++i)
     if (const int boundary = cell.imposed_by[i]; boundary >= 0) {
       const auto node = static_cast<std::size_t>(i / dofs.components);
-      result[i] = part(mu, boundary, nodes[node])[static_cast<std::size_t>(i % dofs.components)];
+      result[i] = part(mu, boundary, nodes[node])[i % dofs.components];
     }
   return result;
 }
@@ -207,8 +207,7 @@ std::vector<Point> node_points(int dim, int degree, const Cell &cell) {
   std::vector<Point> points(cell.reference.begin(), cell.reference.begin() + dim + 1);
   const auto count = static_cast<std::size_t>(nodes_per_cell(dim, degree));
   for (std::size_t e = 0; points.size() < count; ++e) {
-    const Point &a = cell.reference[static_cast<std::size_t>(simplex_edges[e][0])],
-                &b = cell.reference[static_cast<std::size_t>(simplex_edges[e][1])];
+    const Point &a = cell.reference[simplex_edges[e][0]], &b = cell.reference[simplex_edges[e][1]];
     points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
   }
   return points;
@@ -266,10 +265,10 @@ Sum imposed_energy(const Scene &scene) {
 
 Point imposed_value(const Scene &scene, const FullMu &all_parameters, int boundary,
                     const Point &x) {
-  const FixedBoundary &fixed = scene.fixed[static_cast<std::size_t>(boundary)];
+  const FixedBoundary &fixed = scene.fixed[boundary];
   const Point value = sum_of(fixed.values, true, all_parameters, x);
   for (int c = 0; c < scene.components; ++c)
-    if (!std::isfinite(value[static_cast<std::size_t>(c)]))
+    if (!std::isfinite(value[c]))
       throw bad_input("the displacement imposed on the boundary '" + fixed.name +
                       "' is not finite at " + describe(scene.parameters, all_parameters));
   return value;

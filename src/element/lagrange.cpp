@@ -29,8 +29,7 @@ void lagrange_values(int dim, int degree, std::span<const double> barycentric,
   if (degree == 1) return;
   for (std::size_t e = 0; e < edges_of(dim); ++e) {
     const auto [i, j] = simplex_edges[e];
-    values[vertices + e] =
-        4 * barycentric[static_cast<std::size_t>(i)] * barycentric[static_cast<std::size_t>(j)];
+    values[vertices + e] = 4 * barycentric[i] * barycentric[j];
   }
 }
 
@@ -44,11 +43,9 @@ void lagrange_gradients(int dim, int degree, std::span<const double> barycentric
   if (degree == 1) return;
   for (std::size_t e = 0; e < edges_of(dim); ++e) {
     const auto [i, j] = simplex_edges[e];
-    const double at_i = 4 * barycentric[static_cast<std::size_t>(i)],
-                 at_j = 4 * barycentric[static_cast<std::size_t>(j)];
+    const double at_i = 4 * barycentric[i], at_j = 4 * barycentric[j];
     for (int c = 0; c < 3; ++c)
-      gradients[vertices + e][static_cast<std::size_t>(c)] =
-          at_i * simplex.gradients(j, c) + at_j * simplex.gradients(i, c);
+      gradients[vertices + e][c] = at_i * simplex.gradients(j, c) + at_j * simplex.gradients(i, c);
   }
 }
 

@@ -32,8 +32,7 @@ std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell
   const auto nodes = nodes_of(mesh, cell);
   std::vector<int> result;
   for (const int i : local) {
-    const auto node =
-        static_cast<std::size_t>(nodes[static_cast<std::size_t>(i / dofs.components)]);
+    const auto node = static_cast<std::size_t>(nodes[i / dofs.components]);
     result.push_back(dofs.imposed_by[node * static_cast<std::size_t>(dofs.components) +
                                      static_cast<std::size_t>(i % dofs.components)]);
   }
@@ -166,8 +165,8 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    cell_rows(mesh, dofs, cell, rows);
                    for (const int i : local)
-                     RBVI_CALL(VecSetValue(vector, rows[static_cast<std::size_t>(i)],
-                                           weighted.weight * *values++, ADD_VALUES));
+                     RBVI_CALL(
+                         VecSetValue(vector, rows[i], weighted.weight * *values++, ADD_VALUES));
                  });
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));
@@ -189,21 +188,19 @@ Vector product_with(const std::vector<WeightedForm> &forms, const FullMu &mu, co
                     const Dofs &dofs, const MappedVertices &mapped, const Vector &field) {
   Vector result = Vector::Zero(field.size());
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, mapped,
-                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
-                   const auto nodes = nodes_of(mesh, cell);
-                   std::vector<Index> at;
-                   for (const int i : local)
-                     at.push_back(Index{nodes[static_cast<std::size_t>(i / dofs.components)]} *
-                                      dofs.components +
-                                  i % dofs.components);
-                   const Vector in = field(at);
-                   for (const Index i : at) {
-                     result[i] +=
-                         weighted.weight * in.dot(Eigen::Map<const Vector>(values, in.size()));
-                     values += in.size();
-                   }
-                 });
+    visit_values(
+        *weighted.form, mu, mesh, dofs, mapped,
+        [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+          const auto nodes = nodes_of(mesh, cell);
+          std::vector<Index> at;
+          for (const int i : local)
+            at.push_back(Index{nodes[i / dofs.components]} * dofs.components + i % dofs.components);
+          const Vector in = field(at);
+          for (const Index i : at) {
+            result[i] += weighted.weight * in.dot(Eigen::Map<const Vector>(values, in.size()));
+            values += in.size();
+          }
+        });
   return result;
 }
 

@@ -14,16 +14,16 @@ void share_with_ghosts(const Mesh &mesh, std::vector<PetscInt> &first_row) {
   if (ranks_of(mesh.comm) == 1) return;
   PetscInt begin = 0, end = 0;
   RBVI_CALL(DMPlexGetChart(mesh.dm.get(), &begin, &end));
-  std::vector<PetscInt> by_point(static_cast<std::size_t>(end), -1);
+  std::vector<PetscInt> by_point(end, -1);
   for (std::size_t v = 0; v < first_row.size(); ++v)
-    by_point[static_cast<std::size_t>(mesh.dm_point[v])] = first_row[v];
+    by_point[mesh.dm_point[v]] = first_row[v];
   PetscSF sf = nullptr;
   RBVI_CALL(DMGetPointSF(mesh.dm.get(), &sf));
   const std::vector<PetscInt> roots = by_point;
   RBVI_CALL(PetscSFBcastBegin(sf, MPIU_INT, roots.data(), by_point.data(), MPI_REPLACE));
   RBVI_CALL(PetscSFBcastEnd(sf, MPIU_INT, roots.data(), by_point.data(), MPI_REPLACE));
   for (std::size_t v = 0; v < first_row.size(); ++v)
-    first_row[v] = by_point[static_cast<std::size_t>(mesh.dm_point[v])];
+    first_row[v] = by_point[mesh.dm_point[v]];
 }
 
 /// Per local node * components + component.

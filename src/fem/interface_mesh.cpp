@@ -41,7 +41,7 @@ std::vector<std::size_t> nodes_of_cells(const Mesh &mesh, const std::vector<Seen
   std::vector<bool> seen(mesh.points.size(), false);
   for (const SeenCell &cell : mine)
     for (std::size_t i = 0; i < cell.nodes.size() && cell.nodes[i] >= 0; ++i)
-      seen[static_cast<std::size_t>(cell.nodes[i])] = true;
+      seen[cell.nodes[i]] = true;
   std::vector<std::size_t> nodes;
   for (std::size_t node = 0; node < seen.size(); ++node)
     if (seen[node]) nodes.push_back(node);
@@ -84,7 +84,7 @@ SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<See
   for (const SeenCell &cell : mine) {
     packed.insert(packed.end(), {cell.number, cell.edge});
     for (std::size_t i = 0; i < per_cell; ++i)
-      packed.push_back(mesh.natural_node[static_cast<std::size_t>(cell.nodes[i])]);
+      packed.push_back(mesh.natural_node[cell.nodes[i]]);
   }
   packed = gather_all(mesh.comm, packed, MPIU_INT);
   for (std::size_t at = 0; at < packed.size(); at += 2 + per_cell) {
@@ -132,10 +132,9 @@ Found find_region(const Mesh &mesh, const Dofs &dofs, const std::string &name) {
 /// Local edge of a triangle whose nodes are all on the boundary; -1: none.
 int edge_on(const std::vector<bool> &boundary, const std::array<int, most_nodes> &nodes,
             int degree) {
-  const auto on = [&](std::size_t i) { return boundary[static_cast<std::size_t>(nodes[i])]; };
+  const auto on = [&](std::size_t i) { return boundary[nodes[i]]; };
   for (std::size_t e = 0; e < 3; ++e)
-    if (on(static_cast<std::size_t>(simplex_edges[e][0])) &&
-        on(static_cast<std::size_t>(simplex_edges[e][1])) && (degree == 1 || on(3 + e)))
+    if (on(simplex_edges[e][0]) && on(simplex_edges[e][1]) && (degree == 1 || on(3 + e)))
       return static_cast<int>(e);
   return -1;
 }
@@ -149,10 +148,8 @@ Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const std::string &b
   SeenCells seen = gather_cells(mesh, dofs, mine);
   if (seen.cells.empty()) throw bad_input("no cell has an edge on the boundary '" + boundary + "'");
   std::ranges::sort(seen.cells, {}, [&](const SeenCell &cell) {
-    const auto x = [&](int i) {
-      return seen.points[static_cast<std::size_t>(cell.nodes[static_cast<std::size_t>(i)])][0];
-    };
-    const auto [a, b] = simplex_edges[static_cast<std::size_t>(cell.edge)];
+    const auto x = [&](int i) { return seen.points[cell.nodes[i]][0]; };
+    const auto [a, b] = simplex_edges[cell.edge];
     return x(a) + x(b);
   });
   return found_cells(mesh, dofs, std::move(seen));
@@ -172,7 +169,7 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
   std::vector<int> components = entities.components;
   const bool sees_all = components.empty(); // then it takes fixed nodes into account
   if (sees_all) {
-    components.resize(static_cast<std::size_t>(dofs.components));
+    components.resize(dofs.components);
     std::iota(components.begin(), components.end(), 0);
   }
   Found found;
@@ -259,7 +256,7 @@ using Edges = std::map<std::pair<PetscInt, PetscInt>, const ContactRecipe *>;
 void claim_edges(const Found &found, const ContactRecipe &contact, Edges &edges) {
   for (std::size_t e = 0; e < found.mesh.edges.size(); ++e) {
     const int *nodes = found.mesh.nodes_of(static_cast<Index>(e));
-    const auto [i, j] = simplex_edges[static_cast<std::size_t>(found.mesh.edges[e])];
+    const auto [i, j] = simplex_edges[found.mesh.edges[e]];
     const auto a = static_cast<std::size_t>(nodes[i]), b = static_cast<std::size_t>(nodes[j]);
     const auto [known, is_new] =
         edges.emplace(std::minmax({found.natural[a], found.natural[b]}), &contact);
@@ -294,8 +291,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       if (const auto dof = static_cast<std::size_t>(at->second);
           !is_new && dof < first.back() && constrains(contact)) {
         const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
-        throw shared_displacement(scene.contacts[static_cast<std::size_t>(other)], contact,
-                                  found.mesh.points[i / components],
+        throw shared_displacement(scene.contacts[other], contact, found.mesh.points[i / components],
                                   static_cast<int>(i % components));
       }
       if (is_new) natural_dofs.push_back(natural);

@@ -9,7 +9,7 @@ namespace {
 double displacement(int dim, int mode, int component, const Point &x) {
   if (mode < dim) return mode == component ? 1 : 0;
   const int first = (mode - dim) % 3, second = (first + 1) % 3;
-  const auto at = [&](int i) { return x[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) { return x[i]; };
   if (component == first) return -at(second);
   return component == second ? at(first) : 0;
 }

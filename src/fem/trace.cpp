@@ -21,12 +21,12 @@ Trace make_trace(const Dofs &dofs, const std::vector<PetscInt> &natural) {
 }
 
 Trace part_of(const Trace &trace, const std::vector<Index> &dofs) {
-  std::vector<PetscInt> number(static_cast<std::size_t>(trace.size), -1);
+  std::vector<PetscInt> number(trace.size, -1);
   for (std::size_t k = 0; k < dofs.size(); ++k)
-    number[static_cast<std::size_t>(dofs[k])] = static_cast<PetscInt>(k);
+    number[dofs[k]] = static_cast<PetscInt>(k);
   Trace part{trace.comm, static_cast<PetscInt>(dofs.size()), {}, {}};
   for (std::size_t k = 0; k < trace.index.size(); ++k)
-    if (const PetscInt at = number[static_cast<std::size_t>(trace.index[k])]; at >= 0) {
+    if (const PetscInt at = number[trace.index[k]]; at >= 0) {
       part.local_row.push_back(trace.local_row[k]);
       part.index.push_back(at);
     }
@@ -34,9 +34,9 @@ Trace part_of(const Trace &trace, const std::vector<Index> &dofs) {
 }
 
 std::vector<PetscInt> global_rows(const Trace &trace, PetscInt first) {
-  std::vector<PetscInt> rows(static_cast<std::size_t>(trace.size), 0);
+  std::vector<PetscInt> rows(trace.size, 0);
   for (std::size_t k = 0; k < trace.index.size(); ++k)
-    rows[static_cast<std::size_t>(trace.index[k])] = first + trace.local_row[k];
+    rows[trace.index[k]] = first + trace.local_row[k];
   over_ranks(trace.comm, MPI_SUM, rows);
   return rows;
 }

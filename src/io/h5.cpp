@@ -202,7 +202,7 @@ void H5Writer::commit(const Path &path, const std::string &kind, int schema) {
   if (!impl_->disk) {
     const ssize_t size = H5Fget_file_image(file, nullptr, 0);
     if (size < 0) throw failure("HDF5 cannot hand out the image of " + path.string());
-    std::string image(static_cast<std::size_t>(size), '\0');
+    std::string image(size, '\0');
     H5Fget_file_image(file, image.data(), image.size());
     // HDF5 1.10 leaves the user block out of the image; it is not documented whether others do.
     const std::size_t start = image.find(hdf5_signature);

@@ -38,7 +38,7 @@ double at_fraction(const Parameter &p, double t) {
 
 /// "9,9" for two parameters.
 std::string example_counts(const ParameterSpace &space) {
-  return joined(std::vector<std::string>(static_cast<std::size_t>(space.size()), "9"), ",");
+  return joined(std::vector<std::string>(space.size(), "9"), ",");
 }
 
 Generator grid(const ParameterSpace &space, const std::string &text) {
@@ -51,8 +51,7 @@ Generator grid(const ParameterSpace &space, const std::string &text) {
   std::vector<int> counts;
   double total = 1;
   for (int i = 0; i < space.size(); ++i) {
-    counts.push_back(
-        parse_count(entries[static_cast<std::size_t>(i)], "grid count of " + space.at(i).name));
+    counts.push_back(parse_count(entries[i], "grid count of " + space.at(i).name));
     total *= counts.back();
   }
   if (total > largest_set)
@@ -137,7 +136,7 @@ private:
     return false;
   }
   void read_header(const std::string &line) {
-    std::vector<bool> found(static_cast<std::size_t>(space_.size()), false);
+    std::vector<bool> found(space_.size(), false);
     for (const std::string &field : csv_fields(line)) {
       const std::string name = trimmed(field);
       const std::optional<std::size_t> i = find_free(space_, name);
@@ -153,7 +152,7 @@ private:
       throw bad_input("the header must name every free parameter: " + names_of(space_));
   }
   Mu read_row(const std::string &line) {
-    row_ = {"", std::vector<std::string>(static_cast<std::size_t>(space_.size()))};
+    row_ = {"", std::vector<std::string>(space_.size())};
     const std::vector<std::string> entries = csv_fields(line);
     for (std::size_t k = 0; k < std::min(entries.size(), columns_.size()); ++k)
       if (columns_[k]) row_.parameters[*columns_[k]] = trimmed(entries[k]);
@@ -161,7 +160,7 @@ private:
     if (entries.size() != columns_.size())
       throw bad_input(std::to_string(entries.size()) + " entries under " +
                       std::to_string(columns_.size()) + " columns");
-    Mu mu(static_cast<std::size_t>(space_.size()));
+    Mu mu(space_.size());
     for (std::size_t k = 0; k < columns_.size(); ++k)
       if (columns_[k])
         mu[*columns_[k]] =

@@ -48,7 +48,7 @@ Contents contents_of(const Path &path) {
   Contents found;
   found.block.resize(seal_size);
   in.read(found.block.data(), seal_size);
-  found.block.resize(static_cast<std::size_t>(in.gcount()));
+  found.block.resize(in.gcount());
   found.length = found.block.size();
   std::vector<char> piece(std::size_t{1} << 20);
   while (in.good() && !in.bad()) {

@@ -21,14 +21,14 @@ void LazyColumns::require(const std::vector<Index> &which) {
                           std::min(h_.rows(), std::max(count_ + count, 2 * h_.cols())));
   h_.middleCols(count_, count) = received;
   for (const Index i : fresh)
-    slot_[at(i)] = count_++;
+    slot_[i] = count_++;
 }
 
 Matrix LazyColumns::block(const std::vector<Index> &active) const {
   const Index count = static_cast<Index>(active.size());
   Matrix result(count, count);
   for (Index k = 0; k < count; ++k)
-    result.col(k) = column(active[at(k)])(active);
+    result.col(k) = column(active[k])(active);
   return result;
 }
 

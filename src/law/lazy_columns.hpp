@@ -1,7 +1,6 @@
 // The columns of H received so far, in order of arrival: each is asked for once.
 #pragma once
 
-#include "index.hpp"
 #include "rbvi/law/lcp.hpp"
 
 #include <utility>
@@ -11,7 +10,7 @@ namespace rbvi {
 
 class LazyColumns {
 public:
-  LazyColumns(const ColumnSource &source, Index n) : source_(source), h_(n, 0), slot_(at(n), -1) {}
+  LazyColumns(const ColumnSource &source, Index n) : source_(source), h_(n, 0), slot_(n, -1) {}
 
   /// Asks for those that are missing, in one call. Throws failure if what comes is of the wrong
   /// size or not finite.
@@ -25,7 +24,7 @@ public:
   int count() const { return static_cast<int>(count_); }
 
 private:
-  Index slot(Index i) const { return slot_[at(i)]; }
+  Index slot(Index i) const { return slot_[i]; }
   const ColumnSource &source_;
   Matrix h_;
   std::vector<Index> slot_;

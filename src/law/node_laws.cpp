@@ -1,6 +1,5 @@
 #include "rbvi/law/node_laws.hpp"
 
-#include "index.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <cmath>
@@ -15,19 +14,19 @@ void FrictionBound::check() const {
 }
 
 std::vector<FrictionBound> bounds_per_node(const std::vector<FrictionBound> &bounds, Index nodes) {
-  if (bounds.size() != 1 && bounds.size() != at(nodes))
+  if (bounds.size() != 1 && std::ssize(bounds) != nodes)
     throw failure("laws of contact: " + std::to_string(bounds.size()) +
                   " bounds of friction instead of " + std::to_string(nodes));
   for (const FrictionBound &bound : bounds)
     bound.check();
-  return bounds.size() == 1 ? std::vector(at(nodes), bounds.front()) : bounds;
+  return bounds.size() == 1 ? std::vector(nodes, bounds.front()) : bounds;
 }
 
 std::vector<FrictionBound> bounds_at(const std::vector<FrictionBound> &bounds,
                                      const std::vector<Index> &nodes) {
   std::vector<FrictionBound> result;
   for (const Index j : nodes)
-    result.push_back(bounds[at(j)]);
+    result.push_back(bounds[j]);
   return result;
 }
 
@@ -41,7 +40,7 @@ bool NodeLaws::has_tangents() const {
 
 bool NodeLaws::friction() const {
   for (Index i = 0; i < nodes(); ++i)
-    if (has_tangent(i) && (bound[at(i)].coefficient > 0 || bound[at(i)].threshold > 0)) return true;
+    if (has_tangent(i) && (bound[i].coefficient > 0 || bound[i].threshold > 0)) return true;
   return false;
 }
 
@@ -53,34 +52,34 @@ NodeLaws uniform_laws(Index nodes, int components, const FrictionBound &bound) {
     laws.normal.push_back(i);
     laws.tangent.push_back(components > 1 ? nodes + i * (components - 1) : -1);
   }
-  laws.bound.assign(at(nodes), bound);
+  laws.bound.assign(nodes, bound);
   return laws;
 }
 
 void append(const NodeLaws &part, NodeLaws &laws) {
   if (laws.nodes() == 0) laws.tangents = part.tangents;
   for (Index i = 0; i < part.nodes(); ++i) {
-    laws.normal.push_back(laws.rows + part.normal[at(i)]);
-    laws.tangent.push_back(part.has_tangent(i) ? laws.rows + part.tangent[at(i)] : -1);
-    laws.bound.push_back(part.bound[at(i)]);
+    laws.normal.push_back(laws.rows + part.normal[i]);
+    laws.tangent.push_back(part.has_tangent(i) ? laws.rows + part.tangent[i] : -1);
+    laws.bound.push_back(part.bound[i]);
     if (part.has_tangent(i)) laws.tangents = part.tangents;
   }
   laws.rows += part.rows;
 }
 
 void check(const NodeLaws &laws) {
-  std::vector<int> count(at(laws.rows), 0);
+  std::vector<int> count(laws.rows, 0);
   const auto take = [&](Index row) {
     if (row < 0 || row >= laws.rows) throw failure("laws of contact: a node has no such row");
-    ++count[at(row)];
+    ++count[row];
   };
   if (laws.tangents < 1 || laws.tangents > 2)
     throw failure("laws of contact: the dimension is not 2 or 3");
   for (Index i = 0; i < laws.nodes(); ++i) {
-    take(laws.normal[at(i)]);
+    take(laws.normal[i]);
     for (int k = 0; k < laws.tangents && laws.has_tangent(i); ++k)
-      take(laws.tangent[at(i)] + k);
-    laws.bound[at(i)].check();
+      take(laws.tangent[i] + k);
+    laws.bound[i].check();
   }
   if (std::ranges::any_of(count, [](int times) { return times != 1; }))
     throw failure("laws of contact: a row belongs to no node, or to two");
@@ -88,17 +87,17 @@ void check(const NodeLaws &laws) {
 
 Vector bounds_of(const NodeLaws &laws, const Vector &x) {
   return Vector::NullaryExpr(laws.nodes(), [&](Index i) {
-    return laws.has_tangent(i) ? laws.bound[at(i)].value(x[laws.normal[at(i)]]) : 0.0;
+    return laws.has_tangent(i) ? laws.bound[i].value(x[laws.normal[i]]) : 0.0;
   });
 }
 
 Vector admissible(const NodeLaws &laws, Vector x) {
   for (Index i = 0; i < laws.nodes(); ++i) {
-    double &normal = x[laws.normal[at(i)]];
+    double &normal = x[laws.normal[i]];
     normal = std::max(normal, 0.0);
     if (!laws.has_tangent(i)) continue;
-    auto tangential = x.segment(laws.tangent[at(i)], laws.tangents);
-    const double size = tangential.norm(), limit = laws.bound[at(i)].value(normal);
+    auto tangential = x.segment(laws.tangent[i], laws.tangents);
+    const double size = tangential.norm(), limit = laws.bound[i].value(normal);
     if (size > limit) tangential *= limit / size;
   }
   return x;

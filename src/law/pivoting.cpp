@@ -9,15 +9,15 @@ namespace rbvi::pivoting {
 void find_violations(BasicSolution &basic, const Vector &scaled_x, const Vector &terms,
                      double tolerance) {
   const double largest = scaled_x.size() > 0 ? scaled_x.cwiseAbs().maxCoeff() : 0.0;
-  std::vector<char> inside(at(basic.w.size()), 0);
+  std::vector<char> inside(basic.w.size(), 0);
   basic.violated.clear();
   for (Index k = 0; k < scaled_x.size(); ++k) {
-    const Index i = basic.active[at(k)];
-    inside[at(i)] = 1;
+    const Index i = basic.active[k];
+    inside[i] = 1;
     if (scaled_x[k] < -tolerance * largest) basic.violated.push_back(i);
   }
   for (Index i = 0; i < basic.w.size(); ++i)
-    if (inside[at(i)] == 0 && basic.w[i] < -tolerance * terms[i]) basic.violated.push_back(i);
+    if (inside[i] == 0 && basic.w[i] < -tolerance * terms[i]) basic.violated.push_back(i);
   std::sort(basic.violated.begin(), basic.violated.end());
 }
 

@@ -13,7 +13,6 @@
 // ends where the matrix is a P-matrix, or a convex problem with frozen bounds.
 #pragma once
 
-#include "index.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -35,7 +35,7 @@ std::vector<Facet> outer_facets(const SerialMesh &mesh) {
       Facet facet{-1, -1, -1};
       std::size_t count = 0;
       for (int i = 0; i <= mesh.dim; ++i)
-        if (i != opposite) facet[count++] = cell[at(i)];
+        if (i != opposite) facet[count++] = cell[i];
       all.push_back(sorted(facet));
     }
   std::sort(all.begin(), all.end());
@@ -47,7 +47,7 @@ std::vector<Facet> outer_facets(const SerialMesh &mesh) {
 
 std::string text_of(const Subject &s, const Point &x) {
   std::string text;
-  for (std::size_t c = 0; c < at(s.mesh.dim); ++c)
+  for (int c = 0; c < s.mesh.dim; ++c)
     text.append(c == 0 ? "(" : ", ").append(short_number(x[c]));
   return text.append(")");
 }
@@ -55,7 +55,7 @@ std::string text_of(const Subject &s, const Point &x) {
 std::string text_of(const Subject &s, const Facet &facet) {
   std::string text = "the facet";
   for (int i = 0; i < s.mesh.dim; ++i)
-    text.append(i == 0 ? " from " : " to ").append(text_of(s, s.mesh.points[at(facet[at(i)])]));
+    text.append(i == 0 ? " from " : " to ").append(text_of(s, s.mesh.points[facet[i]]));
   return text;
 }
 
@@ -63,15 +63,15 @@ Point centre_of(const SerialMesh &mesh, const int *vertices, int count) {
   Point centre{};
   for (int i = 0; i < count; ++i)
     for (std::size_t c = 0; c < 3; ++c)
-      centre[c] += mesh.points[at(vertices[i])][c] / count;
+      centre[c] += mesh.points[vertices[i]][c] / count;
   return centre;
 }
 
 /// Length of an edge, area of a triangle.
 double measure(const SerialMesh &mesh, const Facet &facet) {
-  const Point &a = mesh.points[at(facet[0])], &b = mesh.points[at(facet[1])];
+  const Point &a = mesh.points[facet[0]], &b = mesh.points[facet[1]];
   if (mesh.dim == 2) return distance(a, b);
-  const Point &c = mesh.points[at(facet[2])];
+  const Point &c = mesh.points[facet[2]];
   const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
   return 0.5 * std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
                           u[0] * v[1] - u[1] * v[0]);
@@ -80,7 +80,7 @@ double measure(const SerialMesh &mesh, const Facet &facet) {
 double measure(const SerialMesh &mesh, int cell) {
   std::array<Point, 4> vertices{};
   for (int i = 0; i <= mesh.dim; ++i)
-    vertices[at(i)] = mesh.points[at(mesh.cells[at(cell)][at(i)])];
+    vertices[i] = mesh.points[mesh.cells[cell][i]];
   return simplex(mesh.dim, vertices).volume;
 }
 
@@ -120,8 +120,8 @@ std::vector<int> vertices_of_part(const Subject &s, const MeshFact &fact) {
   std::vector<int> vertices;
   if (fact.part.empty() || is_region(s, fact.part)) {
     for (const int cell : cells_of(s, fact.part))
-      vertices.insert(vertices.end(), s.mesh.cells[at(cell)].begin(),
-                      s.mesh.cells[at(cell)].begin() + s.mesh.dim + 1);
+      vertices.insert(vertices.end(), s.mesh.cells[cell].begin(),
+                      s.mesh.cells[cell].begin() + s.mesh.dim + 1);
   } else {
     for (const Facet &facet : facets_of(s, fact.part))
       vertices.insert(vertices.end(), facet.begin(), facet.begin() + s.mesh.dim);
@@ -134,14 +134,14 @@ void check_place(const Subject &s, const MeshFact &fact) {
   double farthest = s.tolerance;
   int worst = -1;
   for (const int v : vertices_of_part(s, fact)) {
-    const double away = fact.distance(s.mesh.points[at(v)]);
+    const double away = fact.distance(s.mesh.points[v]);
     if (away <= farthest) continue;
     farthest = away;
     worst = v;
   }
   if (worst >= 0)
     refuse(s, fact,
-           "vertex " + text_of(s, s.mesh.points[at(worst)]) + " is " + short_number(farthest) +
+           "vertex " + text_of(s, s.mesh.points[worst]) + " is " + short_number(farthest) +
                " m away from it");
 }
 
@@ -149,15 +149,15 @@ void check_place(const Subject &s, const MeshFact &fact) {
 void check_region(const Subject &s, const MeshFact &fact) {
   std::vector<bool> inside(s.mesh.cells.size(), false);
   for (const int cell : s.mesh.region.at(fact.part))
-    inside[at(cell)] = true;
+    inside[cell] = true;
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if (inside[c]) continue;
     double deepest = 0, highest = -s.tolerance;
     int worst = -1;
     for (int i = 0; i <= s.mesh.dim; ++i) {
-      const double away = fact.distance(s.mesh.points[at(s.mesh.cells[c][at(i)])]);
+      const double away = fact.distance(s.mesh.points[s.mesh.cells[c][i]]);
       highest = std::max(highest, away);
-      if (away < deepest) worst = s.mesh.cells[c][at(i)];
+      if (away < deepest) worst = s.mesh.cells[c][i];
       deepest = std::min(deepest, away);
     }
     if (highest <= s.tolerance)
@@ -167,7 +167,7 @@ void check_region(const Subject &s, const MeshFact &fact) {
                  " is missing");
     if (deepest < -s.tolerance)
       refuse(s, fact,
-             "vertex " + text_of(s, s.mesh.points[at(worst)]) + " of a cell outside lies " +
+             "vertex " + text_of(s, s.mesh.points[worst]) + " of a cell outside lies " +
                  short_number(-deepest) + " m inside it: the edges of the mesh must fit its rim");
   }
 }
@@ -176,10 +176,10 @@ void check_region(const Subject &s, const MeshFact &fact) {
 bool lies_along(const Subject &s, const MeshFact &fact, const Facet &facet) {
   double longest = 0;
   for (int i = 0; i < s.mesh.dim; ++i) {
-    const Point &x = s.mesh.points[at(facet[at(i)])];
+    const Point &x = s.mesh.points[facet[i]];
     if (fact.distance(x) > s.tolerance) return false;
     for (int j = 0; j < i; ++j)
-      longest = std::max(longest, distance(x, s.mesh.points[at(facet[at(j)])]));
+      longest = std::max(longest, distance(x, s.mesh.points[facet[j]]));
   }
   return fact.distance(centre_of(s.mesh, facet.data(), s.mesh.dim)) <= 0.25 * longest;
 }
@@ -256,7 +256,7 @@ class CommonVertices {
 public:
   explicit CommonVertices(const Subject &s) : subject_(s) {}
   int of(int vertex) {
-    const Point &x = subject_.mesh.points[at(vertex)];
+    const Point &x = subject_.mesh.points[vertex];
     std::array<long long, 3> box{};
     for (std::size_t c = 0; c < 3; ++c)
       box[c] = std::llround(x[c] / (4 * subject_.tolerance));
@@ -266,7 +266,7 @@ public:
           const auto found = vertices_.find({box[0] + i, box[1] + j, box[2] + k});
           if (found == vertices_.end()) continue;
           for (const int other : found->second)
-            if (distance(x, subject_.mesh.points[at(other)]) <= subject_.tolerance) return other;
+            if (distance(x, subject_.mesh.points[other]) <= subject_.tolerance) return other;
         }
     vertices_[box].push_back(vertex);
     return vertex;
@@ -292,7 +292,7 @@ void check_glued(const Subject &s) {
     if (std::binary_search(apart.begin(), apart.end(), facet)) continue;
     Facet place{-1, -1, -1};
     for (int i = 0; i < s.mesh.dim; ++i)
-      place[at(i)] = common.of(facet[at(i)]);
+      place[i] = common.of(facet[i]);
     placed.emplace_back(sorted(place), facet);
   }
   std::sort(placed.begin(), placed.end());

@@ -33,13 +33,12 @@ struct StarForest {
 
 /// Tells the shell partitioner which cells go where; only the first rank has any.
 void prescribe_partition(DM dm, const std::vector<int> &part, int parts) {
-  std::vector<PetscInt> sizes(static_cast<std::size_t>(parts), 0), order(part.size());
+  std::vector<PetscInt> sizes(parts, 0), order(part.size());
   for (const int p : part)
-    ++sizes[static_cast<std::size_t>(p)];
+    ++sizes[p];
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](PetscInt x, PetscInt y) {
-    return part[static_cast<std::size_t>(x)] < part[static_cast<std::size_t>(y)];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](PetscInt x, PetscInt y) { return part[x] < part[y]; });
   PetscPartitioner partitioner = nullptr;
   RBVI_CALL(DMPlexGetPartitioner(dm, &partitioner));
   RBVI_CALL(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
@@ -101,7 +100,7 @@ void fill_vertices(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt b
   mesh.points = vertex_points(mesh.dm.get());
   for (PetscInt vertex = begin; vertex < end; ++vertex) {
     mesh.dm_point.push_back(vertex);
-    mesh.natural_node.push_back(original[static_cast<std::size_t>(vertex)] - mesh.total_cells);
+    mesh.natural_node.push_back(original[vertex] - mesh.total_cells);
   }
 }
 
@@ -112,12 +111,11 @@ void fill_middles(Mesh &mesh, const std::vector<PetscInt> &original, const EdgeP
   RBVI_CALL(DMPlexGetDepthStratum(mesh.dm.get(), 1, &begin, &end));
   for (PetscInt edge = begin; edge < end; ++edge) {
     const auto [i, j] = ends_of(mesh.dm.get(), edge, first_vertex);
-    const Point a = mesh.points[static_cast<std::size_t>(i)];
-    const Point b = mesh.points[static_cast<std::size_t>(j)];
+    const Point a = mesh.points[i];
+    const Point b = mesh.points[j];
     mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
     mesh.dm_point.push_back(edge);
-    mesh.natural_node.push_back(mesh.total_vertices + original[static_cast<std::size_t>(edge)] -
-                                edges.begin);
+    mesh.natural_node.push_back(mesh.total_vertices + original[edge] - edges.begin);
   }
 }
 
@@ -129,9 +127,9 @@ std::vector<bool> owned_elsewhere(const Mesh &mesh) {
   RBVI_CALL(DMGetPointSF(mesh.dm.get(), &shared));
   RBVI_CALL(PetscSFGetGraph(shared, nullptr, &leaves, &leaf, nullptr));
   RBVI_CALL(DMPlexGetChart(mesh.dm.get(), nullptr, &chart));
-  std::vector<bool> elsewhere(static_cast<std::size_t>(chart), false);
+  std::vector<bool> elsewhere(chart, false);
   for (PetscInt i = 0; i < leaves; ++i)
-    elsewhere[static_cast<std::size_t>(leaf != nullptr ? leaf[i] : i)] = true;
+    elsewhere[leaf != nullptr ? leaf[i] : i] = true;
   return elsewhere;
 }
 
@@ -141,7 +139,7 @@ std::vector<char> marked_cells(const SerialMesh &serial, const std::string &regi
   std::vector<char> marks(points, 0);
   if (points == 0 || !serial.region.contains(region)) return marks;
   for (const int cell : serial.region.at(region))
-    marks[static_cast<std::size_t>(cell)] = 1;
+    marks[cell] = 1;
   return marks;
 }
 
@@ -156,14 +154,14 @@ std::vector<char> marked_nodes(DM dm, const SerialMesh &serial,
   for (const SerialFacet &facet : facets)
     for (std::size_t i = 0; i < count; ++i) {
       const PetscInt vertex = first_vertex + facet.vertices[i];
-      marks[static_cast<std::size_t>(vertex)] = 1;
+      marks[vertex] = 1;
       for (std::size_t j = 0; depth > 1 && j < i; ++j) {
         const std::array<PetscInt, 2> ends{vertex, first_vertex + facet.vertices[j]};
         PetscInt edges = 0;
         const PetscInt *edge = nullptr;
         RBVI_CALL(DMPlexGetFullJoin(dm, 2, ends.data(), &edges, &edge));
         for (PetscInt k = 0; k < edges; ++k)
-          marks[static_cast<std::size_t>(edge[k])] = 1;
+          marks[edge[k]] = 1;
         RBVI_CALL(DMPlexRestoreJoin(dm, 2, ends.data(), &edges, &edge));
       }
     }
@@ -189,8 +187,8 @@ std::vector<CellFacet> own_facets(const Mesh &mesh,
     const auto end = whole.vertices.begin() + mesh.dim;
     for (int facet = 0; facet <= mesh.dim; ++facet)
       if (std::ranges::all_of(facet_nodes(mesh.dim, 1, facet), [&](int i) {
-            const int node = mesh.cells[found->second][static_cast<std::size_t>(i)];
-            const PetscInt vertex = mesh.natural_node[static_cast<std::size_t>(node)];
+            const int node = mesh.cells[found->second][i];
+            const PetscInt vertex = mesh.natural_node[node];
             return std::find(whole.vertices.begin(), end, vertex) != end;
           }))
         result.push_back({found->second, facet});
@@ -207,7 +205,7 @@ void fill_cells(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt firs
     for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i)
       local[i] = static_cast<int>(vertices[i] - first_vertex);
     mesh.cells.push_back(local);
-    mesh.natural_cell.push_back(original[static_cast<std::size_t>(cell)]);
+    mesh.natural_cell.push_back(original[cell]);
   }
   orient_cells(mesh.dim, mesh.points, mesh.cells);
 }
@@ -227,8 +225,7 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
   for (const auto &cell : mesh.cells) {
     std::array<int, 6> middles{-1, -1, -1, -1, -1, -1};
     for (std::size_t e = 0; e < edges; ++e) {
-      std::array<PetscInt, 2> ends{cell[static_cast<std::size_t>(simplex_edges[e][0])],
-                                   cell[static_cast<std::size_t>(simplex_edges[e][1])]};
+      std::array<PetscInt, 2> ends{cell[simplex_edges[e][0]], cell[simplex_edges[e][1]]};
       std::sort(ends.begin(), ends.end());
       middles[e] = middle.at(ends);
     }
@@ -272,7 +269,7 @@ void fill_nodes_and_cells(Mesh &mesh, const Migration &migration, const EdgePoin
   }
   const std::vector<bool> elsewhere = owned_elsewhere(mesh);
   for (const PetscInt point : mesh.dm_point)
-    mesh.owned_node.push_back(!elsewhere[static_cast<std::size_t>(point)]);
+    mesh.owned_node.push_back(!elsewhere[point]);
 }
 
 std::vector<bool> own_region(const Mesh &mesh, const std::vector<char> &marks) {
@@ -282,7 +279,7 @@ std::vector<bool> own_region(const Mesh &mesh, const std::vector<char> &marks) {
 std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
   std::vector<bool> result;
   for (const PetscInt point : mesh.dm_point)
-    result.push_back(marks[static_cast<std::size_t>(point)] != 0);
+    result.push_back(marks[point] != 0);
   return result;
 }
 

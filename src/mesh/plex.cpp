@@ -76,13 +76,13 @@ std::vector<Point> vertex_points(DM dm) {
   RBVI_CALL(DMPlexGetDepthStratum(dm, 0, &begin, &end));
   RBVI_CALL(DMGetCoordinatesLocal(dm, &coordinates));
   RBVI_CALL(DMGetCoordinateSection(dm, &section));
-  std::vector<Point> points(static_cast<std::size_t>(end - begin), Point{});
+  std::vector<Point> points(end - begin, Point{});
   const PetscScalar *values = nullptr;
   RBVI_CALL(VecGetArrayRead(coordinates, &values));
   for (PetscInt vertex = begin; vertex < end; ++vertex) {
     PetscInt offset = 0;
     RBVI_CALL(PetscSectionGetOffset(section, vertex, &offset));
-    std::copy_n(values + offset, dim, points[static_cast<std::size_t>(vertex - begin)].begin());
+    std::copy_n(values + offset, dim, points[vertex - begin].begin());
   }
   RBVI_CALL(VecRestoreArrayRead(coordinates, &values));
   return points;
@@ -106,9 +106,9 @@ void orient_cells(int dim, const std::vector<Point> &points,
   for (auto &cell : cells) {
     std::array<Point, 4> vertices{};
     for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
-      vertices[i] = points[static_cast<std::size_t>(cell[i])];
+      vertices[i] = points[cell[i]];
     if (simplex(dim, vertices).volume < 0)
-      std::swap(cell[static_cast<std::size_t>(dim) - 1], cell[static_cast<std::size_t>(dim)]);
+      std::swap(cell[static_cast<std::size_t>(dim) - 1], cell[dim]);
   }
 }
 

@@ -29,7 +29,7 @@ OrientedFacet facet_of(const SerialMesh &mesh, int cell, int opposite) {
   OrientedFacet facet{{-1, -1, -1}, opposite % 2 == 0, cell};
   std::size_t count = 0;
   for (int i = 0; i <= mesh.dim; ++i)
-    if (i != opposite) facet.sorted[count++] = mesh.cells[at(cell)][at(i)];
+    if (i != opposite) facet.sorted[count++] = mesh.cells[cell][i];
   // Insertion sort: every exchange of neighbours turns the parity.
   for (std::size_t i = 1; i < count; ++i)
     for (std::size_t j = i; j > 0 && facet.sorted[j] < facet.sorted[j - 1]; --j) {
@@ -50,7 +50,7 @@ void check_boundaries(const SerialMesh &mesh, const std::vector<OrientedFacet> &
           facets.begin(), facets.end(), facet,
           [](const OrientedFacet &f, const auto &vertices) { return f.sorted < vertices; });
       if (found != facets.end() && found->sorted == facet) continue;
-      const Point &x = mesh.points[at(facet[0])];
+      const Point &x = mesh.points[facet[0]];
       throw bad_input(source + ": a facet of '" + name + "' at (" + std::to_string(x[0]) + ", " +
                       std::to_string(x[1]) +
                       ") is on no cell: the cells beside it must have its nodes");
@@ -76,7 +76,7 @@ std::vector<bool> cells_in(const SerialMesh &mesh, const std::string &region) {
   std::vector<bool> in_region(mesh.cells.size(), false);
   if (mesh.region.contains(region))
     for (const int cell : mesh.region.at(region))
-      in_region[at(cell)] = true;
+      in_region[cell] = true;
   return in_region;
 }
 
@@ -86,7 +86,7 @@ std::vector<bool> interface_of(const SerialMesh &mesh, const std::string &region
   const std::vector<bool> in_region = cells_in(mesh, region);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (int i = 0; i <= mesh.dim; ++i)
-      (in_region[c] ? inside : outside)[at(mesh.cells[c][at(i)])] = true;
+      (in_region[c] ? inside : outside)[mesh.cells[c][i]] = true;
   for (std::size_t v = 0; v < inside.size(); ++v)
     inside[v] = inside[v] && outside[v];
   return inside;
@@ -123,9 +123,9 @@ void check_volumes(const SerialMesh &mesh, const std::string &source) {
     std::array<Point, 4> vertices{};
     double longest = 0;
     for (int i = 0; i <= mesh.dim; ++i) {
-      vertices[at(i)] = mesh.points[at(mesh.cells[c][at(i)])];
+      vertices[i] = mesh.points[mesh.cells[c][i]];
       for (int j = 0; j < i; ++j) {
-        longest = std::max(longest, distance(vertices[at(i)], vertices[at(j)]));
+        longest = std::max(longest, distance(vertices[i], vertices[j]));
       }
     }
     if (!(simplex(mesh.dim, vertices).volume > 1e-12 * std::pow(longest, mesh.dim)))
@@ -170,7 +170,7 @@ void snap_curves(SerialMesh &mesh, const Scene &scene) {
     if (const auto facets = mesh.boundary.find(curved); facets != mesh.boundary.end())
       for (const auto &facet : facets->second)
         for (int i = 0; i < mesh.dim; ++i)
-          on_curve[at(facet[at(i)])] = true;
+          on_curve[facet[i]] = true;
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     if (on_curve[v]) mesh.points[v] = scene.snap(mesh.points[v]);
 }
@@ -181,12 +181,12 @@ void balance_inclusion(SerialMesh &mesh, const Scene &scene) {
   // At each vertex the lengths of the halves of its edges, and what the polygon lacks there.
   std::vector<double> length(mesh.points.size(), 0), lacks(length);
   for (const auto &ends : rim_edges(mesh, inclusion.region)) {
-    const double chord = distance(mesh.points[at(ends[0])], mesh.points[at(ends[1])]);
+    const double chord = distance(mesh.points[ends[0]], mesh.points[ends[1]]);
     const double angle = 2 * std::asin(chord / (2 * inclusion.radius));
     const double segment = inclusion.radius * inclusion.radius * (angle - std::sin(angle)) / 2;
     for (const int v : ends) {
-      length[at(v)] += chord / 2;
-      lacks[at(v)] += segment / 2;
+      length[v] += chord / 2;
+      lacks[v] += segment / 2;
     }
   }
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
@@ -235,7 +235,7 @@ std::vector<SerialFacet> facets_with_cells(const SerialMesh &mesh, const std::st
     if (!number.emplace(sorted(vertices), facets.size()).second) continue;
     facets.push_back({-1, vertices});
     for (const int vertex : vertices)
-      if (vertex >= 0) on_boundary[static_cast<std::size_t>(vertex)] = 1;
+      if (vertex >= 0) on_boundary[vertex] = 1;
   }
   for (std::size_t cell = 0; cell < mesh.cells.size(); ++cell)
     for (std::size_t left_out = 0; left_out < corners; ++left_out) {
@@ -243,7 +243,7 @@ std::vector<SerialFacet> facets_with_cells(const SerialMesh &mesh, const std::st
       bool may_be_one = true;
       for (std::size_t i = 0; i + 1 < corners; ++i) {
         vertices[i] = mesh.cells[cell][i < left_out ? i : i + 1];
-        may_be_one = may_be_one && on_boundary[static_cast<std::size_t>(vertices[i])] != 0;
+        may_be_one = may_be_one && on_boundary[vertices[i]] != 0;
       }
       if (!may_be_one) continue;
       const auto found = number.find(sorted(vertices));

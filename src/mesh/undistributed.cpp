@@ -94,7 +94,7 @@ SerialMesh undistributed_mesh(const Scene &scene, const MeshOptions &options,
       options.file.empty() ? "the built-in mesh" : "mesh file '" + options.file + "'";
   SerialMesh mesh;
   if (options.levels) {
-    mesh = options.levels->at(static_cast<std::size_t>(options.refine));
+    mesh = options.levels->at(options.refine);
   } else {
     mesh = options.file.empty() ? generated_mesh(scene) : read_gmsh(options.file, scene);
     check_mesh(mesh, source);

@@ -18,11 +18,11 @@ namespace {
 /// of its row, one after the other.
 std::vector<double> gathered(MPI_Comm comm, const std::vector<double> &records) {
   const int count = static_cast<int>(records.size());
-  std::vector<int> counts(static_cast<std::size_t>(ranks_of(comm))), offsets(counts.size(), 0);
+  std::vector<int> counts(ranks_of(comm)), offsets(counts.size(), 0);
   MPI_Gather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, 0, comm);
   std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
   std::vector<double> all;
-  if (rank_of(comm) == 0) all.resize(static_cast<std::size_t>(offsets.back() + counts.back()));
+  if (rank_of(comm) == 0) all.resize(offsets.back() + counts.back());
   MPI_Gatherv(records.data(), count, MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
               MPI_DOUBLE, 0, comm);
   return all;
@@ -72,11 +72,11 @@ std::vector<int> gather_cells(const Mesh &mesh) {
     records.push_back(static_cast<double>(mesh.natural_cell[k]));
     const auto nodes = nodes_of(mesh, k);
     for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
-      records.push_back(static_cast<double>(mesh.natural_node[static_cast<std::size_t>(nodes[i])]));
+      records.push_back(static_cast<double>(mesh.natural_node[nodes[i]]));
   }
   const std::vector<double> all = gathered(mesh.comm, records);
   if (rank_of(mesh.comm) != 0) return {};
-  std::vector<int> cells(static_cast<std::size_t>(mesh.total_cells * per_cell));
+  std::vector<int> cells(mesh.total_cells * per_cell);
   for (auto record = all.begin(); record != all.end(); record += per_cell + 1)
     std::transform(record + 1, record + 1 + per_cell,
                    cells.begin() + static_cast<std::ptrdiff_t>(*record) * per_cell,
@@ -99,7 +99,7 @@ std::vector<int> gather_imposed(const Problem &problem) {
   }
   const std::vector<double> all = gathered(problem.comm(), records);
   if (rank_of(problem.comm()) != 0) return {};
-  std::vector<int> imposed_by(static_cast<std::size_t>(dofs.total), -1);
+  std::vector<int> imposed_by(dofs.total, -1);
   for (auto record = all.begin(); record != all.end(); record += 2)
     imposed_by[static_cast<std::size_t>(*record)] = static_cast<int>(record[1]);
   return imposed_by;
@@ -193,8 +193,7 @@ void gather_fields(const Problem &problem, const LinearBasis &basis, ReducedMode
   model.mesh_points.resize(mesh.total_nodes, mesh.dim); // on the first rank they are there
   model.mesh_cells.resize(
       static_cast<std::size_t>(mesh.total_cells * nodes_per_cell(mesh.dim, mesh.degree)));
-  if (imposes_values(problem.scene()))
-    model.imposed_by.resize(static_cast<std::size_t>(problem.dofs().total));
+  if (imposes_values(problem.scene())) model.imposed_by.resize(problem.dofs().total);
   share(model.mesh_points, MPI_DOUBLE);
   share(model.mesh_cells, MPI_INT);
   share(model.imposed_by, MPI_INT);

@@ -141,7 +141,7 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
       select_collocation_nodes(problems, law.basis.normal(nodes, Eigen::all), law.basis.tangential,
                                w.block(normal, normal, tangential, tangential), options);
   for (int &node : selected.nodes)
-    node = static_cast<int>(nodes[static_cast<std::size_t>(node)]);
+    node = static_cast<int>(nodes[node]);
   law.basis.nodes = selected.nodes;
   return selected;
 }

@@ -44,7 +44,7 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   result.model = timed(result.stages, stage::projection,
                        [&] { return project(problem, samples, result.affine, result.bases); });
   const Stage stage(result.stages, stage::contact_curve);
-  const double left = result.bases.pod.error[static_cast<std::size_t>(result.bases.modes)];
+  const double left = result.bases.pod.error[result.bases.modes];
   Matrix coefficients;
   if (options.curve.rule == CurveRule::interpolated || layer_of(problem.contact()).follows_state())
     coefficients = coefficients_of(problem, samples, result.bases.pod.basis);

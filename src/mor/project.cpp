@@ -203,7 +203,7 @@ void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
                        const AffineOperators &affine, Mat basis, ReducedModel &model) {
   const bool with_a = model.a_change.rank() == 0;
   for (const int p : sampled_snapshots(affine, with_a)) {
-    const Operators &op = problem.assemble(samples[static_cast<std::size_t>(p)].mu);
+    const Operators &op = problem.assemble(samples[p].mu);
     if (with_a && uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),
                  model.a.reduced.rightCols(affine.a.size()));
@@ -223,7 +223,7 @@ void project_exact(Problem &problem, const std::vector<Sample> &samples,
   const Index n = model.primal_size();
   std::vector<Mu> set;
   for (const int p : affine.a.snapshots)
-    set.push_back(samples[static_cast<std::size_t>(p)].mu);
+    set.push_back(samples[p].mu);
   if (model.generators > 0 && !model.law && !model.online_enriched)
     model.a_change = stiffness_change(problem, affine.a, set, basis);
   model.a.reduced.setZero(n * (n + 1) / 2, model.a_change.rank() > 0 ? 1 : model.a.size());
@@ -246,19 +246,18 @@ void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
   constexpr int layers = 2;
   if (model.law || model.b.size() == 0 || model.contact_trace.size() < large) return;
   const auto nonzero = [](const auto &row) { return (row.array() != 0).any(); };
-  std::vector<bool> near(static_cast<std::size_t>(model.dual_basis.rows()));
+  std::vector<bool> near(model.dual_basis.rows());
   for (Index row = 0; row < model.dual_basis.rows(); ++row)
-    near[static_cast<std::size_t>(row)] =
-        nonzero(model.dual_basis.row(row).head(model.generators - model.free_modes)) &&
-        !nonzero(model.dual_basis.row(row).tail(model.free_modes));
+    near[row] = nonzero(model.dual_basis.row(row).head(model.generators - model.free_modes)) &&
+                !nonzero(model.dual_basis.row(row).tail(model.free_modes));
   for (int layer = 0; layer < layers; ++layer)
     add_neighbours(near, problem.w_product());
   Operators op;
   problem.assemble_contact(any, op);
-  std::vector<bool> known(static_cast<std::size_t>(model.contact_trace.rows()), false);
+  std::vector<bool> known(model.contact_trace.rows(), false);
   for (Index row = 0; row < op.b.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
-      if (near[static_cast<std::size_t>(row)]) known[static_cast<std::size_t>(entry.col())] = true;
+      if (near[row]) known[entry.col()] = true;
   for (std::size_t dof = 0; dof < known.size(); ++dof)
     if (known[dof]) model.trace_dofs.push_back(static_cast<int>(dof));
   model.contact_trace = model.contact_trace(model.trace_dofs, Eigen::all).eval();

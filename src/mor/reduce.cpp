@@ -64,14 +64,14 @@ Matrix loads_at(Problem &problem, const ContactPoint &at, const Matrix &dual) {
 /// Contact dofs that b couples with the dual basis at some training mu. Collective.
 std::vector<Index> coupled_dofs(Problem &problem, const Matrix &dual,
                                 const std::vector<ContactPoint> &training) {
-  std::vector<PetscInt> coupled(static_cast<std::size_t>(problem.trace().size), 0);
+  std::vector<PetscInt> coupled(problem.trace().size, 0);
   Operators op;
   take_turns(problem.comm(), training.size(), [&](std::size_t p) {
     problem.assemble_contact(training[p].mu, op, training[p].state);
     for (Index i = 0; i < dual.rows(); ++i) {
       if ((dual.row(i).array() == 0).all()) continue;
       for (SparseMatrix::InnerIterator entry(op.b, i); entry; ++entry)
-        if (entry.value() != 0) coupled[static_cast<std::size_t>(entry.col())] = 1;
+        if (entry.value() != 0) coupled[entry.col()] = 1;
     }
   });
   over_ranks(problem.comm(), MPI_MAX, coupled);

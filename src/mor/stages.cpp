@@ -73,7 +73,7 @@ StageRow pod_row(const ReduceOptions &options, const Reduction *made) {
   if (made == nullptr)
     return {stage::pod, "displacements to " + short_number(options.pod.tolerance)};
   const ReducedBases &bases = made->bases;
-  const double error = bases.pod.error[static_cast<std::size_t>(bases.modes)];
+  const double error = bases.pod.error[bases.modes];
   return {stage::pod, "N = " + counted(bases.modes, "mode") + ", error " + short_number(error)};
 }
 

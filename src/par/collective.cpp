@@ -48,7 +48,7 @@ void collectively(MPI_Comm comm, const std::function<void()> &work) {
   std::array<int, 2> head{rank == first ? static_cast<int>(mine->status()) : 0,
                           static_cast<int>(message.size())};
   MPI_Bcast(head.data(), 2, MPI_INT, first, comm);
-  message.resize(static_cast<std::size_t>(head[1]));
+  message.resize(head[1]);
   MPI_Bcast(message.data(), head[1], MPI_CHAR, first, comm);
   throw Error(static_cast<Status>(head[0]), message);
 }

@@ -60,7 +60,7 @@ int SharedQueue::take() {
   if (first_ == end_) {
     const std::int64_t run = fetch_and(MPI_SUM, 1, runs_taken, window_);
     if (run + 1 >= std::ssize(runs_)) return -1;
-    first_ = runs_[static_cast<std::size_t>(run)];
+    first_ = runs_[run];
     end_ = runs_[static_cast<std::size_t>(run) + 1];
   }
   began_ = now();
@@ -88,7 +88,7 @@ void SharedQueue::stop() {
 }
 
 QueueState SharedQueue::state() const {
-  std::vector<std::int64_t> words(static_cast<std::size_t>(began + groups_.count()));
+  std::vector<std::int64_t> words(began + groups_.count());
   const int count = static_cast<int>(words.size()) - 1; // all but the first
   MPI_Get_accumulate(nullptr, 0, MPI_INT64_T, words.data() + stopped, count, MPI_INT64_T, 0,
                      stopped, count, MPI_INT64_T, MPI_NO_OP, window_);

@@ -170,8 +170,8 @@ void check_motion(const SampledTerm &of, const FullMu &mu, const Vector &mapped)
     Vector motion(rows);
     for (Index i = 0; i < rows; ++i)
       motion[i] = asked("the motion of scene " + scene.name, [&] {
-        return scene.motion(mu, nodes[static_cast<std::size_t>(i / scene.components)]);
-      })[static_cast<std::size_t>(i % scene.components)];
+        return scene.motion(mu, nodes[i / scene.components]);
+      })[i % scene.components];
     const Eigen::Map<const Matrix> values(mapped.data() + static_cast<Index>(k) * rows * rows, rows,
                                           rows);
     const double force = (values * motion).lpNorm<Eigen::Infinity>();

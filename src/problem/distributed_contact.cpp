@@ -19,7 +19,7 @@ WantedNodes own_nodes(const DualSpace &dual, const std::vector<PetscInt> &natura
     if (dual.vertices.empty()) {
       own.push_back(i * ranks / dual.nodes() == rank);
     } else {
-      const auto vertex = static_cast<std::size_t>(dual.vertices[static_cast<std::size_t>(i)]);
+      const auto vertex = static_cast<std::size_t>(dual.vertices[i]);
       own.push_back(of_rank.contains(natural[vertex]));
     }
   return own;
@@ -39,8 +39,7 @@ SparseMatrix rows_at(const SparseMatrix &matrix, const std::vector<Index> &rows)
   SparseMatrix result(std::ssize(rows), matrix.cols());
   for (Index k = 0; k < result.rows(); ++k) {
     result.startVec(k);
-    for (SparseMatrix::InnerIterator entry(matrix, rows[static_cast<std::size_t>(k)]); entry;
-         ++entry)
+    for (SparseMatrix::InnerIterator entry(matrix, rows[k]); entry; ++entry)
       result.insertBack(k, entry.col()) = entry.value();
   }
   result.finalize();
@@ -54,7 +53,7 @@ Handle<Mat> matrix_of(MPI_Comm comm, const SparseMatrix &own, const std::vector<
   std::vector<PetscScalar> value;
   for (Index row = 0; row < own.rows(); ++row) {
     for (SparseMatrix::InnerIterator entry(own, row); entry; ++entry) {
-      column.push_back(columns[static_cast<std::size_t>(entry.col())]);
+      column.push_back(columns[entry.col()]);
       value.push_back(entry.value());
     }
     first.push_back(static_cast<PetscInt>(column.size()));
@@ -81,7 +80,7 @@ DualLayout share_dual(const Contact &contact, const InterfacePlaces &places, con
     const DualSpace &dual = contact.interfaces[i]->dual();
     layout.own.push_back(own_nodes(dual, places.natural_nodes[i], of_rank, mesh.comm));
     for (Index node = 0; node < dual.nodes(); ++node) {
-      if (!layout.own[i][static_cast<std::size_t>(node)]) continue;
+      if (!layout.own[i][node]) continue;
       layout.nodes.push_back(first_node + node);
       const std::vector<Index> rows = rows_of(contact, i, node);
       layout.rows.insert(layout.rows.end(), rows.begin(), rows.end());
@@ -91,9 +90,9 @@ DualLayout share_dual(const Contact &contact, const InterfacePlaces &places, con
   PetscInt first = 0;
   const auto count = static_cast<PetscInt>(layout.rows.size());
   MPI_Exscan(&count, &first, 1, MPIU_INT, MPI_SUM, mesh.comm);
-  layout.numbers.assign(static_cast<std::size_t>(contact.dual_size()), 0);
+  layout.numbers.assign(contact.dual_size(), 0);
   for (std::size_t k = 0; k < layout.rows.size(); ++k)
-    layout.numbers[static_cast<std::size_t>(layout.rows[k])] = first + static_cast<PetscInt>(k);
+    layout.numbers[layout.rows[k]] = first + static_cast<PetscInt>(k);
   over_ranks(mesh.comm, MPI_SUM, layout.numbers);
   layout.columns = global_rows(places.trace, dofs.first_free);
   return layout;
@@ -106,7 +105,7 @@ NodeLaws own_laws(const DualLayout &layout, const NodeLaws &laws) {
     const bool with_tangent = laws.has_tangent(node);
     own.normal.push_back(own.rows);
     own.tangent.push_back(with_tangent ? own.rows + 1 : -1);
-    own.bound.push_back(laws.bound[static_cast<std::size_t>(node)]);
+    own.bound.push_back(laws.bound[node]);
     own.rows += 1 + (with_tangent ? laws.tangents : 0);
   }
   return own;
@@ -136,8 +135,8 @@ SparseMatrix gather_rows(MPI_Comm comm, const SparseMatrix &own, const std::vect
   std::vector<double> values;
   for (Index k = 0; k < own.rows(); ++k)
     for (SparseMatrix::InnerIterator entry(own, k); entry; ++entry) {
-      places.insert(places.end(), {static_cast<PetscInt>(numbers[static_cast<std::size_t>(k)]),
-                                   static_cast<PetscInt>(entry.col())});
+      places.insert(places.end(),
+                    {static_cast<PetscInt>(numbers[k]), static_cast<PetscInt>(entry.col())});
       values.push_back(entry.value());
     }
   places = gather_all(comm, places, MPIU_INT);
@@ -197,7 +196,7 @@ void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t i
   std::vector<Index> nodes, rows;
   const WantedNodes &own = layout.own[interface];
   for (Index node = 0; node < static_cast<Index>(own.size()); ++node) {
-    if (!own[static_cast<std::size_t>(node)]) continue;
+    if (!own[node]) continue;
     nodes.push_back(node);
     for (const Index row : rows_of(contact, interface, node))
       rows.push_back(row - contact.first_row[interface]);

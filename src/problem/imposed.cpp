@@ -24,7 +24,7 @@ std::vector<std::vector<Value>> values_by_boundary(const Scene &scene, const Ful
   std::vector<std::vector<Value>> result(mesh.points.size() *
                                          static_cast<std::size_t>(scene.components));
   for (int b = 0; b < static_cast<int>(scene.fixed.size()); ++b) {
-    const FixedBoundary &part = scene.fixed[static_cast<std::size_t>(b)];
+    const FixedBoundary &part = scene.fixed[b];
     const std::vector<bool> &on_boundary = mesh.boundary.at(part.name);
     for (std::size_t v = 0; v < mesh.points.size(); ++v) {
       if (!on_boundary[v]) continue;
@@ -33,7 +33,7 @@ std::vector<std::vector<Value>> values_by_boundary(const Scene &scene, const Ful
         if (part.components.empty() ||
             std::ranges::find(part.components, c) != part.components.end())
           result[v * static_cast<std::size_t>(scene.components) + static_cast<std::size_t>(c)]
-              .push_back({value[static_cast<std::size_t>(c)], b});
+              .push_back({value[c], b});
     }
   }
   return result;
@@ -42,7 +42,7 @@ std::vector<std::vector<Value>> values_by_boundary(const Scene &scene, const Ful
 Error contradiction(const Scene &scene, const FullMu &mu, const Point &at, const Value &one,
                     const Value &other) {
   const auto name = [&](const Value &value) {
-    return "'" + scene.fixed[static_cast<std::size_t>(value.boundary)].name + "'";
+    return "'" + scene.fixed[value.boundary].name + "'";
   };
   return bad_input(
       "the boundaries " + name(one) + " and " + name(other) + " impose different displacements, " +
@@ -90,7 +90,7 @@ ImposedEnergy make_imposed_energy(const Scene &scene, const Mesh &mesh, const Do
   for (const ExactGroup &group : energy.split.exact) {
     std::vector<WeightedForm> forms;
     for (const auto &[term, weight] : group.members)
-      forms.push_back({&energy.sum[static_cast<std::size_t>(term)].form, weight});
+      forms.push_back({&energy.sum[term].form, weight});
     energy.exact.push_back(integral(forms, {}, mesh, dofs, {}));
   }
   return energy;
@@ -105,7 +105,7 @@ double energy_at(const ImposedEnergy &energy, const Scene &scene, const FullMu &
     result += theta[q] * energy.exact[q];
   std::vector<WeightedForm> forms;
   for (const int term : energy.split.mapped)
-    forms.push_back({&energy.sum[static_cast<std::size_t>(term)].form});
+    forms.push_back({&energy.sum[term].form});
   return forms.empty() ? result : result + integral(forms, mu, mesh, dofs, mapped);
 }
 

@@ -26,11 +26,10 @@ void check_finite(const Scene &scene, const Contact &contact, const Operators &o
   for (Index row = 0; row < operators.g.size(); ++row) {
     if (is_finite(row)) continue;
     const DualRow of = dual_row(contact, row);
-    const Point &x =
-        contact.interfaces[of.interface]->dual().points[static_cast<std::size_t>(of.node)];
+    const Point &x = contact.interfaces[of.interface]->dual().points[of.node];
     std::string where;
     for (int k = 0; k < scene.dim; ++k)
-      where += short_number(x[static_cast<std::size_t>(k)]) + ' ';
+      where += short_number(x[k]) + ' ';
     throw bad_input("the gap or the normal of contact on '" +
                     scene.contacts[of.interface].entities.parts.front() +
                     "' is not finite at the point " + where + "of the reference domain, " +

@@ -72,7 +72,7 @@ Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Me
   for (const ExactGroup &group : result.split.exact) {
     std::vector<WeightedForm> forms;
     for (const auto &[term, weight] : group.members)
-      forms.push_back({&sum[static_cast<std::size_t>(term)].form, weight});
+      forms.push_back({&sum[term].form, weight});
     result.exact.push_back(make<Object>(mesh, dofs));
     assemble(forms, {}, mesh, dofs, {}, result.exact.back().get());
   }
@@ -98,7 +98,7 @@ void sum_up(const Sum &sum, const ParameterSpace &space, const FullMu &all_param
   if (summed.mapped) {
     std::vector<WeightedForm> forms;
     for (const int term : summed.split.mapped)
-      forms.push_back({&sum[static_cast<std::size_t>(term)].form});
+      forms.push_back({&sum[term].form});
     assemble(forms, all_parameters, mesh, dofs, mapped, summed.mapped.get());
   }
   const Object total = summed.total.get();

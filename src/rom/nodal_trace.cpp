@@ -19,9 +19,7 @@ std::vector<Index> nodal_dofs(const Contact &contact) {
     const InterfaceMesh &mesh = interface->mesh();
     for (const Index node : interface->dual().vertices)
       for (int c = 0; c < mesh.components; ++c)
-        if (const int dof = mesh.dofs[static_cast<std::size_t>(node * mesh.components + c)];
-            dof >= 0)
-          dofs.push_back(dof);
+        if (const int dof = mesh.dofs[node * mesh.components + c]; dof >= 0) dofs.push_back(dof);
   }
   return dofs;
 }
@@ -32,9 +30,9 @@ std::vector<bool> held_by(const ReducedModel &model, const Contact &contact) {
   if (!model.law || rows.minCoeff() > 0) return {};
   std::vector<bool> held;
   if (model.evaluates_contact()) {
-    held.assign(static_cast<std::size_t>(model.contact_dofs()), false);
+    held.assign(model.contact_dofs(), false);
     for (const int dof : model.law->condensed.dofs)
-      held[static_cast<std::size_t>(dof)] = true;
+      held[dof] = true;
     return held;
   }
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i)
@@ -54,9 +52,9 @@ NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact)
   }
   dofs_.assign(model.trace_dofs.begin(), model.trace_dofs.end());
   trace_ = model.contact_trace;
-  unknown_.assign(static_cast<std::size_t>(model.contact_dofs()), true);
+  unknown_.assign(model.contact_dofs(), true);
   for (const Index dof : dofs_)
-    unknown_[static_cast<std::size_t>(dof)] = false;
+    unknown_[dof] = false;
 }
 
 Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &u) const {
@@ -66,8 +64,7 @@ Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &u) 
   Vector gap = operators.nodal_gap - operators.nodal_b * at_contact;
   for (Index node = 0; node < gap.size() && !unknown_.empty(); ++node)
     for (SparseMatrix::InnerIterator entry(operators.nodal_b, node); entry; ++entry)
-      if (unknown_[static_cast<std::size_t>(entry.col())])
-        gap[node] = std::numeric_limits<double>::infinity();
+      if (unknown_[entry.col()]) gap[node] = std::numeric_limits<double>::infinity();
   return gap;
 }
 
@@ -76,9 +73,9 @@ void NodalTrace::check_outside(const ContactOperators &operators, const Vector &
   if (held_.empty()) return;
   const double least = -touching * operators.nodal_gap.cwiseAbs().maxCoeff();
   const auto is_outside = [&](Index node) {
-    if (!model_.evaluates_contact()) return !held_[static_cast<std::size_t>(node)];
+    if (!model_.evaluates_contact()) return !held_[node];
     for (SparseMatrix::InnerIterator entry(operators.nodal_b, node); entry; ++entry)
-      if (entry.value() != 0 && !held_[static_cast<std::size_t>(entry.col())]) return true;
+      if (entry.value() != 0 && !held_[entry.col()]) return true;
     return false;
   };
   for (Index node = 0; node < gap.size(); ++node)

@@ -192,7 +192,7 @@ void OnlineSolver::finish(ReducedAnswer &solution) {
   const Vector pressure = multiplier(solution);
   Index node = 0;
   if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
-  const Point at = dual_points(contact_)[static_cast<std::size_t>(node)];
+  const Point at = dual_points(contact_)[node];
   throw failure((std::ostringstream("the pressure is negative at the contact point of reference "
                                     "coordinates ",
                                     std::ios::ate)
@@ -253,7 +253,7 @@ void OnlineSolver::solve_following(ReducedAnswer &solution) {
     if (std::ssize(images) > shares.size()) images.erase(images.begin());
     state.setZero();
     for (Index j = 0; j < shares.size(); ++j)
-      state += shares[j] * images[static_cast<std::size_t>(j)];
+      state += shares[j] * images[j];
   }
   throw failure("the reduced condition that follows the displacement does not settle in " +
                 std::to_string(most_steps) +

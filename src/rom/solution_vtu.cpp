@@ -23,7 +23,7 @@ Matrix mapped(const State &state, const Matrix &points) {
   for (Index i = 0; i < points.rows(); ++i) {
     const Point image = state.scene.map(state.mu, point_of(points, i));
     for (Index k = 0; k < points.cols(); ++k)
-      result(i, k) = image[static_cast<std::size_t>(k)];
+      result(i, k) = image[k];
   }
   straighten_edges(state.model.mesh_cells, state.scene.dim, state.scene.degree, result);
   return result;
@@ -37,7 +37,7 @@ Vector displacement(const Scene &scene, const FullMu &mu, const Matrix &points, 
   for (Index i = 0; i < points.rows(); ++i) {
     const Point motion = scene.motion ? scene.motion(mu, point_of(points, i)) : Point{};
     for (Index c = 0; c < components; ++c)
-      result[3 * i + c] = motion[static_cast<std::size_t>(c)] + u[components * i + c];
+      result[3 * i + c] = motion[c] + u[components * i + c];
   }
   return result;
 }
@@ -68,7 +68,7 @@ Grid bodies(const State &state) {
   grid.of_cells.push_back({"von_mises", von_mises(stresses), "Pa"});
   const std::vector<std::string> names = stress_components(scene.dim);
   for (Index c = 0; c < stresses.cols(); ++c)
-    grid.of_cells.push_back({names[static_cast<std::size_t>(c)], stresses.col(c), "Pa"});
+    grid.of_cells.push_back({names[c], stresses.col(c), "Pa"});
   return grid;
 }
 

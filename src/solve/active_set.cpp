@@ -39,7 +39,7 @@ Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
     const Index count = std::min(block, columns.cols() - first);
     Matrix loads = Matrix::Zero(op.b.cols(), count);
     for (Index k = 0; k < count; ++k)
-      loads.col(k) = op.b.row(which[static_cast<std::size_t>(first + k)]).transpose();
+      loads.col(k) = op.b.row(which[first + k]).transpose();
     columns.middleCols(first, count) = op.b * responses(ksp, trace, op.a, loads);
   }
   return columns;
@@ -47,10 +47,10 @@ Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
 
 void Compliance::require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs,
                          const Groups *groups) {
-  slot_.resize(static_cast<std::size_t>(trace.size), -1);
+  slot_.resize(trace.size, -1);
   std::vector<Index> fresh;
   for (const Index dof : contact_dofs)
-    if (slot_[static_cast<std::size_t>(dof)] < 0) fresh.push_back(dof);
+    if (slot_[dof] < 0) fresh.push_back(dof);
   const Index needed = count_ + std::ssize(fresh);
   if (needed > columns_.cols())
     columns_.conservativeResize(trace.size, std::min<Index>(trace.size, 2 * needed));
@@ -60,7 +60,7 @@ void Compliance::require(KSP ksp, const Trace &trace, Mat a, const std::vector<I
       const Index count = std::min(block, end - first);
       Matrix loads = Matrix::Zero(trace.size, count);
       for (Index k = 0; k < count; ++k)
-        loads(fresh[static_cast<std::size_t>(first + k)], k) = 1;
+        loads(fresh[first + k], k) = 1;
       made.middleCols(first, count) = responses(ksp, trace, a, loads);
     }
   };
@@ -73,7 +73,7 @@ void Compliance::require(KSP ksp, const Trace &trace, Mat a, const std::vector<I
     over_ranks(groups->across(), MPI_SUM, made);
   }
   for (const Index dof : fresh)
-    slot_[static_cast<std::size_t>(dof)] = count_++;
+    slot_[dof] = count_++;
 }
 
 void Compliance::require_all(const Trace &trace, Mat a, const Groups *groups) {
@@ -87,30 +87,29 @@ void Compliance::require_all(const Trace &trace, Mat a, const Groups *groups) {
     MPI_Bcast(columns_.data(), static_cast<int>(columns_.size()), MPI_DOUBLE, 0, groups->across());
   }
   count_ = trace.size;
-  slot_.resize(static_cast<std::size_t>(count_));
+  slot_.resize(count_);
   std::iota(slot_.begin(), slot_.end(), Index{0});
 }
 
 Matrix Compliance::condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                                      const std::vector<Index> &which) {
   std::vector<Index> touched;
-  std::vector<Index> position(static_cast<std::size_t>(trace.size), -1);
+  std::vector<Index> position(trace.size, -1);
   for (const Index row : which)
     for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
-      if (Index &at = position[static_cast<std::size_t>(entry.col())]; at < 0) {
+      if (Index &at = position[entry.col()]; at < 0) {
         at = static_cast<Index>(touched.size());
         touched.push_back(entry.col());
       }
   require(ksp, trace, op.a, touched);
   Matrix unit(trace.size, static_cast<Index>(touched.size()));
   for (std::size_t k = 0; k < touched.size(); ++k)
-    unit.col(static_cast<Index>(k)) = columns_.col(slot_[static_cast<std::size_t>(touched[k])]);
+    unit.col(static_cast<Index>(k)) = columns_.col(slot_[touched[k]]);
   const Matrix constraint = op.b * unit;
   Matrix result = Matrix::Zero(op.b.rows(), static_cast<Index>(which.size()));
   for (std::size_t k = 0; k < which.size(); ++k)
     for (SparseMatrix::InnerIterator entry(op.b, which[k]); entry; ++entry)
-      result.col(static_cast<Index>(k)) +=
-          entry.value() * constraint.col(position[static_cast<std::size_t>(entry.col())]);
+      result.col(static_cast<Index>(k)) += entry.value() * constraint.col(position[entry.col()]);
   return result;
 }
 

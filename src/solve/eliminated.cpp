@@ -20,10 +20,6 @@ namespace {
 constexpr int steps_worth_a_factorisation = 40, steps_worth_a_setup = 80; ///< of multigrid
 constexpr int most_krylov_steps = 1000;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 void assemble(Mat matrix) {
   RBVI_CALL(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   RBVI_CALL(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
@@ -57,10 +53,10 @@ SparseMatrix rows_of(const SparseMatrix &combination, const SparseMatrix &b) {
 
 /// Per constraint of a system its multiplier, as a row of B.
 std::vector<Index> multipliers_of(const SetSystem &system, const DualLayout &layout) {
-  std::vector<Index> rows(at(system.r.cols()));
+  std::vector<Index> rows(system.r.cols());
   for (Index row = 0; row < system.r.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(system.r, row); entry; ++entry)
-      rows[at(entry.col())] = layout.rows[at(row)];
+      rows[entry.col()] = layout.rows[row];
   return rows;
 }
 
@@ -157,8 +153,8 @@ void Eliminated::tie_pivots(Mat a, const Elimination &z, const SparseMatrix &tie
   }
   for (Index k = 0; k < ties.rows(); ++k)
     for (SparseMatrix::InnerIterator entry(ties, k); entry; ++entry)
-      RBVI_CALL(MatSetValue(tied.get(), z.pivots()[at(k)], layout_.columns[at(entry.col())],
-                            entry.value(), INSERT_VALUES));
+      RBVI_CALL(MatSetValue(tied.get(), z.pivots()[k], layout_.columns[entry.col()], entry.value(),
+                            INSERT_VALUES));
   assemble(tied.get());
   RBVI_CALL(MatPtAP(a, tied.get(), MAT_INITIAL_MATRIX, PETSC_DEFAULT, reduced_.put()));
 }
@@ -177,8 +173,7 @@ void Eliminated::precondition(const Operators &op, const Elimination &z) {
   RBVI_CALL(MatGetDiagonal(op.a, diagonal.get()));
   const Vector of_a = z.at_pivots(diagonal.get());
   for (Index k = 0; k < of_a.size(); ++k)
-    RBVI_CALL(
-        MatSetValue(reduced_.get(), z.pivots()[at(k)], z.pivots()[at(k)], of_a[k], INSERT_VALUES));
+    RBVI_CALL(MatSetValue(reduced_.get(), z.pivots()[k], z.pivots()[k], of_a[k], INSERT_VALUES));
   assemble(reduced_.get());
   RBVI_CALL(MatSetOption(reduced_.get(), MAT_SPD, PETSC_TRUE));
   if (vectors && multigrid_) {

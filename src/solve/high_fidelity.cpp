@@ -81,7 +81,7 @@ Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u) {
 std::vector<Index> in_contact(const NodeLaws &laws, const Vector &lambda) {
   std::vector<Index> nodes;
   for (Index i = 0; i < laws.nodes(); ++i)
-    if (lambda[laws.normal[static_cast<std::size_t>(i)]] > 0) nodes.push_back(i);
+    if (lambda[laws.normal[i]] > 0) nodes.push_back(i);
   return nodes;
 }
 

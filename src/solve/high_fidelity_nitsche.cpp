@@ -11,7 +11,7 @@ Matrix HighFidelity::predicted_pressures(const Mu &mu) const {
   const auto count = static_cast<Index>(solved_.size());
   Matrix pressures(solved_.front().pressures.size(), count), points(space.size(), count);
   for (Index p = 0; p < count; ++p) {
-    const Solved &solved = solved_[static_cast<std::size_t>(p)];
+    const Solved &solved = solved_[p];
     pressures.col(p) = solved.pressures.reshaped();
     points.col(p) = parts_of_box(space, expand(space, solved.mu));
   }

@@ -43,7 +43,7 @@ DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vec
   const Vector bounds = bounds_of(laws, lambda);
   Vector terms = g.cwiseAbs().cwiseMax((excess + g).cwiseAbs());
   for (Index i = 0; i < laws.nodes(); ++i) {
-    const Index row = laws.normal[static_cast<std::size_t>(i)];
+    const Index row = laws.normal[i];
     if (weights[i] > 0) { // a multiplier without weight has no constraint
       penetration = std::max(penetration, excess[row] / weights[i]);
       terms[row] = std::max(terms[row], share_of_u * displacement * weights[i]);
@@ -53,7 +53,7 @@ DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vec
     pressure = std::max(pressure, std::abs(lambda[row]));
     idle += std::abs(lambda[row] * excess[row]);
     if (!laws.has_tangent(i)) continue;
-    const Index first = laws.tangent[static_cast<std::size_t>(i)];
+    const Index first = laws.tangent[i];
     const auto traction = lambda.segment(first, laws.tangents);
     const auto slip = excess.segment(first, laws.tangents);
     above = std::max(above, traction.norm() - bounds[i]);

@@ -59,7 +59,7 @@ std::vector<NodalBound> nodal_bounds(const Contact &contact, const DualLayout &l
     for (std::size_t i = 0; i < interface.dual().vertices.size(); ++i, ++row) {
       if (!layout.own[k][i]) continue;
       const Index node = interface.dual().vertices[i];
-      const Index dof = interface.mesh().dofs[static_cast<std::size_t>(2 * node)];
+      const Index dof = interface.mesh().dofs[2 * node];
       const Point direction{op.b.coeff(row, dof), op.b.coeff(row, dof + 1), 0};
       const double size = std::hypot(direction[0], direction[1]);
       bounds.push_back({dof, {direction[0] / size, direction[1] / size, 0}, op.g[row] / size});

@@ -238,7 +238,7 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
                     queue.count(), rank == 0);
   std::vector<Mu> wanted;
   for (const int k : missing)
-    wanted.push_back(set[static_cast<std::size_t>(k)]);
+    wanted.push_back(set[k]);
   HfOptions of_all = options;
   of_all.samples = static_cast<int>(set.size()) / groups.count();
   collectively(world, [&] {
@@ -246,7 +246,7 @@ void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const
       HighFidelity solver(problem, of_all);
       solver.share_columns(groups, wanted);
       while (const std::optional<int> k = queue.next()) {
-        const Mu &mu = wanted[static_cast<std::size_t>(*k)];
+        const Mu &mu = wanted[*k];
         bool solved = false;
         collectively(groups.comm(), [&] {
           solved = solve_sample(solver, groups, problem.scene().parameters, mu,
@@ -268,7 +268,7 @@ double median_seconds(const std::vector<Sample> &samples, const std::vector<Mu> 
                       const std::vector<int> &numbers) {
   std::set<Mu> wanted;
   for (const int i : numbers)
-    wanted.insert(set[static_cast<std::size_t>(i)]);
+    wanted.insert(set[i]);
   std::vector<double> seconds;
   for (const Sample &sample : samples)
     if (wanted.contains(sample.mu)) seconds.push_back(sample.outputs.seconds.value_or(0));

@@ -29,7 +29,7 @@ void Table::add(const ParameterSpace &space, const std::vector<Mu> &set) {
   for (int i = 0; i < space.size(); ++i) {
     std::vector<double> values;
     for (const Mu &mu : set)
-      values.push_back(mu[static_cast<std::size_t>(i)]);
+      values.push_back(mu[i]);
     add(space.at(i).name, values);
   }
 }

@@ -151,7 +151,7 @@ double in_table(const std::string &path, const std::string &name) {
   std::getline(lines, row);
   const std::vector<std::string> columns = split(names, ',');
   const auto at = std::ranges::find(columns, name) - columns.begin();
-  return parse_number(split(row, ',').at(static_cast<std::size_t>(at)), name);
+  return parse_number(split(row, ',').at(at), name);
 }
 
 /// A model of hundreds of functions: terms of A that differ on few of them, displacements kept

@@ -25,7 +25,7 @@ TEST(ModelErrors, AreNumbersWhereTheAnswerIsZero) {
   Truths truths{set, Matrix(5, 3), Vector::Zero(3), Vector(3), Matrix(3, 3), Vector(3), {}, {}};
   const SparseMatrix w = Matrix(Matrix::Identity(3, 3)).sparseView();
   for (Index p = 0; p < 3; ++p) {
-    const ReducedAnswer solution = solver.solve(set[static_cast<std::size_t>(p)]);
+    const ReducedAnswer solution = solver.solve(set[p]);
     const double size = p == 1 ? 0 : 1;
     truths.coordinates.col(p) = size * solution.u;
     truths.lambda.col(p) = size * solver.multiplier(solution);

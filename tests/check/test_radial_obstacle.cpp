@@ -110,7 +110,7 @@ Pressure pressure_errors(const InterfaceMesh &disc, const Vector &lambda,
     const int *cell = disc.nodes_of(e);
     std::array<Point, 3> x;
     for (std::size_t i = 0; i < 3; ++i)
-      x[i] = disc.points[static_cast<std::size_t>(cell[i])];
+      x[i] = disc.points[cell[i]];
     const double area = std::abs((x[1][0] - x[0][0]) * (x[2][1] - x[0][1]) -
                                  (x[2][0] - x[0][0]) * (x[1][1] - x[0][1])) /
                         (2 * parts * parts);
@@ -188,7 +188,7 @@ double gradient_error(const Problem &problem, const Vector &u, const RadialObsta
         for (std::size_t i = 0; i < 3; ++i)
           at[c] += q.barycentric[i] * x[i][c];
         for (std::size_t i = 0; i < count; ++i)
-          error[c] += u[mesh.natural_node[static_cast<std::size_t>(nodes[i])]] * slopes[i][c];
+          error[c] += u[mesh.natural_node[nodes[i]]] * slopes[i][c];
       }
       const double rho = std::hypot(at[0], at[1]);
       const double slope =

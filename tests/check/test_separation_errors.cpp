@@ -224,15 +224,14 @@ TEST(SeparationErrors, OverOtherParametersAreThoseOfTheModelsOwnSum) {
       const Matrix b = op.b;
       Vector theta(eim.size());
       for (int j = 0; j < eim.size(); ++j) {
-        const EntryKey key = eim.entries[static_cast<std::size_t>(j)];
+        const EntryKey key = eim.entries[j];
         theta[j] = b(key.row, key.column);
       }
       eim.interpolation.triangularView<Eigen::UnitLower>().solveInPlace(theta);
       const Vector weights = eim.combination * theta;
       Matrix rest = b;
       for (int i = 0; i < eim.size(); ++i) {
-        r.problem.assemble_contact(
-            r.samples[static_cast<std::size_t>(eim.snapshots[static_cast<std::size_t>(i)])].mu, op);
+        r.problem.assemble_contact(r.samples[eim.snapshots[i]].mu, op);
         rest -= weights[i] * Matrix(op.b);
       }
       const Index half = b.rows() / 2, first = normal ? 0 : half;

@@ -25,8 +25,7 @@ inline InterfaceMesh curve_mesh(const Curve &vertices, int degree) {
   mesh.per_entity = degree + 1;
   mesh.points = vertices;
   for (int e = 0; e + 1 < static_cast<int>(vertices.size()); ++e) {
-    const Point &a = vertices[static_cast<std::size_t>(e)],
-                &b = vertices[static_cast<std::size_t>(e) + 1];
+    const Point &a = vertices[e], &b = vertices[static_cast<std::size_t>(e) + 1];
     mesh.entities.insert(mesh.entities.end(), {e, e + 1});
     if (degree == 1) continue;
     mesh.entities.push_back(static_cast<int>(vertices.size()) + e);

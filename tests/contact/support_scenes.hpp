@@ -41,7 +41,7 @@ inline Index vertices_of(const InterfaceMesh &curve) {
 inline Vector nodal(const InterfaceMesh &curve, const PointField &field) {
   Vector v(2 * curve.nodes());
   for (Index i = 0; i < curve.nodes(); ++i) {
-    const Point value = field(curve.points[static_cast<std::size_t>(i)]);
+    const Point value = field(curve.points[i]);
     v.segment<2>(2 * i) << value[0], value[1];
   }
   return v;

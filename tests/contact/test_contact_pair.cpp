@@ -141,9 +141,9 @@ TEST(Couple, WeightsSumToThePairedLengthAndLinearFunctionsAreExact) {
   Vector linear(size(slave) + size(master)), jump(linear.size());
   Vector moments = Vector::Zero(2); // over the slave curve: of 1, of x
   for (Index i = 0; i < size(slave); ++i)
-    linear[i] = 2 - 3 * slave[static_cast<std::size_t>(i)][0];
+    linear[i] = 2 - 3 * slave[i][0];
   for (Index i = 0; i < size(master); ++i)
-    linear[size(slave) + i] = 2 - 3 * master[static_cast<std::size_t>(i)][0];
+    linear[size(slave) + i] = 2 - 3 * master[i][0];
   jump << Vector::Zero(size(slave)), linear.tail(size(master));
   for (Index e = 0; e + 1 < size(slave); ++e) {
     const auto i = static_cast<std::size_t>(e);
@@ -287,7 +287,7 @@ TEST(Couple, NodalConstraintsInterpolateTheMaster) {
   ASSERT_EQ(pair.nodal_b.rows(), static_cast<Index>(pair.paired.size()));
   std::vector<Index> expected;
   for (Index node = 0; node < size(slave); ++node) {
-    const Vector at = hats(master, slave[static_cast<std::size_t>(node)][0]);
+    const Vector at = hats(master, slave[node][0]);
     if (at.sum() == 0) continue;
     const auto row = static_cast<Index>(expected.size());
     expected.push_back(node);
@@ -295,8 +295,7 @@ TEST(Couple, NodalConstraintsInterpolateTheMaster) {
     Vector constraint(size(slave) + size(master));
     constraint << -Vector::Unit(size(slave), node), at;
     EXPECT_LT((Matrix(pair.nodal_b).row(row).transpose() - constraint).norm(), 1e-14);
-    EXPECT_NEAR(pair.nodal_gap[row],
-                slave[static_cast<std::size_t>(node)][1] - at.dot(heights(master)), 1e-14);
+    EXPECT_NEAR(pair.nodal_gap[row], slave[node][1] - at.dot(heights(master)), 1e-14);
   }
   EXPECT_EQ(pair.paired, expected);
 }
@@ -378,7 +377,7 @@ TEST(MacroEdges, HoldTwoEdgesEachAndTheLastAThirdIfTheirNumberIsOdd) {
     std::vector<Index> edges(
         static_cast<std::size_t>(multiplier_count(count, MultiplierSpace::macro_edges)), 0);
     for (Index edge = 0; edge + 1 < count; ++edge)
-      ++edges[static_cast<std::size_t>(macro_edge_of(edge, count))];
+      ++edges[macro_edge_of(edge, count)];
     for (std::size_t i = 0; i < edges.size(); ++i)
       EXPECT_EQ(edges[i], i + 1 < edges.size() ? 2 : count - 1 - 2 * Index(i)) << count;
   }

@@ -93,8 +93,8 @@ TEST(Polyline, ShowsMotionAndDisplacementAtTheMappedNodes) {
   ASSERT_EQ(grid.of_nodes.size(), 1U);
   EXPECT_EQ(grid.of_nodes.front().name, "u");
   for (Index k = 0; k < 3; ++k) {
-    const Index node = nodes[static_cast<std::size_t>(k)];
-    const Point &x = mesh.points[static_cast<std::size_t>(node)];
+    const Index node = nodes[k];
+    const Point &x = mesh.points[node];
     EXPECT_EQ(grid.points(k, 0), 2 * x[0]);
     EXPECT_EQ(grid.points(k, 1), x[1] + 1);
     const Vector moved = grid.of_nodes.front().values.segment<3>(3 * k);

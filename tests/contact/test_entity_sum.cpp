@@ -56,8 +56,7 @@ InterfaceMesh quadratic_square(int n) {
           middles.emplace(std::minmax(v[k], v[(k + 1) % 3]), static_cast<int>(mesh.nodes()));
       mesh.entities.push_back(at->second);
       if (!is_new) continue;
-      const Point &a = linear.points[static_cast<std::size_t>(v[k])],
-                  &b = linear.points[static_cast<std::size_t>(v[(k + 1) % 3])];
+      const Point &a = linear.points[v[k]], &b = linear.points[v[(k + 1) % 3]];
       mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0});
     }
   }
@@ -72,8 +71,7 @@ InterfaceMesh quadratic_square(int n) {
 InterfaceMesh partly_seen(InterfaceMesh mesh) {
   mesh.columns += 5;
   for (int i = 0; i < static_cast<int>(mesh.dofs.size()); ++i)
-    mesh.dofs[static_cast<std::size_t>(i)] =
-        i % 3 == 1 ? -1 : static_cast<int>(mesh.columns) - 1 - i;
+    mesh.dofs[i] = i % 3 == 1 ? -1 : static_cast<int>(mesh.columns) - 1 - i;
   return mesh;
 }
 
@@ -105,8 +103,7 @@ struct Sum {
           if (columns[j] >= 0) b(rows[i], columns[j]) += values.b(row, static_cast<Index>(j));
       }
       for (Index i = 0; i < values.weights.size(); ++i)
-        if (const Index row = rows[static_cast<std::size_t>(i)]; row >= 0)
-          weights[row] += values.weights[i];
+        if (const Index row = rows[i]; row >= 0) weights[row] += values.weights[i];
     }
   }
 };
@@ -200,8 +197,7 @@ TEST(EntitySum, RowsThatAreWantedAreThoseOfTheWhole) {
 template <class IsFixed> InterfaceMesh with_fixed(InterfaceMesh mesh, IsFixed &&is_fixed) {
   for (Index node = 0; node < mesh.nodes(); ++node)
     for (int c = 0; c < mesh.components; ++c)
-      if (is_fixed(mesh.points[static_cast<std::size_t>(node)]))
-        mesh.dofs[static_cast<std::size_t>(node * mesh.components + c)] = -1;
+      if (is_fixed(mesh.points[node])) mesh.dofs[node * mesh.components + c] = -1;
   return mesh;
 }
 
@@ -242,7 +238,7 @@ void expect_joined(const Scene &scene, const InterfaceMesh &all, const Interface
   EXPECT_LE((Matrix(dual.gram) - sum * hats.gram * sum.transpose()).norm(), 1e-15);
   ASSERT_EQ(op.nodal_b.rows(), dual.nodes());
   for (Index i = 0; i < dual.nodes(); ++i) {
-    const Index vertex = dual.vertices[static_cast<std::size_t>(i)];
+    const Index vertex = dual.vertices[i];
     EXPECT_EQ(Matrix(op.nodal_b.row(i)), Matrix(of_hats.nodal_b.row(vertex)));
     EXPECT_EQ(op.nodal_gap[i], of_hats.nodal_gap[vertex]);
   }
@@ -365,7 +361,7 @@ TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {
   ASSERT_EQ(grid.of_nodes.size(), 2U);
   EXPECT_EQ(grid.of_nodes[0].values, lambda);
   for (Index i = 0; i < 9; ++i) {
-    const Point x = scene.map(mu, mesh.points[static_cast<std::size_t>(i)]);
+    const Point x = scene.map(mu, mesh.points[i]);
     EXPECT_EQ(grid.points(i, 0), x[0]);
     EXPECT_NEAR(grid.of_nodes[1].values[i], u[i] - quadratic(mu, x), 1e-15);
   }

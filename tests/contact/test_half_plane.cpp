@@ -119,7 +119,7 @@ TEST(HalfPlane, TheConditionAtNodesIsItsOwn) {
       const Vector v = random.vector(of.b.cols());
       const Vector at_nodes = of.nodal_b * v, rows = of.b * v;
       for (Index k = 0; k < size(vertices); ++k) {
-        const Point &x = vertices[static_cast<std::size_t>(k)], n = normal_at(mu);
+        const Point &x = vertices[k], n = normal_at(mu);
         const PointConstraint here = interface->constraint_at(mu, x, twice(x), {});
         EXPECT_NEAR(here.direction[0], n[0], 1e-15);
         EXPECT_NEAR(here.direction[1], n[1], 1e-15);

@@ -130,7 +130,7 @@ TEST(LargePair, RigidMotionsDoNoWorkWhereTheBodiesTouch) {
     const ContactOperators op = at(*large, {0}, state);
     Vector across = Vector::Zero(mesh.columns), up = across, turn = across;
     for (Index i = 0; i < mesh.nodes(); ++i) {
-      const Point &x = mesh.points[static_cast<std::size_t>(i)];
+      const Point &x = mesh.points[i];
       across[2 * i] = up[2 * i + 1] = 1;
       turn[2 * i] = -x[1] - state[2 * i + 1];
       turn[2 * i + 1] = x[0] + state[2 * i];
@@ -154,7 +154,7 @@ Curve circle(double centre, double radius, double side, Index edges) {
 InterfaceMesh two_circles(Index edges, double gap, int degree) {
   InterfaceMesh mesh = two_curves(circle(2 + gap, 2, 1, edges), circle(-1, 1, -1, edges), degree);
   for (Index i = 0; i < mesh.nodes(); ++i) {
-    Point &x = mesh.points[static_cast<std::size_t>(i)];
+    Point &x = mesh.points[i];
     const bool upper = i < mesh.parts[0];
     const double y = upper ? 2 + gap : -1, r = upper ? 2 : 1;
     const double scale = r / std::hypot(x[0], x[1] - y);
@@ -174,7 +174,7 @@ TEST(LargePair, BetweenCirclesTheGapIsTheDistanceAtFourthOrder) {
     for (Index i = 0; i < op.nodal_gap.size(); ++i) {
       double gap = -1;
       for (Index v = 0; v <= edges; ++v) {
-        const Point &x = mesh.points[static_cast<std::size_t>(v)];
+        const Point &x = mesh.points[v];
         const double distance = std::hypot(x[0], x[1] + 1) - 1;
         if (gap < 0 || std::abs(distance - op.nodal_gap[i]) < std::abs(gap - op.nodal_gap[i]))
           gap = distance;
@@ -198,7 +198,7 @@ TEST(LargePair, ItsCurvatureIsTheDerivativeOfTheReaction) {
   const auto large = deformed_bodies({"slave", "master"}).make(scene, mesh);
   Vector state = Vector::Zero(mesh.columns), v = state;
   for (Index i = 0; i < mesh.nodes(); ++i) { // the upper body moulded onto the lower one
-    const Point &x = mesh.points[static_cast<std::size_t>(i)];
+    const Point &x = mesh.points[i];
     if (i < mesh.parts[0]) state[2 * i + 1] = std::sqrt(1 - x[0] * x[0]) - 1 - x[1];
     v[2 * i] = std::sin(3 * x[0]) + (i < mesh.parts[0] ? 0.5 : 0);
     v[2 * i + 1] = std::cos(2 * x[0] + 1);
@@ -216,7 +216,7 @@ TEST(LargePair, ItsCurvatureIsTheDerivativeOfTheReaction) {
   for (const double k : {0.0, 1.0, 2.0}) {
     Vector w = Vector::Zero(mesh.columns);
     for (Index i = 0; i < mesh.nodes(); ++i) {
-      const Point &x = mesh.points[static_cast<std::size_t>(i)];
+      const Point &x = mesh.points[i];
       w[2 * i] = std::cos(k * x[0]) * (i < mesh.parts[0] ? 1 : 0.3);
       w[2 * i + 1] = std::sin(k * x[0] + 0.3);
     }
@@ -302,7 +302,7 @@ TEST(LargePair, ACurveThatFoldsIsAFailureOfThisState) {
   Vector state = Vector::Zero(mesh.columns);
   const Index node = mesh.parts[0] + 2;
   state[2 * node] = mesh.points[static_cast<std::size_t>(node) - 1][0] -
-                    mesh.points[static_cast<std::size_t>(node)][0]; // two vertices at one place
+                    mesh.points[node][0]; // two vertices at one place
   EXPECT_THROW((void)at(*large, {0}, state), Error);
 }
 

@@ -84,7 +84,7 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
     NitschePoint::Row u = NitschePoint::Row::Zero();
     for (std::size_t i = 0; i < nodes.size(); ++i)
       u.segment<2>(2 * static_cast<Index>(i)) = m * nodes[i].head<2>();
-    const auto ends = simplex_edges[static_cast<std::size_t>(edge)];
+    const auto ends = simplex_edges[edge];
     const auto a = static_cast<std::size_t>(ends[0]), b = static_cast<std::size_t>(ends[1]);
     double length = 0;
     for (std::size_t q = 0; q < 4; ++q) {

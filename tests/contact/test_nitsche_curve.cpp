@@ -27,8 +27,8 @@ Vector product(const std::vector<NitscheFace> &faces, const std::vector<FaceBloc
   for (std::size_t f = 0; f < blocks.size(); ++f)
     for (Index i = 0; i < 12; ++i)
       for (Index j = 0; j < 12; ++j) {
-        const int row = faces[f].dofs[static_cast<std::size_t>(i)];
-        const int column = faces[f].dofs[static_cast<std::size_t>(j)];
+        const int row = faces[f].dofs[i];
+        const int column = faces[f].dofs[j];
         if (row >= 0 && column >= 0) result[row] += blocks[f](i, j) * v[column];
       }
   return result;
@@ -264,7 +264,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   ASSERT_EQ(fields.sigma_n.size(), 8);
   const double gamma = 0.3 * (9 + 2 * 4) / length(curve, 0);
   for (Index i = 0; i < 8; ++i) {
-    const Point &x = curve[static_cast<std::size_t>(i)], normal = radial(mu, x);
+    const Point &x = curve[i], normal = radial(mu, x);
     const Point u = linear(scene.map(mu, x)), motion = scene.motion(mu, x);
     const Eigen::Vector2d n(normal[0], normal[1]), tau(-n[1], n[0]);
     const double excess = dot(u, normal) + dot(motion, normal) - scene.support.gap(mu, x);

@@ -127,7 +127,7 @@ TEST(NitscheSurface, TheTangentHasWhatTheAxesTurnBy) {
   const NitscheLayer layer{scene, {{{}, facing_surface(scene, {"support", disk_at}), 1}}, {}};
   CurveCell beside{on.cell, 0, {}};
   for (int i = 0; i < 12; ++i)
-    beside.dofs[static_cast<std::size_t>(i)] = i;
+    beside.dofs[i] = i;
   const Vector u = on.u, d = Vector::Random(12);
   const auto faces = nitsche_faces(layer, {1.0}, {beside}, u);
   Matrix pressures = Matrix::Constant(4, 2, -1.0); // in contact

@@ -46,7 +46,7 @@ InterfaceMesh two_curves(int degree) {
 InterfaceMesh scattered(InterfaceMesh mesh) {
   mesh.columns = 2 * mesh.nodes() + 3;
   for (int i = 0; i < 2 * static_cast<int>(mesh.nodes()); ++i)
-    mesh.dofs[static_cast<std::size_t>(i)] = static_cast<int>(mesh.columns) - 2 - i;
+    mesh.dofs[i] = static_cast<int>(mesh.columns) - 2 - i;
   return mesh;
 }
 
@@ -74,7 +74,7 @@ TEST(PairInterface, IsThePairOfTheMappedCurvesWithTheMotion) {
         const ContactOperators op = at(scene, mesh, mu);
         Vector motion(mesh.nodes());
         for (Index i = 0; i < motion.size(); ++i)
-          motion[i] = scene.motion(mu, mesh.points[static_cast<std::size_t>(i)])[1];
+          motion[i] = scene.motion(mu, mesh.points[i])[1];
         EXPECT_EQ(Matrix(op.b), Matrix(pair.b));
         EXPECT_EQ(op.weights, pair.weights);
         EXPECT_EQ(Matrix(op.nodal_b), Matrix(pair.nodal_b));
@@ -96,7 +96,7 @@ TEST(PairInterface, ColumnsAreThoseOfTheProblem) {
     EXPECT_EQ(moved.b.nonZeros(), op.b.nonZeros()) << "and nothing elsewhere";
     EXPECT_EQ(moved.nodal_b.nonZeros(), op.nodal_b.nonZeros());
     for (Index i = 0; i < mesh.nodes(); ++i) {
-      const int column = other.dofs[static_cast<std::size_t>(2 * i + 1)];
+      const int column = other.dofs[2 * i + 1];
       EXPECT_EQ(Vector(moved.b.col(column)), Vector(op.b.col(i)));
       EXPECT_EQ(Vector(moved.nodal_b.col(column)), Vector(op.nodal_b.col(i)));
     }
@@ -118,7 +118,7 @@ TEST(PairInterface, NamesTheMultipliersThatDoNotFaceAPartnerEverywhere) {
     const Index count = macro ? 4 : 9;
     for (Index i = 0; i < count; ++i) {
       const Index last = macro ? 2 * i + 2 : std::min<Index>(i + 1, 8);
-      if (mesh.points[static_cast<std::size_t>(last)][0] > 2 - 0.6) expected.push_back(i);
+      if (mesh.points[last][0] > 2 - 0.6) expected.push_back(i);
     }
     EXPECT_GT(expected.size(), 0U);
     EXPECT_LT(expected.size(), static_cast<std::size_t>(count));

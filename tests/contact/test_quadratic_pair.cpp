@@ -112,8 +112,8 @@ TEST(QuadraticPair, VerticesMeetTheMastersParabola) {
                                            at_nodes(curves.master, on_master)),
                seen = pair.nodal_b * displacement;
   for (Index i = 0; i < 8; ++i) {
-    EXPECT_EQ(pair.paired[static_cast<std::size_t>(i)], i);
-    const double x = curves.slave[static_cast<std::size_t>(i)][0];
+    EXPECT_EQ(pair.paired[i], i);
+    const double x = curves.slave[i][0];
     EXPECT_NEAR(pair.nodal_gap[i], upper(x) - lower(x), 1e-15);
     EXPECT_NEAR(seen[i], on_master(x), 1e-14);
   }

@@ -51,8 +51,7 @@ Dense midpoint_sum(const SupportScene &scene, const FullMu &mu, const InterfaceM
   Dense sum{Matrix::Zero(2 * count, 2 * curve.nodes()), Vector::Zero(2 * count),
             Vector::Zero(count)};
   for (Index e = 0; e + 1 < count; ++e) {
-    const Point &a = curve.points[static_cast<std::size_t>(e)],
-                &b = curve.points[static_cast<std::size_t>(e) + 1];
+    const Point &a = curve.points[e], &b = curve.points[static_cast<std::size_t>(e) + 1];
     const double h = length({scene.map(mu, a), scene.map(mu, b)}) / parts;
     for (int k = 0; k < parts; ++k) {
       const double s = (k + 0.5) / parts;
@@ -213,7 +212,7 @@ TEST(Support, NodalOperatorsAreThoseOfTheVertices) {
     ASSERT_EQ(of.nodal_b.cols(), 2 * curve.nodes());
     const Vector v = random.vector(of.nodal_b.cols()), pushed = of.nodal_b * v;
     for (Index i = 0; i < 7; ++i) {
-      const Point &x = curve.points[static_cast<std::size_t>(i)];
+      const Point &x = curve.points[i];
       const Point n = scene.support.normal(mu, x);
       EXPECT_NEAR(pushed[i], dot(n, {v[2 * i], v[2 * i + 1], 0}), 1e-15);
       EXPECT_NEAR(of.nodal_gap[i], scene.support.gap(mu, x) - dot(n, scene.motion(mu, x)), 1e-15);
@@ -334,7 +333,7 @@ TEST(Support, VertexQuadratureIsNodal) {
     Matrix b = Matrix::Zero(2 * vertices, 2 * curve.nodes());
     Vector g(2 * vertices);
     for (Index i = 0; i < vertices; ++i) {
-      const Point &x = curve.points[static_cast<std::size_t>(i)];
+      const Point &x = curve.points[i];
       const Point n = scene.support.normal(mu, x), tau = turned(n), motion = scene.motion(mu, x);
       b.row(i).segment<2>(2 * i) << of.weights[i] * n[0], of.weights[i] * n[1];
       b.row(vertices + i).segment<2>(2 * i) << of.weights[i] * tau[0], of.weights[i] * tau[1];

@@ -77,7 +77,7 @@ TEST(RigidSurface, ItsConditionIsTheLinearisedDistance) {
     // At a vertex the distance itself.
     const Vector gap = op.nodal_gap - op.nodal_b * state;
     for (Index i = 0; i < count; ++i) {
-      const Point &x = of.curve.points[static_cast<std::size_t>(i)];
+      const Point &x = of.curve.points[i];
       const Point y{x[0] + state[2 * i], x[1] - skew[0] + state[2 * i + 1], 0};
       EXPECT_NEAR(gap[i], disk_below(skew, y).distance, 1e-15);
     }
@@ -133,7 +133,7 @@ TEST(RigidSurface, ItsNodalFormIsThatOfTheOperators) {
       EXPECT_LT((all.normal.transpose() * Vector{{0.3, -0.7}} - (op.b * alike).head(nodes)).norm(),
                 1e-14);
 
-      std::vector<bool> near(static_cast<std::size_t>(nodes));
+      std::vector<bool> near(nodes);
       near[2] = near[3] = true;
       for (Index row = 0; row < lambda.size(); ++row)
         if (row % nodes != 2) lambda[row] = 0;
@@ -180,7 +180,7 @@ TEST(RigidSurface, TheSlipIsThatOfTheAngles) {
   const Vector slip = (op.b * state - op.g).tail(count).cwiseQuotient(op.weights);
   const auto theta = [](const Point &p) { return std::atan2(p[0], p[1]); };
   for (Index i = 0; i < count; ++i) {
-    const Point &at = of.curve.points[static_cast<std::size_t>(i)];
+    const Point &at = of.curve.points[i];
     const Point x{at[0] - skew[1], at[1] + 2.01, 0};
     const Point y{x[0] + state[2 * i], x[1] + state[2 * i + 1] - skew[0], 0};
     EXPECT_NEAR(slip[i], std::hypot(x[0], x[1]) * std::sin(theta(y) - theta(x)), 1e-14);

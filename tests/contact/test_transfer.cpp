@@ -57,7 +57,7 @@ TEST(Transfer, HatFunctionsOfTrianglesAreExactForLinearValues) {
   const auto values = [](const Contact &contact) {
     Vector result(contact.dual_size());
     for (Index i = 0; i < result.size(); ++i) {
-      const Point &x = contact.interfaces.front()->dual().points[static_cast<std::size_t>(i)];
+      const Point &x = contact.interfaces.front()->dual().points[i];
       result[i] = 2 + 3 * x[0] - x[1];
     }
     return result;
@@ -76,7 +76,7 @@ TEST(Transfer, IsExactForLinearValuesBetweenHalvedEdges) {
     const DualSpace &dual = contact.interfaces.front()->dual();
     Vector result(dual.size());
     for (Index i = 0; i < dual.nodes(); ++i) {
-      const double x = dual.points[static_cast<std::size_t>(i)][0];
+      const double x = dual.points[i][0];
       result[i] = 2 + 3 * x;
       result[dual.nodes() + i] = 1 - x;
     }

@@ -19,8 +19,7 @@ ParameterSpace space_of(int size) {
 Matrix columns(const std::vector<Mu> &set) {
   Matrix result(std::ssize(set.front()), std::ssize(set));
   for (Index k = 0; k < result.cols(); ++k)
-    result.col(k) =
-        Eigen::Map<const Vector>(set[static_cast<std::size_t>(k)].data(), result.rows());
+    result.col(k) = Eigen::Map<const Vector>(set[k].data(), result.rows());
   return result;
 }
 
@@ -33,7 +32,7 @@ TEST(Box, HasItsCornersAndTheCentresOfItsFaces) {
       EXPECT_TRUE(in_box(space, mu));
       int bounds = 0;
       for (int i = 0; i < size; ++i) {
-        const double value = mu[static_cast<std::size_t>(i)];
+        const double value = mu[i];
         bounds += value == space.at(i).lower || value == space.at(i).upper ? 1 : 0;
       }
       EXPECT_TRUE(bounds == size || bounds == 1) << size << " " << bounds;

@@ -21,7 +21,7 @@ const Lame material = lame(young, poisson);
 Vector nodal_values(int dim, const Vertices &x, const LinearField &field) {
   Vector u((dim + 1) * dim);
   for (int i = 0; i <= dim; ++i) {
-    const Point &p = x[static_cast<std::size_t>(i)];
+    const Point &p = x[i];
     for (int c = 0; c < dim; ++c)
       u[i * dim + c] = field.row(c).dot(Eigen::RowVector3d(p[0], p[1], p[2]));
   }
@@ -135,7 +135,7 @@ TEST(H1Product, ActsOnEachComponentAlone) {
     Vector abscissa(dim + 1); // v = x: int grad 1 . grad x = 0, int |grad x|^2 = volume
     double mean = 0, square = 0;
     for (int i = 0; i <= dim; ++i) {
-      abscissa[i] = x[static_cast<std::size_t>(i)][0];
+      abscissa[i] = x[i][0];
       mean += abscissa[i] / (dim + 1);
       square += abscissa[i] * abscissa[i];
     }

@@ -20,8 +20,8 @@ double exact_moment(int dim, const std::array<int, 4> &k) {
   double value = factorial(dim);
   int sum = dim;
   for (int i = 0; i <= dim; ++i) {
-    value *= factorial(k[static_cast<std::size_t>(i)]);
-    sum += k[static_cast<std::size_t>(i)];
+    value *= factorial(k[i]);
+    sum += k[i];
   }
   return value / factorial(sum);
 }

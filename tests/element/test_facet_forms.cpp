@@ -32,7 +32,7 @@ TEST_P(Facets, AreSeenOutwardsAndKeepTheOrientation) {
     const Cell turned = facet_cell(cell, facet);
     EXPECT_NEAR(simplex(dim, turned.mapped).volume, volume, 1e-14);
     const auto [size, n] = facet_measure(dim, turned.mapped);
-    const Point &a = turned.mapped[0], &opposite = turned.mapped[static_cast<std::size_t>(dim)];
+    const Point &a = turned.mapped[0], &opposite = turned.mapped[dim];
     double height = 0;
     for (std::size_t c = 0; c < 3; ++c)
       height += n[c] * (a[c] - opposite[c]);
@@ -58,13 +58,12 @@ TEST_P(Facets, GaussTheoremHoldsForEveryNode) {
             values[i * static_cast<std::size_t>(dim) + static_cast<std::size_t>(c)];
   }
   const Simplex s = simplex(dim, cell.mapped);
-  std::vector<std::array<double, 3>> gradients(static_cast<std::size_t>(nodes));
+  std::vector<std::array<double, 3>> gradients(nodes);
   for (const QuadraturePoint &q : simplex_quadrature(dim, 2)) {
     lagrange_gradients(dim, degree, q.barycentric, s, gradients);
     for (int i = 0; i < nodes; ++i)
       for (int c = 0; c < dim; ++c)
-        inside(i, c) += q.weight * s.volume *
-                        gradients[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+        inside(i, c) += q.weight * s.volume * gradients[i][c];
   }
   EXPECT_LE((surface - inside).norm(), 1e-14 * surface.norm());
 }

@@ -17,9 +17,8 @@ namespace {
 const FullMu mu{0.7, 1.3};
 
 Factor parameter(int number) {
-  return {"mu" + std::to_string(number),
-          [number](const FullMu &at) { return at[static_cast<std::size_t>(number)]; },
-          {number}};
+  return {
+      "mu" + std::to_string(number), [number](const FullMu &at) { return at[number]; }, {number}};
 }
 
 const ImposedTerm known{[](const FullMu &, const Point &x) {

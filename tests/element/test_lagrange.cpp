@@ -50,7 +50,7 @@ Matrix gradients(int dim, int degree, const Vector &barycentric, const Simplex &
   Matrix result(nodes_per_cell(dim, degree), 3);
   for (Index i = 0; i < result.rows(); ++i)
     for (Index c = 0; c < 3; ++c)
-      result(i, c) = phi[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+      result(i, c) = phi[i][c];
   return result;
 }
 

@@ -24,14 +24,14 @@ struct Field {
   Eigen::Vector3d operator()(const Eigen::Vector3d &x) const {
     Eigen::Vector3d u = constant + linear * x;
     for (int c = 0; c < 3; ++c)
-      u[c] += x.dot(quadratic[static_cast<std::size_t>(c)] * x);
+      u[c] += x.dot(quadratic[c] * x);
     return u;
   }
   /// component x direction
   Eigen::Matrix3d gradient(const Eigen::Vector3d &x) const {
     Eigen::Matrix3d g = linear;
     for (int c = 0; c < 3; ++c) {
-      const Eigen::Matrix3d &q = quadratic[static_cast<std::size_t>(c)];
+      const Eigen::Matrix3d &q = quadratic[c];
       g.row(c) += ((q + q.transpose()) * x).transpose();
     }
     return g;
@@ -44,7 +44,7 @@ Field random_field(int dim, Random &random) {
   field.constant = random_point(dim, random);
   field.linear = random_block(dim, random);
   for (int c = 0; c < dim; ++c)
-    field.quadratic[static_cast<std::size_t>(c)] = random_block(dim, random);
+    field.quadratic[c] = random_block(dim, random);
   return field;
 }
 

@@ -56,7 +56,7 @@ Vector interpolate(const Polynomial &p, int dim, int degree, const Vertices &x) 
   const auto nodes = nodes_of(dim, degree, x);
   Vector values(static_cast<Index>(nodes.size()));
   for (Index i = 0; i < values.size(); ++i)
-    values[i] = p(nodes[static_cast<std::size_t>(i)]);
+    values[i] = p(nodes[i]);
   return values;
 }
 
@@ -181,7 +181,7 @@ TEST(FunctionLoad, TestsWithTheHatsOfTheVertices) {
     EXPECT_NEAR(e.vector(function_load("", -1, psi), 1).dot(eta), -exact, 1e-13);
     Vector at_vertices = e.vector(constant_load("", 1), 1);
     for (Index i = 0; i < at_vertices.size(); ++i)
-      at_vertices[i] *= psi({}, x[static_cast<std::size_t>(i)]);
+      at_vertices[i] *= psi({}, x[i]);
     EXPECT_LT((e.vector(function_load("", 1, psi, true), 1) - at_vertices).norm(), 1e-13);
   });
 }

@@ -41,9 +41,9 @@ TEST(Dofs, NumberEveryInteriorVertexOnce) {
   const Membrane m;
   EXPECT_EQ(m.dofs.total, 3399);
   EXPECT_EQ(m.dofs.total_free, 3399 - 176);
-  std::vector<int> count(static_cast<std::size_t>(m.dofs.total), 0);
+  std::vector<int> count(m.dofs.total, 0);
   for (const PetscInt natural : m.dofs.natural_owned)
-    ++count[static_cast<std::size_t>(natural)];
+    ++count[natural];
   MPI_Allreduce(MPI_IN_PLACE, count.data(), static_cast<int>(count.size()), MPI_INT, MPI_SUM,
                 m.mesh.comm);
   int free = 0;

@@ -42,8 +42,7 @@ struct Disk {
 struct Ends {
   std::size_t left, right;
   explicit Ends(const CurveCell &cell)
-      : left(static_cast<std::size_t>(simplex_edges[static_cast<std::size_t>(cell.edge)][0])),
-        right(static_cast<std::size_t>(simplex_edges[static_cast<std::size_t>(cell.edge)][1])) {
+      : left(simplex_edges[cell.edge][0]), right(simplex_edges[cell.edge][1]) {
     if (cell.cell.reference[left][0] > cell.cell.reference[right][0]) std::swap(left, right);
   }
 };
@@ -116,7 +115,7 @@ TEST(ContactLayer, TheTraceBringsAFieldToTheNodesOfTheCells) {
   const Vector u = restrict_to(layer.trace, from_natural(d.dofs, natural).get());
   ASSERT_EQ(static_cast<std::size_t>(u.size()), layer.natural.size());
   for (Index i = 0; i < u.size(); ++i)
-    EXPECT_EQ(u[i], natural[layer.natural[static_cast<std::size_t>(i)]]);
+    EXPECT_EQ(u[i], natural[layer.natural[i]]);
   const auto between = [](const Point &x, const Point &y) {
     return Point{(x[0] + y[0]) / 2, (x[1] + y[1]) / 2, 0};
   };

@@ -147,7 +147,7 @@ Errors errors_of(const Body &body, const Vector &u, const Harmonic &exact) {
       double value = -exact.value(y);
       Eigen::Vector3d gradient = -exact.gradient(y);
       for (std::size_t i = 0; i < count; ++i) {
-        const double at_node = u[mesh.natural_node[static_cast<std::size_t>(nodes[i])]];
+        const double at_node = u[mesh.natural_node[nodes[i]]];
         value += at_node * phi[i];
         gradient += at_node * Eigen::Vector3d(slopes[i].data());
       }
@@ -210,8 +210,8 @@ TEST(QuadraticTetrahedra, HaveANodeForEachVertexAndEdge) {
   for (std::size_t k = 0; k < body.mesh.cells.size(); ++k) {
     const auto nodes = nodes_of(body.mesh, k);
     const auto point = [&](int i) {
-      const int node = nodes[static_cast<std::size_t>(i)];
-      return vector_of(body.mesh.points[static_cast<std::size_t>(node)]);
+      const int node = nodes[i];
+      return vector_of(body.mesh.points[node]);
     };
     for (int e = 0; e < 6; ++e)
       EXPECT_LT((point(4 + e) - (point(vtk[e][0]) + point(vtk[e][1])) / 2).norm(), 1e-15);
@@ -236,7 +236,7 @@ struct Balanced {
 
   Balanced(int dim, int degree, const Lame &material) {
     for (int c = 0; c < 3; ++c) {
-      Eigen::Matrix3d &h = curvature[static_cast<std::size_t>(c)];
+      Eigen::Matrix3d &h = curvature[c];
       h.setZero();
       for (int i = 0; i < dim && c < dim; ++i) {
         slope(c, i) = std::sin(1.0 + 2 * c + 5 * i);
@@ -245,16 +245,16 @@ struct Balanced {
       }
     }
     for (int c = 0; c < dim && degree == 2; ++c) { // u_c's share of x_(c+1)^2 has no divergence
-      Eigen::Matrix3d &h = curvature[static_cast<std::size_t>(c)];
+      Eigen::Matrix3d &h = curvature[c];
       double of_divergence = 0;
       for (int i = 0; i < dim; ++i)
-        of_divergence += curvature[static_cast<std::size_t>(i)](i, c);
+        of_divergence += curvature[i](i, c);
       h((c + 1) % dim, (c + 1) % dim) -=
           h.trace() + (material.lambda + material.shear) / material.shear * of_divergence;
     }
   }
   double operator()(const Eigen::Vector3d &x, int c) const {
-    return slope.row(c).dot(x) + x.dot(curvature[static_cast<std::size_t>(c)] * x) / 2;
+    return slope.row(c).dot(x) + x.dot(curvature[c] * x) / 2;
   }
 };
 

@@ -61,11 +61,9 @@ TEST(DegreeTwo, NodesOfACellAreItsVerticesAndTheMiddlesOfItsEdges) {
   for (std::size_t k = 0; k < body.mesh.cells.size(); ++k) {
     const auto nodes = nodes_of(body.mesh, k);
     for (std::size_t e = 0; e < 3; ++e) {
-      const auto point = [&](std::size_t i) {
-        return body.mesh.points[static_cast<std::size_t>(nodes[i])];
-      };
-      const Point a = point(static_cast<std::size_t>(simplex_edges[e][0]));
-      const Point b = point(static_cast<std::size_t>(simplex_edges[e][1]));
+      const auto point = [&](std::size_t i) { return body.mesh.points[nodes[i]]; };
+      const Point a = point(simplex_edges[e][0]);
+      const Point b = point(simplex_edges[e][1]);
       const Point middle = point(3 + e);
       EXPECT_NEAR(middle[0], (a[0] + b[0]) / 2, 1e-15);
       EXPECT_NEAR(middle[1], (a[1] + b[1]) / 2, 1e-15);

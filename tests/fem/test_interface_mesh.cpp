@@ -16,10 +16,6 @@
 namespace rbvi::interface_mesh_test {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 struct Placed {
   Scene scene;
   Mesh mesh;
@@ -80,13 +76,13 @@ void expect_trace_of_nodes(const Placed &placed) {
   const Vector trace = restrict_to(placed.places.trace, from_natural(dofs, natural).get());
   ASSERT_EQ(trace.size(), static_cast<Index>(placed.places.natural_dofs.size()));
   for (Index i = 0; i < trace.size(); ++i)
-    EXPECT_EQ(trace[i], natural[placed.places.natural_dofs[at(i)]]);
+    EXPECT_EQ(trace[i], natural[placed.places.natural_dofs[i]]);
   for (std::size_t k = 0; k < placed.places.meshes.size(); ++k) {
     const InterfaceMesh &mesh = placed.places.meshes[k];
     for (Index i = 0; i < mesh.nodes() * mesh.components; ++i)
-      if (const int dof = mesh.dofs[at(i)]; dof >= 0) {
-        EXPECT_EQ(placed.places.natural_dofs[at(dof)],
-                  placed.places.natural_nodes[k][at(i / mesh.components)] * mesh.components +
+      if (const int dof = mesh.dofs[i]; dof >= 0) {
+        EXPECT_EQ(placed.places.natural_dofs[dof],
+                  placed.places.natural_nodes[k][i / mesh.components] * mesh.components +
                       i % mesh.components);
       }
   }
@@ -110,7 +106,7 @@ TEST(InterfaceMesh, HeldDofsOfARegionHaveNoColumn) {
   EXPECT_EQ(disc.nodes(), 631);
   EXPECT_LT(disc.columns, 400);
   for (Index i = 0; i < disc.nodes(); ++i)
-    EXPECT_EQ(disc.dofs[at(i)] < 0, disc.points[at(i)][1] < -1e-9);
+    EXPECT_EQ(disc.dofs[i] < 0, disc.points[i][1] < -1e-9);
   ContactOperators operators;
   assemble(make_contact(scene, places.meshes), {0.2, 0, 0}, {}, operators);
   EXPECT_EQ(operators.b.rows(), disc.columns);
@@ -126,9 +122,9 @@ TEST(InterfaceMesh, SeveralInterfacesHaveColumnsOneAfterTheOther) {
   EXPECT_EQ(lower.columns, columns);
   EXPECT_EQ(static_cast<Index>(placed.places.natural_dofs.size()), columns);
   for (Index i = 0; i < 2 * upper.nodes(); ++i)
-    EXPECT_EQ(upper.dofs[at(i)], i);
+    EXPECT_EQ(upper.dofs[i], i);
   for (Index i = 0; i < 2 * lower.nodes(); ++i)
-    EXPECT_EQ(lower.dofs[at(i)], 2 * upper.nodes() + i);
+    EXPECT_EQ(lower.dofs[i], 2 * upper.nodes() + i);
 }
 
 TEST(InterfaceMesh, IsTheSameOnAnyNumberOfRanks) {

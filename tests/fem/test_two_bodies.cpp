@@ -110,7 +110,7 @@ TEST(FixedComponents, GhostsHaveTheRowsOfTheirOwners) {
     for (std::size_t c = 0; c < 2; ++c) {
       const PetscInt row = d.dofs.free[2 * v + c];
       if (row < 0) continue;
-      EXPECT_EQ(natural_of_row.at(at(row)), 2 * d.mesh.natural_node[v] + static_cast<PetscInt>(c));
+      EXPECT_EQ(natural_of_row.at(row), 2 * d.mesh.natural_node[v] + static_cast<PetscInt>(c));
       const bool owned =
           row >= d.dofs.first_free &&
           row < d.dofs.first_free + static_cast<PetscInt>(d.dofs.natural_owned.size());
@@ -152,7 +152,7 @@ TEST(ContactCurves, HoldTheArcsFromTheAxisOutwards) {
     ASSERT_EQ(curves.natural_node.size(), at(2 * nodes));
     for (Index i = 0; i < nodes; ++i) {
       const double angle = std::numbers::pi / 4 * static_cast<double>(i) / (560 << refine);
-      const Point &slave = curves.points[at(i)], &master = curves.points[at(nodes + i)];
+      const Point &slave = curves.points[i], &master = curves.points[nodes + i];
       EXPECT_NEAR(slave[0], std::sin(angle), 1e-14);
       EXPECT_NEAR(slave[1], 1.5 - std::cos(angle), 1e-14);
       EXPECT_NEAR(master[0], slave[0], 1e-15);
@@ -175,12 +175,12 @@ TEST(ContactCurves, OfDegreeTwoHaveMiddlesOnTheCircle) {
     for (Index i = 0; i < nodes; ++i) {
       const double part = i <= edges ? double(i) : double(i - edges) - 0.5;
       const double angle = std::numbers::pi / 4 * part / double(edges);
-      const Point &slave = curves.points[at(i)], &master = curves.points[at(nodes + i)];
+      const Point &slave = curves.points[i], &master = curves.points[nodes + i];
       EXPECT_NEAR(slave[0], std::sin(angle), 1e-14);
       EXPECT_NEAR(slave[1], 1.5 - std::cos(angle), 1e-14);
       EXPECT_NEAR(master[0], slave[0], 1e-15);
       EXPECT_NEAR(master[1], -slave[1], 1e-15);
-      EXPECT_EQ(curves.natural_node[at(i)] < d.mesh.total_vertices, i <= edges);
+      EXPECT_EQ(curves.natural_node[i] < d.mesh.total_vertices, i <= edges);
     }
     EXPECT_EQ(curves.trace.size, 2 * nodes);
   }
@@ -194,7 +194,7 @@ TEST(ContactCurves, TheTraceIsTheVerticalDisplacement) {
   const Vector trace = restrict_to(curves.trace, from_natural(d.dofs, numbers).get());
   ASSERT_EQ(trace.size(), 2 * 561);
   for (Index i = 0; i < trace.size(); ++i)
-    EXPECT_EQ(trace[i], 2 * curves.natural_node[at(i)] + 1);
+    EXPECT_EQ(trace[i], 2 * curves.natural_node[i] + 1);
 }
 
 TEST(ContactCurves, AreTheSameOnAnyNumberOfRanks) {

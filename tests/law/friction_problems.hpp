@@ -66,7 +66,7 @@ inline FrictionResult expect_solved(const FrictionProblem &p, const FrictionBoun
   for (Index i = 0; i < p.nodes(); ++i) {
     const bool listed = std::binary_search(result.active.begin(), result.active.end(), i);
     EXPECT_EQ(listed, result.x[i] > 0);
-    EXPECT_EQ(listed, result.states[static_cast<std::size_t>(i)] != NodeState::open);
+    EXPECT_EQ(listed, result.states[i] != NodeState::open);
   }
   return result;
 }

@@ -20,7 +20,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const FrictionBound &bound_at(const CollocatedProblem &p, Index node) {
-  return p.bounds.size() == 1 ? p.bounds.front() : p.bounds[static_cast<std::size_t>(node)];
+  return p.bounds.size() == 1 ? p.bounds.front() : p.bounds[node];
 }
 
 Vector bounds_of(const CollocatedProblem &p, const Vector &x) {

@@ -69,7 +69,7 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
   Matrix a = Matrix::Identity(n, n);
   Vector right = Vector::Zero(n);
   for (Index i = 0; i < m; ++i) {
-    const int state = states[static_cast<std::size_t>(i)];
+    const int state = states[i];
     if (state >= 1 && state <= 3) {
       a.row(i) = p.h.row(i);
       right[i] = -p.q[i];
@@ -84,7 +84,7 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
   }
   Vector x = solved(a, right);
   for (Index i = 0; i < m; ++i) {
-    const int state = states[static_cast<std::size_t>(i)];
+    const int state = states[i];
     if (state == 0 || state > 3) x[i] = 0;
     if (state == 0) x[m + i] = 0;
   }
@@ -94,7 +94,7 @@ std::optional<Vector> solution_of(const FrictionProblem &p, const FrictionBound 
 std::vector<Vector> all_solutions(const FrictionProblem &p, const FrictionBound &bound) {
   std::vector<Vector> result;
   const int kinds = bound.threshold > 0 && !bound.only_in_contact ? 7 : 4;
-  std::vector<int> states(static_cast<std::size_t>(p.nodes()), 0);
+  std::vector<int> states(p.nodes(), 0);
   for (;;) {
     if (const auto x = solution_of(p, bound, states)) result.push_back(*x);
     auto digit = states.begin();
@@ -172,7 +172,7 @@ TEST(Friction, AHugeCoefficientSticks) {
     for (const Index i : result.active) {
       // The outermost nodes carry next to no pressure and may slip all the same.
       if (i == result.active.front() || i == result.active.back()) continue;
-      EXPECT_EQ(result.states[static_cast<std::size_t>(i)], NodeState::stick);
+      EXPECT_EQ(result.states[i], NodeState::stick);
       EXPECT_LT(result.w.segment(p.tangent(i), dim - 1).norm(), 1e-12);
     }
     for (const Index i : result.active)
@@ -193,8 +193,7 @@ TEST(Friction, ThresholdsFromZeroToHuge) {
       const FrictionResult held = expect_solved(p, {0, 1e6, only_in_contact});
       for (Index i = 0; i < p.nodes(); ++i) {
         const bool touches = held.x[i] > 0;
-        EXPECT_EQ(held.states[static_cast<std::size_t>(i)],
-                  touches ? NodeState::stick : NodeState::open);
+        EXPECT_EQ(held.states[i], touches ? NodeState::stick : NodeState::open);
         const double slip = held.w.segment(p.tangent(i), dim - 1).norm();
         if (touches || !only_in_contact)
           EXPECT_LT(slip, 1e-12);

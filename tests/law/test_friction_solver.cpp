@@ -92,7 +92,7 @@ TEST(FrictionStart, TellsEveryState) {
     std::set<NodeState> seen;
     for (const auto &[p, bound, result] : solved_problems(dim))
       for (Index i = 0; i < p.nodes(); ++i) {
-        const NodeState state = result.states[static_cast<std::size_t>(i)];
+        const NodeState state = result.states[i];
         seen.insert(state);
         EXPECT_EQ(result.start[i] > 0, state != NodeState::open);
         if (dim == 1) continue;

@@ -30,12 +30,12 @@ NodeLaws mixed_laws(Index nodes, int dim, std::mt19937 &engine) {
     const double c = 0.1 * static_cast<double>(i % 4), t = i % 2 == 0 ? 0.2 : 0;
     laws.bound.push_back({c, t, i % 5 == 0});
   }
-  std::vector<Index> order(static_cast<std::size_t>(laws.rows));
+  std::vector<Index> order(laws.rows);
   std::iota(order.begin(), order.end(), 0);
   if (dim == 2) std::shuffle(order.begin(), order.end(), engine);
   for (std::size_t i = 0; i < laws.normal.size(); ++i) {
-    laws.normal[i] = order[static_cast<std::size_t>(laws.normal[i])];
-    if (laws.tangent[i] >= 0) laws.tangent[i] = order[static_cast<std::size_t>(laws.tangent[i])];
+    laws.normal[i] = order[laws.normal[i]];
+    if (laws.tangent[i] >= 0) laws.tangent[i] = order[laws.tangent[i]];
   }
   return laws;
 }
@@ -47,7 +47,7 @@ double natural_residual(const Matrix &h, const Vector &q, const NodeLaws &laws, 
   Vector rho = h.diagonal().cwiseInverse();
   for (Index i = 0; i < laws.nodes(); ++i)
     if (laws.has_tangent(i)) {
-      auto of_node = rho.segment(laws.tangent[static_cast<std::size_t>(i)], laws.tangents);
+      auto of_node = rho.segment(laws.tangent[i], laws.tangents);
       of_node.setConstant(of_node.minCoeff());
     }
   // The bound is that of x: the projection of the tangential part on the ball that x_n says.
@@ -95,16 +95,16 @@ TEST(NodeLaws, TheOrderOfRowsDoesNotMatter) {
     const NodeLaws blocks = uniform_laws(nodes, 2, {0.3, 0.1, false});
     const Matrix h = random_h(random, blocks.rows);
     const Vector q = random.vector(blocks.rows);
-    std::vector<Index> place(static_cast<std::size_t>(blocks.rows)); // of each row
+    std::vector<Index> place(blocks.rows); // of each row
     std::iota(place.begin(), place.end(), 0);
     std::shuffle(place.begin(), place.end(), engine);
     NodeLaws moved = blocks;
     Matrix moved_h(blocks.rows, blocks.rows);
     Vector moved_q(blocks.rows);
     for (Index &row : moved.normal)
-      row = place[static_cast<std::size_t>(row)];
+      row = place[row];
     for (Index &row : moved.tangent)
-      row = place[static_cast<std::size_t>(row)];
+      row = place[row];
     moved_h(place, place) = h;
     moved_q(place) = q;
     const FrictionResult one = solve_friction(columns_of(h), q, blocks),

@@ -15,14 +15,14 @@ namespace {
 /// Columns of a dense matrix; counts those that were required.
 class DenseColumns : public ComplianceColumns {
 public:
-  explicit DenseColumns(Matrix c) : c_(std::move(c)), known_(static_cast<std::size_t>(c_.cols())) {}
+  explicit DenseColumns(Matrix c) : c_(std::move(c)), known_(c_.cols()) {}
   Index size() const override { return c_.cols(); }
   void require(const std::vector<Index> &dofs) override {
     for (const Index dof : dofs)
-      known_[static_cast<std::size_t>(dof)] = true;
+      known_[dof] = true;
   }
   Eigen::Map<const Vector> column(Index dof) const override {
-    EXPECT_TRUE(known_[static_cast<std::size_t>(dof)]) << "column " << dof << " is not there";
+    EXPECT_TRUE(known_[dof]) << "column " << dof << " is not there";
     return {c_.col(dof).data(), c_.rows()};
   }
 
@@ -407,7 +407,7 @@ TEST(Anderson, SolvesALinearFixedPointLikeGmres) {
     EXPECT_NEAR(shares.sum(), 1, 1e-12);
     state.setZero();
     for (Index j = 0; j < shares.size(); ++j)
-      state += shares[j] * images[static_cast<std::size_t>(j)];
+      state += shares[j] * images[j];
   }
   EXPECT_LT((rotation * state + right - state).norm(), 1e-12);
 }

@@ -97,7 +97,7 @@ TEST(UpdatableQr, StaysAFactorisationUnderAppendAndRemove) {
     EXPECT_LT((qr.q().transpose() * qr.q() - Matrix::Identity(k, k)).norm(), 1e-12);
     EXPECT_TRUE(Matrix(qr.r()).isUpperTriangular(0));
     for (Index j = 0; j < k; ++j) {
-      const Vector &column = columns[static_cast<std::size_t>(j)];
+      const Vector &column = columns[j];
       EXPECT_LT((qr.q() * qr.r().col(j) - column).norm(), 1e-12 * column.norm());
     }
   }

@@ -46,7 +46,7 @@ public:
 
 private:
   static int node(int v) { return 2 * v + 5; }
-  static int type(int dim) { return std::vector{15, 1, 2, 4}.at(static_cast<std::size_t>(dim)); }
+  static int type(int dim) { return std::vector{15, 1, 2, 4}.at(dim); }
   bool two() const { return encoding_.version == "2.2"; }
   bool four_one() const { return encoding_.version == "4.1"; }
 
@@ -164,7 +164,7 @@ inline void GmshWriter::nodes_four(const GmshDrawing &drawing) {
   };
   block(2, 1, points);
   for (std::size_t v = points; v-- > 0;) {
-    tag(static_cast<std::size_t>(node(static_cast<int>(v))));
+    tag(node(static_cast<int>(v)));
     if (!four_one()) coordinates(v);
   }
   for (std::size_t v = points; four_one() && v-- > 0;)
@@ -197,7 +197,7 @@ inline void GmshWriter::elements_four(const GmshDrawing &drawing) {
     for (auto element = entity->elements.rbegin(); element != entity->elements.rend(); ++element) {
       tag(number--);
       for (const int v : *element)
-        tag(static_cast<std::size_t>(node(v)));
+        tag(node(v));
     }
   }
   block(0, 7, 1);
@@ -241,7 +241,7 @@ inline GmshDrawing drawing_of(const SerialMesh &mesh) {
   for (const auto &[name, own] : mesh.region) {
     drawing.names[{2, ++group}] = name;
     for (const int cell : own)
-      cells[static_cast<std::size_t>(cell)].push_back(group);
+      cells[cell].push_back(group);
   }
   const auto add = [&](int dim, const std::vector<int> &groups, std::vector<int> element) {
     int number = 1;

@@ -17,9 +17,7 @@ Scene block() {
 }
 
 double middle(const SerialMesh &mesh, const std::array<int, 3> &facet) {
-  return (mesh.points[static_cast<std::size_t>(facet[0])][0] +
-          mesh.points[static_cast<std::size_t>(facet[1])][0]) /
-         2;
+  return (mesh.points[facet[0]][0] + mesh.points[facet[1]][0]) / 2;
 }
 
 TEST(ContactCurves, OnePieceOverXPasses) {

@@ -20,7 +20,7 @@ GmshDrawing membrane(const std::string &boundary = "boundary") {
     drawing.entities.push_back(
         {1, side, side < 3 ? std::vector{1, 5} : std::vector{side == 3 ? 5 : -5}, {}});
   for (const auto &edge : mesh.boundary.at("boundary")) {
-    const Point &x = mesh.points[at(edge[0])], &y = mesh.points[at(edge[1])];
+    const Point &x = mesh.points[edge[0]], &y = mesh.points[edge[1]];
     const double middle_x = (x[0] + y[0]) / 2, middle_y = (x[1] + y[1]) / 2;
     const std::size_t side = middle_y < -0.49 ? 0 : middle_x > 0.49 ? 1 : middle_y > 0.49 ? 2 : 3;
     drawing.entities[side].elements.push_back({edge[0], edge[1]});
@@ -31,7 +31,7 @@ GmshDrawing membrane(const std::string &boundary = "boundary") {
     const auto &cell = mesh.cells[c];
     (c < disc ? inside : rest).elements.push_back({cell[0], cell[1], cell[2]});
     const auto on_circle = [&](int v) {
-      return std::abs(std::hypot(mesh.points[at(v)][0], mesh.points[at(v)][1]) - 0.2) < 1e-12;
+      return std::abs(std::hypot(mesh.points[v][0], mesh.points[v][1]) - 0.2) < 1e-12;
     };
     for (std::size_t i = 0; c < disc && i < 3; ++i)
       if (on_circle(cell[i]) && on_circle(cell[(i + 1) % 3]))
@@ -171,7 +171,7 @@ TEST(Gmsh, TetrahedraAreReadRefinedAndDistributed) {
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
       std::array<Point, 4> corners{};
       for (std::size_t i = 0; i < 4; ++i)
-        corners[i] = mesh.points[static_cast<std::size_t>(mesh.cells[c][i])];
+        corners[i] = mesh.points[mesh.cells[c][i]];
       const double cell = simplex(3, corners).volume;
       EXPECT_GT(cell, 0);
       volume += cell;

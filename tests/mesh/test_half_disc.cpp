@@ -72,7 +72,7 @@ std::multiset<std::set<int>> vertex_sets(const Simplices &simplices, int vertice
   for (const auto &simplex : simplices) {
     std::set<int> own;
     for (int i = 0; i < vertices; ++i)
-      own.insert(images[at(simplex[at(i)])]);
+      own.insert(images[simplex[i]]);
     sets.insert(own);
   }
   return sets;
@@ -92,7 +92,7 @@ TEST_P(HalfDisc, IsWellShapedAndFillsThePolygon) {
   EXPECT_LE(largest_jump(mesh), 2.5);
   double polygon = 0; // of the origin and the edges of the arc
   for (const auto &facet : mesh.boundary.at("arc")) {
-    const Point &x = mesh.points[at(facet[0])], &y = mesh.points[at(facet[1])];
+    const Point &x = mesh.points[facet[0]], &y = mesh.points[facet[1]];
     polygon += 0.5 * std::abs(x[0] * y[1] - x[1] * y[0]);
   }
   EXPECT_NEAR(area(mesh, all_cells(mesh)), polygon, 1e-13);
@@ -116,7 +116,7 @@ TEST_P(HalfDisc, ContactArcHasEqualEdges) {
   EXPECT_EQ(mesh.boundary.at("contact").size(), at(GetParam()));
   EXPECT_NEAR(std::atan2(contact.front()[1], contact.front()[0]), -5 * pi / 8, 1e-15);
   EXPECT_NEAR(std::atan2(contact.back()[1], contact.back()[0]), -3 * pi / 8, 1e-15);
-  EXPECT_EQ(contact[at(GetParam() / 2)], (Point{0, -1, 0}));
+  EXPECT_EQ(contact[GetParam() / 2], (Point{0, -1, 0}));
   for (std::size_t i = 1; i < contact.size(); ++i)
     EXPECT_NEAR(length(contact[i], contact[i - 1]), 2 * std::sin(pi / 8 / GetParam()), 1e-15);
 }
@@ -132,24 +132,23 @@ TEST_P(HalfDisc, IsItsOwnMirrorImage) {
     EXPECT_EQ(vertex_sets(facets, 2, images), vertex_sets(facets, 2, same)) << name;
   std::vector<std::array<int, 4>> core;
   for (const int cell : mesh.region.at("core"))
-    core.push_back(mesh.cells[at(cell)]);
+    core.push_back(mesh.cells[cell]);
   EXPECT_EQ(vertex_sets(core, 3, images), vertex_sets(core, 3, same));
 }
 
 TEST_P(HalfDisc, FitsTheCore) {
   std::vector<bool> in_core(mesh.cells.size(), false);
   for (const int cell : mesh.region.at("core"))
-    in_core[at(cell)] = true;
+    in_core[cell] = true;
   for (const int cell : all_cells(mesh))
     for (std::size_t i = 0; i < 3; ++i) {
       const double r = radius(corners(mesh, cell)[i]);
-      EXPECT_TRUE(in_core[at(cell)] ? r <= 0.6 + 1e-15 : r >= 0.6 - 1e-15) << cell;
+      EXPECT_TRUE(in_core[cell] ? r <= 0.6 + 1e-15 : r >= 0.6 - 1e-15) << cell;
     }
   double polygon = 0;
   for (const auto &[edge, neighbours] : cells_of_edges(mesh)) {
-    if (neighbours.size() != 2 || in_core[at(neighbours[0])] == in_core[at(neighbours[1])])
-      continue;
-    const Point &x = mesh.points[at(edge.first)], &y = mesh.points[at(edge.second)];
+    if (neighbours.size() != 2 || in_core[neighbours[0]] == in_core[neighbours[1]]) continue;
+    const Point &x = mesh.points[edge.first], &y = mesh.points[edge.second];
     EXPECT_NEAR(radius(x), 0.6, 1e-15);
     EXPECT_NEAR(radius(y), 0.6, 1e-15);
     polygon += 0.5 * std::abs(x[0] * y[1] - x[1] * y[0]);
@@ -283,7 +282,7 @@ TEST(OneBlock, FillsTheBlockWithMirroredSpacing) {
   }
   std::vector<int> same;
   for (const int image : images)
-    same.push_back(images[at(image)]);
+    same.push_back(images[image]);
   EXPECT_EQ(vertex_sets(mesh.cells, 3, images), vertex_sets(mesh.cells, 3, same));
 }
 

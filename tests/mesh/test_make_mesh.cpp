@@ -21,7 +21,7 @@ double area(const Mesh &mesh, const std::string &region) {
     if (!region.empty() && !mesh.region.at(region)[c]) continue;
     std::array<Point, 4> corners{};
     for (std::size_t i = 0; i < 3; ++i)
-      corners[i] = mesh.points[at(mesh.cells[c][i])];
+      corners[i] = mesh.points[mesh.cells[c][i]];
     sum += simplex(2, corners).volume;
   }
   return summed(std::vector<double>{sum}, MPI_DOUBLE)[0];
@@ -61,19 +61,18 @@ TEST_P(MakeMesh, NaturalNumbersAreTheOrderOfOneProcess) {
   for (std::size_t c = 0; c < alone.cells.size(); ++c)
     EXPECT_EQ(alone.natural_cell[c], static_cast<PetscInt>(c));
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    EXPECT_EQ(mesh.points[v], alone.points.at(at(mesh.natural_node[v])));
+    EXPECT_EQ(mesh.points[v], alone.points.at(mesh.natural_node[v]));
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(mesh.natural_node.at(at(mesh.cells[c][i])),
-                alone.cells.at(at(mesh.natural_cell[c]))[i]);
+      EXPECT_EQ(mesh.natural_node.at(mesh.cells[c][i]), alone.cells.at(mesh.natural_cell[c])[i]);
 }
 
 TEST_P(MakeMesh, EveryCellAndEveryVertexHasOneOwner) {
-  std::vector<int> vertex(at(mesh.total_vertices), 0), cell(at(mesh.total_cells), 0);
+  std::vector<int> vertex(mesh.total_vertices, 0), cell(mesh.total_cells, 0);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
-    if (mesh.owned_node[v]) ++vertex[at(mesh.natural_node[v])];
+    if (mesh.owned_node[v]) ++vertex[mesh.natural_node[v]];
   for (const PetscInt natural : mesh.natural_cell)
-    ++cell[at(natural)];
+    ++cell[natural];
   EXPECT_EQ(summed(vertex, MPI_INT), std::vector<int>(vertex.size(), 1));
   EXPECT_EQ(summed(cell, MPI_INT), std::vector<int>(cell.size(), 1));
 }
@@ -82,11 +81,11 @@ TEST_P(MakeMesh, LabelsTravelWithTheMesh) {
   const auto &disc = mesh.region.at("obstacle"), &whole_disc = alone.region.at("obstacle");
   ASSERT_EQ(disc.size(), mesh.cells.size());
   for (std::size_t c = 0; c < disc.size(); ++c)
-    EXPECT_EQ(disc[c], whole_disc[at(mesh.natural_cell[c])]);
+    EXPECT_EQ(disc[c], whole_disc[mesh.natural_cell[c]]);
   const auto &rim = mesh.boundary.at("boundary"), &whole_rim = alone.boundary.at("boundary");
   ASSERT_EQ(rim.size(), mesh.points.size());
   for (std::size_t v = 0; v < rim.size(); ++v) {
-    EXPECT_EQ(rim[v], whole_rim[at(mesh.natural_node[v])]);
+    EXPECT_EQ(rim[v], whole_rim[mesh.natural_node[v]]);
     const Point &x = mesh.points[v];
     EXPECT_EQ(rim[v], std::max(std::abs(x[0]), std::abs(x[1])) > 0.5 - 1e-12);
   }
@@ -94,11 +93,11 @@ TEST_P(MakeMesh, LabelsTravelWithTheMesh) {
 
 /// Per natural cell: how many of its facets are on a boundary of any name, over all ranks.
 std::vector<int> facets_per_cell(const Mesh &mesh, const std::string &boundary) {
-  std::vector<int> count(at(mesh.total_cells), 0);
+  std::vector<int> count(mesh.total_cells, 0);
   for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
-    ++count[at(mesh.natural_cell.at(cell))];
+    ++count[mesh.natural_cell.at(cell)];
     for (const int i : facet_nodes(mesh.dim, 1, facet))
-      EXPECT_TRUE(mesh.boundary.at(boundary)[at(mesh.cells[cell][at(i)])]) << boundary;
+      EXPECT_TRUE(mesh.boundary.at(boundary)[mesh.cells[cell][i]]) << boundary;
   }
   return count;
 }
@@ -116,7 +115,7 @@ TEST(MakeMeshFacets, AreThoseOfOneProcess) {
         EXPECT_EQ(summed(facets_per_cell(mesh, name), MPI_INT), whole) << entry.name << " " << name;
         EXPECT_EQ(of_degree_one.emplace(name, whole).first->second, whole) << entry.name;
         for (std::size_t v = 0; v < mesh.points.size(); ++v)
-          EXPECT_EQ(mesh.boundary.at(name)[v], alone.boundary.at(name)[at(mesh.natural_node[v])]);
+          EXPECT_EQ(mesh.boundary.at(name)[v], alone.boundary.at(name)[mesh.natural_node[v]]);
       }
     }
   }
@@ -129,10 +128,10 @@ TEST_P(MakeMesh, AreasAreThoseOfSquareAndPolygon) {
 }
 
 TEST_P(MakeMesh, InterfaceVerticesAreOnTheCircle) {
-  std::vector<int> in_disc(at(mesh.total_vertices), 0), in_rest(in_disc);
+  std::vector<int> in_disc(mesh.total_vertices, 0), in_rest(in_disc);
   for (std::size_t c = 0; c < alone.cells.size(); ++c)
     for (std::size_t i = 0; i < 3; ++i)
-      (alone.region.at("obstacle")[c] ? in_disc : in_rest)[at(alone.cells[c][i])] = 1;
+      (alone.region.at("obstacle")[c] ? in_disc : in_rest)[alone.cells[c][i]] = 1;
   int interface = 0, disc = 0;
   for (std::size_t v = 0; v < alone.points.size(); ++v) {
     disc += in_disc[v];

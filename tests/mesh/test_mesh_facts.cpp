@@ -81,7 +81,7 @@ Change shifted(double dx, double dy) {
 Change only(const std::string &boundary, const std::function<bool(const Point &)> &kept) {
   return [=](SerialMesh &mesh) {
     std::erase_if(mesh.boundary.at(boundary), [&](const auto &facet) {
-      const Point &x = mesh.points[at(facet[0])], &y = mesh.points[at(facet[1])];
+      const Point &x = mesh.points[facet[0]], &y = mesh.points[facet[1]];
       return !kept({(x[0] + y[0]) / 2, (x[1] + y[1]) / 2, 0});
     });
   };
@@ -109,7 +109,7 @@ void tear(SerialMesh &mesh) {
   std::map<int, int> copy; // of what both sides have
   std::set<int> left;
   for (const int c : all_cells(mesh))
-    if (!right(c)) left.insert(mesh.cells[at(c)].begin(), mesh.cells[at(c)].begin() + 3);
+    if (!right(c)) left.insert(mesh.cells[c].begin(), mesh.cells[c].begin() + 3);
   const auto cells = cells_of_edges(mesh);
   std::vector<bool> on_right;
   for (const int c : all_cells(mesh))
@@ -117,12 +117,12 @@ void tear(SerialMesh &mesh) {
   const auto replace = [&](int &v) {
     if (!left.contains(v)) return;
     const auto [own, is_new] = copy.try_emplace(v, static_cast<int>(mesh.points.size()));
-    if (is_new) mesh.points.push_back(Point(mesh.points[at(v)]));
+    if (is_new) mesh.points.push_back(Point(mesh.points[v]));
     v = own->second;
   };
   for (auto &[name, facets] : mesh.boundary)
     for (auto &facet : facets)
-      if (on_right[at(cells.at(sorted(facet[0], facet[1])).front())])
+      if (on_right[cells.at(sorted(facet[0], facet[1])).front()])
         for (std::size_t i = 0; i < 2; ++i)
           replace(facet[i]);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)

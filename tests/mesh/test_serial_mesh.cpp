@@ -18,7 +18,7 @@ TEST(SquareWithDisc, HasTheCountsOfItsRings) {
   EXPECT_EQ(mesh.cells.size(), 2 * mesh.points.size() - 2 - boundary);
   std::set<int> disc;
   for (const int cell : mesh.region.at("obstacle"))
-    disc.insert(mesh.cells[at(cell)].begin(), mesh.cells[at(cell)].begin() + 3);
+    disc.insert(mesh.cells[cell].begin(), mesh.cells[cell].begin() + 3);
   EXPECT_EQ(disc.size(), 469u);
   const auto inside = std::count_if(mesh.points.begin(), mesh.points.end(), [](const Point &x) {
     return std::hypot(x[0], x[1]) <= 0.2 * (1 + 1e-14);
@@ -33,7 +33,7 @@ TEST(SquareWithDisc, FillsSquareAndPolygon) {
   EXPECT_NEAR(area(mesh, mesh.region.at("obstacle")) / polygon_area(72, 0.2), 1, 1e-13);
   double perimeter = 0;
   for (const auto &edge : mesh.boundary.at("boundary")) {
-    const Point &x = mesh.points[at(edge[0])], &y = mesh.points[at(edge[1])];
+    const Point &x = mesh.points[edge[0]], &y = mesh.points[edge[1]];
     EXPECT_NEAR(std::max(std::abs(x[0]), std::abs(x[1])), 0.5, 1e-15);
     perimeter += length(x, y);
   }
@@ -73,7 +73,7 @@ TEST(GradedSquareWithDisc, HasTheCountsOfItsRings) {
   EXPECT_EQ(mesh.cells.size(), 2 * mesh.points.size() - 2 - 176);
   std::set<int> disc;
   for (const int cell : mesh.region.at("obstacle"))
-    disc.insert(mesh.cells[at(cell)].begin(), mesh.cells[at(cell)].begin() + 3);
+    disc.insert(mesh.cells[cell].begin(), mesh.cells[cell].begin() + 3);
   // Ten rings of 6 k nodes about the centre, then five of 60.
   EXPECT_EQ(disc.size(), at(1 + 3 * 10 * 11 + 5 * 60));
   EXPECT_EQ(fingerprint_of(mesh), fingerprint_of(square_with_disc(60)));
@@ -214,10 +214,10 @@ TEST(PartitionCells, IsBalancedConnectedEnoughAndRepeatable) {
     const std::vector<int> part = partition_cells(mesh, parts);
     ASSERT_EQ(part.size(), mesh.cells.size());
     std::vector<int> size(at(parts), 0);
-    std::vector<std::set<int>> vertices(at(parts));
+    std::vector<std::set<int>> vertices(parts);
     for (std::size_t c = 0; c < part.size(); ++c) {
-      ++size.at(at(part[c]));
-      vertices[at(part[c])].insert(mesh.cells[c].begin(), mesh.cells[c].begin() + 3);
+      ++size.at(part[c]);
+      vertices[part[c]].insert(mesh.cells[c].begin(), mesh.cells[c].begin() + 3);
     }
     const double average = static_cast<double>(part.size()) / parts;
     EXPECT_LE(*std::max_element(size.begin(), size.end()), 1.05 * average);

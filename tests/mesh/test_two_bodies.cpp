@@ -81,10 +81,10 @@ TEST(TwoQuarterDiscs, HasTheCountsOfItsRings) {
     EXPECT_EQ(mesh.region.at(region).size(), at(cells));
     std::set<int> own;
     for (const int c : mesh.region.at(region))
-      own.insert(mesh.cells[at(c)].begin(), mesh.cells[at(c)].begin() + 3);
+      own.insert(mesh.cells[c].begin(), mesh.cells[c].begin() + 3);
     EXPECT_EQ(own.size(), at(nodes));
     for (const int v : own)
-      EXPECT_EQ(mesh.points[at(v)][1] > 0, region == "upper");
+      EXPECT_EQ(mesh.points[v][1] > 0, region == "upper");
   }
 }
 
@@ -94,13 +94,13 @@ TEST(TwoQuarterDiscs, ContactArcsHaveEqualEdgesFromTheAxisOn) {
     const std::vector<int> arc = nodes_of(mesh, name);
     ASSERT_EQ(arc.size(), 561u);
     EXPECT_EQ(mesh.boundary.at(name).size(), 560u);
-    EXPECT_EQ(mesh.points[at(arc.front())], (Point{0, name == "slave" ? 0.5 : -0.5, 0}));
-    EXPECT_NEAR(mesh.points[at(arc.back())][0], std::sin(quarter), 1e-15);
+    EXPECT_EQ(mesh.points[arc.front()], (Point{0, name == "slave" ? 0.5 : -0.5, 0}));
+    EXPECT_NEAR(mesh.points[arc.back()][0], std::sin(quarter), 1e-15);
     for (std::size_t i = 0; i < arc.size(); ++i) {
-      const Point &x = mesh.points[at(arc[i])];
+      const Point &x = mesh.points[arc[i]];
       EXPECT_LE(distance_to_circle(x), 3e-16);
       if (i == 0) continue;
-      const Point &y = mesh.points[at(arc[i - 1])];
+      const Point &y = mesh.points[arc[i - 1]];
       EXPECT_GT(x[0], y[0]);
       EXPECT_NEAR(length(x, y), 2 * std::sin(quarter / 1120), 1e-15);
     }
@@ -111,9 +111,9 @@ TEST(TwoQuarterDiscs, BoundariesAreCompleteAndExact) {
   const SerialMesh mesh = two_quarter_discs();
   expect_boundaries(mesh, boundaries_of_discs);
   for (const int v : nodes_of(mesh, "arc"))
-    EXPECT_LE(distance_to_circle(mesh.points[at(v)]), 5e-16);
-  EXPECT_EQ(mesh.points[at(nodes_of(mesh, "top").back())], (Point{1, 1.5, 0}));
-  EXPECT_EQ(mesh.points[at(nodes_of(mesh, "bottom").front())], (Point{0, -1.5, 0}));
+    EXPECT_LE(distance_to_circle(mesh.points[v]), 5e-16);
+  EXPECT_EQ(mesh.points[nodes_of(mesh, "top").back()], (Point{1, 1.5, 0}));
+  EXPECT_EQ(mesh.points[nodes_of(mesh, "bottom").front()], (Point{0, -1.5, 0}));
 }
 
 TEST(TwoQuarterDiscs, TheLowerBodyIsTheImageOfTheUpperOne) {
@@ -150,10 +150,10 @@ TEST(TwoQuarterDiscs, RefinementFollowsTheCircles) {
     for (const std::string name : {"slave", "master"})
       EXPECT_EQ(nodes_of(mesh, name).size(), at((560 << level) + 1));
     for (const int v : nodes_of(mesh, "arc"))
-      EXPECT_LE(distance_to_circle(mesh.points[at(v)]), 1e-14);
+      EXPECT_LE(distance_to_circle(mesh.points[v]), 1e-14);
     for (const int v : nodes_of(mesh, "axis"))
-      EXPECT_EQ(mesh.points[at(v)][0], 0);
-    error[at(level)] = quarter - area(mesh, mesh.region.at("upper"));
+      EXPECT_EQ(mesh.points[v][0], 0);
+    error[level] = quarter - area(mesh, mesh.region.at("upper"));
     EXPECT_NEAR(area(mesh, mesh.region.at("lower")), area(mesh, mesh.region.at("upper")), 1e-14);
   }
   EXPECT_LT(error[0], 1e-3);
@@ -193,14 +193,14 @@ TEST_P(TwoGradedQuarterDiscs, AreWellShapedAndFillThePolygons) {
 TEST_P(TwoGradedQuarterDiscs, BoundariesAreCompleteAndExact) {
   expect_boundaries(mesh, boundaries_of_discs);
   for (const int v : nodes_of(mesh, "arc"))
-    EXPECT_LE(distance_to_circle(mesh.points[at(v)]), 5e-16);
+    EXPECT_LE(distance_to_circle(mesh.points[v]), 5e-16);
   for (const std::string name : {"slave", "master"}) {
     const std::vector<int> arc = nodes_of(mesh, name);
     ASSERT_EQ(arc.size(), at(GetParam() + 1));
-    EXPECT_EQ(mesh.points[at(arc.front())], (Point{0, name == "slave" ? 0.5 : -0.5, 0}));
-    EXPECT_NEAR(mesh.points[at(arc.back())][0], std::sin(quarter), 1e-15);
+    EXPECT_EQ(mesh.points[arc.front()], (Point{0, name == "slave" ? 0.5 : -0.5, 0}));
+    EXPECT_NEAR(mesh.points[arc.back()][0], std::sin(quarter), 1e-15);
     for (std::size_t i = 1; i < arc.size(); ++i)
-      EXPECT_NEAR(length(mesh.points[at(arc[i])], mesh.points[at(arc[i - 1])]),
+      EXPECT_NEAR(length(mesh.points[arc[i]], mesh.points[arc[i - 1]]),
                   2 * std::sin(quarter / (2 * GetParam())), 1e-14);
   }
 }
@@ -233,10 +233,10 @@ TEST(TwoBlocks, FillTheBlocksWithMeshesThatDoNotMatch) {
   ASSERT_EQ(master.size(), 8u);
   for (std::size_t i = 1; i < 10; ++i)
     for (std::size_t j = 1; j < 7; ++j)
-      EXPECT_GT(std::abs(mesh.points[at(slave[i])][0] - mesh.points[at(master[j])][0]), 1e-4);
+      EXPECT_GT(std::abs(mesh.points[slave[i]][0] - mesh.points[master[j]][0]), 1e-4);
   double shortest = 1, longest = 0;
   for (std::size_t i = 1; i < slave.size(); ++i) {
-    const double edge = mesh.points[at(slave[i])][0] - mesh.points[at(slave[i - 1])][0];
+    const double edge = mesh.points[slave[i]][0] - mesh.points[slave[i - 1]][0];
     shortest = std::min(shortest, edge);
     longest = std::max(longest, edge);
   }
@@ -248,21 +248,21 @@ void expect_same_on_all_ranks(const Scene &scene, int refine) {
   const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {"", refine});
   const Mesh alone = make_mesh(PETSC_COMM_SELF, scene, {"", refine});
   EXPECT_EQ(mesh.fingerprint, alone.fingerprint);
-  std::vector<int> owners(at(alone.total_vertices + alone.total_cells), 0);
+  std::vector<int> owners(alone.total_vertices + alone.total_cells, 0);
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const PetscInt natural = mesh.natural_node[v];
-    EXPECT_EQ(mesh.points[v], alone.points.at(at(natural)));
-    owners[at(natural)] += mesh.owned_node[v] ? 1 : 0;
+    EXPECT_EQ(mesh.points[v], alone.points.at(natural));
+    owners[natural] += mesh.owned_node[v] ? 1 : 0;
     for (const auto &[name, marked] : alone.boundary)
-      EXPECT_EQ(mesh.boundary.at(name).at(v), marked[at(natural)]) << name;
+      EXPECT_EQ(mesh.boundary.at(name).at(v), marked[natural]) << name;
   }
   for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
     const PetscInt natural = mesh.natural_cell[c];
-    ++owners[at(alone.total_vertices + natural)];
+    ++owners[alone.total_vertices + natural];
     for (std::size_t i = 0; i < 3; ++i)
-      EXPECT_EQ(mesh.natural_node.at(at(mesh.cells[c][i])), alone.cells.at(at(natural))[i]);
+      EXPECT_EQ(mesh.natural_node.at(mesh.cells[c][i]), alone.cells.at(natural)[i]);
     for (const auto &[name, marked] : alone.region)
-      EXPECT_EQ(mesh.region.at(name).at(c), marked[at(natural)]) << name;
+      EXPECT_EQ(mesh.region.at(name).at(c), marked[natural]) << name;
   }
   MPI_Allreduce(MPI_IN_PLACE, owners.data(), static_cast<int>(owners.size()), MPI_INT, MPI_SUM,
                 PETSC_COMM_WORLD);
@@ -304,7 +304,7 @@ TEST(TwoBodiesLabels, ASceneNamesThoseThatItNeeds) {
   EXPECT_EQ(mesh.region.size(), 1u);
   EXPECT_EQ(mesh.boundary.size(), 2u);
   for (std::size_t c = 0; c < mesh.cells.size(); ++c)
-    EXPECT_EQ(mesh.region.at("upper")[c], mesh.points[at(mesh.cells[c][0])][1] > 0);
+    EXPECT_EQ(mesh.region.at("upper")[c], mesh.points[mesh.cells[c][0]][1] > 0);
 }
 
 TEST(TwoBodiesErrors, AnUnknownGeneratorIsAnsweredByThoseThatExist) {

@@ -34,7 +34,7 @@ inline double polygon_area(int sides, double radius) {
 inline std::array<Point, 4> corners(const SerialMesh &mesh, int cell) {
   std::array<Point, 4> points{};
   for (std::size_t i = 0; i < 3; ++i)
-    points[i] = mesh.points[at(mesh.cells[at(cell)][i])];
+    points[i] = mesh.points[mesh.cells[cell][i]];
   return points;
 }
 
@@ -69,7 +69,7 @@ inline std::map<Edge, std::vector<int>> cells_of_edges(const SerialMesh &mesh) {
   std::map<Edge, std::vector<int>> found;
   for (const int c : all_cells(mesh))
     for (std::size_t i = 0; i < 3; ++i)
-      found[sorted(mesh.cells[at(c)][i], mesh.cells[at(c)][(i + 1) % 3])].push_back(c);
+      found[sorted(mesh.cells[c][i], mesh.cells[c][(i + 1) % 3])].push_back(c);
   return found;
 }
 
@@ -77,7 +77,7 @@ inline std::map<Edge, std::vector<int>> cells_of_edges(const SerialMesh &mesh) {
 inline std::pair<double, double> range_of_edges(const SerialMesh &mesh) {
   std::set<double> lengths;
   for (const auto &[edge, neighbours] : cells_of_edges(mesh))
-    lengths.insert(length(mesh.points[at(edge.first)], mesh.points[at(edge.second)]));
+    lengths.insert(length(mesh.points[edge.first], mesh.points[edge.second]));
   return {*lengths.begin(), *lengths.rbegin()};
 }
 
@@ -99,14 +99,14 @@ inline std::vector<int> nodes_of(const SerialMesh &mesh, const std::string &boun
     numbers.insert(facet.begin(), facet.begin() + 2);
   std::vector<int> ordered(numbers.begin(), numbers.end());
   std::sort(ordered.begin(), ordered.end(),
-            [&](int a, int b) { return mesh.points[at(a)] < mesh.points[at(b)]; });
+            [&](int a, int b) { return mesh.points[a] < mesh.points[b]; });
   return ordered;
 }
 
 inline std::vector<Point> points_of(const SerialMesh &mesh, const std::string &boundary) {
   std::vector<Point> points;
   for (const int v : nodes_of(mesh, boundary))
-    points.push_back(mesh.points[at(v)]);
+    points.push_back(mesh.points[v]);
   return points;
 }
 
@@ -121,7 +121,7 @@ template <class Expected> void expect_boundaries(const SerialMesh &mesh, Expecte
   for (const auto &[edge, neighbours] : cells_of_edges(mesh)) {
     if (neighbours.size() != 1) continue;
     ++outer;
-    const Point &x = mesh.points[at(edge.first)], &y = mesh.points[at(edge.second)];
+    const Point &x = mesh.points[edge.first], &y = mesh.points[edge.second];
     EXPECT_EQ(names[edge], expected(x, y)) << x[0] << " " << x[1] << ", " << y[0] << " " << y[1];
   }
   EXPECT_EQ(names.size(), outer);

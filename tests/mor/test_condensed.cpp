@@ -24,7 +24,7 @@ Matrix truth(Problem &problem, const Matrix &basis, const Mu &mu) {
   const Operators &op = problem.assemble(mu);
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
-  std::vector<Index> all(static_cast<std::size_t>(problem.dual_size()));
+  std::vector<Index> all(problem.dual_size());
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = static_cast<Index>(i);
   return basis.transpose() * condensed_columns(ksp.get(), problem.trace(), op, all) * basis;
@@ -50,7 +50,7 @@ Vector theta_of(Problem &problem, const Eim &b, const std::vector<Mu> &training,
   const Vector wanted = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
   Matrix terms(wanted.size(), b.size());
   for (int i = 0; i < b.size(); ++i) {
-    problem.assemble_contact(training[static_cast<std::size_t>(b.snapshots[std::size_t(i)])], op);
+    problem.assemble_contact(training[b.snapshots[std::size_t(i)]], op);
     terms.col(i) = Eigen::Map<const Vector>(op.b.valuePtr(), op.b.nonZeros());
   }
   return least_squares(terms * b.combination, wanted);

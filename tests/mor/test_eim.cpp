@@ -69,7 +69,7 @@ Matrix terms_of(const Eim &result, const Matrix &all) {
 Matrix interpolant(const Eim &result, const Matrix &all) {
   Matrix sampled(result.size(), all.cols());
   for (Index j = 0; j < result.size(); ++j)
-    sampled.row(j) = all.row(entry_of(result.entries[static_cast<std::size_t>(j)]));
+    sampled.row(j) = all.row(entry_of(result.entries[j]));
   return terms_of(result, all) *
          result.interpolation.triangularView<Eigen::UnitLower>().solve(sampled);
 }
@@ -87,7 +87,7 @@ TEST(Eim, error_history_is_the_true_error_at_every_size) {
     const double error =
         (all - interpolant(result, all)).cwiseAbs().maxCoeff() / all.cwiseAbs().maxCoeff();
     EXPECT_NEAR(error, result.error.back(), 1e-6 * error + 1e-14);
-    EXPECT_EQ(result.error.back(), full.error[static_cast<std::size_t>(size)]);
+    EXPECT_EQ(result.error.back(), full.error[size]);
   }
 }
 
@@ -110,7 +110,7 @@ TEST(Eim, interpolation_matrix_holds_the_terms_at_the_entries) {
   const Matrix terms = terms_of(result, all);
   ASSERT_EQ(result.interpolation.rows(), result.size());
   for (Index j = 0; j < result.size(); ++j) {
-    const Index e = entry_of(result.entries[static_cast<std::size_t>(j)]);
+    const Index e = entry_of(result.entries[j]);
     EXPECT_EQ(result.interpolation(j, j), 1);
     for (Index i = 0; i < result.size(); ++i) {
       if (i > j) {

@@ -46,8 +46,8 @@ Vector sum_of_terms(Problem &problem, const Mu &mu, const Vector &theta, const E
     sum += theta[static_cast<Index>(q)] * exact[q];
   const Vector weights = eim.combination * theta.tail(eim.size());
   for (int i = 0; i < eim.size(); ++i) {
-    const int snapshot = eim.snapshots[static_cast<std::size_t>(i)];
-    problem.assemble(training()[static_cast<std::size_t>(snapshot)]);
+    const int snapshot = eim.snapshots[i];
+    problem.assemble(training()[snapshot]);
     sum += weights[i] * interpolated_part();
   }
   problem.assemble(mu);

@@ -97,8 +97,7 @@ void expect_consistent(const Gcns &g, std::size_t samples) {
   EXPECT_EQ(std::set<int>(g.nodes.begin(), g.nodes.end()).size(), g.nodes.size());
   EXPECT_FALSE(g.reason.empty());
   const auto best = std::min_element(g.error.begin(), g.error.end());
-  EXPECT_EQ(static_cast<int>(g.nodes.size()),
-            g.count[static_cast<std::size_t>(best - g.error.begin())]);
+  EXPECT_EQ(static_cast<int>(g.nodes.size()), g.count[best - g.error.begin()]);
 }
 
 } // namespace

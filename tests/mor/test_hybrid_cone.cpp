@@ -51,8 +51,7 @@ struct Membrane {
     for (Index k = 0; k < count; ++k) {
       const double x = static_cast<double>(k / inner - 5) / 5,
                    y = static_cast<double>(k % inner - 5) / 5;
-      terms.row(k) << (x * x + y * y) / 2 - pushed[contact[static_cast<std::size_t>(k)]] / scale, 1,
-          -x, -y;
+      terms.row(k) << (x * x + y * y) / 2 - pushed[contact[k]] / scale, 1, -x, -y;
     }
   }
   static constexpr double scale = 30; ///< about the largest deflection under a unit load

@@ -85,10 +85,10 @@ TEST_P(Greedy, sigma_and_the_stability_bound_hold_at_every_step) {
   EXPECT_LE(pga.sigma.back(), 1e-4);
   for (Index step = 0; step <= added; ++step) {
     const Matrix enriched = pga.coordinates.leftCols(size + step);
-    const double sigma = pga.sigma[static_cast<std::size_t>(step)];
+    const double sigma = pga.sigma[step];
     EXPECT_NEAR(sigma, brute_worst(enriched, example.supremizers), 1e-9 + 1e-6 * sigma);
     if (step > 0) {
-      EXPECT_LE(sigma, pga.sigma[static_cast<std::size_t>(step - 1)]);
+      EXPECT_LE(sigma, pga.sigma[step - 1]);
     }
     for (const Matrix &supremizers : example.supremizers) {
       const double off = infsup_constant(enriched, supremizers);
@@ -113,8 +113,8 @@ TEST_P(Greedy, each_step_takes_the_worst_parameter_and_its_worst_direction) {
   const Matrix sources = example.space.factor.transpose() * pga.representers;
   for (Index step = 0; step < added; ++step) {
     const Matrix enriched = pga.coordinates.leftCols(size + step);
-    const auto chosen = static_cast<std::size_t>(pga.selected[static_cast<std::size_t>(step)]);
-    const double sigma = pga.sigma[static_cast<std::size_t>(step)];
+    const auto chosen = static_cast<std::size_t>(pga.selected[step]);
+    const double sigma = pga.sigma[step];
     EXPECT_NEAR(brute_sigma(enriched, example.supremizers[chosen]), sigma, 1e-9);
     for (std::size_t p = 0; p < chosen; ++p)
       EXPECT_LT(brute_sigma(enriched, example.supremizers[p]), sigma) << "ties go to the lowest";
@@ -188,8 +188,7 @@ TEST(Pga, one_space_for_all_parameters_needs_one_svd) {
     EXPECT_EQ(p, -1);
   const auto added = static_cast<Index>(pga.selected.size());
   for (Index step = 0; step <= added; ++step)
-    EXPECT_NEAR(pga.sigma[static_cast<std::size_t>(step)],
-                brute_sigma(pga.coordinates.leftCols(5 + step), first), 1e-10);
+    EXPECT_NEAR(pga.sigma[step], brute_sigma(pga.coordinates.leftCols(5 + step), first), 1e-10);
   EXPECT_LE((pga.coordinates.transpose() * pga.coordinates - Matrix::Identity(5 + added, 5 + added))
                 .norm(),
             1e-12);
@@ -236,7 +235,7 @@ TEST(Pga, choices_and_counts_do_not_depend_on_the_number_of_ranks) {
     Example example = make_example(6, 5, parameters, 800);
     // Exact ties, on different ranks: the same spaces once more, spanned by other vectors.
     for (Index p = 0; p < parameters; ++p)
-      example.supremizers.push_back(example.supremizers[static_cast<std::size_t>(p)] *
+      example.supremizers.push_back(example.supremizers[p] *
                                     orthonormal(5, 5, 900 + static_cast<unsigned>(p)));
     const PgaOptions options{.tolerance = 1e-3};
     const Pga alone = projected_greedy(PETSC_COMM_SELF, example.space, example.modes,

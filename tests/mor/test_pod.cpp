@@ -184,7 +184,7 @@ TEST(AppendOrthonormalised, takes_independent_columns_and_keeps_the_first) {
       [&] {
         std::vector<PetscInt> nodes(n * n);
         for (PetscInt k = 0; k < n * n; ++k)
-          nodes[static_cast<std::size_t>(k)] = k;
+          nodes[k] = k;
         return make_trace(product.get(), nodes);
       }(),
       extra, product.get());
@@ -207,7 +207,7 @@ TEST(AppendOrthonormalised, nearly_dependent_column_stays_orthogonal) {
   const Matrix before = gathered(result.basis.columns.get());
   std::vector<PetscInt> nodes(n * n);
   for (PetscInt k = 0; k < n * n; ++k)
-    nodes[static_cast<std::size_t>(k)] = k;
+    nodes[k] = k;
   const Matrix extra = before.col(0) + 1e-11 * random_matrix(n * n, 1, 10);
   const Handle<Mat> columns = extension(make_trace(product.get(), nodes), extra, product.get());
   EXPECT_EQ(append_orthonormalised(result.basis, columns.get(), 1e-13).size(), 1U);
@@ -228,7 +228,7 @@ TEST(AppendOrthonormalised, takes_many_columns_block_by_block) {
   extra.col(100) = extra.col(99) + 1e-9 * extra.col(100);
   std::vector<PetscInt> nodes(m * m);
   for (PetscInt k = 0; k < m * m; ++k)
-    nodes[static_cast<std::size_t>(k)] = k;
+    nodes[k] = k;
   const Handle<Mat> columns = extension(make_trace(product.get(), nodes), extra, product.get());
   std::vector<int> expected;
   for (int k = 0; k < 110; ++k)

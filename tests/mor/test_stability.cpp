@@ -41,7 +41,7 @@ struct Membrane {
     w_product = w.sparseView();
     b_contact = b.sparseView();
     for (Index k = 0; k < 2 * n; ++k)
-      b_full.col(nodes[static_cast<std::size_t>(k)]) = b.col(k);
+      b_full.col(nodes[k]) = b.col(k);
   }
 
   LinearBasis basis(const Matrix &columns) const {
@@ -66,7 +66,7 @@ TEST(RieszSpace, lift_solves_and_factor_squares_to_the_traces) {
   const RieszSpace space = make_riesz_space(membrane.product.get(), membrane.trace);
   Matrix columns = Matrix::Zero(n * n, 2 * n);
   for (Index k = 0; k < 2 * n; ++k)
-    columns(membrane.nodes[static_cast<std::size_t>(k)], k) = 1;
+    columns(membrane.nodes[k], k) = 1;
   const Matrix exact = membrane.dense.llt().solve(columns);
   EXPECT_LE((gathered(space.solver->fields(Matrix::Identity(2 * n, 2 * n)).get()) - exact).norm(),
             1e-12 * exact.norm());
@@ -357,8 +357,7 @@ TEST(RieszSpace, the_contact_dofs_that_b_couples_with_the_multipliers_are_enough
   const Matrix fields = gathered(part.solver->fields(random_matrix(8, 4, 14)).get());
   Matrix loads = Matrix::Zero(n * n, 4);
   for (Index k = 0; k < 8; ++k)
-    loads.row(membrane.nodes[static_cast<std::size_t>(part.dofs[static_cast<std::size_t>(k)])]) =
-        random_matrix(8, 4, 14).row(k);
+    loads.row(membrane.nodes[part.dofs[k]]) = random_matrix(8, 4, 14).row(k);
   EXPECT_LE((membrane.dense * fields - loads).norm(), 1e-12 * loads.norm());
 }
 

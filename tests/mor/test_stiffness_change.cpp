@@ -24,7 +24,7 @@ Handle<Mat> basis_of(const Problem &problem, Index hats, Index fields) {
   const InterfaceMesh &disc = problem.contact().interfaces.front()->mesh();
   for (std::size_t i = 0; i < disc.points.size() && next < hats; ++i)
     if (std::hypot(disc.points[i][0], disc.points[i][1]) < 0.17)
-      natural(problem.places().natural_dofs[static_cast<std::size_t>(disc.dofs[i])], next++) = 1;
+      natural(problem.places().natural_dofs[disc.dofs[i]], next++) = 1;
   EXPECT_EQ(next, hats);
   for (Index k = 0; k < fields; ++k)
     for (Index i = 0; i < natural.rows(); ++i)
@@ -79,7 +79,7 @@ struct Trained {
   std::vector<Mu> set{};
   Trained() {
     for (const int p : a.snapshots)
-      set.push_back(training[static_cast<std::size_t>(p)]);
+      set.push_back(training[p]);
   }
 };
 
@@ -101,7 +101,7 @@ TEST(StiffnessChange, IsTheProjectionOfEveryTerm) {
   for (Index q = 0; q < trained.a.size(); ++q) {
     Matrix term = Matrix::Zero(n, n);
     for (Index i = 0; i <= q; ++i)
-      term += trained.a.combination(i, q) * snapshots[static_cast<std::size_t>(i)];
+      term += trained.a.combination(i, q) * snapshots[i];
     const Matrix core = unpacked(change.cores.col(q), change.rank());
     const Matrix made =
         change.scales[q] * snapshots.front() + change.range * core * change.range.transpose();

@@ -25,13 +25,13 @@ TEST(SharedQueue, GivesOutEveryNumberOnce) {
   for_all_groups([](const Groups &groups) {
     for (const int count : {0, 1, 2, 7, 100, 1000}) {
       SharedQueue queue(world, groups, count);
-      std::vector<PetscInt> taken(static_cast<std::size_t>(count), 0);
+      std::vector<PetscInt> taken(count, 0);
       while (const std::optional<int> number = queue.next()) {
         std::vector<PetscInt> lowest{*number}, highest{*number};
         over_ranks(groups.comm(), MPI_MIN, lowest);
         over_ranks(groups.comm(), MPI_MAX, highest);
         ASSERT_EQ(lowest, highest) << "one number for all ranks of a group";
-        if (groups.leads()) ++taken.at(static_cast<std::size_t>(*number));
+        if (groups.leads()) ++taken.at(*number);
         queue.finish(*number % 7 != 0);
       }
       over_ranks(world, MPI_SUM, taken);

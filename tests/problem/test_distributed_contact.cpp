@@ -46,15 +46,13 @@ TEST(DistributedContact, EveryMultiplierHasOneRankNextToThoseOfItsNode) {
     const DualLayout &layout = problem.dual_layout();
     std::vector<PetscInt> sorted = layout.numbers;
     std::ranges::sort(sorted);
-    std::vector<PetscInt> all(static_cast<std::size_t>(problem.dual_size()));
+    std::vector<PetscInt> all(problem.dual_size());
     std::iota(all.begin(), all.end(), 0);
     EXPECT_EQ(sorted, all);
     const NodeLaws laws = laws_at(problem.contact(), expand(problem.scene().parameters, one.mu));
     for (Index i = 0; i < laws.nodes(); ++i) {
       if (!laws.has_tangent(i)) continue;
-      const auto number = [&](const std::vector<Index> &row) {
-        return layout.numbers[static_cast<std::size_t>(row[static_cast<std::size_t>(i)])];
-      };
+      const auto number = [&](const std::vector<Index> &row) { return layout.numbers[row[i]]; };
       EXPECT_EQ(number(laws.tangent), number(laws.normal) + 1);
     }
   }

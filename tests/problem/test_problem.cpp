@@ -79,7 +79,7 @@ TEST(Problem, AGapThatIsNotFiniteIsRefusedByNameAndPlace) {
                                      {},
                                      true})};
     Problem problem(PETSC_COMM_WORLD, scene, {});
-    const Mu mu(static_cast<std::size_t>(scene.parameters.size()), 0.1);
+    const Mu mu(scene.parameters.size(), 0.1);
     EXPECT_TRUE(refuses("the gap or the normal of contact on 'contact' is not finite at the point",
                         [&] { problem.assemble(mu); }));
   }

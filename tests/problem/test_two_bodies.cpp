@@ -161,8 +161,7 @@ TEST(TwoBodyProblem, WithoutMotionTheGapIsThatOfTwoCircles) {
   for (const double radius : {0.7, 1.0, 1.3}) {
     const Operators op = contact_at(problem, radius);
     for (Index i = 0; i < op.nodal_gap.size(); ++i) {
-      const double x =
-          problem.contact().interfaces.front()->mesh().points[static_cast<std::size_t>(i)][0];
+      const double x = problem.contact().interfaces.front()->mesh().points[i][0];
       const double circles =
           initial_gap + 1 - std::sqrt(1 - x * x) + radius - std::sqrt(radius * radius - x * x);
       EXPECT_NEAR(op.nodal_gap[i], circles, 1e-6);
@@ -231,7 +230,7 @@ TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
     Vector w(op.nodal_b.cols());
     std::vector<Point> deformed;
     for (Index i = 0; i < w.size(); ++i) {
-      const Point &x = curves.points[static_cast<std::size_t>(i)];
+      const Point &x = curves.points[i];
       w[i] = 0.05 * std::sin(7.0 * static_cast<double>(i));
       deformed.push_back(problem.scene().map({radius}, x));
       deformed.back()[1] += problem.scene().motion({radius}, x)[1] + w[i];
@@ -240,7 +239,7 @@ TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
     const Vector gap = op.nodal_gap - op.nodal_b * w;
     ASSERT_GT(gap.size(), 300);
     for (Index i = 0; i < gap.size(); ++i) {
-      const Point &slave = deformed[static_cast<std::size_t>(i)];
+      const Point &slave = deformed[i];
       EXPECT_NEAR(gap[i], slave[1] - height_at(master, slave[0]), 1e-12);
     }
   }

@@ -40,7 +40,7 @@ inline SampleMesh random_sample(std::mt19937 &random, int size, int per_entry) {
     sample.vertices.middleRows(3 * cell, 3) << x, y, x + 0.02, y + 0.004, x + 0.003, y + 0.03;
     sample.contributions.push_back({cell / per_entry, cell, 0});
   }
-  sample.terms.assign(static_cast<std::size_t>(size * per_entry), 0);
+  sample.terms.assign(size * per_entry, 0);
   return sample;
 }
 

@@ -54,7 +54,7 @@ inline void add_fans(const PairSizes &sizes, ReducedModel &model) {
   InterfaceModel &contact = model.interfaces.front();
   for (int i = 0; i < slave + master; ++i) {
     contact.nodes.push_back(2 + i);
-    const Point &x = contact.mesh.points[static_cast<std::size_t>(i)];
+    const Point &x = contact.mesh.points[i];
     model.mesh_points.row(2 + i) << x[0], x[1];
   }
   model.mesh_cells.clear();
@@ -128,7 +128,7 @@ inline brute::Operators pair_operators(const ReducedModel &model, const Scene &s
   const InterfaceMesh &curves = model.interfaces.front().mesh;
   Vector motion(curves.nodes());
   for (Index i = 0; i < motion.size(); ++i)
-    motion[i] = scene.motion ? scene.motion(mu, curves.points[static_cast<std::size_t>(i)])[1] : 0;
+    motion[i] = scene.motion ? scene.motion(mu, curves.points[i])[1] : 0;
   const PairOperators pair = mapped_pair(model, scene, mu);
   const Matrix b = pair.b;
   const Index n = model.primal_size();

@@ -20,9 +20,9 @@ ReducedModel model_with_imposed() {
   model.imposed_energy.samples.front().contributions = {{0, 0, 0}};
   const Index cells = model.f.samples.front().vertices.rows() / 3;
   for (AffineTerms *terms : {&model.f, &model.imposed_energy})
-    terms->samples.front().imposed_by.assign(static_cast<std::size_t>(3 * cells), 2);
+    terms->samples.front().imposed_by.assign(3 * cells, 2);
   model.interfaces.front().mesh.imposed_by = {-1, 0, 1};
-  model.imposed_by.assign(static_cast<std::size_t>(model.primal_basis.rows()), -1);
+  model.imposed_by.assign(model.primal_basis.rows(), -1);
   return model;
 }
 

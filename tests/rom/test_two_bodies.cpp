@@ -125,7 +125,7 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
     const std::vector<Index> paired = synthetic::mapped_pair(model, p0(), all).paired;
     ASSERT_EQ(gap.size(), static_cast<Index>(paired.size()));
     for (Index k = 0; k < gap.size(); ++k) {
-      const Point &x = slave[static_cast<std::size_t>(paired[std::size_t(k)])];
+      const Point &x = slave[paired[std::size_t(k)]];
       EXPECT_NEAR(gap[k], x[1] - height_at(master, x[0]), 1e-12);
     }
     const Outputs outputs = solver.outputs(mu, solution);

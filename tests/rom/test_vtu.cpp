@@ -219,7 +219,7 @@ struct OneCell {
       const Index middles = dim * (dim + 1) / 2;
       points.conservativeResize(dim + 1 + middles, dim);
       for (Index e = 0; e < middles; ++e) {
-        const auto [i, j] = edges[static_cast<std::size_t>(e)];
+        const auto [i, j] = edges[e];
         points.row(dim + 1 + e) = (vertices.row(i) + vertices.row(j)) / 2;
       }
     }

@@ -44,8 +44,7 @@ struct Shared {
     for (Index dof = 0; dof < dofs; ++dof)
       layout.columns.push_back(static_cast<PetscInt>(dof));
     for (Index row = 0; row < std::ssize(pivots); ++row)
-      if (const Index pivot = pivots[static_cast<std::size_t>(row)]; pivot >= begin && pivot < end)
-        rows.push_back(row);
+      if (const Index pivot = pivots[row]; pivot >= begin && pivot < end) rows.push_back(row);
   }
   Elimination eliminate(const Constraints &all) const {
     SparseMatrix own(std::ssize(rows), dofs);
@@ -53,7 +52,7 @@ struct Shared {
     for (std::size_t k = 0; k < rows.size(); ++k) {
       for (SparseMatrix::InnerIterator entry(all.c, rows[k]); entry; ++entry)
         own.insert(static_cast<Index>(k), entry.col()) = entry.value();
-      pivots.push_back(all.pivots[static_cast<std::size_t>(rows[k])]);
+      pivots.push_back(all.pivots[rows[k]]);
     }
     return {layout, own, pivots};
   }

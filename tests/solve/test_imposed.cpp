@@ -50,8 +50,7 @@ double largest_error(const Solved &of, const Mu &mu, const Field &exact) {
 }
 
 Factor parameter(const std::string &name, int number) {
-  return {
-      name, [number](const FullMu &mu) { return mu[static_cast<std::size_t>(number)]; }, {number}};
+  return {name, [number](const FullMu &mu) { return mu[number]; }, {number}};
 }
 
 /// A block [0, 1] x [0, 1/2] over a flat support, stretched by mu[0] along x and pressed by mu[1]:
@@ -177,7 +176,7 @@ void expect_same(const Scene &moved, const Mu &mu, const HfOptions &options = {}
     const Point motion = moved.motion(all, mesh.points[v]);
     for (int c = 0; c < 2; ++c) {
       const Index dof = 2 * mesh.natural_node[v] + c;
-      const double whole = motion[static_cast<std::size_t>(c)] + s.solution.u[dof];
+      const double whole = motion[c] + s.solution.u[dof];
       worst = larger(worst, std::abs(whole - other.solution.u[dof]));
       size = std::max(size, std::abs(whole));
     }

@@ -74,7 +74,7 @@ Handle<Vec> vector_of(Index size) {
 Matrix compliance_of(Problem &problem, const Operators &op) {
   const Handle<KSP> ksp = make_direct_solver(PETSC_COMM_SELF, "hf_");
   RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
-  std::vector<Index> dofs(static_cast<std::size_t>(problem.trace().size));
+  std::vector<Index> dofs(problem.trace().size);
   std::iota(dofs.begin(), dofs.end(), 0);
   Compliance kept;
   kept.require(ksp.get(), problem.trace(), op.a, dofs);

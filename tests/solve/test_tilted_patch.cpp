@@ -68,8 +68,7 @@ double largest_error(const Problem &problem, const Mu &mu, const HfSolution &sol
   for (std::size_t v = 0; v < mesh.points.size(); ++v)
     for (int c = 0; c < 2; ++c) {
       const Point expected = exact(expand(problem.scene().parameters, mu), mesh.points[v]);
-      worst = larger(worst, std::abs(solution.u[mesh.natural_node[v] * 2 + c] -
-                                     expected[static_cast<std::size_t>(c)]));
+      worst = larger(worst, std::abs(solution.u[mesh.natural_node[v] * 2 + c] - expected[c]));
     }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, problem.comm());
   return worst;

@@ -88,8 +88,7 @@ TEST(TwoDisks, TheEnergyOfDegreeTwoConvergesWithTheSquareOfTheMeshWidth) {
   std::array<double, 3> energy{};
   for (const int refine : {0, 1, 2}) {
     Problem problem(PETSC_COMM_SELF, disks({{"degree", "2"}, {"arc_edges", "40"}}), {"", refine});
-    energy[static_cast<std::size_t>(refine)] =
-        *HighFidelity(problem, {}).solve({0.8}).outputs.energy;
+    energy[refine] = *HighFidelity(problem, {}).solve({0.8}).outputs.energy;
   }
   EXPECT_GT((energy[0] - energy[1]) / (energy[1] - energy[2]), 3.4);
 }
@@ -151,8 +150,7 @@ double reaction(const Problem &problem, const FullMu &mu, const HfSolution &s, d
     }
     const Eigen::Vector<double, 6> forces = stiffness * u;
     for (std::size_t i = 0; i < 3; ++i)
-      if (mesh.points[static_cast<std::size_t>(mesh.cells[k][i])][1] == side)
-        sum += forces[static_cast<Index>(2 * i + 1)];
+      if (mesh.points[mesh.cells[k][i]][1] == side) sum += forces[static_cast<Index>(2 * i + 1)];
   }
   MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, mesh.comm);
   return sum;

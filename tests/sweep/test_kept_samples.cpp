@@ -111,7 +111,7 @@ TEST_F(SweepTest, ADamagedSampleIsNoSampleOfOtherOptions) {
   (void)sweep(five);
   alone([&] {
     for (int i = 0; i < 4; ++i)
-      std::ofstream(sample_file(samples, five[static_cast<std::size_t>(i)])) << "damaged";
+      std::ofstream(sample_file(samples, five[i])) << "damaged";
   });
   const Error error = refusal(make_scene("membrane_obstacle", {{"load", "-20"}}));
   EXPECT_TRUE(contains(error.what(), "load = -25, now it is -20")) << error.what();

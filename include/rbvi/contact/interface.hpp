@@ -93,7 +93,7 @@ struct PointConstraint {
 using WantedNodes = std::vector<bool>;
 
 inline bool is_wanted(const WantedNodes &wanted, Index node) {
-  return wanted.empty() || wanted[static_cast<std::size_t>(node)];
+  return wanted.empty() || wanted[node];
 }
 
 class EntitySum;

@@ -43,9 +43,7 @@ struct ParameterSpace {
   std::vector<int> free; ///< indices into `all`, in the order of Mu
 
   int size() const { return static_cast<int>(free.size()); }
-  const Parameter &at(int i) const {
-    return all[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])];
-  }
+  const Parameter &at(int i) const { return all[free[i]]; }
 };
 
 /// Every parameter free.

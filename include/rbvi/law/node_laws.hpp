@@ -49,7 +49,7 @@ struct NodeLaws {
   std::vector<FrictionBound> bound; ///< per node
 
   Index nodes() const { return static_cast<Index>(normal.size()); }
-  bool has_tangent(Index node) const { return tangent[static_cast<std::size_t>(node)] >= 0; }
+  bool has_tangent(Index node) const { return tangent[node] >= 0; }
   bool has_tangents() const; ///< some node
   /// Whether some node can carry a tangential traction.
   bool friction() const;

@@ -49,7 +49,7 @@ public:
   void require_all(const Trace &trace, Mat a, const Groups *groups = nullptr);
   /// One that was required.
   Eigen::Map<const Vector> column(Index contact_dof) const {
-    return {columns_.col(slot_[static_cast<std::size_t>(contact_dof)]).data(), columns_.rows()};
+    return {columns_.col(slot_[contact_dof]).data(), columns_.rows()};
   }
 
   /// For contact that is nodal (contact/interface.hpp).

@@ -60,8 +60,7 @@ Point CurrentCurve::sum(Index edge, const std::array<double, 3> &coefficients,
   Point result{};
   for (Index k = 0; k < per_edge(); ++k)
     for (std::size_t c = 0; c < 2; ++c)
-      result[c] += coefficients[static_cast<std::size_t>(k)] *
-                   of_nodes[static_cast<std::size_t>(node(edge, k))][c];
+      result[c] += coefficients[k] * of_nodes[node(edge, k)][c];
   return result;
 }
 
@@ -92,7 +91,7 @@ Projection::Projection(const CurrentCurve &slave, const CurrentCurve &master, Mi
 /// Where the normal of a master vertex meets the slave curve, searched from edge `from` onwards.
 double Projection::abscissa_of(Index master_vertex, Index &from) const {
   const Point &origin = master_.vertex(master_vertex);
-  const Point &n = normals_[static_cast<std::size_t>(master_vertex)];
+  const Point &n = normals_[master_vertex];
   const auto beside = [&](Index edge, double s) { // > 0: to the right of the normal
     return cross(minus(slave_.at(edge, s), origin), n);
   };
@@ -126,8 +125,7 @@ std::vector<Index> Projection::segments() const {
 Facing Projection::facing(Index slave_edge, double s, Index master_edge) const {
   constexpr double round_off = 1e-13, settled = 1e-8; // what is left is the square of the last step
   const Point y = slave_.at(slave_edge, s);
-  const double begin = cuts_[static_cast<std::size_t>(master_edge)],
-               end = cuts_[static_cast<std::size_t>(master_edge) + 1];
+  const double begin = cuts_[master_edge], end = cuts_[static_cast<std::size_t>(master_edge) + 1];
   double t = std::clamp((static_cast<double>(slave_edge) + s - begin) / (end - begin), 0.0, 1.0);
   Facing result{slave_edge, master_edge, s, 0, 0, {}, 0, 0};
   double last = 1;
@@ -162,7 +160,7 @@ std::vector<Facing> Projection::gauss_points() const {
   for (Index m = 0; m < master_.edges(); ++m) {
     const double end =
         std::min(cuts_[static_cast<std::size_t>(m) + 1], static_cast<double>(slave_.edges()));
-    double begin = std::max(cuts_[static_cast<std::size_t>(m)], 0.0);
+    double begin = std::max(cuts_[m], 0.0);
     while (end - begin > 1e-12) {
       const auto edge = std::min(static_cast<Index>(begin + 1e-12), slave_.edges() - 1);
       const double first = begin - static_cast<double>(edge),
@@ -185,9 +183,7 @@ std::vector<Facing> Projection::vertices() const {
     const auto at = static_cast<double>(v);
     while (m + 1 < master_.edges() && cuts_[static_cast<std::size_t>(m) + 1] <= at)
       ++m;
-    if (at < cuts_[static_cast<std::size_t>(m)] - 1e-12 ||
-        at > cuts_[static_cast<std::size_t>(m) + 1] + 1e-12)
-      continue;
+    if (at < cuts_[m] - 1e-12 || at > cuts_[static_cast<std::size_t>(m) + 1] + 1e-12) continue;
     const Index edge = std::min(v, slave_.edges() - 1);
     points.push_back(facing(edge, at - static_cast<double>(edge), m));
     points.back().weight = at;

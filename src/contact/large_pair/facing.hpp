@@ -17,7 +17,7 @@ public:
   Index edges() const { return edges_; }
   Index per_edge() const { return degree_ + 1; } ///< nodes
   Index node(Index edge, Index local) const { return local < 2 ? edge + local : edges_ + 1 + edge; }
-  const Point &vertex(Index i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  const Point &vertex(Index i) const { return nodes_[i]; }
   /// The nodal functions of an edge at 0 <= s <= 1, and their derivatives by s.
   std::array<double, 3> values(double s) const;
   std::array<double, 3> slopes(double s) const;

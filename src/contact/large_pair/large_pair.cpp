@@ -112,7 +112,7 @@ std::array<std::pair<Index, double>, 2> LargePairInterface::multipliers(const Fa
 
 /// Of the straight slave edge, undeformed.
 double LargePairInterface::length(const FullMu &mu, Index slave_edge) const {
-  const Point a = scene_.map(mu, slave_[static_cast<std::size_t>(slave_edge)]),
+  const Point a = scene_.map(mu, slave_[slave_edge]),
               b = scene_.map(mu, slave_[static_cast<std::size_t>(slave_edge) + 1]);
   return std::sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]));
 }
@@ -145,7 +145,7 @@ void LargePairInterface::set_nodal(const Projection &projection, const Curves &r
   Triplets entries;
   operators.nodal_gap.resize(count);
   for (Index i = 0; i < count; ++i) {
-    const Facing &p = vertices[static_cast<std::size_t>(i)];
+    const Facing &p = vertices[i];
     const Point x = rest.slave.at(p.slave_edge, p.s), xi = rest.master.at(p.master_edge, p.t);
     operators.nodal_gap[i] = p.normal[0] * (x[0] - xi[0]) + p.normal[1] * (x[1] - xi[1]);
     add_difference(now, p, p.normal, -1, i, entries);
@@ -201,7 +201,7 @@ Curvature LargePairInterface::curvature(const FullMu &mu, const ContactState &st
     const std::array<double, 3> slopes = now.master.slopes(p.t);
     for (Index k = 0; k < now.master.per_edge(); ++k)
       add(row, node_of(now.master, true, p.master_edge, k), p.normal,
-          weight * slopes[static_cast<std::size_t>(k)] / p.stretch, of_e);
+          weight * slopes[k] / p.stretch, of_e);
     ++row;
   }
   Curvature result{SparseMatrix(row, mesh_.columns), SparseMatrix(row, mesh_.columns)};
@@ -242,7 +242,7 @@ Grid LargePairInterface::fields(const FullMu &mu, const Vector &u, const Vector 
     gap[static_cast<Index>(k)] = p.normal[0] * (y[0] - xi[0]) + p.normal[1] * (y[1] - xi[1]);
   }
   for (Index k = 0; k < pressure.size(); ++k) {
-    const Index node = nodes[static_cast<std::size_t>(k)];
+    const Index node = nodes[k];
     pressure[k] = lambda[constant ? macro_edge_of(node, mesh_.parts[0], mesh_.degree) : node];
   }
   Grid grid = polyline(scene_, mu, mesh_, nodes, u);

@@ -70,7 +70,7 @@ double coulomb_bound(double p, double coefficient) {
 NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, const FullMu &mu,
                            const Cell &cell, int edge, const Lame &material, double s) {
   const Simplex geometry = simplex(2, cell.mapped);
-  const auto [first, second] = simplex_edges[static_cast<std::size_t>(edge)];
+  const auto [first, second] = simplex_edges[edge];
   const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(second);
   const Point x{(1 - s) * cell.reference[begin][0] + s * cell.reference[end][0],
                 (1 - s) * cell.reference[begin][1] + s * cell.reference[end][1], 0};
@@ -88,8 +88,7 @@ NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, cons
   lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
   point.body_normal =
       facing.body_normal ? facing.body_normal(mu, x) : outward_normal(cell.mapped, begin, end);
-  set_functionals(static_cast<std::size_t>(nodes_per_cell(2, scene.degree)), values, gradients,
-                  material, point);
+  set_functionals(nodes_per_cell(2, scene.degree), values, gradients, material, point);
   return point;
 }
 

@@ -70,9 +70,8 @@ Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Matrix &p
 }
 
 double edge_length(const std::array<Point, 4> &vertices, int edge) {
-  const auto [i, j] = simplex_edges[static_cast<std::size_t>(edge)];
-  const Point &a = vertices[static_cast<std::size_t>(i)],
-              &b = vertices[static_cast<std::size_t>(j)];
+  const auto [i, j] = simplex_edges[edge];
+  const Point &a = vertices[i], &b = vertices[j];
   return std::hypot(b[0] - a[0], b[1] - a[1]);
 }
 
@@ -101,7 +100,7 @@ std::vector<NitscheFace> nitsche_faces(const NitscheLayer &layer, const FullMu &
     const NitscheCurve &curve = layer.curve_of(beside);
     faces.push_back(
         {nitsche_points(layer.scene, curve.facing, mu, at.cell, beside.edge, at.material), at.gamma,
-         beside.dofs, beside.curve, laws[static_cast<std::size_t>(beside.curve)],
+         beside.dofs, beside.curve, laws[beside.curve],
          curve.friction() || curve.facing.follows_state});
   }
   if (state.size() > 0) turn_to(layer, mu, state, faces);
@@ -111,7 +110,7 @@ std::vector<NitscheFace> nitsche_faces(const NitscheLayer &layer, const FullMu &
 void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
              std::vector<NitscheFace> &faces) {
   for (NitscheFace &face : faces) {
-    const NitscheFacing &facing = layer.curves[static_cast<std::size_t>(face.curve)].facing;
+    const NitscheFacing &facing = layer.curves[face.curve].facing;
     if (!facing.follows_state) continue;
     const Row here = local(face.dofs, state);
     for (NitschePoint &point : face.points)
@@ -307,9 +306,8 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
   Vector slip = Vector::Zero(count), gamma = Vector::Zero(count), edges = Vector::Zero(count);
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const CurveCellAtMu at = curve_cell_at(layer, mu, cells[k]);
-    const auto ends = simplex_edges[static_cast<std::size_t>(cells[k].edge)];
-    const bool forward = at.cell.reference[static_cast<std::size_t>(ends[0])][0] <
-                         at.cell.reference[static_cast<std::size_t>(ends[1])][0];
+    const auto ends = simplex_edges[cells[k].edge];
+    const bool forward = at.cell.reference[ends[0]][0] < at.cell.reference[ends[1]][0];
     const Row here = local(cells[k].dofs, u);
     for (const double s : {0.0, 1.0}) {
       NitschePoint point =

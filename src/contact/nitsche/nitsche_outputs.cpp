@@ -46,7 +46,7 @@ Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, cons
       force += point.weight * pressure;
       sums.tangential += point.weight * std::abs(held);
       for (Index c = 0; c < 2; ++c)
-        sums.force[static_cast<std::size_t>(c)] +=
+        sums.force[c] +=
             point.weight * (held * component(point.tau, c) - pressure * component(point.n, c));
       if (pressure > 0) sums.contact += point.weight;
       if (pressure > 0 && std::abs(shear) < bound) sums.stick += point.weight;
@@ -131,8 +131,7 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
   LawErrors errors;
   for (std::size_t k = 0; k < layer.curves.size(); ++k) {
     const auto count = std::ssize(layer.cells_of(k));
-    const auto own =
-        std::span(faces).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    const auto own = std::span(faces).subspan(first, static_cast<std::size_t>(count));
     const CurveFields fields = nitsche_fields(layer, k, mu, u);
     Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
     nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);

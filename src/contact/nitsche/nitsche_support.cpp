@@ -22,14 +22,13 @@ std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
   std::vector<CurveCell> cells;
   for (Index e = 0; e < mesh.count(); ++e) {
     const int *nodes = mesh.nodes_of(e);
-    CurveCell cell{{2, {}, {}}, mesh.edges[static_cast<std::size_t>(e)], {}};
+    CurveCell cell{{2, {}, {}}, mesh.edges[e], {}};
     cell.dofs.fill(-1);
     for (std::size_t v = 0; v < 3; ++v)
-      cell.cell.reference[v] = mesh.points[static_cast<std::size_t>(nodes[v])];
+      cell.cell.reference[v] = mesh.points[nodes[v]];
     cell.cell.mapped = cell.cell.reference;
     for (int i = 0; i < 2 * mesh.per_entity; ++i)
-      cell.dofs[static_cast<std::size_t>(i)] =
-          mesh.dofs[static_cast<std::size_t>(2 * nodes[i / 2] + i % 2)];
+      cell.dofs[i] = mesh.dofs[2 * nodes[i / 2] + i % 2];
     cells.push_back(cell);
   }
   return cells;
@@ -39,11 +38,9 @@ std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
 std::vector<Index> curve_vertices(const InterfaceMesh &mesh) {
   std::vector<Index> vertices;
   for (Index e = 0; e < mesh.count(); ++e) {
-    const auto [i, j] =
-        simplex_edges[static_cast<std::size_t>(mesh.edges[static_cast<std::size_t>(e)])];
+    const auto [i, j] = simplex_edges[mesh.edges[e]];
     Index a = mesh.nodes_of(e)[i], b = mesh.nodes_of(e)[j];
-    if (mesh.points[static_cast<std::size_t>(a)][0] > mesh.points[static_cast<std::size_t>(b)][0])
-      std::swap(a, b);
+    if (mesh.points[a][0] > mesh.points[b][0]) std::swap(a, b);
     if (e == 0) vertices.push_back(a);
     vertices.push_back(b);
   }
@@ -58,7 +55,7 @@ public:
                                                                    curve_cells(mesh_)} {
     dual_.vertices = curve_vertices(mesh_);
     for (const Index node : dual_.vertices)
-      dual_.points.push_back(mesh_.points[static_cast<std::size_t>(node)]);
+      dual_.points.push_back(mesh_.points[node]);
     dual_.components = layer_.friction() ? 2 : 1;
     dual_.gram = linear_gram(dual_.points, dual_.components);
     for (const Index node : partly_fixed()) {
@@ -73,8 +70,7 @@ public:
                 ContactOperators &operators) override {
     std::vector<Point> mapped(mesh_.points.size());
     for (const Index node : dual_.vertices)
-      mapped[static_cast<std::size_t>(node)] =
-          scene_.map(mu, mesh_.points[static_cast<std::size_t>(node)]);
+      mapped[node] = scene_.map(mu, mesh_.points[node]);
     set_constraints(mu, mapped, {}, {}, operators);
   }
   FrictionBound bound(const FullMu &mu) const override {

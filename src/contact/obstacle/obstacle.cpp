@@ -87,7 +87,7 @@ std::vector<Index> ObstacleInterface::rim() const {
   std::set<Index> nodes;
   for (const auto &[facet, cells] : cells_of)
     for (const int vertex : facet)
-      if (cells == 1) nodes.insert(dual_of_vertex()[static_cast<std::size_t>(vertex)]);
+      if (cells == 1) nodes.insert(dual_of_vertex()[vertex]);
   nodes.erase(-1);
   return {nodes.begin(), nodes.end()};
 }
@@ -96,7 +96,7 @@ std::vector<Index> ObstacleInterface::rim() const {
 Vector ObstacleInterface::at_vertices(const Vector &normal) const {
   const std::vector<Index> &dual = dual_of_vertex();
   return Vector::NullaryExpr(std::ssize(dual), [&](Index v) {
-    const Index i = dual[static_cast<std::size_t>(v)];
+    const Index i = dual[v];
     return i < 0 ? 0.0 : normal[i];
   });
 }

@@ -347,8 +347,8 @@ SparseMatrix multiplier_product(const std::vector<Point> &slave_nodes, Multiplie
   SparseMatrix product(count, count);
   product.reserve(Eigen::VectorXi::Constant(count, 3));
   for (Index i = 0; i < count; ++i) {
-    const EdgeRange edges = support(static_cast<std::size_t>(i), slave, space);
-    const double weight = whole_weight(static_cast<std::size_t>(i), slave, space);
+    const EdgeRange edges = support(i, slave, space);
+    const double weight = whole_weight(i, slave, space);
     const bool linear = space == MultiplierSpace::nodes;
     if (i > 0) product.insert(i, i - 1) = linear ? slave.length(edges.first) / 6 : 0;
     product.insert(i, i) = linear ? weight * 2 / 3 : weight;

@@ -45,7 +45,7 @@ PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, P
   (void)check_curve(mesh_, 1, "master curve");
   alone_ = mesh_.columns == mesh_.nodes();
   for (Index i = 0; i < mesh_.nodes(); ++i) {
-    const int dof = mesh_.components == 2 ? mesh_.dofs[static_cast<std::size_t>(2 * i + 1)] : -1;
+    const int dof = mesh_.components == 2 ? mesh_.dofs[2 * i + 1] : -1;
     if (dof < 0) throw bad_input("two bodies meet along curves whose nodes all move vertically");
     alone_ = alone_ && dof == i;
   }
@@ -61,8 +61,7 @@ SparseMatrix PairInterface::at_contact_dofs(SparseMatrix b) const {
   std::vector<Eigen::Triplet<double>> entries;
   for (Index row = 0; row < b.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(b, row); entry; ++entry)
-      entries.emplace_back(row, mesh_.dofs[static_cast<std::size_t>(2 * entry.col() + 1)],
-                           entry.value());
+      entries.emplace_back(row, mesh_.dofs[2 * entry.col() + 1], entry.value());
   SparseMatrix result(b.rows(), mesh_.columns);
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
@@ -93,7 +92,7 @@ PairOperators PairInterface::couple_at(const FullMu &mu) const {
   if (!scene_.motion) return pair;
   Vector motion(mesh_.nodes());
   for (Index i = 0; i < motion.size(); ++i)
-    motion[i] = scene_.motion(mu, mesh_.points[static_cast<std::size_t>(i)])[1];
+    motion[i] = scene_.motion(mu, mesh_.points[i])[1];
   pair.g -= pair.b * motion;
   pair.nodal_gap -= pair.nodal_b * motion;
   return pair;
@@ -110,7 +109,7 @@ Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lamb
   const bool constant = pair_.discretisation.multiplier == MultiplierSpace::macro_edges;
   Vector pressure(constant ? count - 1 : count);
   for (Index k = 0; k < pressure.size(); ++k) {
-    const Index node = pair.paired[static_cast<std::size_t>(k)];
+    const Index node = pair.paired[k];
     pressure[k] = lambda[constant ? macro_edge_of(node, mesh_.parts[0], mesh_.degree) : node];
   }
   add_pressure(pressure, grid);

@@ -86,11 +86,10 @@ void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &v
     const double weight = at.weight * whole;
     const SupportPoint here = support_at(mu, edge, at, point_on(edge, at));
     for (Index a = 0; a < 2; ++a) {
-      const double eta = weight * at.eta[static_cast<std::size_t>(a)];
+      const double eta = weight * at.eta[a];
       for (Index node = 0; node < nodes; ++node)
         for (Index c = 0; c < 2; ++c)
-          values.b(a, 2 * node + c) += eta * at.phi[static_cast<std::size_t>(node)] *
-                                       here.normal[static_cast<std::size_t>(c)];
+          values.b(a, 2 * node + c) += eta * at.phi[node] * here.normal[c];
       values.g[a] += here.gap * eta;
       if (friction) values.g[2 + a] -= here.slip * eta;
     }
@@ -115,7 +114,7 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
     Cell edge = reference_entity(e);
     if (follows_state()) set_displacement(mu, e, state, edge, displacement);
     for (Index i = 0; i < 2; ++i)
-      edge.mapped[static_cast<std::size_t>(i)] = {mapped(e + i, 0), mapped(e + i, 1), 0};
+      edge.mapped[i] = {mapped(e + i, 0), mapped(e + i, 1), 0};
     const double whole = length_of(edge);
     for (const TracePoint &at : points_) {
       const Point x = point_on(edge, at), n = normal_at(mu, edge, at, x);

@@ -69,9 +69,9 @@ Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface
   Grid grid = polyline(scene, mu, mesh, vertices, u);
   Vector gap(count);
   for (Index k = 0; k < count; ++k) {
-    const Index node = vertices[static_cast<std::size_t>(k)];
-    const PointConstraint at = interface.constraint_at(
-        mu, mesh.points[static_cast<std::size_t>(node)], {u[2 * node], u[2 * node + 1], 0});
+    const Index node = vertices[k];
+    const PointConstraint at =
+        interface.constraint_at(mu, mesh.points[node], {u[2 * node], u[2 * node + 1], 0});
     gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
   }
   grid.of_nodes.push_back({"gap", gap, "m"});

@@ -85,8 +85,7 @@ Point SurfaceInterface::displacement_at(const Cell &edge, const TracePoint &at) 
   Point result{};
   for (int node = 0; node < mesh_.per_entity && edge.displacement != nullptr; ++node)
     for (std::size_t c = 0; c < 2; ++c)
-      result[c] += at.phi[static_cast<std::size_t>(node)] *
-                   edge.displacement[2 * static_cast<std::size_t>(node) + c];
+      result[c] += at.phi[node] * edge.displacement[2 * static_cast<std::size_t>(node) + c];
   return result;
 }
 
@@ -100,8 +99,7 @@ Point SurfaceInterface::body_normal(const FullMu &mu, const Cell &edge, const Tr
   const std::array<double, 3> slope = slopes(mesh_.degree, at.s);
   for (int node = 0; node < mesh_.per_entity && edge.displacement != nullptr; ++node)
     for (std::size_t c = 0; c < 2; ++c)
-      tangent[c] += slope[static_cast<std::size_t>(node)] *
-                    edge.displacement[2 * static_cast<std::size_t>(node) + c];
+      tangent[c] += slope[node] * edge.displacement[2 * static_cast<std::size_t>(node) + c];
   const double norm = std::hypot(tangent[0], tangent[1]);
   if (!(norm > 1e-3 * length)) throw failure("an edge of the contact curve has lost its length");
   return {tangent[1] / norm, -tangent[0] / norm, 0};
@@ -200,12 +198,10 @@ void SurfaceInterface::add_edge(const FullMu &mu, Index e, const AtRest &rest, c
   const int *nodes = mesh_.nodes_of(e);
   const bool friction = dual_.components == 2;
   std::array<double, 6> u{}, load{};
-  const auto dof = [&](int k) {
-    return mesh_.dofs[static_cast<std::size_t>(2 * nodes[k / 2] + k % 2)];
-  };
+  const auto dof = [&](int k) { return mesh_.dofs[2 * nodes[k / 2] + k % 2]; };
   const int dofs = 2 * mesh_.per_entity;
   for (int k = 0; k < dofs; ++k)
-    if (const int column = dof(k); column >= 0) u[static_cast<std::size_t>(k)] = state[column];
+    if (const int column = dof(k); column >= 0) u[k] = state[column];
   for (std::size_t i = 0; i < points().size(); ++i) {
     const TracePoint &at = points()[i];
     Point displacement{};
@@ -237,14 +233,13 @@ void SurfaceInterface::add_edge(const FullMu &mu, Index e, const AtRest &rest, c
       load[k] += at.phi[k / 2] * traction[k % 2];
   }
   for (int k = 0; k < dofs; ++k)
-    if (const int column = dof(k); column >= 0)
-      condition.load[column] += load[static_cast<std::size_t>(k)];
+    if (const int column = dof(k); column >= 0) condition.load[column] += load[k];
 }
 
 NodalEvaluation SurfaceInterface::nodal_at(const FullMu &mu) const {
-  return [this, mu, rest = std::vector<AtRest>(static_cast<std::size_t>(mesh_.count()))](
-             const Vector &state, const Vector &x, const std::vector<bool> &near,
-             NodalCondition &condition) mutable {
+  return [this, mu, rest = std::vector<AtRest>(mesh_.count())](const Vector &state, const Vector &x,
+                                                               const std::vector<bool> &near,
+                                                               NodalCondition &condition) mutable {
     condition.w.setZero(dual_.size());
     condition.load.setZero(mesh_.columns);
     condition.normal.setZero(2, dual_.nodes());
@@ -252,7 +247,7 @@ NodalEvaluation SurfaceInterface::nodal_at(const FullMu &mu) const {
     for (Index e = 0; e < mesh_.count(); ++e) {
       const std::span<const int> dual = rows_of(e);
       if (dual[0] < 0 || !(is_wanted(near, dual[0]) || is_wanted(near, dual[1]))) continue;
-      AtRest &edge = rest[static_cast<std::size_t>(e)];
+      AtRest &edge = rest[e];
       if (edge.points.empty()) edge = at_rest(mu, e);
       add_edge(mu, e, edge, state, x, condition);
     }

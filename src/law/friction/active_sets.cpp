@@ -115,7 +115,7 @@ private:
     keys_.push_back(sets.key());
     Vector differs(std::ssize(keys_));
     for (Index k = 0; k < differs.size(); ++k)
-      differs[k] = keys_[at(k)] == keys_.back() ? 0 : 1;
+      differs[k] = keys_[k] == keys_.back() ? 0 : 1;
     Index first = 0;
     largest(differs).minCoeff(&first);
     return first;

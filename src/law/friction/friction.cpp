@@ -135,7 +135,7 @@ private:
   void prepare(const Laws &laws, const Vector &x) {
     ActiveSets sets = contact_sets(laws, x);
     for (Index i = 0; i < laws.nodes; ++i)
-      if (laws.at_node(i).carries_traction(sets.is_active(i))) sets.tangent[at(i)] = Tangent::stick;
+      if (laws.at_node(i).carries_traction(sets.is_active(i))) sets.tangent[i] = Tangent::stick;
     h_.require(sets.support(laws));
   }
 
@@ -181,7 +181,7 @@ private:
     double near = 0.1, part = 1, before = std::numeric_limits<double>::infinity();
     Laws frozen = laws_;
     frozen.coefficient.setZero();
-    frozen.only_in_contact.assign(at(laws_.nodes), 0);
+    frozen.only_in_contact.assign(laws_.nodes, 0);
     frozen.threshold = laws_.bounds(point.x);
     while (systems_left_ > 0) {
       ++result_.backup_steps;

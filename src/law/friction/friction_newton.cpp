@@ -17,7 +17,7 @@ double tangential_diagonal(const Vector &diagonal, const Laws &laws, Index i) {
 /// What scales the diagonal of H to one for each unknown.
 Vector units(const Vector &diagonal, const Laws &laws, const std::vector<Unknown> &list) {
   return Vector::NullaryExpr(std::ssize(list), [&](Index k) {
-    const Unknown &u = list[at(k)];
+    const Unknown &u = list[k];
     return 1 / std::sqrt(u.first < laws.nodes ? diagonal[u.first]
                                               : tangential_diagonal(diagonal, laws, u.node));
   });
@@ -30,14 +30,14 @@ Matrix assemble(const LazyColumns &h, const Laws &laws, const ActiveSets &sets,
   Matrix matrix(count, count);
   Vector column;
   for (Index k = 0; k < count; ++k) {
-    const Unknown &u = list[at(k)];
+    const Unknown &u = list[k];
     column = u.a * h.column(u.first);
     if (u.b != 0) column += u.b * h.column(u.second);
     if (u.slope > 0)
       for (int j = 0; j < laws.dim - 1; ++j)
         column += u.slope * sets.direction(j, u.node) * h.column(laws.tangent(u.node) + j);
     for (Index r = 0; r < count; ++r) {
-      const Unknown &row = list[at(r)];
+      const Unknown &row = list[r];
       matrix(r, k) = unit[k] * unit[r] * (row.a * column[row.first] + row.b * column[row.second]);
     }
     matrix(k, k) += u.curvature * unit[k] * unit[k];
@@ -98,7 +98,7 @@ private:
   void normal(Index i) {
     const double x = point_.x[i], w = point_.w[i], terms = point_.terms[i];
     violated(x > 0 ? std::abs(w) : -w, terms);
-    char &next = verdict_.next.active[at(i)];
+    char &next = verdict_.next.active[i];
     const double counted = std::abs(w) <= tolerance_ * terms ? 0 : w;
     if (diagonal_[i] == 0) {
       next = counted < 0;
@@ -109,7 +109,7 @@ private:
     next = sets_.is_active(i) && !laws_.at_node(i).jumps() ? y >= -tolerance_ * largest_ : y > 0;
   }
   void tangential(Index i) {
-    Tangent &next = verdict_.next.tangent[at(i)];
+    Tangent &next = verdict_.next.tangent[i];
     const double bound = laws_.bound(i, point_.x[i]);
     const bool known = diagonal_[laws_.tangent(i)] != 0;
     if (known) measure(i, bound);
@@ -126,7 +126,7 @@ private:
   void begin(Index i) {
     const auto w = point_.w.segment(laws_.tangent(i), laws_.dim - 1);
     const double size = w.norm();
-    verdict_.next.tangent[at(i)] = size > 0 ? Tangent::slip : Tangent::stick;
+    verdict_.next.tangent[i] = size > 0 ? Tangent::slip : Tangent::stick;
     if (size > 0) verdict_.next.direction.col(i) = -w / size;
   }
   void measure(Index i, double bound) {
@@ -155,7 +155,7 @@ private:
     const bool slips = sets_.tangent_at(i) == Tangent::slip
                            ? size >= bound * (1 - 1e-15) && y.dot(sets_.direction.col(i)) > 0
                            : size > bound + tolerance_ * largest_ / std::sqrt(diagonal);
-    verdict_.next.tangent[at(i)] = slips ? Tangent::slip : Tangent::stick;
+    verdict_.next.tangent[i] = slips ? Tangent::slip : Tangent::stick;
     if (!slips) return;
     verdict_.next.direction.col(i) = y / size;
     verdict_.next.curvature[i] = std::max(0.0, size - bound) * diagonal / bound;
@@ -203,8 +203,8 @@ Laws Laws::with_part(double part) const {
 }
 
 ActiveSets::ActiveSets(Index nodes, int dim)
-    : active(at(nodes), 0), tangent(at(nodes), Tangent::none),
-      direction(Matrix::Zero(dim - 1, nodes)), curvature(Vector::Constant(nodes, -1)) {}
+    : active(nodes, 0), tangent(nodes, Tangent::none), direction(Matrix::Zero(dim - 1, nodes)),
+      curvature(Vector::Constant(nodes, -1)) {}
 
 std::vector<Index> ActiveSets::support(const Laws &laws) const {
   std::vector<Index> result;
@@ -237,7 +237,7 @@ State evaluate(const LazyColumns &h, const Vector &q, Vector x) {
 ActiveSets contact_sets(const Laws &laws, const Vector &x) {
   ActiveSets result(laws.nodes, laws.dim);
   for (Index i = 0; i < laws.nodes; ++i)
-    result.active[at(i)] = x[i] > 0;
+    result.active[i] = x[i] > 0;
   return result;
 }
 
@@ -245,12 +245,12 @@ ActiveSets predicted_sets(const Laws &laws, const Vector &y) {
   constexpr double round_off = 1e-10; // x itself is on its bound where it slips
   ActiveSets result(laws.nodes, laws.dim);
   for (Index i = 0; i < laws.nodes; ++i) {
-    result.active[at(i)] = y[i] > 0;
+    result.active[i] = y[i] > 0;
     if (!laws.at_node(i).carries_traction(y[i] > 0)) continue;
     const auto tangential = y.segment(laws.tangent(i), laws.dim - 1);
     const double size = tangential.norm();
     const bool slips = size > 0 && size >= (1 - round_off) * laws.bound(i, y[i]);
-    result.tangent[at(i)] = slips ? Tangent::slip : Tangent::stick;
+    result.tangent[i] = slips ? Tangent::slip : Tangent::stick;
     if (slips) result.direction.col(i) = tangential / size;
   }
   return result;
@@ -304,7 +304,7 @@ Vector fixed_part(const Laws &laws, const ActiveSets &sets) {
 Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
               const Vector &u, Vector x) {
   for (Index k = 0; k < u.size(); ++k) {
-    const Unknown &unknown = list[at(k)];
+    const Unknown &unknown = list[k];
     const double value = u[k];
     x[unknown.first] += unknown.a * value;
     if (unknown.b != 0) x[unknown.second] += unknown.b * value;
@@ -351,7 +351,7 @@ Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, cons
   Vector right(static_cast<Index>(list.size()));
   bool symmetric = true;
   for (Index k = 0; k < right.size(); ++k) {
-    const Unknown &u = list[at(k)];
+    const Unknown &u = list[k];
     right[k] = -unit[k] * (u.a * start[u.first] + u.b * start[u.second]);
     symmetric = symmetric && u.slope == 0;
   }

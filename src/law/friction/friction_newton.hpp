@@ -23,7 +23,7 @@ struct Laws {
 
   Index tangent(Index i) const { return nodes + i * (dim - 1); }
   FrictionBound at_node(Index i) const {
-    return {coefficient[i], threshold[i], only_in_contact[at(i)] != 0};
+    return {coefficient[i], threshold[i], only_in_contact[i] != 0};
   }
   double bound(Index i, double normal) const { return at_node(i).value(normal); }
   Vector bounds(const Vector &x) const;
@@ -49,8 +49,8 @@ struct ActiveSets {
   Vector curvature; ///< kappa of those nodes; negative: no turn
 
   ActiveSets(Index nodes, int dim);
-  bool is_active(Index i) const { return active[at(i)] != 0; }
-  Tangent tangent_at(Index i) const { return tangent[at(i)]; }
+  bool is_active(Index i) const { return active[i] != 0; }
+  Tangent tangent_at(Index i) const { return tangent[i]; }
   /// The entries of x that need not be zero.
   std::vector<Index> support(const Laws &laws) const;
   /// Equal for sets with the same linear system, in two dimensions.
@@ -74,9 +74,9 @@ struct Verdict {
 
 /// The largest x in the scaling in which H has a unit diagonal.
 double largest_scaled(const Vector &diagonal, const Vector &x);
-/// `diagonal`: H_jj, or its size; 0: unknown, then so is x_j, but for its being zero. `sets`: of
-/// the step that gave the point (they decide where the difference is below tolerance). `largest`:
-/// largest_scaled, of all nodes.
+/// `diagonal`: H_jj, or its size; 0 where it is not known: of x_j it is then only known whether it
+/// is zero. `sets`: of the step that gave the point (they decide where the difference is below
+/// tolerance). `largest`: largest_scaled, of all nodes.
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
               double tolerance, double largest);
 Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,

@@ -7,7 +7,7 @@ Order::Order(const NodeLaws &laws) : rows_(laws.rows) {
     of_.push_back(row);
   for (Index i = 0; i < laws.nodes() && laws.has_tangents(); ++i)
     for (int k = 0; k < laws.tangents; ++k)
-      of_.push_back(laws.has_tangent(i) ? laws.tangent[at(i)] + k : -1);
+      of_.push_back(laws.has_tangent(i) ? laws.tangent[i] + k : -1);
   same_ = size() == rows_;
   for (Index j = 0; j < size(); ++j)
     same_ = same_ && row(j) == j;
@@ -41,24 +41,23 @@ Laws laws_of(const NodeLaws &of) {
             .dim = of.has_tangents() ? 1 + of.tangents : 1,
             .coefficient = Vector(nodes),
             .threshold = Vector(nodes),
-            .only_in_contact = std::vector<char>(at(nodes))};
+            .only_in_contact = std::vector<char>(nodes)};
   for (Index i = 0; i < nodes; ++i) {
-    const FrictionBound bound = of.has_tangent(i) ? of.bound[at(i)] : FrictionBound{};
+    const FrictionBound bound = of.has_tangent(i) ? of.bound[i] : FrictionBound{};
     laws.coefficient[i] = bound.coefficient;
     laws.threshold[i] = bound.threshold;
-    laws.only_in_contact[at(i)] = bound.only_in_contact;
+    laws.only_in_contact[i] = bound.only_in_contact;
   }
   return laws;
 }
 
 void describe(FrictionResult &result, const Laws &laws, const ActiveSets &sets) {
   result.active.clear();
-  result.states.assign(at(laws.nodes), NodeState::open);
+  result.states.assign(laws.nodes, NodeState::open);
   for (Index i = 0; i < laws.nodes; ++i) {
     if (!(result.x[i] > 0)) continue;
     result.active.push_back(i);
-    result.states[at(i)] =
-        sets.tangent_at(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
+    result.states[i] = sets.tangent_at(i) == Tangent::stick ? NodeState::stick : NodeState::slip;
   }
 }
 

@@ -11,7 +11,7 @@ public:
   explicit Order(const NodeLaws &laws);
   bool same() const { return same_; }
   Index size() const { return std::ssize(of_); }
-  Index row(Index j) const { return of_[at(j)]; } ///< of entry j; -1: none
+  Index row(Index j) const { return of_[j]; } ///< of entry j; -1: none
   Matrix inwards(const Matrix &values) const;
   Vector outwards(const Vector &values) const;
   ColumnSource inwards(const ColumnSource &columns) const;

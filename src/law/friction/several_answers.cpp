@@ -9,7 +9,7 @@ namespace rbvi {
 
 bool bounds_follow_pressure(const NodeLaws &laws) {
   for (Index i = 0; i < laws.nodes(); ++i)
-    if (const FrictionBound &bound = laws.bound[at(i)];
+    if (const FrictionBound &bound = laws.bound[i];
         laws.has_tangent(i) && (bound.coefficient > 0 || bound.jumps()))
       return true;
   return false;
@@ -43,11 +43,11 @@ double distance_to_other_answer(const ColumnSource &columns, const Vector &q, co
   for (const double slip : {0.0, 1.0, -1.0}) {
     Vector start = found.start;
     for (Index i = 0; i < laws.nodes(); ++i) {
-      double &normal = start[laws.normal[at(i)]];
+      double &normal = start[laws.normal[i]];
       if (found.active.empty()) normal = std::abs(normal);
       if (!laws.has_tangent(i)) continue;
-      start.segment(laws.tangent[at(i)], laws.tangents).setZero();
-      start[laws.tangent[at(i)]] = 2 * slip * laws.bound[at(i)].value(normal);
+      start.segment(laws.tangent[i], laws.tangents).setZero();
+      start[laws.tangent[i]] = 2 * slip * laws.bound[i].value(normal);
     }
     look(start, false);
   }

@@ -13,7 +13,7 @@ Vector Anderson::combine(const Vector &residual) {
   if (count == 1) return coefficients;
   Matrix differences(residual.size(), count - 1);
   for (Index k = 0; k + 1 < count; ++k)
-    differences.col(k) = residual - residuals_[static_cast<std::size_t>(k)];
+    differences.col(k) = residual - residuals_[k];
   Eigen::ColPivHouseholderQR<Matrix> qr(differences);
   qr.setThreshold(1e-10);
   const Vector shares = qr.solve(residual);

@@ -1,7 +1,6 @@
 // Linear fixed points, by Anderson's acceleration with all iterates: GMRES.
 #pragma once
 
-#include "../index.hpp"
 #include "rbvi/law/nonlinear/anderson.hpp"
 
 namespace rbvi {
@@ -19,7 +18,7 @@ template <class Image> Vector fixed_point(const Vector &right, double tolerance,
     const Vector shares = accelerated.combine(residual);
     d.setZero();
     for (Index j = 0; j < shares.size(); ++j)
-      d += shares[j] * images[at(j)];
+      d += shares[j] * images[j];
   }
   return images.back();
 }

@@ -1,6 +1,5 @@
 #include "linearised_contact.hpp"
 
-#include "../index.hpp"
 #include "../pivoting.hpp"
 #include "fixed_point.hpp"
 #include "loaded_columns.hpp"
@@ -19,12 +18,12 @@ namespace {
 class CurvatureLoad {
 public:
   explicit CurvatureLoad(const CurvatureRows &rows) : s_(rows.s), e_(rows.e) {
-    position_.assign(at(rows.s.cols()), -1);
+    position_.assign(rows.s.cols(), -1);
     touch(rows.s);
     touch(rows.e);
     std::sort(dofs_.begin(), dofs_.end());
     for (std::size_t k = 0; k < dofs_.size(); ++k)
-      position_[at(dofs_[k])] = static_cast<Index>(k);
+      position_[dofs_[k]] = static_cast<Index>(k);
     s_ = local(rows.s);
     e_ = local(rows.e);
   }
@@ -38,8 +37,8 @@ private:
   void touch(const SparseMatrix &rows) {
     for (Index row = 0; row < rows.rows(); ++row)
       for (SparseMatrix::InnerIterator entry(rows, row); entry; ++entry)
-        if (position_[at(entry.col())] < 0) {
-          position_[at(entry.col())] = 0;
+        if (position_[entry.col()] < 0) {
+          position_[entry.col()] = 0;
           dofs_.push_back(entry.col());
         }
   }
@@ -47,7 +46,7 @@ private:
     std::vector<Eigen::Triplet<double>> entries;
     for (Index row = 0; row < rows.rows(); ++row)
       for (SparseMatrix::InnerIterator entry(rows, row); entry; ++entry)
-        entries.emplace_back(row, position_[at(entry.col())], entry.value());
+        entries.emplace_back(row, position_[entry.col()], entry.value());
     SparseMatrix result(rows.rows(), std::ssize(dofs_));
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
@@ -83,11 +82,11 @@ private:
     const Index count = std::ssize(dofs);
     Matrix result(count, count);
     for (Index first = 0, after = 0; first < count; first = after) {
-      while (after < count && dofs[at(after)] - dofs[at(first)] == after - first)
+      while (after < count && dofs[after] - dofs[first] == after - first)
         ++after;
       for (Index k = 0; k < count; ++k)
         result.col(k).segment(first, after - first) =
-            compliance.column(dofs[at(k)]).segment(dofs[at(first)], after - first);
+            compliance.column(dofs[k]).segment(dofs[first], after - first);
     }
     return result;
   }
@@ -99,7 +98,7 @@ private:
 LinearisedContact::LinearisedContact(const NonlinearContact &contact, const Vector &state,
                                      double part)
     : contact_(contact), state_(state), back_((1 - part) * contact.undeformed),
-      free_(part * contact.free), moved_(at(contact.laws.rows)) {
+      free_(part * contact.free), moved_(contact.laws.rows) {
   contact.linearise(state + back_, at_);
   if (part < 1) at_.g -= at_.b * back_;
   q_ = at_.g - at_.b * free_;
@@ -118,8 +117,8 @@ void LinearisedContact::move(const std::vector<Index> &which) {
     for (SparseMatrix::InnerIterator entry(at_.b, row); entry; ++entry)
       columns.add(-entry.value(), contact_.compliance.column(entry.col()).data(),
                   contact_.compliance.body_of(entry.col()));
-    moved_[at(row)] = Vector::Zero(at_.b.cols());
-    columns.subtract_from(moved_[at(row)], {0, at_.b.cols()});
+    moved_[row] = Vector::Zero(at_.b.cols());
+    columns.subtract_from(moved_[row], {0, at_.b.cols()});
   }
 }
 
@@ -127,7 +126,7 @@ Matrix LinearisedContact::columns(const std::vector<Index> &which) {
   move(which);
   Matrix result(at_.b.rows(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
-    result.col(static_cast<Index>(k)) = at_.b * moved_[at(which[k])];
+    result.col(static_cast<Index>(k)) = at_.b * moved_[which[k]];
   return result;
 }
 
@@ -135,8 +134,8 @@ Vector LinearisedContact::diagonal() const {
   Vector result = Vector::Zero(q_.size());
   double sum = 0, count = 0;
   for (Index row = 0; row < result.size(); ++row)
-    if (moved_[at(row)].size() > 0) {
-      result[row] = at_.b.row(row).dot(moved_[at(row)]);
+    if (moved_[row].size() > 0) {
+      result[row] = at_.b.row(row).dot(moved_[row]);
       sum += result[row];
       ++count;
     }
@@ -147,7 +146,7 @@ Vector LinearisedContact::diagonal() const {
 Matrix LinearisedContact::moved(const std::vector<Index> &which) const {
   Matrix result(at_.b.cols(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
-    result.col(static_cast<Index>(k)) = moved_[at(which[k])];
+    result.col(static_cast<Index>(k)) = moved_[which[k]];
   return result;
 }
 
@@ -155,7 +154,7 @@ Iterate LinearisedContact::iterate(Vector x) const {
   Iterate result;
   result.u = free_;
   for (Index row = 0; row < x.size(); ++row)
-    if (x[row] != 0) result.u -= x[row] * moved_[at(row)];
+    if (x[row] != 0) result.u -= x[row] * moved_[row];
   result.reaction = at_.b.transpose() * x;
   result.x = std::move(x);
   result.diagonal = diagonal();
@@ -222,13 +221,13 @@ std::optional<Iterate> LinearisedContact::solve_with_curvature(const Iterate &st
   for (int set = 0; set < most_sets; ++set) {
     std::vector<Index> fresh;
     std::copy_if(active.begin(), active.end(), std::back_inserter(fresh),
-                 [this](Index row) { return moved_[at(row)].size() == 0; });
+                 [this](Index row) { return moved_[row].size() == 0; });
     move(fresh);
     const Matrix of_active = moved(active), near = of_active(dofs, Eigen::all);
     Matrix h(of_active.cols(), of_active.cols()); // its lower triangle
     for (Index k = 0; k < h.cols(); ++k)
       for (Index j = 0; j <= k; ++j)
-        h(k, j) = at_.b.row(active[at(k)]).dot(of_active.col(j));
+        h(k, j) = at_.b.row(active[k]).dot(of_active.col(j));
     if (!cholesky_in_place(h)) return std::nullopt;
     const Vector x0 = -cholesky_solve(h, q_(active));
     const Vector right = free_(dofs) - near * x0 - state_(dofs);

@@ -1,6 +1,5 @@
 #include "rbvi/law/nonlinear/nodal.hpp"
 
-#include "../index.hpp"
 
 #include <algorithm>
 
@@ -8,12 +7,12 @@ namespace rbvi {
 
 NodalCompliance::NodalCompliance(SparseMatrix average)
     : average_(std::move(average)), moved_(average_.cols(), average_.rows()),
-      blocks_(average_.rows(), average_.rows()), known_(at(average_.rows() / 2), false) {
+      blocks_(average_.rows(), average_.rows()), known_(average_.rows() / 2, false) {
   const SparseMatrix pattern = average_.cwiseAbs(), met = pattern * pattern.transpose();
   neighbours_.resize(known_.size());
   for (Index row = 0; row < met.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(met, row); entry; ++entry)
-      neighbours_[at(row / 2)].push_back(entry.col() / 2);
+      neighbours_[row / 2].push_back(entry.col() / 2);
   for (std::vector<Index> &nodes : neighbours_) {
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -23,7 +22,7 @@ NodalCompliance::NodalCompliance(SparseMatrix average)
 void NodalCompliance::require(const std::vector<Index> &nodes, ComplianceColumns &compliance) {
   std::vector<Index> fresh, dofs;
   for (const Index node : nodes) {
-    if (known_[at(node)]) continue;
+    if (known_[node]) continue;
     fresh.push_back(node);
     for (Index row = 2 * node; row < 2 * node + 2; ++row)
       for (SparseMatrix::InnerIterator entry(average_, row); entry; ++entry)
@@ -34,7 +33,7 @@ void NodalCompliance::require(const std::vector<Index> &nodes, ComplianceColumns
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   compliance.require(dofs);
   for (const Index node : fresh) {
-    known_[at(node)] = true;
+    known_[node] = true;
     for (Index row = 2 * node; row < 2 * node + 2; ++row) {
       moved_.col(row).setZero();
       for (SparseMatrix::InnerIterator entry(average_, row); entry; ++entry)

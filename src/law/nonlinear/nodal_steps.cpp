@@ -1,6 +1,5 @@
 #include "nodal_steps.hpp"
 
-#include "../index.hpp"
 #include "../pivoting.hpp"
 #include "fixed_point.hpp"
 #include "rbvi/core/error.hpp"
@@ -22,7 +21,7 @@ void add_loads(const SparseMatrix &average, const Eigen::Matrix2Xd &loads, Vecto
 std::vector<Index> carrying(const NodeLaws &laws, const Vector &x) {
   std::vector<Index> result;
   for (Index node = 0; node < laws.nodes(); ++node)
-    if (x[laws.normal[at(node)]] != 0 || (laws.has_tangent(node) && x[laws.tangent[at(node)]] != 0))
+    if (x[laws.normal[node]] != 0 || (laws.has_tangent(node) && x[laws.tangent[node]] != 0))
       result.push_back(node);
   return result;
 }
@@ -33,10 +32,10 @@ std::vector<Index> NodalSteps::touching(const Vector &x) const {
   const NodeLaws &laws = contact_.laws;
   std::vector<Index> result;
   for (Index node = 0; node < laws.nodes(); ++node)
-    if (!near_.empty() && !near_[at(node)])
+    if (!near_.empty() && !near_[node])
       continue;
-    else if (x[laws.normal[at(node)]] != 0 || here_.w[laws.normal[at(node)]] < 0 ||
-             (laws.has_tangent(node) && x[laws.tangent[at(node)]] != 0))
+    else if (x[laws.normal[node]] != 0 || here_.w[laws.normal[node]] < 0 ||
+             (laws.has_tangent(node) && x[laws.tangent[node]] != 0))
       result.push_back(node);
   return result;
 }
@@ -54,8 +53,8 @@ Vector NodalSteps::diagonals(const std::vector<Index> &known) const {
   const double mean = known.empty() ? 1 : sum / static_cast<double>(known.size());
   Vector result = Vector::Constant(laws.rows, mean);
   for (const Index node : known) {
-    result[laws.normal[at(node)]] = diagonal(node, normal(node));
-    if (laws.has_tangent(node)) result[laws.tangent[at(node)]] = diagonal(node, tangent(node));
+    result[laws.normal[node]] = diagonal(node, normal(node));
+    if (laws.has_tangent(node)) result[laws.tangent[node]] = diagonal(node, tangent(node));
   }
   return result;
 }
@@ -80,17 +79,17 @@ void NodalSteps::set_tangent(const std::vector<Index> &active) {
   const NodalCompliance &compliance = contact_.nodal->compliance;
   Eigen::Matrix2Xd across(2, n), along = here_.normal(Eigen::all, active_);
   for (Index a = 0; a < n; ++a)
-    across.col(a) = tangent(active_[at(a)]).normalized();
+    across.col(a) = tangent(active_[a]).normalized();
   Matrix h(n, n);
   p_.resize(n, n);
   q_.resize(n, n);
   Eigen::Matrix2Xd under_normal(2, count), under_tau(2, count);
   for (Index b = 0; b < n; ++b) {
-    const Index node = active_[at(b)];
+    const Index node = active_[b];
     under_normal.reshaped() = compliance.moved_nodes(node, along.col(b), first, count);
     under_tau.reshaped() = compliance.moved_nodes(node, across.col(b), first, count);
     for (Index a = 0; a < n; ++a) {
-      const Index under = active_[at(a)] - first;
+      const Index under = active_[a] - first;
       h(a, b) = along.col(a).dot(under_normal.col(under));
       p_(a, b) = across.col(a).dot(under_normal.col(under));
       q_(a, b) = across.col(a).dot(under_tau.col(under));
@@ -107,17 +106,17 @@ Eigen::Matrix2Xd NodalSteps::newton_on_active(double tolerance, Vector &x) const
   const Index n = std::ssize(active_);
   Eigen::Matrix2Xd loads = Eigen::Matrix2Xd::Zero(2, e_.cols()), e = e_(Eigen::all, active_);
   for (Index node = 0; node < e_.cols(); ++node) { // what leaves contact
-    double &value = x[contact_.laws.normal[at(node)]];
+    double &value = x[contact_.laws.normal[node]];
     if (value == 0 || std::binary_search(active_.begin(), active_.end(), node)) continue;
     loads.col(node) = -value * normal(node);
     value = 0;
     for (Index a = 0; a < n; ++a)
-      e.col(a) -= compliance.block(active_[at(a)], node) * loads.col(node);
+      e.col(a) -= compliance.block(active_[a], node) * loads.col(node);
   }
   Vector gap(n), slip(n), rotation(n);
   for (Index a = 0; a < n; ++a) {
-    const Index node = active_[at(a)];
-    gap[a] = here_.w[contact_.laws.normal[at(node)]] - normal(node).dot(e.col(a));
+    const Index node = active_[a];
+    gap[a] = here_.w[contact_.laws.normal[node]] - normal(node).dot(e.col(a));
     slip[a] = tangent(node).normalized().dot(e.col(a));
     rotation[a] = here_.rotation[node];
   }
@@ -129,8 +128,8 @@ Eigen::Matrix2Xd NodalSteps::newton_on_active(double tolerance, Vector &x) const
   const Vector z = rotation.cwiseProduct(t);
   const Vector y = cholesky_solve(factor_, p_.transpose() * z - gap);
   for (Index a = 0; a < n; ++a) {
-    const Index node = active_[at(a)];
-    x[contact_.laws.normal[at(node)]] += y[a];
+    const Index node = active_[a];
+    x[contact_.laws.normal[node]] += y[a];
     loads.col(node) = y[a] * normal(node) - z[a] * tangent(node).normalized();
   }
   return loads;
@@ -158,8 +157,8 @@ std::vector<Index> NodalSteps::violated(const Vector &x, const Eigen::Matrix2Xd 
           compliance.moved_nodes(node, loads.col(node), first, count);
   std::vector<Index> result;
   for (Index node = first; node < first + count; ++node) {
-    if (!near_.empty() && !near_[at(node)]) continue;
-    const Index row = contact_.laws.normal[at(node)];
+    if (!near_.empty() && !near_[node]) continue;
+    const Index row = contact_.laws.normal[node];
     if (std::binary_search(active_.begin(), active_.end(), node)) {
       if (x[row] < -round_off * largest_x) result.push_back(node);
       continue;
@@ -174,7 +173,7 @@ Eigen::Matrix2Xd NodalSteps::newton(Vector &x, double change) {
   constexpr int most_sets = 10;
   std::vector<Index> active;
   for (const Index node : touching(x)) {
-    const Index row = contact_.laws.normal[at(node)];
+    const Index row = contact_.laws.normal[node];
     const double gap = here_.w[row] - normal(node).dot(e_.col(node));
     if (x[row] - gap / diagonal(node, normal(node)) > 0) active.push_back(node);
   }
@@ -196,9 +195,9 @@ void NodalSteps::begin_near() {
   near_nodes_.clear();
   near_laws_ = {};
   for (Index node = 0; node < laws.nodes(); ++node)
-    if (near_.empty() || near_[at(node)]) {
+    if (near_.empty() || near_[node]) {
       near_nodes_.push_back(node);
-      near_laws_.bound.push_back(laws.bound[at(node)]);
+      near_laws_.bound.push_back(laws.bound[node]);
     }
   const Index count = std::ssize(near_nodes_);
   for (Index k = 0; k < count; ++k) {
@@ -210,7 +209,7 @@ void NodalSteps::begin_near() {
   for (const Index node : near_nodes_)
     near_rows_.push_back(laws.nodes() + node);
   h_.resize(2 * count, 2 * count);
-  known_.assign(at(2 * count), false);
+  known_.assign(2 * count, false);
 }
 
 /// Columns of H between the nodes that are near; kept as long as the normals.
@@ -219,19 +218,19 @@ Matrix NodalSteps::columns(const std::vector<Index> &which) {
   NodalCompliance &compliance = contact_.nodal->compliance;
   std::vector<Index> fresh, of_fresh;
   for (const Index row : which)
-    if (!known_[at(row)]) {
+    if (!known_[row]) {
       fresh.push_back(row);
-      of_fresh.push_back(near_nodes_[at(row % count)]);
+      of_fresh.push_back(near_nodes_[row % count]);
     }
   compliance.require(of_fresh, contact_.compliance);
   for (const Index row : fresh) {
-    known_[at(row)] = true;
-    const Index node = near_nodes_[at(row % count)];
+    known_[row] = true;
+    const Index node = near_nodes_[row % count];
     const Frame load = row < count ? normal(node) : tangent(node);
     const Index first = near_nodes_.front(), last = near_nodes_.back();
     const Vector moved = compliance.moved_nodes(node, load, first, last + 1 - first);
     for (Index k = 0; k < count; ++k) {
-      const Index a = near_nodes_[at(k)];
+      const Index a = near_nodes_[k];
       const auto of_node = moved.segment<2>(2 * (a - first));
       h_(k, row) = normal(a).dot(of_node);
       h_(count + k, row) = tangent(a).dot(of_node);
@@ -253,7 +252,7 @@ Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
   Vector q = here_.w(near_rows_);
   std::vector<Index> loaded;
   for (Index k = 0; k < count; ++k) {
-    const Index node = near_nodes_[at(k)];
+    const Index node = near_nodes_[k];
     q[k] -= normal(node).dot(e_.col(node));
     q[count + k] -= tangent(node).dot(e_.col(node));
   }
@@ -265,7 +264,7 @@ Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
   if (!found.converged) throw failure(found.reason);
   Eigen::Matrix2Xd loads = Eigen::Matrix2Xd::Zero(2, laws.nodes());
   for (Index k = 0; k < count; ++k) {
-    const Index node = near_nodes_[at(k)];
+    const Index node = near_nodes_[k];
     loads.col(node) =
         (found.x[k] - x[k]) * normal(node) + (found.x[count + k] - x[count + k]) * tangent(node);
   }
@@ -273,7 +272,7 @@ Eigen::Matrix2Xd NodalSteps::kacanov(const Iterate &last, Iterate &next) {
   next.x(near_rows_) = found.x;
   next.start(near_rows_) = found.start;
   for (const Index k : found.active)
-    next.active.push_back(near_nodes_[at(k)]);
+    next.active.push_back(near_nodes_[k]);
   return loads;
 }
 
@@ -320,8 +319,8 @@ void NodalSteps::see(const std::vector<Index> &nodes) {
   for (int layer = 0; layer <= layers && !near_.empty(); ++layer) {
     std::vector<Index> next;
     for (const Index node : front)
-      if (layer == 0 || !near_[at(node)]) {
-        near_[at(node)] = true;
+      if (layer == 0 || !near_[node]) {
+        near_[node] = true;
         const std::vector<Index> &beside = compliance.neighbours(node);
         next.insert(next.end(), beside.begin(), beside.end());
       }
@@ -329,14 +328,14 @@ void NodalSteps::see(const std::vector<Index> &nodes) {
   }
   if (near_ == before) return;
   if (contact_.laws.has_tangents()) tangent_at_.resize(2, 0); // H is wanted at further nodes
-  std::vector<bool> wanted(at(contact_.free.size()), near_.empty());
+  std::vector<bool> wanted(contact_.free.size(), near_.empty());
   for (Index row = 0; row < compliance.average().rows() && !near_.empty(); ++row)
-    if (near_[at(row / 2)])
+    if (near_[row / 2])
       for (SparseMatrix::InnerIterator entry(compliance.average(), row); entry; ++entry)
-        wanted[at(entry.col())] = true;
+        wanted[entry.col()] = true;
   rows_.clear();
   for (Index dof = 0; dof < std::ssize(wanted); ++dof)
-    if (wanted[at(dof)]) {
+    if (wanted[dof]) {
       if (rows_.empty() || rows_.back().first + rows_.back().count != dof)
         rows_.push_back({dof, 0});
       ++rows_.back().count;
@@ -355,8 +354,7 @@ bool NodalSteps::complete(Iterate &iterate) {
   }
   contact_.nodal->evaluate(iterate.u, iterate.x, near_, here_);
   const std::vector<Index> nodes = touching(iterate.x);
-  return seen.empty() ||
-         std::ranges::all_of(nodes, [&](Index node) { return bool(seen[at(node)]); });
+  return seen.empty() || std::ranges::all_of(nodes, [&](Index node) { return bool(seen[node]); });
 }
 
 } // namespace rbvi

@@ -1,6 +1,5 @@
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 
-#include "../index.hpp"
 #include "nodal_steps.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
@@ -138,8 +137,9 @@ void Iteration::measure(const Iterate &next, const Vector &state, const Vector &
                                        : ratio(dual(next.x - last_x), dual(next.x));
 }
 
-/// Whether steps between nodes have no more to do: none overlap unseen, and where the tolerance is
-/// that of a `predicted` change, the laws are met to it, too.
+/// Whether the steps on the nodes near contact have solved the whole problem: no other node
+/// overlaps, and, where the change of the next step was only `predicted`, the laws hold to the
+/// tolerance.
 bool Iteration::is_complete(Iterate &iterate, double part, bool predicted) {
   if (!nodal_ || part < 1) return true;
   if (!nodal_->complete(iterate)) return false;
@@ -183,14 +183,14 @@ bool Iteration::run(Iterate &iterate, double part, double tolerance, NonlinearRe
     if (method_ != NonlinearMethod::anderson && !(nodal_ && friction)) continue;
     images.push_back(iterate);
     const Vector shares = anderson.combine(iterate.u - result.iterates.back());
-    if (images.size() > at(shares.size())) images.erase(images.begin());
+    if (std::ssize(images) > shares.size()) images.erase(images.begin());
     state.setZero();
     reaction.setZero();
     if (nodal_) iterate.x.setZero(); // the next step starts from it, too
     for (Index j = 0; j < shares.size(); ++j) {
-      state += shares[j] * images[at(j)].u;
-      reaction += shares[j] * images[at(j)].reaction;
-      if (nodal_) iterate.x += shares[j] * images[at(j)].x;
+      state += shares[j] * images[j].u;
+      reaction += shares[j] * images[j].reaction;
+      if (nodal_) iterate.x += shares[j] * images[j].x;
     }
   }
   result.reason = "the condition that follows the displacement does not settle: after " +

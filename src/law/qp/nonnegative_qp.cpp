@@ -1,6 +1,5 @@
 #include "rbvi/law/qp/nonnegative_qp.hpp"
 
-#include "../index.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <algorithm>
@@ -46,17 +45,17 @@ void NonnegativeQp::prepare(const Columns &y, const Vector &g) {
   linear_ = Vector::Zero(columns);
   if (g.size() > 0) linear_ = (norms_.array() > 0).select(g.cwiseQuotient(norms_), g);
 
-  status_.assign(at(columns), may_enter);
+  status_.assign(columns, may_enter);
   if (stale_) {
     std::erase_if(active_, [&](Index j) {
       if (j < 0 || j >= columns || norms_[j] == 0) return true;
-      return std::exchange(status_[at(j)], in_set) == in_set;
+      return std::exchange(status_[j], in_set) == in_set;
     });
     factorise(y);
   }
-  status_.assign(at(columns), may_enter);
+  status_.assign(columns, may_enter);
   for (const Index j : active_)
-    status_[at(j)] = in_set;
+    status_[j] = in_set;
 
   const Index room = std::min(y.rows(), columns);
   for (Vector *work : {&values_, &minimiser_, &image_})
@@ -72,13 +71,13 @@ void NonnegativeQp::factorise(const Columns &y) {
   stale_ = false;
   Matrix start(y.rows(), static_cast<Index>(active_.size()));
   for (Index k = 0; k < start.cols(); ++k) {
-    const Index j = active_[at(k)];
+    const Index j = active_[k];
     start.col(k) = y.col(j) / norms_[j];
   }
   if (qr_.assign(start)) return;
   std::vector<Index> independent;
   for (Index k = 0; k < start.cols(); ++k)
-    if (qr_.append(start.col(k), options_.dependence)) independent.push_back(active_[at(k)]);
+    if (qr_.append(start.col(k), options_.dependence)) independent.push_back(active_[k]);
   active_ = std::move(independent);
 }
 
@@ -100,7 +99,7 @@ void NonnegativeQp::minimise(const Eigen::Ref<const Vector> &c) {
 void NonnegativeQp::drop(Index position) {
   const Index left = qr_.size() - position - 1;
   values_.segment(position, left) = values_.segment(position + 1, left).eval();
-  status_[at(active_[at(position)])] = may_enter;
+  status_[active_[position]] = may_enter;
   active_.erase(active_.begin() + position);
   qr_.remove(position);
 }
@@ -119,7 +118,7 @@ void NonnegativeQp::drop_zeros(Index blocking) {
 void NonnegativeQp::take(Index column, double value) {
   values_[qr_.size() - 1] = value;
   active_.push_back(column);
-  status_[at(column)] = in_set;
+  status_[column] = in_set;
   ++report_.iterations;
 }
 
@@ -168,7 +167,7 @@ Index NonnegativeQp::best_column(const Columns &y, const Eigen::Ref<const Vector
   double largest = 0;
   banned_gain_ = 0;
   for (Index j = 0; j < y.cols(); ++j) {
-    const char state = status_[at(j)];
+    const char state = status_[j];
     if (state == in_set) continue;
     const double size = norms_[j] > 0 ? scale + std::abs(linear_[j]) : std::abs(linear_[j]);
     const double gain = (norms_[j] > 0 ? gains_[j] / norms_[j] : 0.0) - linear_[j];
@@ -197,11 +196,11 @@ bool NonnegativeQp::exchange(Index column) {
   qr_.r().triangularView<Eigen::Upper>().solveInPlace(a);
   double slope = linear_[column], scale = std::abs(slope);
   for (Index k = 0; k < count; ++k) {
-    const double term = a[k] * linear_[active_[at(k)]];
+    const double term = a[k] * linear_[active_[k]];
     slope -= term;
     scale += std::abs(term);
   }
-  status_[at(column)] = banned;
+  status_[column] = banned;
   if (!(slope < -options_.dependence * scale)) return true;
 
   const double least = options_.dependence * std::max(1.0, a.cwiseAbs().maxCoeff());
@@ -250,7 +249,7 @@ NonnegativeQpReport NonnegativeQp::solve(const Columns &y, const Eigen::Ref<cons
     if (report_.iterations >= limit) break;
     const int before = report_.iterations;
     if (returned) {
-      status_[at(column)] = banned;
+      status_[column] = banned;
       returned = false;
     } else if (!enter(y, column)) {
       report_.unbounded = true;

@@ -41,8 +41,8 @@ Ring add_row(SerialMesh &mesh, const Block &block, int j) {
 }
 
 double length(const SerialMesh &mesh, int a, int b) {
-  const Point &x = mesh.points[static_cast<std::size_t>(a)];
-  const Point &y = mesh.points[static_cast<std::size_t>(b)];
+  const Point &x = mesh.points[a];
+  const Point &y = mesh.points[b];
   return std::hypot(x[0] - y[0], x[1] - y[1]);
 }
 

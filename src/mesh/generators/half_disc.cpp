@@ -14,11 +14,11 @@ SerialMesh mirrored(const SerialMesh &right) {
   SerialMesh mesh = right;
   std::vector<int> images;
   for (int v = 0; v < static_cast<int>(right.points.size()); ++v) {
-    const Point &x = right.points[static_cast<std::size_t>(v)];
+    const Point &x = right.points[v];
     images.push_back(x[0] == 0 ? v : static_cast<int>(mesh.points.size()));
     if (x[0] != 0) mesh.points.push_back({-x[0], x[1], 0});
   }
-  const auto image = [&](int v) { return images[static_cast<std::size_t>(v)]; };
+  const auto image = [&](int v) { return images[v]; };
   for (const auto &cell : right.cells)
     mesh.cells.push_back({image(cell[0]), image(cell[2]), image(cell[1]), -1});
   for (const int cell : right.region.at("core"))

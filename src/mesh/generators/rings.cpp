@@ -13,7 +13,7 @@ namespace {
 double quality(const SerialMesh &mesh, const std::array<int, 4> &cell) {
   std::array<Point, 4> vertices{};
   for (std::size_t i = 0; i < 3; ++i)
-    vertices[i] = mesh.points[static_cast<std::size_t>(cell[i])];
+    vertices[i] = mesh.points[cell[i]];
   return aspect_ratio(2, vertices);
 }
 
@@ -22,7 +22,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The cost of a cell in a strip: a high power, for the worst cell to matter most; infinite if
 /// inverted.
 double cost_of(const SerialMesh &mesh, const std::array<int, 4> &cell) {
-  const auto at = [&](int i) -> const Point & { return mesh.points[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) -> const Point & { return mesh.points[i]; };
   const Point &x = at(cell[0]), &y = at(cell[1]), &z = at(cell[2]);
   if ((y[0] - x[0]) * (z[1] - x[1]) <= (y[1] - x[1]) * (z[0] - x[0])) return infinity;
   return std::pow(quality(mesh, cell), 8);

@@ -93,9 +93,8 @@ Ring add_disc(SerialMesh &mesh, const std::vector<double> &rho, int circle_edges
   for (int k = 1; k <= static_cast<int>(rho.size()); ++k) {
     const int nodes = std::min(6 * k, circle_edges);
     const double start = 6 * k > circle_edges && (k - circle_edges / 6) % 2 == 1 ? 0.5 / nodes : 0;
-    const Ring next = add_closed_ring(mesh, nodes, [&](double t) {
-      return in_disc(rho[static_cast<std::size_t>(k - 1)], t + start, turn);
-    });
+    const Ring next = add_closed_ring(
+        mesh, nodes, [&](double t) { return in_disc(rho[k - 1], t + start, turn); });
     if (k > 1)
       fill(mesh, ring, next);
     else

@@ -51,7 +51,7 @@ Elements elements_of(const GmshFile &file, int dim) {
       result.nodes.push_back(own[i]->nodes);
       result.groups.emplace_back();
     }
-    const std::vector<int> &groups = file.groups[static_cast<std::size_t>(own[i]->groups)];
+    const std::vector<int> &groups = file.groups[own[i]->groups];
     result.groups[position[first[i]]].insert(groups.begin(), groups.end());
   }
   return result;

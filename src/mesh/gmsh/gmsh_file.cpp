@@ -35,7 +35,7 @@ public:
     while (!rest_.empty() && is_space(rest_.front()))
       rest_.remove_prefix(1);
     const auto end = std::find_if(rest_.begin(), rest_.end(), is_space);
-    return taken(static_cast<std::size_t>(end - rest_.begin()));
+    return taken(end - rest_.begin());
   }
   template <class T> T text() {
     std::string_view digits = word();
@@ -149,7 +149,7 @@ private:
   void add_element(std::size_t number, int dim, int groups) {
     GmshElement element{number, dim, groups, {}};
     for (int i = 0; i <= dim; ++i)
-      element.nodes[static_cast<std::size_t>(i)] = tag();
+      element.nodes[i] = tag();
     file_.elements.push_back(element);
   }
   int groups_of(const Key &key) {
@@ -200,7 +200,7 @@ void Reader::read_entities() {
   for (std::size_t &entities : counts)
     entities = count();
   for (int dim = 0; dim < 4; ++dim)
-    for (std::size_t i = 0; i < counts[static_cast<std::size_t>(dim)]; ++i) {
+    for (std::size_t i = 0; i < counts[dim]; ++i) {
       const int entity = integer();
       (void)bytes_.point(); // the box of the entity; a point of 4.1 stands for itself
       if (dim > 0 || version_ == Version::four_zero) (void)bytes_.point();
@@ -315,7 +315,7 @@ void Reader::read_section(const std::string &name) {
 void Reader::finish() {
   file_.groups.resize(lists_.size());
   for (const auto &[key, index] : lists_) {
-    std::vector<int> &groups = file_.groups[static_cast<std::size_t>(index)];
+    std::vector<int> &groups = file_.groups[index];
     if (version_ != Version::two)
       groups = entities_[key];
     else if (key.second != 0)

@@ -68,7 +68,7 @@ PartBelow largest_part_below(const Vector &theta, double slack, const Matrix &ge
   const Vector a = r.triangularView<Eigen::Upper>().solve(dual.residual());
   result.coefficients(allowed) = a.cwiseMax(0.0);
   for (const Index k : dual.active())
-    if (k < rows) result.touching.push_back(nodes[static_cast<std::size_t>(k)]);
+    if (k < rows) result.touching.push_back(nodes[k]);
   return result;
 }
 

@@ -58,13 +58,13 @@ Matrix ProductRoot::solve(const Matrix &y) const {
 }
 
 SparseMatrix block_of(const SparseMatrix &product, const std::vector<Index> &nodes) {
-  std::vector<Index> position(static_cast<std::size_t>(product.rows()), -1);
+  std::vector<Index> position(product.rows(), -1);
   for (std::size_t k = 0; k < nodes.size(); ++k)
-    position[static_cast<std::size_t>(nodes[k])] = static_cast<Index>(k);
+    position[nodes[k]] = static_cast<Index>(k);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t k = 0; k < nodes.size(); ++k)
     for (SparseMatrix::InnerIterator entry(product, nodes[k]); entry; ++entry)
-      if (const Index column = position[static_cast<std::size_t>(entry.col())]; column >= 0)
+      if (const Index column = position[entry.col()]; column >= 0)
         entries.emplace_back(static_cast<int>(k), static_cast<int>(column), entry.value());
   SparseMatrix block(std::ssize(nodes), std::ssize(nodes));
   block.setFromTriplets(entries.begin(), entries.end());
@@ -99,8 +99,7 @@ std::vector<double> gram_conditions(const Matrix &coordinates, Index smallest) {
 }
 
 Distances::Distances(const Matrix &targets)
-    : targets_(targets), value_(targets.colwise().norm()), norm_(value_),
-      seen_(static_cast<std::size_t>(targets.cols()), 0),
+    : targets_(targets), value_(targets.colwise().norm()), norm_(value_), seen_(targets.cols(), 0),
       qp_(seen_.size(), NonnegativeQp(targets.rows())) {}
 
 Distances::Distances(const Matrix &targets, const Matrix &coordinates, const Matrix &coefficients)
@@ -110,14 +109,14 @@ Distances::Distances(const Matrix &targets, const Matrix &coordinates, const Mat
     std::vector<Index> active;
     for (Index k = 0; k < coefficients.rows(); ++k)
       if (coefficients(k, p) > 0) active.push_back(k);
-    qp_[static_cast<std::size_t>(p)].start_from(std::move(active));
+    qp_[p].start_from(std::move(active));
   }
 }
 
 std::pair<Index, double> Distances::largest(const Eigen::Ref<const Matrix> &coordinates) {
   std::vector<Index> order(seen_.size());
   for (Index p = 0; p < value_.size(); ++p)
-    order[static_cast<std::size_t>(p)] = p;
+    order[p] = p;
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return value_[a] > value_[b]; });
   double best = 0;
   std::size_t fresh = 0;
@@ -130,8 +129,8 @@ std::pair<Index, double> Distances::largest(const Eigen::Ref<const Matrix> &coor
 }
 
 double Distances::update(Index p, const Eigen::Ref<const Matrix> &coordinates) {
-  auto &seen = seen_[static_cast<std::size_t>(p)];
-  auto &qp = qp_[static_cast<std::size_t>(p)];
+  auto &seen = seen_[p];
+  auto &qp = qp_[p];
   const Index fresh = coordinates.cols() - seen;
   const auto residual = [&] { return seen == 0 ? Vector(targets_.col(p)) : qp.residual(); };
   // A generator that makes no acute angle with the residual leaves the projection as it is.
@@ -222,7 +221,7 @@ void add_neighbours(std::vector<bool> &inside, const SparseMatrix &product) {
   const std::vector<bool> before = inside;
   for (Index i = 0; i < product.outerSize(); ++i)
     for (SparseMatrix::InnerIterator entry(product, i); entry; ++entry)
-      if (before[static_cast<std::size_t>(i)]) inside[static_cast<std::size_t>(entry.col())] = true;
+      if (before[i]) inside[entry.col()] = true;
 }
 
 } // namespace rbvi

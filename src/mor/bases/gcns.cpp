@@ -40,7 +40,7 @@ public:
   Selection(const std::vector<GcnsSample> &samples, const Matrix &normal, const Matrix &tangential,
             const SparseMatrix &product)
       : samples_(samples), normal_(normal), tangential_(tangential), product_(product),
-        starts_(samples.size()), taken_(static_cast<std::size_t>(normal.rows()), 0) {
+        starts_(samples.size()), taken_(normal.rows(), 0) {
     for (const GcnsSample &sample : samples) {
       sizes_.push_back(norm(sample.tangential));
       bounds_.push_back(bounds_per_node(sample.bounds, normal.rows()));
@@ -56,8 +56,8 @@ public:
     while (step(options)) {
     }
     const auto best = std::min_element(result_.error.begin(), result_.error.end());
-    const auto count = result_.count[static_cast<std::size_t>(best - result_.error.begin())];
-    result_.nodes.resize(static_cast<std::size_t>(count));
+    const auto count = result_.count[best - result_.error.begin()];
+    result_.nodes.resize(count);
     result_.reason += "; the error is least, " + short_number(*best) + ", with " +
                       std::to_string(count) + " nodes";
     return std::move(result_);
@@ -69,8 +69,7 @@ private:
     const std::vector<Answer> answers = solve();
     if (answers.empty()) return false;
     record(answers);
-    const std::vector<int> next =
-        largest(answers[static_cast<std::size_t>(result_.selected.back())]);
+    const std::vector<int> next = largest(answers[result_.selected.back()]);
     const auto total = result_.nodes.size() + next.size();
     if (result_.nodes.size() == taken_.size())
       result_.reason = "all nodes are taken";
@@ -87,7 +86,7 @@ private:
 
   void take(const std::vector<int> &nodes) {
     for (const int j : nodes) {
-      taken_[static_cast<std::size_t>(j)] = 1;
+      taken_[j] = 1;
       result_.nodes.push_back(j);
     }
   }
@@ -122,9 +121,8 @@ private:
                 const Vector &x) const {
     const Vector pressure = normal_ * x.head(normal_.cols());
     const Vector traction = tangential_ * x.tail(tangential_.cols());
-    const Vector s = Vector::NullaryExpr(pressure.size(), [&](Index j) {
-      return bounds[static_cast<std::size_t>(j)].value(pressure[j]);
-    });
+    const Vector s =
+        Vector::NullaryExpr(pressure.size(), [&](Index j) { return bounds[j].value(pressure[j]); });
     Answer result;
     result.error = norm(sample.tangential - traction);
     result.excess = (traction.cwiseAbs() - s).cwiseMax(0.0);
@@ -140,7 +138,7 @@ private:
       violation = std::max(violation, answers[k].excess.maxCoeff());
     }
     int selected = 0;
-    while (answers[static_cast<std::size_t>(selected)].excess.maxCoeff() < (1 - tie) * violation)
+    while (answers[selected].excess.maxCoeff() < (1 - tie) * violation)
       ++selected;
     result_.count.push_back(static_cast<int>(result_.nodes.size()));
     result_.error.push_back(error);

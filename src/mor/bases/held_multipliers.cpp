@@ -39,14 +39,13 @@ Handle<Mat> without_dofs(Mat a, const Trace &trace, const std::vector<Index> &do
 } // namespace
 
 std::optional<HeldDofs> held_dofs(const SparseMatrix &b, const std::vector<Index> &held) {
-  std::vector<bool> taken(static_cast<std::size_t>(b.cols()), false);
+  std::vector<bool> taken(b.cols(), false);
   HeldDofs result{{}, Vector(std::ssize(held))};
   for (std::size_t k = 0; k < held.size(); ++k) {
     for (SparseMatrix::InnerIterator entry(b, held[k]); entry; ++entry) {
       if (entry.value() == 0) continue;
-      if (result.dofs.size() > k || taken[static_cast<std::size_t>(entry.col())])
-        return std::nullopt;
-      taken[static_cast<std::size_t>(entry.col())] = true;
+      if (result.dofs.size() > k || taken[entry.col()]) return std::nullopt;
+      taken[entry.col()] = true;
       result.entries[static_cast<Index>(k)] = entry.value();
       result.dofs.push_back(entry.col());
     }

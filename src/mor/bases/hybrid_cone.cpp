@@ -49,14 +49,14 @@ struct MovingFunctions {
 /// The functions (nodes x any number) that reach into the moving zone. The zone grows to all nodes
 /// that they reach, but for those in permanent contact that others reach as well.
 MovingFunctions functions_on(const ContactZones &zones, const SparseMatrix &functions) {
-  std::vector<Index> column(static_cast<std::size_t>(functions.cols()), -1);
+  std::vector<Index> column(functions.cols(), -1);
   for (const Index node : zones.moving)
     for (SparseMatrix::InnerIterator entry(functions, node); entry; ++entry)
-      column[static_cast<std::size_t>(entry.col())] = 0;
+      column[entry.col()] = 0;
   const Index taken = std::count(column.begin(), column.end(), 0);
-  std::vector<bool> permanent(static_cast<std::size_t>(functions.rows()), false);
+  std::vector<bool> permanent(functions.rows(), false);
   for (const Index node : zones.permanent)
-    permanent[static_cast<std::size_t>(node)] = true;
+    permanent[node] = true;
   Index next = 0;
   for (Index &number : column)
     if (number == 0) number = next++;
@@ -66,13 +66,13 @@ MovingFunctions functions_on(const ContactZones &zones, const SparseMatrix &func
     std::vector<Eigen::Triplet<double>> row;
     bool all = true;
     for (SparseMatrix::InnerIterator entry(functions, node); entry; ++entry) {
-      const Index number = column[static_cast<std::size_t>(entry.col())];
+      const Index number = column[entry.col()];
       if (number < 0) all = false;
       if (number >= 0)
         row.emplace_back(static_cast<int>(result.zones.moving.size()), static_cast<int>(number),
                          entry.value());
     }
-    if (permanent[static_cast<std::size_t>(node)] && !(all && !row.empty())) {
+    if (permanent[node] && !(all && !row.empty())) {
       result.zones.permanent.push_back(node);
     } else if (!row.empty()) {
       result.zones.moving.push_back(node);

@@ -35,7 +35,7 @@ DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, doubl
   }
   modes.error.assign(tail.rbegin(), tail.rend());
   Index count = 1;
-  while (count < svd.values.size() && modes.error[static_cast<std::size_t>(count)] > tolerance)
+  while (count < svd.values.size() && modes.error[count] > tolerance)
     ++count;
   modes.columns = svd.left.leftCols(count);
   factor.triangularView<Eigen::Upper>().solveInPlace(modes.columns);

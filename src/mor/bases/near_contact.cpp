@@ -26,10 +26,10 @@ std::vector<bool> near_contact(const Contact &contact, std::size_t interface,
   constexpr double noise = 1e-12; // some solvers leave it where nothing touches
   const double least = noise * snapshots.cwiseAbs().maxCoeff();
   const DualSpace &dual = contact.interfaces[interface]->dual();
-  std::vector<bool> carries(static_cast<std::size_t>(dual.nodes()), false);
+  std::vector<bool> carries(dual.nodes(), false);
   for (Index row = contact.first_row[interface]; row < contact.first_row[interface + 1]; ++row)
     if (snapshots.row(row).cwiseAbs().maxCoeff() > least)
-      carries[static_cast<std::size_t>(dual_row(contact, row).node)] = true;
+      carries[dual_row(contact, row).node] = true;
   std::vector<Point> carrying;
   for (std::size_t node = 0; node < carries.size(); ++node)
     if (carries[node]) carrying.push_back(dual.points[node]);
@@ -47,7 +47,7 @@ std::vector<bool> near_contact(const Contact &contact, std::size_t interface,
 
 std::vector<Index> columns_near_contact(const Contact &contact, const Matrix &basis,
                                         const Matrix &snapshots, double ring) {
-  std::vector<Index> columns(static_cast<std::size_t>(basis.cols()));
+  std::vector<Index> columns(basis.cols());
   std::iota(columns.begin(), columns.end(), 0);
   if (std::isinf(ring)) return columns;
   std::vector<std::vector<bool>> near;
@@ -57,7 +57,7 @@ std::vector<Index> columns_near_contact(const Contact &contact, const Matrix &ba
     Index row = 0;
     basis.col(column).cwiseAbs().maxCoeff(&row);
     const DualRow of = dual_row(contact, row);
-    return !near[of.interface][static_cast<std::size_t>(of.node)];
+    return !near[of.interface][of.node];
   });
   return columns;
 }

@@ -11,7 +11,7 @@ Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const Cone
   std::vector<Index> nodes;
   Matrix outside = snapshots;
   for (Index i = 0; i < snapshots.rows(); ++i)
-    if (inside[static_cast<std::size_t>(i)]) {
+    if (inside[i]) {
       nodes.push_back(i);
       outside.row(i).setZero();
     }
@@ -19,7 +19,7 @@ Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const Cone
   Cone cone;
   cone.basis.generators = Matrix::Zero(snapshots.rows(), count);
   for (Index k = 0; k < count; ++k) {
-    const Index i = nodes[static_cast<std::size_t>(k)];
+    const Index i = nodes[k];
     cone.basis.generators(i, k) = 1 / factor.col(i).norm();
   }
   cone.history.size = {0, static_cast<int>(count)};

@@ -52,9 +52,9 @@ public:
     }
     std::vector<bool> taken = orthonormalise(block, gram, removed, tolerance);
     for (PetscInt j = 0; j < count; ++j)
-      if (taken[static_cast<std::size_t>(j)]) insert(block, j);
+      if (taken[j]) insert(block, j);
     for (PetscInt j = 0; j < count; ++j) {
-      if (taken[static_cast<std::size_t>(j)]) continue;
+      if (taken[j]) continue;
       Vec column = nullptr;
       RBVI_CALL(BVGetColumn(block, j, &column));
       const double before = product_norm(column);
@@ -64,7 +64,7 @@ public:
       const PetscInt size = size_;
       keep(column, coefficients, removed[j], tolerance);
       RBVI_CALL(BVRestoreColumn(block, j, &column));
-      taken[static_cast<std::size_t>(j)] = size_ > size;
+      taken[j] = size_ > size;
     }
     return taken;
   }
@@ -144,7 +144,7 @@ private:
     const auto count = static_cast<PetscInt>(gram.cols());
     const Vector norms = gram.diagonal().cwiseMax(0).cwiseSqrt();
     const Fit fit = fit_columns(gram, norms, removed, tolerance);
-    std::vector<bool> taken(static_cast<std::size_t>(count), false);
+    std::vector<bool> taken(count, false);
     if (fit.columns.empty()) return taken;
     rotate(block, count, fit.columns, norms(fit.columns).cwiseInverse(), fit.factor);
     if (fit.least < much_removed) remove(block, count);
@@ -152,7 +152,7 @@ private:
     rotate(block, count, fit.columns, Vector::Ones(again.cols()),
            cholesky(again, "the Gram matrix of fields that are nearly orthonormal"));
     for (const Index j : fit.columns)
-      taken[static_cast<std::size_t>(j)] = true;
+      taken[j] = true;
     return taken;
   }
   /// X <- X D L^-T for these columns of a block.
@@ -214,7 +214,7 @@ std::vector<double> projection_errors(const Vector &values) {
   double tail = 0;
   for (Index n = values.size() - 1; n >= 0; --n) {
     tail += scaled(n) * scaled(n);
-    errors[static_cast<std::size_t>(n)] = std::sqrt(tail);
+    errors[n] = std::sqrt(tail);
   }
   const double total = errors[0];
   for (double &error : errors)
@@ -228,7 +228,7 @@ Index truncation(const Vector &values, const std::vector<double> &errors,
     return n > 0 && n < values.size() && values(n) >= (1 - equal) * values(n - 1);
   };
   Index n = 1;
-  while (n < values.size() && errors[static_cast<std::size_t>(n)] > options.tolerance)
+  while (n < values.size() && errors[n] > options.tolerance)
     ++n;
   while (splits(n))
     ++n;
@@ -271,7 +271,7 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
   RBVI_CALL(VecDuplicate(snapshots.front(), work.put()));
   Matrix factor = Matrix::Zero(count, count);
   for (PetscInt p = 0; p < count; ++p) {
-    RBVI_CALL(VecCopy(snapshots[static_cast<std::size_t>(p)], work.get()));
+    RBVI_CALL(VecCopy(snapshots[p], work.get()));
     const Vector coefficients = factorisation.add(work.get(), dependent);
     factor.col(p).head(coefficients.size()) = coefficients;
   }
@@ -319,7 +319,7 @@ std::vector<int> append(GramSchmidt &factorisation, Mat product, Mat columns, do
     }
     const std::vector<bool> kept = factorisation.add_block(block.get(), tolerance);
     for (PetscInt j = 0; j < many; ++j)
-      if (kept[static_cast<std::size_t>(j)]) taken.push_back(static_cast<int>(first + j));
+      if (kept[j]) taken.push_back(static_cast<int>(first + j));
   }
   return taken;
 }

@@ -40,13 +40,12 @@ public:
       answers_.col(p) = solve(p);
       const Matrix residuals = solver_.point_residuals();
       for (Index q = 0; q < residuals.cols(); ++q)
-        if (!residuals.col(q).isZero(0)) met[static_cast<std::size_t>(q)] = 1;
+        if (!residuals.col(q).isZero(0)) met[q] = 1;
       const Vector skew = lu_solve(solver_.tangent(), residuals * sign);
       symmetric_ = symmetric_ && skew.norm() <= mirrored * answers_.col(p).norm();
     }
     for (Index q = 0; q < x.size(); ++q)
-      if ((!symmetric_ || x[q] < 0) && met[static_cast<std::size_t>(q)] != 0)
-        points_.push_back(static_cast<int>(q));
+      if ((!symmetric_ || x[q] < 0) && met[q] != 0) points_.push_back(static_cast<int>(q));
   }
   const Matrix &answers() const { return answers_; } ///< n x P
   /// The points that matter; on a symmetric curve the points of one half stand for both.
@@ -61,9 +60,7 @@ public:
   }
 
 private:
-  Vector solve(Index p) {
-    return solver_.solve(expand(scene_.parameters, samples_[static_cast<std::size_t>(p)].mu)).u;
-  }
+  Vector solve(Index p) { return solver_.solve(expand(scene_.parameters, samples_[p].mu)).u; }
   const ReducedModel model_; ///< stays as it is while points are chosen for the other
   ReducedNitsche solver_;
   const Scene &scene_;
@@ -141,7 +138,7 @@ Vector errors_of_points(const ReducedModel &model, const NitscheLayer &layer,
   for (Index p = 0; p < errors.size(); ++p) {
     const auto all = answers.col(p);
     try {
-      const Mu &mu = samples[static_cast<std::size_t>(p)].mu;
+      const Mu &mu = samples[p].mu;
       errors[p] = (solver.solve(expand(layer.scene.parameters, mu)).u - all).norm() /
                   std::max(all.norm(), 1e-300);
     } catch (const Error &) {
@@ -162,7 +159,7 @@ void choose_points(AllPoints &all, double tolerance, const NitscheLayer &layer,
   std::vector<char> taken(samples.size(), 0);
   PointFit fit;
   const auto take = [&](Index p) {
-    taken[static_cast<std::size_t>(p)] = 1;
+    taken[p] = 1;
     return all.effects(p);
   };
   Matrix first;
@@ -180,7 +177,7 @@ void choose_points(AllPoints &all, double tolerance, const NitscheLayer &layer,
     report.points.push_back(static_cast<int>(model.nitsche->points.size()));
     report.error.push_back(errors.maxCoeff(&worst));
     if (report.error.back() <= tolerance) return;
-    if (taken[static_cast<std::size_t>(worst)] == 0)
+    if (taken[worst] == 0)
       fit.add(take(worst), all.answers().rows());
     else if (fit.finished())
       return;

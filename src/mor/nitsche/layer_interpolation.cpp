@@ -71,7 +71,7 @@ Interpolation interpolated(const Matrix &values, const std::vector<EntryKey> &ke
   }
   Matrix taken;
   for (int i = 0; i < found.size(); ++i) {
-    const Vector column = project(values.col(found.snapshots[static_cast<std::size_t>(i)]));
+    const Vector column = project(values.col(found.snapshots[i]));
     if (i == 0) taken.resize(column.size(), found.size());
     taken.col(i) = column;
   }
@@ -92,8 +92,7 @@ void add_errors_over(Matrix others, const std::vector<Index> &converged, const M
   errors.validation = {1};
   if (last_scale > 0) errors.converged = {1};
   for (int j = 0; j < found.size(); ++j) {
-    const auto entry =
-        std::lower_bound(keys.begin(), keys.end(), found.entries[static_cast<std::size_t>(j)]);
+    const auto entry = std::lower_bound(keys.begin(), keys.end(), found.entries[j]);
     const Eigen::RowVectorXd left = others.row(entry - keys.begin());
     others.noalias() -= functions.col(j) * left;
     errors.validation.push_back(largest(others) / scale);

@@ -47,8 +47,7 @@ SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) 
   for (std::size_t k = 0; k < cells.size(); ++k) {
     for (int i = 0; i < corners; ++i)
       for (int c = 0; c < dim; ++c)
-        sample.vertices(static_cast<Index>(k) * corners + i, c) =
-            cells[k].vertices[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+        sample.vertices(static_cast<Index>(k) * corners + i, c) = cells[k].vertices[i][c];
     for (const auto &[entry, local] : cells[k].entries)
       sample.contributions.push_back({entry, static_cast<int>(k), local});
     if (cells[k].term >= 0) sample.terms.push_back(cells[k].term);
@@ -146,7 +145,7 @@ void visit_domain(const Problem &problem, const Sum &sum, const std::vector<int>
   const Mesh &mesh = problem.mesh();
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
   for (const int term : terms) {
-    const Form &form = sum[static_cast<std::size_t>(term)].form;
+    const Form &form = sum[term].form;
     for (std::size_t k = 0; k < mesh.cells.size() && form.boundary.empty(); ++k) {
       if (!form.region.empty() && !mesh.region.at(form.region)[k]) continue;
       const auto nodes = nodes_of(mesh, k);
@@ -157,7 +156,7 @@ void visit_domain(const Problem &problem, const Sum &sum, const std::vector<int>
     for (const auto &[k, facet] : mesh.facets.at(form.boundary)) {
       std::vector<int> nodes = facet_nodes(mesh.dim, mesh.degree, facet);
       for (int &node : nodes)
-        node = nodes_of(mesh, k)[static_cast<std::size_t>(node)];
+        node = nodes_of(mesh, k)[node];
       visitor(nodes,
               TouchedCell{
                   mesh.natural_cell[k], facet_cell(cell_of(mesh, k), facet).reference, {}, term});
@@ -185,11 +184,11 @@ SampleMesh sample_domain(const Problem &problem, const Sum &sum, const std::vect
   std::vector<TouchedCell> mine;
   visit_domain(problem, sum, terms, [&](const std::vector<int> &nodes, TouchedCell cell) {
     if (!matrix) cell.imposed_by = imposed_by_at(problem.dofs(), nodes);
-    if (sum[static_cast<std::size_t>(cell.term)].of_imposed && cell.imposed_by.empty()) return;
+    if (sum[cell.term].of_imposed && cell.imposed_by.empty()) return;
     std::vector<PetscInt> rows;
     for (const int node : nodes)
       for (int c = 0; c < components; ++c)
-        rows.push_back(mesh.natural_node[static_cast<std::size_t>(node)] * components + c);
+        rows.push_back(mesh.natural_node[node] * components + c);
     cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
     if (!cell.entries.empty()) mine.push_back(std::move(cell));
   });
@@ -227,7 +226,7 @@ struct Snapshots {
     if (numbers.empty()) return {};
     Eim result = eim(comm, values, keys, options);
     for (int &number : result.snapshots)
-      number = numbers[static_cast<std::size_t>(number)];
+      number = numbers[number];
     return result;
   }
   /// The snapshots of the rows from `first` on, `count` of them.

@@ -33,7 +33,7 @@ std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   std::vector<ChebyshevAxis> axes;
   for (const int i : scene.parameters.free) {
     if (!depends_on(scene.a, i)) continue;
-    const Parameter &p = scene.parameters.all[static_cast<std::size_t>(i)];
+    const Parameter &p = scene.parameters.all[i];
     const Coordinate *own = coordinate_of(scene.a, i);
     const double lower = own == nullptr ? p.lower : own->of(p.lower);
     const double upper = own == nullptr ? p.upper : own->of(p.upper);
@@ -51,8 +51,8 @@ Matrix separated_loads(Problem &problem, const AffineOperators &affine,
   int first = 0;
   for (const RowsOfB &rows : rows_of_b(affine, problem)) {
     for (int i = 0; i < rows.eim.size(); ++i) {
-      const int snapshot = rows.eim.snapshots[static_cast<std::size_t>(i)];
-      problem.assemble_contact(training[static_cast<std::size_t>(snapshot)], op);
+      const int snapshot = rows.eim.snapshots[i];
+      problem.assemble_contact(training[snapshot], op);
       const Matrix at_snapshot = op.b.middleRows(rows.first, rows.count).transpose() *
                                  basis.middleRows(rows.first, rows.count);
       for (int p = i; p < rows.eim.size(); ++p)
@@ -67,7 +67,7 @@ Matrix separated_loads(Problem &problem, const AffineOperators &affine,
 template <class Integer> Matrix unit_loads(Index dofs, const std::vector<Integer> &at) {
   Matrix loads = Matrix::Zero(dofs, std::ssize(at));
   for (Index k = 0; k < loads.cols(); ++k)
-    loads(at[static_cast<std::size_t>(k)], k) = 1;
+    loads(at[k], k) = 1;
   return loads;
 }
 
@@ -106,7 +106,7 @@ std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training
 
 /// Those that the rows of the basis meet wherever the parameters are.
 std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &basis) {
-  std::vector<int> dofs(static_cast<std::size_t>(problem.trace().size));
+  std::vector<int> dofs(problem.trace().size);
   std::iota(dofs.begin(), dofs.end(), 0);
   const Vector rows = basis.rowwise().lpNorm<Eigen::Infinity>();
   if (follows_state(problem.scene()) || rows.minCoeff() > 0) return dofs;
@@ -158,7 +158,7 @@ std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &
   for (const FullMu &point : grid_points(scene, axes, all_parameters)) {
     Mu mu;
     for (const int i : scene.parameters.free)
-      mu.push_back(point[static_cast<std::size_t>(i)]);
+      mu.push_back(point[i]);
     result.push_back(std::move(mu));
   }
   return result;
@@ -262,7 +262,7 @@ Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOpti
       if (2 * axis.points - 1 > options.max_points)
         throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
                       " only by " + std::to_string(axis.points) + " points along " +
-                      scene.parameters.all[static_cast<std::size_t>(axis.parameter)].name +
+                      scene.parameters.all[axis.parameter].name +
                       ": narrow its bounds, or raise -condensed_tolerance");
       axis.points = 2 * axis.points - 1;
     }
@@ -276,7 +276,7 @@ int add_load_responses(Problem &problem, const AffineOperators &affine,
   std::vector<Handle<Vec>> mapped;
   std::vector<Vec> loads;
   for (const int snapshot : affine.f.snapshots) {
-    problem.assemble(training[static_cast<std::size_t>(snapshot)]);
+    problem.assemble(training[snapshot]);
     const Vec at_snapshot = problem.f_terms().mapped.get();
     Handle<Vec> copy;
     RBVI_CALL(VecDuplicate(at_snapshot, copy.put()));

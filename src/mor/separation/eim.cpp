@@ -41,7 +41,7 @@ Pivot find_pivot(MPI_Comm comm, const Eigen::Ref<const Vector> &column,
   Pivot pivot;
   EntryKey lowest{none, none};
   for (Index e = 0; e < column.size(); ++e) {
-    const EntryKey key = keys[static_cast<std::size_t>(e)];
+    const EntryKey key = keys[e];
     if (std::abs(column(e)) < (1 - tie) * largest || key >= lowest) continue;
     lowest = key;
     pivot.local = e;
@@ -91,10 +91,10 @@ struct Residuals {
   /// Makes column p the term A_j (B.33) and subtracts its multiples from the others.
   void eliminate(int p, const Vector &at_pivot) {
     columns.col(p) /= at_pivot(p);
-    selected[static_cast<std::size_t>(p)] = true;
+    selected[p] = true;
     maxima.setZero();
     for (Index q = 0; q < columns.cols(); ++q) {
-      if (selected[static_cast<std::size_t>(q)]) continue;
+      if (selected[q]) continue;
       if (at_pivot(q) != 0) columns.col(q) -= at_pivot(q) * columns.col(p);
       if (columns.rows() > 0) maxima(q) = columns.col(q).cwiseAbs().maxCoeff();
     }
@@ -110,9 +110,8 @@ void record_term(Eim &result, int p, const EntryKey &key, const Vector &at_pivot
   combination(j) = 1;
   result.interpolation.conservativeResizeLike(Matrix::Zero(j + 1, j + 1));
   for (Index i = 0; i < j; ++i) {
-    result.interpolation(j, i) = at_pivot(result.snapshots[static_cast<std::size_t>(i)]);
-    combination.head(i + 1) -=
-        rows[static_cast<std::size_t>(i)](p) * result.combination.col(i).head(i + 1);
+    result.interpolation(j, i) = at_pivot(result.snapshots[i]);
+    combination.head(i + 1) -= rows[i](p) * result.combination.col(i).head(i + 1);
   }
   result.interpolation(j, j) = 1;
   result.combination.conservativeResizeLike(Matrix::Zero(j + 1, j + 1));
@@ -141,8 +140,7 @@ Eim eim(MPI_Comm comm, const Matrix &values, const std::vector<EntryKey> &keys,
   if (!(options.tolerance >= 0)) throw bad_input("the tolerance of an EIM must not be negative");
   if (options.max_size < 0) throw bad_input("the maximal size of an EIM must not be negative");
   if (values.cols() == 0) throw failure("an empirical interpolation needs at least one snapshot");
-  Residuals residuals{comm, values, std::vector<bool>(static_cast<std::size_t>(values.cols())),
-                      column_maxima(comm, values)};
+  Residuals residuals{comm, values, std::vector<bool>(values.cols()), column_maxima(comm, values)};
   const double scale = residuals.maxima.maxCoeff();
   if (!std::isfinite(scale))
     throw failure("snapshots of an empirical interpolation are not finite");

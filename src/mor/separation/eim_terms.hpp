@@ -11,7 +11,7 @@ namespace rbvi {
 template <class Terms>
 void accumulate(const Eim &eim, int snapshot, const Vector &projected, Terms &&terms) {
   for (int i = 0; i < eim.size(); ++i)
-    if (eim.snapshots[static_cast<std::size_t>(i)] == snapshot)
+    if (eim.snapshots[i] == snapshot)
       for (int j = i; j < eim.size(); ++j)
         terms.col(j) += eim.combination(i, j) * projected;
 }

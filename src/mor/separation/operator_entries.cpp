@@ -7,7 +7,7 @@ namespace rbvi {
 namespace {
 
 std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
-  std::vector<PetscInt> natural(static_cast<std::size_t>(dofs.total_free), 0);
+  std::vector<PetscInt> natural(dofs.total_free, 0);
   for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
     natural[static_cast<std::size_t>(dofs.first_free) + i] = dofs.natural_owned[i];
   over_ranks(dofs.comm, MPI_SUM, natural);
@@ -19,8 +19,7 @@ std::vector<PetscInt> natural_of_rows(const Dofs &dofs) {
 LowerTriangle::LowerTriangle(Mat a, const Dofs &dofs) {
   const std::vector<PetscInt> natural = natural_of_rows(dofs);
   visit_entries(a, [&](PetscInt row, PetscInt column, double) {
-    const EntryKey key{natural[static_cast<std::size_t>(row)],
-                       natural[static_cast<std::size_t>(column)]};
+    const EntryKey key{natural[row], natural[column]};
     taken_.push_back(key.row >= key.column);
     if (taken_.back()) keys_.push_back(key);
   });

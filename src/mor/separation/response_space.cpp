@@ -50,14 +50,13 @@ Mu point_at(const Scene &scene, const std::vector<ChebyshevAxis> &axes, const Mu
             const std::vector<double> &leja, FullMu all) {
   for (std::size_t d = 0; d < axes.size(); ++d) {
     const ChebyshevAxis &axis = axes[d];
-    const double x = (axis.lower + axis.upper) / 2 +
-                     (axis.upper - axis.lower) / 2 * leja[static_cast<std::size_t>(index[d])];
+    const double x = (axis.lower + axis.upper) / 2 + (axis.upper - axis.lower) / 2 * leja[index[d]];
     const Coordinate *own = coordinate_of(scene.a, axis.parameter);
-    all[static_cast<std::size_t>(axis.parameter)] = own == nullptr ? x : own->back(x);
+    all[axis.parameter] = own == nullptr ? x : own->back(x);
   }
   Mu mu;
   for (const int i : scene.parameters.free)
-    mu.push_back(all[static_cast<std::size_t>(i)]);
+    mu.push_back(all[i]);
   return mu;
 }
 
@@ -280,7 +279,7 @@ ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &lo
                              RBVI_CALL(VecGetLocalSize(u.get(), &rows));
                              Matrix fields(rows, std::ssize(loads));
                              for (Index k = 0; k < fields.cols(); ++k) {
-                               solve_linear(ksp.get(), loads[static_cast<std::size_t>(k)], u.get());
+                               solve_linear(ksp.get(), loads[k], u.get());
                                const PetscScalar *values = nullptr;
                                RBVI_CALL(VecGetArrayRead(u.get(), &values));
                                fields.col(k) = Eigen::Map<const Vector>(values, rows);

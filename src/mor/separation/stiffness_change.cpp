@@ -53,7 +53,7 @@ std::vector<bool> changing_rows(Problem &problem, const std::vector<Mu> &set, Ma
 /// The rows of a basis that change, the others zero.
 Matrix masked(Matrix rows, const std::vector<bool> &changing) {
   for (Index i = 0; i < rows.rows(); ++i)
-    if (!changing[static_cast<std::size_t>(i)]) rows.row(i).setZero();
+    if (!changing[i]) rows.row(i).setZero();
   return rows;
 }
 

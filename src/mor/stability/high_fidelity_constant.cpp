@@ -85,18 +85,16 @@ Handle<Mat> saddle_point(Mat v, const SparseMatrix &b, const std::vector<PetscIn
   PetscInt fields = 0;
   RBVI_CALL(MatGetSize(v, &fields, nullptr));
   const auto size = static_cast<PetscInt>(fields + b.rows());
-  std::vector<PetscInt> longest(static_cast<std::size_t>(size), 1);
+  std::vector<PetscInt> longest(size, 1);
   const auto each_of_b = [&](const auto &visit) {
     for (Index i = 0; i < b.rows(); ++i)
       for (SparseMatrix::InnerIterator entry(b, i); entry; ++entry)
-        visit(static_cast<PetscInt>(fields + i), dofs[static_cast<std::size_t>(entry.col())],
-              entry.value());
+        visit(static_cast<PetscInt>(fields + i), dofs[entry.col()], entry.value());
   };
-  visit_entries(v,
-                [&](PetscInt row, PetscInt, double) { ++longest[static_cast<std::size_t>(row)]; });
+  visit_entries(v, [&](PetscInt row, PetscInt, double) { ++longest[row]; });
   each_of_b([&](PetscInt row, PetscInt column, double) {
-    ++longest[static_cast<std::size_t>(row)];
-    ++longest[static_cast<std::size_t>(column)];
+    ++longest[row];
+    ++longest[column];
   });
   return assembled(size, longest, [&](const auto &add) {
     visit_entries(v, add);

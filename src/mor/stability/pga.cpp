@@ -54,14 +54,14 @@ public:
     return evaluate_above(needed, space);
   }
 
-  double sigma(int p) const { return sigma_[static_cast<std::size_t>(p)]; }
+  double sigma(int p) const { return sigma_[p]; }
   int evaluations() const { return evaluations_; }
 
   /// Collective. Of the candidate that was chosen: PgaCandidate::farthest.
   Matrix farthest(int p) const {
     const int owner = p % ranks_;
     Matrix vectors;
-    if (rank_ == owner) vectors = mine_[static_cast<std::size_t>(p / ranks_)].farthest();
+    if (rank_ == owner) vectors = mine_[p / ranks_].farthest();
     return broadcast(comm_, owner, vectors);
   }
 

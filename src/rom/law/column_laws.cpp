@@ -9,14 +9,13 @@ ColumnLaws laws_of_columns(const Contact &contact, const Matrix &dual_basis) {
   std::vector<std::vector<Index>> normal(interfaces), tangent(interfaces), fixed(interfaces);
   for (std::size_t i = 0; i < interfaces; ++i)
     fixed[i] = contact.interfaces[i]->partly_fixed();
-  std::vector<bool> without_bound(static_cast<std::size_t>(dual_basis.cols()), false);
+  std::vector<bool> without_bound(dual_basis.cols(), false);
   for (Index column = 0; column < dual_basis.cols(); ++column) {
     Index row = 0;
     dual_basis.col(column).cwiseAbs().maxCoeff(&row);
     const DualRow of = dual_row(contact, row);
     (of.normal ? normal : tangent)[of.interface].push_back(column);
-    without_bound[static_cast<std::size_t>(column)] =
-        std::ranges::binary_search(fixed[of.interface], of.node);
+    without_bound[column] = std::ranges::binary_search(fixed[of.interface], of.node);
   }
   ColumnLaws columns;
   NodeLaws &laws = columns.laws;
@@ -26,7 +25,7 @@ ColumnLaws laws_of_columns(const Contact &contact, const Matrix &dual_basis) {
       laws.normal.push_back(normal[i][k]);
       laws.tangent.push_back(tangent[i].empty() ? -1 : tangent[i].at(k));
       columns.interface_of.push_back(static_cast<int>(i));
-      columns.without_bound.push_back(without_bound[static_cast<std::size_t>(normal[i][k])]);
+      columns.without_bound.push_back(without_bound[normal[i][k]]);
     }
   laws.bound.resize(laws.normal.size());
   return columns;

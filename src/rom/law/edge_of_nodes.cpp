@@ -11,9 +11,7 @@ namespace {
 Index nearest(const std::vector<Point> &points, const std::vector<Index> &nodes, Index to) {
   using At = Eigen::Map<const Eigen::Vector3d>;
   const auto distance = [&](Index node) {
-    return (At(points[static_cast<std::size_t>(node)].data()) -
-            At(points[static_cast<std::size_t>(to)].data()))
-        .squaredNorm();
+    return (At(points[node].data()) - At(points[to].data())).squaredNorm();
   };
   return *std::ranges::min_element(nodes, {}, distance);
 }

@@ -44,9 +44,9 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
     nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
     trace_ = dofs.empty() ? model.contact_trace : Matrix(model.contact_trace(dofs, Eigen::all));
     unit_loads_ = stiffness_.turned(trace_.transpose());
-    place_.assign(static_cast<std::size_t>(model.contact_trace.rows()), -1);
+    place_.assign(model.contact_trace.rows(), -1);
     for (std::size_t k = 0; k < dofs.size(); ++k)
-      place_[static_cast<std::size_t>(dofs[k])] = static_cast<int>(k);
+      place_[dofs[k]] = static_cast<int>(k);
     if (!dofs.empty()) compliance_ = std::make_unique<ModelCompliance>(model.law->condensed);
   }
   if (!follows_state(contact)) return;
@@ -63,11 +63,11 @@ LawSolver::~LawSolver() = default;
 SparseMatrix LawSolver::known_columns(const SparseMatrix &b) const {
   if (trace_.rows() == b.cols()) return b;
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(b.nonZeros()));
+  entries.reserve(b.nonZeros());
   for (Index row = 0; row < b.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(b, row); entry; ++entry) {
       if (entry.value() == 0) continue;
-      const int column = place_[static_cast<std::size_t>(entry.col())];
+      const int column = place_[entry.col()];
       if (column < 0)
         throw failure("a multiplier of the model meets the other body where no training parameter "
                       "takes it: " +
@@ -155,21 +155,19 @@ Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Inde
     const Index m = model_.generators;
     Matrix result(m, count);
     for (Index k = 0; k < count; ++k)
-      result.col(k).noalias() =
-          terms.middleRows(which[static_cast<std::size_t>(k)] * m, m) * body.terms;
+      result.col(k).noalias() = terms.middleRows(which[k] * m, m) * body.terms;
     return result;
   }
   Matrix moved = Matrix::Zero(trace_.rows(), count); // contact dofs, by unit multipliers
   compliance_->set(body.terms);
   for (Index k = 0; k < count; ++k)
-    for (SparseMatrix::InnerIterator entry(body.b_contact, which[static_cast<std::size_t>(k)]);
-         entry; ++entry)
+    for (SparseMatrix::InnerIterator entry(body.b_contact, which[k]); entry; ++entry)
       compliance_->add(entry.col(), entry.value(), moved.col(k));
   return body.b_contact * moved;
 }
 
 LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) {
-  std::vector<Index> all(static_cast<std::size_t>(model_.generators));
+  std::vector<Index> all(model_.generators);
   std::iota(all.begin(), all.end(), 0);
   const Matrix h = condensed_columns(body, all);
   // A multiplier that faces no partner has no row.

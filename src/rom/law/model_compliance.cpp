@@ -9,7 +9,7 @@ namespace rbvi {
 ModelCompliance::ModelCompliance(const CondensedOperator &operator_of)
     : of_(operator_of),
       size_(std::lround(std::sqrt(static_cast<double>(operator_of.terms.rows())))),
-      columns_(Matrix::Zero(size_, size_)), known_(static_cast<std::size_t>(size_)) {
+      columns_(Matrix::Zero(size_, size_)), known_(size_) {
   for (const Index size : diagonal_blocks(operator_of.terms))
     bodies_.insert(bodies_.end(), static_cast<std::size_t>(size), {std::ssize(bodies_), size});
 }
@@ -22,11 +22,11 @@ bool ModelCompliance::set(const Vector &coefficients) {
 }
 
 void ModelCompliance::make(Index dof) {
-  if (known_[static_cast<std::size_t>(dof)]) return;
+  if (known_[dof]) return;
   const auto [first, count] = body_of(dof);
   columns_.col(dof).segment(first, count).noalias() =
       of_.terms.middleRows(dof * size_ + first, count) * coefficients_;
-  known_[static_cast<std::size_t>(dof)] = true;
+  known_[dof] = true;
 }
 
 void ModelCompliance::require(const std::vector<Index> &dofs) {

@@ -23,7 +23,7 @@ public:
   Eigen::Map<const Vector> column(Index dof) const override {
     return {columns_.col(dof).data(), size_};
   }
-  Range body_of(Index dof) const override { return bodies_[static_cast<std::size_t>(dof)]; }
+  Range body_of(Index dof) const override { return bodies_[dof]; }
   /// Adds a multiple of a column, made where it is not known.
   void add(Index dof, double factor, Eigen::Ref<Vector> sum) {
     make(dof);

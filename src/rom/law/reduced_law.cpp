@@ -32,7 +32,7 @@ CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtM
   const std::vector<Index> nodes(basis.nodes.begin(), basis.nodes.end());
   std::vector<Index> rows; // of the tangential multipliers that collocation nodes have
   for (const Index node : nodes)
-    rows.push_back(body.laws.tangent[static_cast<std::size_t>(node)] - body.laws.nodes());
+    rows.push_back(body.laws.tangent[node] - body.laws.nodes());
   return {h, functions.transpose() * body.q, basis.normal(nodes, Eigen::all),
           basis.tangential(rows, Eigen::all), bounds_at(body.laws.bound, nodes)};
 }
@@ -45,10 +45,10 @@ double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal
     largest = larger(largest, std::abs(x[row] - projected));
   };
   for (Index i = 0; i < laws.nodes(); ++i) {
-    const Index normal = laws.normal[static_cast<std::size_t>(i)];
+    const Index normal = laws.normal[i];
     compare(normal, std::max(0.0, y[normal]));
     if (!laws.has_tangent(i)) continue;
-    const Index tangent = laws.tangent[static_cast<std::size_t>(i)];
+    const Index tangent = laws.tangent[i];
     compare(tangent, std::clamp(y[tangent], -bounds[i], bounds[i]));
   }
   const double size = x.cwiseAbs().maxCoeff();

@@ -44,10 +44,9 @@ Vector affine_coefficients(const AffineTerms &terms, const Sum &sum, const Scene
   const Index dofs = Index{nodes_per_cell(scene.dim, scene.degree)} * scene.components;
   Matrix values(dofs * dofs, cells); // a linear form, or one on a facet, fills the first rows only
   for (Index number = 0; number < cells; ++number) {
-    const int term = sample.terms[static_cast<std::size_t>(number)];
-    sum[static_cast<std::size_t>(term)].form.kernel(
-        all_parameters, sample_cell(sample, scene, all_parameters, number),
-        values.col(number).data());
+    const int term = sample.terms[number];
+    sum[term].form.kernel(all_parameters, sample_cell(sample, scene, all_parameters, number),
+                          values.col(number).data());
   }
   for (const SampleMesh::Contribution &c : sample.contributions)
     theta[c.entry] += values(c.local, c.cell);
@@ -72,7 +71,7 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
           all_parameters, sample_cell(sample, scene, all_parameters, static_cast<Index>(e)),
           values[e]);
     for (const SampleMesh::Contribution &c : sample.contributions) {
-      const EntityValues &of = values[static_cast<std::size_t>(c.cell)];
+      const EntityValues &of = values[c.cell];
       theta[c.entry] += part == Part::b ? of.b.data()[c.local] : of.g[c.local];
     }
   }

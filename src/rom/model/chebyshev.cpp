@@ -68,7 +68,7 @@ std::vector<FullMu> grid_points(const Scene &scene, const std::vector<ChebyshevA
     for (const FullMu &mu : points)
       for (int k = 0; k < axis.points; ++k) {
         finer.push_back(mu);
-        finer.back()[static_cast<std::size_t>(axis.parameter)] = value_at(scene, axis, k);
+        finer.back()[axis.parameter] = value_at(scene, axis, k);
       }
     points = std::move(finer);
   }
@@ -79,8 +79,7 @@ Vector grid_weights(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
                     const FullMu &all_parameters) {
   Vector weights = Vector::Ones(1);
   for (const ChebyshevAxis &axis : axes) {
-    const Vector own =
-        axis_weights(scene, axis, all_parameters[static_cast<std::size_t>(axis.parameter)]);
+    const Vector own = axis_weights(scene, axis, all_parameters[axis.parameter]);
     weights = (own * weights.transpose()).reshaped().eval();
   }
   return weights;

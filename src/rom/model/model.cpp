@@ -238,7 +238,7 @@ ErrorOfOutput errors_of_outputs(const ReducedModel &model) {
 Point point_of(const Matrix &points, Index i) {
   Point point{};
   for (Index k = 0; k < points.cols(); ++k)
-    point[static_cast<std::size_t>(k)] = points(i, k);
+    point[k] = points(i, k);
   return point;
 }
 

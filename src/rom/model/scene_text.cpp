@@ -57,7 +57,7 @@ double extent_of(const Contact &contact) {
 Point random_point(int dim, double extent, Random &random) {
   Point x{};
   for (int c = 0; c < dim; ++c)
-    x[static_cast<std::size_t>(c)] = extent * (2 * random() - 1);
+    x[c] = extent * (2 * random() - 1);
   return x;
 }
 
@@ -169,11 +169,11 @@ void add_factors(const std::string &name, const std::vector<Factor> &factors, Te
       values.push_back(factor.value(at.mu));
     });
     for (const auto &[parameter, coordinate] : factor.coordinates)
-      text.add_values(own + ", coordinate " + std::to_string(parameter),
-                      [&](const Draw &at, std::vector<double> &values) {
-                        values = {coordinate.of(at.mu.at(static_cast<std::size_t>(parameter))),
-                                  coordinate.back(at.of_parameter)};
-                      });
+      text.add_values(
+          own + ", coordinate " + std::to_string(parameter),
+          [&](const Draw &at, std::vector<double> &values) {
+            values = {coordinate.of(at.mu.at(parameter)), coordinate.back(at.of_parameter)};
+          });
   }
 }
 

@@ -37,7 +37,7 @@ Matrix as_matrix(const std::vector<Point> &points, int dim) {
   Matrix result(static_cast<Index>(points.size()), dim);
   for (Index i = 0; i < result.rows(); ++i)
     for (Index c = 0; c < dim; ++c)
-      result(i, c) = points[static_cast<std::size_t>(i)][static_cast<std::size_t>(c)];
+      result(i, c) = points[i][c];
   return result;
 }
 

@@ -14,8 +14,7 @@ double distance_to(const Matrix &columns, const ParameterSpace &space, const Mu 
     double square = 0;
     for (int i = 0; i < space.size(); ++i) {
       const double width = space.at(i).upper - space.at(i).lower;
-      const double part =
-          (columns(i, k) - mu[static_cast<std::size_t>(i)]) / (width > 0 ? width : 1);
+      const double part = (columns(i, k) - mu[i]) / (width > 0 ? width : 1);
       square += part * part;
     }
     smallest = std::min(smallest, square);

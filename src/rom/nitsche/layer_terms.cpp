@@ -11,9 +11,8 @@ Vector point_abscissae(const std::vector<CurveCell> &cells) {
   Vector x(4 * static_cast<Index>(cells.size()));
   Index next = 0;
   for (const CurveCell &cell : cells) {
-    const auto [i, j] = simplex_edges[static_cast<std::size_t>(cell.edge)];
-    const double a = cell.cell.reference[static_cast<std::size_t>(i)][0],
-                 b = cell.cell.reference[static_cast<std::size_t>(j)][0];
+    const auto [i, j] = simplex_edges[cell.edge];
+    const double a = cell.cell.reference[i][0], b = cell.cell.reference[j][0];
     for (const EdgePoint &point : edge_quadrature)
       x[next++] = (1 - point.s) * a + point.s * b;
   }
@@ -48,7 +47,7 @@ Vector SampledLayer::coefficients(Vector entries) const {
 Vector SampledLayer::of_blocks(const std::vector<FaceBlock> &blocks) const {
   Vector entries = Vector::Zero(terms_.size());
   for (const Contribution &c : contributions_)
-    entries[c.entry] += blocks[static_cast<std::size_t>(c.cell)](c.row, c.column);
+    entries[c.entry] += blocks[c.cell](c.row, c.column);
   return coefficients(std::move(entries));
 }
 

@@ -34,10 +34,7 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
   for (const auto &[number, factor] : chosen) {
     const int cell = number / 4;
     if (parts.empty() || parts.back().cell != cell)
-      parts.push_back(
-          {cell,
-           {},
-           basis_on(cells[static_cast<std::size_t>(cell)], model.contact_trace).transpose()});
+      parts.push_back({cell, {}, basis_on(cells[cell], model.contact_trace).transpose()});
     parts.back().points.emplace_back(number % 4, factor);
   }
   points = static_cast<Index>(chosen.size());
@@ -47,9 +44,8 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
 void ReducedNitsche::System::set_points(const NitscheLayer &layer, const FullMu &all_parameters) {
   laws.clear();
   for (const Part &part : parts)
-    laws.insert(
-        laws.end(), part.points.size(),
-        layer.curve_of(layer.cells[static_cast<std::size_t>(part.cell)]).law_at(all_parameters));
+    laws.insert(laws.end(), part.points.size(),
+                layer.curve_of(layer.cells[part.cell]).law_at(all_parameters));
   friction = layer.friction();
   functionals.resize(u.size(), friction ? 2 * points : points);
   offsets.resize(functionals.cols());
@@ -60,14 +56,14 @@ void ReducedNitsche::System::set_points(const NitscheLayer &layer, const FullMu 
   at_rest.facing.clear();
   Index next = 0;
   for (const Part &part : parts) {
-    const CurveCell &beside = layer.cells[static_cast<std::size_t>(part.cell)];
+    const CurveCell &beside = layer.cells[part.cell];
     const CurveCellAtMu at = curve_cell_at(layer, all_parameters, beside);
     const NitscheFacing &facing = layer.curve_of(beside).facing;
     const auto count = static_cast<Index>(part.points.size());
     Eigen::Matrix<double, 12, Eigen::Dynamic> local(12, friction ? 2 * count : count);
     for (Index k = 0; k < count; ++k) {
-      const auto [q, factor] = part.points[static_cast<std::size_t>(k)];
-      const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
+      const auto [q, factor] = part.points[k];
+      const EdgePoint rule = edge_quadrature[q];
       const NitschePoint point = nitsche_point(layer.scene, facing, all_parameters, at.cell,
                                                beside.edge, at.material, rule.s);
       local.col(k) = point.sigma_n - at.gamma * point.n;
@@ -92,12 +88,12 @@ void ReducedNitsche::System::set_at_rest(const NitscheLayer &layer, const FullMu
   along_tau.resize(u.size(), points);
   Index next = 0;
   for (const Part &part : parts) {
-    const CurveCell &beside = layer.cells[static_cast<std::size_t>(part.cell)];
+    const CurveCell &beside = layer.cells[part.cell];
     const CurveCellAtMu at = curve_cell_at(layer, all_parameters, beside);
     const NitscheFacing &facing = layer.curve_of(beside).facing;
     Eigen::Matrix<double, 12, 4> local;
     for (const auto &[q, factor] : part.points) {
-      const EdgePoint rule = edge_quadrature[static_cast<std::size_t>(q)];
+      const EdgePoint rule = edge_quadrature[q];
       const NitschePoint point = nitsche_point(layer.scene, facing, all_parameters, at.cell,
                                                beside.edge, at.material, rule.s);
       local << point.sigma_n - at.gamma * point.n, point.sigma_tau - at.gamma * point.tau, point.n,
@@ -120,10 +116,10 @@ void ReducedNitsche::System::turn_to(const Vector &coefficients) {
   const Vector along_n = columns(2).transpose() * coefficients,
                across = columns(3).transpose() * coefficients;
   for (Index i = 0; i < points; ++i) {
-    const Point &n = at_rest.normal[static_cast<std::size_t>(i)];
-    const NitscheFacing &facing = *at_rest.facing[static_cast<std::size_t>(i)];
+    const Point &n = at_rest.normal[i];
+    const NitscheFacing &facing = *at_rest.facing[i];
     const SupportPoint now =
-        facing.at(at_rest.mu, at_rest.x[static_cast<std::size_t>(i)],
+        facing.at(at_rest.mu, at_rest.x[i],
                   {along_n[i] * n[0] - across[i] * n[1], along_n[i] * n[1] + across[i] * n[0], 0});
     const double c = now.normal[0] * n[0] + now.normal[1] * n[1],
                  s = now.normal[1] * n[0] - now.normal[0] * n[1];
@@ -161,7 +157,7 @@ Vector ReducedNitsche::System::bounds_at(const Matrix &at) const {
   if (!friction) return {};
   Vector result(points);
   for (Index i = 0; i < points; ++i)
-    result[i] = nitsche_bound(laws[static_cast<std::size_t>(i)], at(i, 0));
+    result[i] = nitsche_bound(laws[i], at(i, 0));
   return result;
 }
 
@@ -187,7 +183,8 @@ Matrix ReducedNitsche::System::tangent_at(const Matrix &at) const {
   return result;
 }
 
-/// What the normals turn by at these pressures, at each point.
+/// The second derivative along tau that the curvature of the surface adds at each point in contact
+/// at these pressures (NitschePoint::turning).
 Vector ReducedNitsche::System::turning_at(const Matrix &at) const {
   return (at.col(0).array() < 0).select(turning, 0.0);
 }
@@ -253,7 +250,7 @@ std::optional<int> ReducedNitsche::System::follow_bound() {
     std::vector<Index> slipping; // there the bound moves with P_n
     std::vector<double> rates;
     for (Index i = 0; i < points; ++i) {
-      const NitscheLaw &law = laws[static_cast<std::size_t>(i)];
+      const NitscheLaw &law = laws[i];
       const double shear = pressures(i, 1);
       if (law.law != FrictionLaw::coulomb || !(std::abs(shear) > bounds[i]) || pressures(i, 0) >= 0)
         continue;

@@ -73,12 +73,12 @@ Matrix inverse_complement(Mat whole, const std::vector<PetscInt> &rows) {
 /// Each row of the trace among the different ones, whose contact dofs come in `first`.
 std::vector<Index> places_of(const std::vector<PetscInt> &rows, std::vector<Index> &first) {
   std::vector<Index> order(rows.size()), place(rows.size());
-  const auto row = [&](Index i) { return rows[static_cast<std::size_t>(i)]; };
+  const auto row = [&](Index i) { return rows[i]; };
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](Index i, Index k) { return row(i) < row(k); });
   for (const Index i : order) {
     if (first.empty() || row(first.back()) != row(i)) first.push_back(i);
-    place[static_cast<std::size_t>(i)] = std::ssize(first) - 1;
+    place[i] = std::ssize(first) - 1;
   }
   return place;
 }

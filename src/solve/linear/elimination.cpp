@@ -11,10 +11,6 @@ namespace rbvi {
 
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// The number of this rank's first constraint, and of all of them.
 std::array<Index, 2> first_and_all(MPI_Comm comm, Index own) {
   const std::vector<PetscInt> counts =
@@ -53,7 +49,7 @@ Elimination::Elimination(const DualLayout &layout, const SparseMatrix &c,
   first_ = first;
   count_ = all;
   for (const Index dof : pivots)
-    pivots_.push_back(layout.columns[at(dof)]);
+    pivots_.push_back(layout.columns[dof]);
   Handle<Vec> u;
   RBVI_CALL(MatCreateVecs(c_.get(), u.put(), values_.put()));
   to_pivots_ = scatter_to_pivots(comm_, pivots_, u.get(), values_.get());
@@ -74,12 +70,12 @@ bool Elimination::is_separate(const DualLayout &layout, const SparseMatrix &c,
   std::vector<PetscInt> owner(layout.columns.size(), 0);
   const auto self = static_cast<PetscInt>(rank_of(comm_) + 1);
   for (const Index dof : pivots)
-    owner[at(dof)] = self;
+    owner[dof] = self;
   over_ranks(comm_, MPI_MAX, owner);
   std::array<PetscInt, 1> shared{0};
   for (Index row = 0; row < c.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(c, row); entry; ++entry)
-      if (const PetscInt of = owner[at(entry.col())]; entry.value() != 0 && of != 0 && of != self)
+      if (const PetscInt of = owner[entry.col()]; entry.value() != 0 && of != 0 && of != self)
         shared.front() = 1;
   over_ranks(comm_, MPI_MAX, shared);
   return shared.front() == 0;

@@ -15,8 +15,8 @@ void add_bounds(const ContactInterface &interface, const FullMu &mu,
                 std::map<int, NodalBound> &bounds) {
   const InterfaceMesh &mesh = interface.mesh();
   for (Index e = 0; e < mesh.count(); ++e) {
-    const int edge = mesh.edges[static_cast<std::size_t>(e)];
-    const auto [a, b] = simplex_edges[static_cast<std::size_t>(edge)];
+    const int edge = mesh.edges[e];
+    const auto [a, b] = simplex_edges[edge];
     std::vector<int> on_curve{a, b};
     if (mesh.degree == 2) on_curve.push_back(3 + edge);
     for (const int local : on_curve) {
@@ -48,11 +48,11 @@ std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu) {
 }
 
 LocalFrames::LocalFrames(const Problem &problem)
-    : problem_(problem), row_of_(static_cast<std::size_t>(problem.trace().size), -1) {
+    : problem_(problem), row_of_(problem.trace().size, -1) {
   const Trace &trace = problem.trace();
   const Dofs &dofs = problem.dofs();
   for (std::size_t k = 0; k < trace.index.size(); ++k)
-    row_of_[static_cast<std::size_t>(trace.index[k])] = dofs.first_free + trace.local_row[k];
+    row_of_[trace.index[k]] = dofs.first_free + trace.local_row[k];
   const auto local = static_cast<PetscInt>(dofs.natural_owned.size());
   RBVI_CALL(MatCreateAIJ(problem.comm(), local, local, PETSC_DETERMINE, PETSC_DETERMINE, 2, nullptr,
                          1, nullptr, q_.put()));
@@ -65,7 +65,7 @@ void LocalFrames::set(std::vector<NodalBound> bounds) {
   for (PetscInt row = first; row < last; ++row)
     RBVI_CALL(MatSetValue(q_.get(), row, row, 1, INSERT_VALUES));
   for (const NodalBound &bound : bounds_) {
-    const PetscInt row = row_of_[static_cast<std::size_t>(bound.contact_dof)];
+    const PetscInt row = row_of_[bound.contact_dof];
     if (row < 0) continue;
     const Point &n = bound.normal;
     const std::array<PetscInt, 2> rows{row, row + 1};
@@ -101,7 +101,7 @@ Handle<Vec> LocalFrames::upper() const {
   RBVI_CALL(MatCreateVecs(q_.get(), result.put(), nullptr));
   RBVI_CALL(VecSet(result.get(), PETSC_INFINITY));
   for (const NodalBound &bound : bounds_)
-    if (const PetscInt row = row_of_[static_cast<std::size_t>(bound.contact_dof)]; row >= 0)
+    if (const PetscInt row = row_of_[bound.contact_dof]; row >= 0)
       RBVI_CALL(VecSetValue(result.get(), row, bound.gap, INSERT_VALUES));
   RBVI_CALL(VecAssemblyBegin(result.get()));
   RBVI_CALL(VecAssemblyEnd(result.get()));

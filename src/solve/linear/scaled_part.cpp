@@ -58,7 +58,7 @@ void ScaledPart::find_interface(const Problem &problem) {
   const std::vector<bool> part = rows_with_entries(problem.a_terms().exact.back().get());
   std::vector<bool> in_contact(part.size(), false);
   for (const PetscInt row : contact_.local_row)
-    in_contact[static_cast<std::size_t>(row)] = true;
+    in_contact[row] = true;
   for (std::size_t i = 0; i < part.size(); ++i)
     if (part[i] && (rest[i] || in_contact[i]))
       interface_.local_row.push_back(static_cast<PetscInt>(i));
@@ -71,7 +71,7 @@ void ScaledPart::find_interface(const Problem &problem) {
   both_.size += interface_.size;
   for (PetscInt k = 0; k < mine; ++k) {
     interface_.index.push_back(end - mine + k);
-    both_.local_row.push_back(interface_.local_row[static_cast<std::size_t>(k)]);
+    both_.local_row.push_back(interface_.local_row[k]);
     both_.index.push_back(contact_.size + interface_.index.back());
   }
 }

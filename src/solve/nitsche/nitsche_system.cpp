@@ -45,7 +45,7 @@ void add_blocks(const std::vector<NitscheFace> &faces, const std::vector<FaceBlo
     std::array<PetscInt, 12> rows{}, columns{}; // negative ones are left out
     for (std::size_t i = 0; i < 12; ++i) {
       const int dof = faces[f].dofs[i];
-      columns[i] = dof < 0 ? -1 : row_of[static_cast<std::size_t>(dof)];
+      columns[i] = dof < 0 ? -1 : row_of[dof];
       rows[i] = columns[i] >= first && columns[i] < last ? columns[i] : -1;
     }
     const Eigen::Matrix<double, 12, 12, Eigen::RowMajor> values = blocks[f];

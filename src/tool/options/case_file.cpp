@@ -215,7 +215,7 @@ std::string read_case_text(MPI_Comm comm, const std::filesystem::path &file) {
     if (!in) throw bad_input("the case file " + file.string() + " cannot be read");
     text.resize(largest_file + 1);
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(in.gcount()));
+    text.resize(in.gcount());
     if (in.bad()) throw bad_input("the case file " + file.string() + " cannot be read");
     if (text.size() > largest_file)
       throw bad_input("the case file " + file.string() + " is larger than 1 MB: it is none");

@@ -104,7 +104,7 @@ void adapt_parameters(Scene &scene, const Registry &registry) {
   std::string unfixed;
   std::vector<std::string> fixed;
   for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
-    Parameter &parameter = space.all[static_cast<std::size_t>(i)];
+    Parameter &parameter = space.all[i];
     const Given given = adapt_parameter(parameter);
     const bool free = std::find(space.free.begin(), space.free.end(), i) != space.free.end();
     if (given == Given::value)

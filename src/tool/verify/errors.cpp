@@ -39,7 +39,7 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
   const bool friction = errors.tangential.size() > 0;
   Index worst = 0;
   (friction ? errors.tangential : errors.lambda).maxCoeff(&worst);
-  const Mu &mu = truths.mu[static_cast<std::size_t>(worst)];
+  const Mu &mu = truths.mu[worst];
   OnlineSolver solver(model);
   const std::vector<Point> points = dual_points(solver.contact());
   const Matrix reduced = by_node(solver.contact(), solver.multiplier(solver.solve(mu, true))),

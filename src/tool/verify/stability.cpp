@@ -114,7 +114,7 @@ std::vector<int> spread(int last, int count) {
 std::vector<ContactPoint> subset(const std::vector<ContactPoint> &set, int count) {
   std::vector<ContactPoint> result;
   for (const int p : spread(static_cast<int>(set.size()) - 1, count - 1))
-    result.push_back(set[static_cast<std::size_t>(p)]);
+    result.push_back(set[p]);
   return result;
 }
 

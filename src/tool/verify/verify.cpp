@@ -81,7 +81,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   Matrix rows = Matrix::Zero(count, stresses ? 15 : friction ? 14 : 13);
   collectively(world, [&] {
     for (int k = rank; k < count; k += ranks) {
-      const auto [kind, n, r] = pairs[static_cast<std::size_t>(k)];
+      const auto [kind, n, r] = pairs[k];
       const SubModel pair =
           kind == 1 ? enriched_pair(model, n, r) : SubModel{leading(model, n, r), {}};
       const ModelErrors e = model_errors(pair.model, pair.embedding, truths, w);

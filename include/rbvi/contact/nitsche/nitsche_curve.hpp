@@ -57,9 +57,7 @@ struct NitscheLayer {
   std::vector<CurveCell> cells; ///< curve by curve, along each by increasing x
   bool friction() const;        ///< of some curve
   bool follows_state() const;   ///< some facing does
-  const NitscheCurve &curve_of(const CurveCell &cell) const {
-    return curves[static_cast<std::size_t>(cell.curve)];
-  }
+  const NitscheCurve &curve_of(const CurveCell &cell) const { return curves[cell.curve]; }
   std::span<const CurveCell> cells_of(std::size_t curve) const;
 };
 

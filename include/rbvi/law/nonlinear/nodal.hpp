@@ -47,9 +47,7 @@ public:
 
   const SparseMatrix &average() const { return average_; }
   /// The nodes whose functions meet that of a node.
-  const std::vector<Index> &neighbours(Index node) const {
-    return neighbours_[static_cast<std::size_t>(node)];
-  }
+  const std::vector<Index> &neighbours(Index node) const { return neighbours_[node]; }
   /// C A_a^T, contact dofs x 2, of a node that was required.
   auto moved(Index node) const { return moved_.middleCols<2>(2 * node); }
   /// What a load on node b, which was required, moves: (G_ab load) of the nodes a from `first` on,

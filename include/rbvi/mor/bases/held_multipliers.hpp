@@ -1,6 +1,6 @@
-// Multipliers that hold a part of the contact region where it is: given those at other nodes, which
-// l_P on the nodes P make the displacement u of A u = B^T l vanish there, (B u)_P = 0? With the
-// condensed operator H = B A^-1 B^T, l_P = -H_PP^-1 H_P: l_others.
+// Nodes P that are in contact at every parameter do not move. Given multipliers l at the other
+// nodes, those at P, l_P, are such that the displacement u of A u = B^T l fulfils (B u)_P = 0: with
+// the condensed operator H = B A^-1 B^T, l_P = -H_PP^-1 H_P: l_others.
 #pragma once
 
 #include "rbvi/law/lcp.hpp"

@@ -22,13 +22,14 @@ class ResponseDirections {
 public:
   /// `compliance`: loads^T A^-1 loads. Throws failure where it is not positive definite.
   explicit ResponseDirections(const Matrix &compliance);
-  /// Takes what is new of these answers (loads x any number), but for `tolerance`, relative to the
-  /// largest so far.
+  /// Adds directions until every one of these answers (loads x any number) is at most `tolerance`
+  /// away from them, relative to the largest answer so far.
   void add(const Matrix &answers, double tolerance);
-  /// What those taken leave of the worst of `answers`, relative to the largest of those added.
+  /// The largest distance of one of `answers` to the directions taken so far, relative to the
+  /// largest answer that was added; both in the energy.
   double left(const Matrix &answers) const;
-  /// Coefficients, loads x r, orthonormal in the energy: as few as leave at most `tolerance`,
-  /// likewise, of every answer that was added, beside what add() left.
+  /// Coefficients, loads x r, orthonormal in the energy: as few directions as are at most
+  /// `tolerance` away from every answer that was added, the parts that add() left out not counted.
   Matrix coefficients(double tolerance) const;
 
 private:

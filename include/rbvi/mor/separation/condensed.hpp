@@ -61,13 +61,14 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
 /// at each Chebyshev point, shared among the ranks. Collective. Throws failure where the tolerance
 /// needs more points.
 ///
-/// `modes`, where given: these responses are appended to them, at the ends and in the middle of
-/// each free parameter of A. The displacement is then as exact as the multipliers, which no set of
-/// snapshots makes it where active sets are new. Of the first A all are taken (down to a remainder
-/// of 1e-8 of their norm), of the others what is left above options.responses. Where all loads join
-/// and A is a sum of more than two exact terms, there are fewer factorisations: the responses are
-/// appended until they are there to 3e-7 for all multipliers like `multipliers` (coefficients of
-/// the loads x samples), and Galerkin's method in modes and responses gives the values of H.
+/// `modes`, where given: the responses A^-1 loads are appended to them, with A at the ends and in
+/// the middle of each of its free parameters, so that the displacement is as exact as the
+/// multipliers (snapshots alone do not contain the responses to new active sets). All responses of
+/// the first A are appended (remainders below 1e-8 of their norm left out), of every other A those
+/// parts that are larger than options.responses. Where all loads join and A is a sum of more than
+/// two exact terms, fewer A are factorised: responses are appended until those to multipliers like
+/// `multipliers` (coefficients of the loads x samples) are in the span to 3e-7, and H is taken from
+/// Galerkin's method in this span.
 Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
                       const FullMu &all_parameters, const CondensedOptions &options,
                       LinearBasis *modes = nullptr, const Matrix &multipliers = {});

@@ -14,14 +14,14 @@ template <class Start> class SampleStarts {
 public:
   /// `samples`: free parameters x samples; there may be none.
   SampleStarts(const ParameterSpace &space, const Matrix &samples)
-      : points_(parts_of_box(space, samples)), starts_(static_cast<std::size_t>(samples.cols())) {}
+      : points_(parts_of_box(space, samples)), starts_(samples.cols()) {}
   /// `here`: as parts of the box. `from_rest(k)`: what the answer at sample k leaves; where that
   /// throws failure, and where there are no samples, a query starts from rest: Start{}.
   template <class FromRest> const Start &nearest(const Vector &here, FromRest &&from_rest) {
     if (starts_.empty()) return rest_;
     Index k = 0;
     (points_.colwise() - here).colwise().squaredNorm().minCoeff(&k);
-    std::optional<Start> &start = starts_[static_cast<std::size_t>(k)];
+    std::optional<Start> &start = starts_[k];
     if (!start) {
       start.emplace();
       try {

@@ -36,7 +36,7 @@ template <class Item>
 std::vector<Item> selected(const std::vector<Item> &all, const std::vector<int> &numbers) {
   std::vector<Item> result;
   for (const int number : numbers)
-    result.push_back(all[static_cast<std::size_t>(number)]);
+    result.push_back(all[number]);
   return result;
 }
 

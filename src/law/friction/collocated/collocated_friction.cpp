@@ -109,7 +109,7 @@ public:
     without_bounds.normal.resize(0, Eigen::NoChange);
     without_bounds.tangential.resize(0, Eigen::NoChange);
     const State unbounded = ZeroBoundElimination(without_bounds, {}).frozen(Vector(0), sets);
-    sets.side.assign(at(p_.nodes()), 0);
+    sets.side.assign(p_.nodes(), 0);
     iterate(sets, p_.bounds(unbounded.x));
   }
   int sweeps() const { return sweeps_; }
@@ -124,9 +124,9 @@ private:
     Vector damping = Vector::Ones(p_.nodes()), last = Vector::Zero(p_.nodes());
     while (sweeps_ < limit) {
       ++sweeps_;
-      std::vector<char> closed(at(p_.nodes()));
+      std::vector<char> closed(p_.nodes());
       for (Index j = 0; j < p_.nodes(); ++j)
-        closed[at(j)] = s[j] == 0;
+        closed[j] = s[j] == 0;
       const State point = judged(without(closed).frozen(s, sets));
       if (best_.residual <= round_off) return;
       const bool known = policy_.returns(sets);
@@ -167,11 +167,11 @@ private:
 
   /// Nodes whose bound is zero whatever the pressures of the free generators.
   std::vector<char> zero_bounds(const ActiveSets &sets) const {
-    std::vector<char> closed(at(p_.nodes()));
+    std::vector<char> closed(p_.nodes());
     for (Index j = 0; j < p_.nodes(); ++j) {
-      closed[at(j)] = p_.bound[at(j)].threshold_at(0) == 0;
-      for (Index i = 0; i < p_.generators() && p_.bound[at(j)].carries_traction(true); ++i)
-        if (sets.free[at(i)] != 0 && p_.normal(j, i) > 0) closed[at(j)] = 0;
+      closed[j] = p_.bound[j].threshold_at(0) == 0;
+      for (Index i = 0; i < p_.generators() && p_.bound[j].carries_traction(true); ++i)
+        if (sets.free[i] != 0 && p_.normal(j, i) > 0) closed[j] = 0;
     }
     return closed;
   }
@@ -184,11 +184,11 @@ private:
 
   ActiveSets corrected(ActiveSets sets, const State &point) const {
     for (Index i = 0; i < p_.generators(); ++i) {
-      char &free = sets.free[at(i)];
+      char &free = sets.free[i];
       free = free != 0 ? point.x[i] > 0 : point.w[i] < -round_off * point.terms[i];
     }
     for (Index j = 0; j < p_.nodes(); ++j) {
-      signed char &side = sets.side[at(j)];
+      signed char &side = sets.side[j];
       const double traction = point.traction[j], s = point.bounds[j];
       if (s == 0) {
         side = sign(point.delta[j]);
@@ -206,11 +206,11 @@ private:
     ActiveSets sets(p_);
     const double largest = x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0;
     for (Index i = 0; i < p_.generators(); ++i)
-      sets.free[at(i)] = x[i] > round_off * largest;
+      sets.free[i] = x[i] > round_off * largest;
     const Vector s = p_.bounds(x), traction = p_.tangential * x.tail(p_.modes());
     for (Index j = 0; j < p_.nodes(); ++j)
       if (s[j] > 0 && std::abs(traction[j]) >= s[j] * (1 - near))
-        sets.side[at(j)] = traction[j] > 0 ? 1 : -1;
+        sets.side[j] = traction[j] > 0 ? 1 : -1;
     return sets;
   }
 

@@ -17,12 +17,12 @@ std::vector<Index> rows_above(const Vector &norms, double least) {
 State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   std::vector<Index> unknowns, held;
   for (Index i = 0; i < p.generators(); ++i)
-    if (sets.free[at(i)] != 0) unknowns.push_back(i);
+    if (sets.free[i] != 0) unknowns.push_back(i);
   const Index pressures = static_cast<Index>(unknowns.size());
   for (Index k = 0; k < p.modes(); ++k)
     unknowns.push_back(p.generators() + k);
   for (Index j = 0; j < p.nodes(); ++j)
-    if (sets.side[at(j)] != 0) held.push_back(j);
+    if (sets.side[j] != 0) held.push_back(j);
 
   const Index n = static_cast<Index>(unknowns.size()), m = static_cast<Index>(held.size());
   Matrix system = Matrix::Zero(n + m, n + m);
@@ -30,17 +30,17 @@ State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   system.topLeftCorner(n, n) = p.h(unknowns, unknowns);
   right.head(n) = -p.q(unknowns);
   for (Index k = 0; k < m; ++k) {
-    const Index j = held[at(k)];
-    const double side = sets.side[at(j)], size = p.size[j];
+    const Index j = held[k];
+    const double side = sets.side[j], size = p.size[j];
     double reach = 0; // largest entry of the free generators: in contact by these sets
     for (Index i = 0; i < pressures; ++i) {
-      const double value = p.normal(j, unknowns[at(i)]);
-      system(n + k, i) = -p.bound[at(j)].coefficient * value / size;
+      const double value = p.normal(j, unknowns[i]);
+      system(n + k, i) = -p.bound[j].coefficient * value / size;
       reach = std::max(reach, value);
     }
     system.row(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j);
     system.col(n + k).segment(pressures, p.modes()) = side / size * p.tangential.row(j).transpose();
-    right[n + k] = p.bound[at(j)].threshold_at(reach) / size;
+    right[n + k] = p.bound[j].threshold_at(reach) / size;
   }
   Vector solution(n + m);
   if (n + m > 0) {
@@ -53,7 +53,7 @@ State newton_step(const ScaledProblem &p, const ActiveSets &sets) {
   point.delta = Vector::Zero(p.nodes());
   point.x(unknowns) = solution.head(n);
   for (Index k = 0; k < m; ++k)
-    point.delta[held[at(k)]] = sets.side[at(held[at(k)])] * solution[n + k] / p.size[held[at(k)]];
+    point.delta[held[k]] = sets.side[held[k]] * solution[n + k] / p.size[held[k]];
   return point;
 }
 
@@ -77,9 +77,9 @@ public:
   void start_from(const ActiveSets &sets) {
     std::vector<Index> active;
     for (Index i = 0; i < p_.generators(); ++i)
-      if (sets.free[at(i)] == 0) active.push_back(i);
+      if (sets.free[i] == 0) active.push_back(i);
     for (Index j = 0; j < p_.nodes(); ++j)
-      if (const int side = sets.side[at(j)]; side != 0)
+      if (const int side = sets.side[j]; side != 0)
         active.push_back(p_.generators() + j + (side > 0 ? 0 : p_.nodes()));
     qp_.start_from(std::move(active));
   }
@@ -102,8 +102,8 @@ public:
     ActiveSets result(p_);
     for (const Index column : qp_.active()) {
       const Index j = column - p_.generators();
-      if (j < 0) result.free[at(column)] = 0;
-      if (j >= 0) result.side[at(j % p_.nodes())] = j < p_.nodes() ? 1 : -1;
+      if (j < 0) result.free[column] = 0;
+      if (j >= 0) result.side[j % p_.nodes()] = j < p_.nodes() ? 1 : -1;
     }
     return result;
   }
@@ -139,7 +139,7 @@ ScaledProblem scaled(const CollocatedProblem &p) {
 ZeroBoundElimination::ZeroBoundElimination(const ScaledProblem &p, const std::vector<char> &closed)
     : closed_(closed), p_(p), reduced_(p) {
   for (Index j = 0; j < p.nodes(); ++j)
-    (closed[at(j)] != 0 ? zero_ : nodes_).push_back(j);
+    (closed[j] != 0 ? zero_ : nodes_).push_back(j);
   if (!zero_.empty()) eliminate();
 }
 
@@ -165,7 +165,7 @@ void ZeroBoundElimination::eliminate() {
   reduced_.size = norms(kept);
   std::vector<Index> nodes;
   for (const Index j : kept)
-    nodes.push_back(nodes_[at(j)]);
+    nodes.push_back(nodes_[j]);
   nodes_ = std::move(nodes);
   reduced_.normal = p_.normal(nodes_, Eigen::all);
   reduced_.bound = bounds_at(p_.bound, nodes_);
@@ -185,9 +185,9 @@ State ZeroBoundElimination::frozen(const Vector &s, ActiveSets &sets) {
   sets = ActiveSets(p_);
   sets.free = found.free;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
-    sets.side[at(nodes_[k])] = found.side[k];
+    sets.side[nodes_[k]] = found.side[k];
   for (const Index j : zero_)
-    sets.side[at(j)] = sign(point.delta[j]);
+    sets.side[j] = sign(point.delta[j]);
   return point;
 }
 
@@ -195,7 +195,7 @@ ActiveSets ZeroBoundElimination::restricted(const ActiveSets &sets) const {
   ActiveSets result(reduced_);
   result.free = sets.free;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
-    result.side[k] = sets.side[at(nodes_[k])];
+    result.side[k] = sets.side[nodes_[k]];
   return result;
 }
 

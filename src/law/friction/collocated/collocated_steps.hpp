@@ -2,7 +2,6 @@
 // sets, and what is left of both where bounds are zero.
 #pragma once
 
-#include "../../index.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/law/friction/collocated_friction.hpp"
 #include "rbvi/law/qp/nonnegative_qp.hpp"
@@ -40,7 +39,7 @@ struct ScaledProblem {
   /// s = c N a + t
   Vector bounds(const Vector &x) const {
     const Vector p = normal * x.head(generators());
-    return Vector::NullaryExpr(nodes(), [&](Index j) { return bound[at(j)].value(p[j]); });
+    return Vector::NullaryExpr(nodes(), [&](Index j) { return bound[j].value(p[j]); });
   }
 };
 
@@ -52,8 +51,7 @@ struct ActiveSets {
   std::vector<char> free;
   std::vector<signed char> side;
 
-  explicit ActiveSets(const ScaledProblem &p)
-      : free(at(p.generators()), 1), side(at(p.nodes()), 0) {}
+  explicit ActiveSets(const ScaledProblem &p) : free(p.generators(), 1), side(p.nodes(), 0) {}
   friend auto operator<=>(const ActiveSets &, const ActiveSets &) = default;
 };
 

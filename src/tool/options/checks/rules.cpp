@@ -74,8 +74,7 @@ void check_cone_level(const ToolOptions &options) {
   const bool law = keeps_law(options.reduce.multipliers.reduction);
   if (!law && cone.type != ConeType::hybrid)
     throw bad_input("-cone_level chooses hat functions, and -cone_type " +
-                    cone_type_names()[static_cast<std::size_t>(cone.type)] +
-                    " has none: use -cone_type hybrid");
+                    cone_type_names()[static_cast<std::size_t>(cone.type)] + " has none: use -cone_type hybrid");
   if (cone.level > options.mesh.refine)
     throw bad_input("-cone_level " + std::to_string(cone.level) +
                     " takes the hat functions of a mesh with so many refinements less, and "
