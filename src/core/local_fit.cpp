@@ -16,7 +16,7 @@ Vector parts_of_box(const ParameterSpace &space, const FullMu &all_parameters) {
 }
 
 Matrix parts_of_box(const ParameterSpace &space, Matrix free) {
-  for (int i = 0; i < space.size(); ++i)
+  for (int i = 0; i < space.size() && free.size() > 0; ++i)
     free.row(i) /= space.at(i).upper - space.at(i).lower;
   return free;
 }

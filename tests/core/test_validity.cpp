@@ -103,9 +103,9 @@ TEST(Validity, TheRingAroundTheDiscFoldsJustBeyondTheRange) {
 
 TEST(Validity, AnIndentationIsSmallBesideTheRadius) {
   const Scene disk = make_scene("rigid_disk");
-  EXPECT_NO_THROW(check_together(disk, {0.7, 0.09, 0.2, 1, 0.35}));
+  EXPECT_NO_THROW(check_together(disk, {0.7, 0.09, 0.2, 1, 0.35, 0}));
   EXPECT_TRUE(refuses("of the radius 0.6", [&] {
-    check_together(disk, {0.6, 0.09, 0.2, 1, 0.35});
+    check_together(disk, {0.6, 0.09, 0.2, 1, 0.35, 0});
   }));
   EXPECT_EQ(make_scene("two_disks", {{"indentation", "0.1"}}).parameters.all[0].valid.lower, 0.5);
 }
