@@ -27,8 +27,9 @@ Matrix cholesky(Matrix matrix, std::string_view what) {
   return matrix;
 }
 
-void solve_lower(const Matrix &lower, Eigen::Ref<Matrix> x) {
-  const auto triangle = lower.triangularView<Eigen::Lower>();
+namespace {
+
+template <class Triangle> void solve_in_place(const Triangle &triangle, Eigen::Ref<Matrix> x) {
   if (x.cols() == 1) {
     Eigen::Map<Vector> only(x.data(), x.rows());
     triangle.solveInPlace(only);
@@ -37,14 +38,14 @@ void solve_lower(const Matrix &lower, Eigen::Ref<Matrix> x) {
   }
 }
 
+} // namespace
+
+void solve_lower(const Matrix &lower, Eigen::Ref<Matrix> x) {
+  solve_in_place(lower.triangularView<Eigen::Lower>(), x);
+}
+
 void solve_lower_transposed(const Matrix &lower, Eigen::Ref<Matrix> x) {
-  const auto triangle = lower.triangularView<Eigen::Lower>().transpose();
-  if (x.cols() == 1) {
-    Eigen::Map<Vector> only(x.data(), x.rows());
-    triangle.solveInPlace(only);
-  } else if (x.size() > 0) {
-    triangle.solveInPlace(x);
-  }
+  solve_in_place(lower.triangularView<Eigen::Lower>().transpose(), x);
 }
 
 Vector cholesky_solve(const Matrix &lower, const Vector &right) {
