@@ -235,6 +235,8 @@ TEST(RigidSurface, ABodyThatIsPressedFromInsideIsRefused) {
   Vector lambda = Vector::Zero(op.g.size());
   Outputs out;
   EXPECT_NO_THROW(of.interface->outputs({1.2, 0}, op, lambda, 0, out));
+  lambda[op.weights.size() + 3] = 1; // friction without pressure, as Tresca's law has it
+  EXPECT_NO_THROW(of.interface->outputs({1.2, 0}, op, lambda, 0, out));
   lambda[3] = 1; // the lowest vertex
   EXPECT_THROW(of.interface->outputs({1.2, 0}, op, lambda, 0, out), Error);
   EXPECT_NO_THROW(of.interface->outputs({0.9, 0}, of.at({0.9, 0}, {}), lambda, 0, out));

@@ -2,6 +2,7 @@
 #include "files.hpp"
 #include "full_model.hpp"
 
+#include "../core/refuses.hpp"
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
@@ -75,16 +76,8 @@ TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
   const std::size_t digit = text.find(line) + line.size() + 5;
   text[digit] = text[digit] == '5' ? '6' : '5';
   write_model(model, path);
-  try {
-    (void)read_model(path, catalogue());
-    FAIL() << "accepted";
-  } catch (const Error &error) {
-    const std::string message = error.what();
-    EXPECT_EQ(error.status(), Status::bad_input);
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-    for (const std::string part : {"another one in this build: map values is ", "rbvi offline"})
-      EXPECT_NE(message.find(part), std::string::npos) << message;
-  }
+  for (const std::string part : {"another one in this build: map values is ", "rbvi offline"})
+    EXPECT_TRUE(refuses(part, [&] { (void)read_model(path, catalogue()); }));
 }
 
 TEST_F(ModelFile, ReturnsTheModel) {

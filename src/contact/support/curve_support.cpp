@@ -116,9 +116,12 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
     for (Index i = 0; i < 2; ++i)
       edge.mapped[i] = {mapped(e + i, 0), mapped(e + i, 1), 0};
     const double whole = length_of(edge);
+    const auto pressure = [&](std::size_t a) { return rows[a] < 0 ? 0 : lambda[rows[a]]; };
     for (const TracePoint &at : points_) {
       const Point x = point_on(edge, at), n = normal_at(mu, edge, at, x);
-      if (side_ != 0) check_pressed_side(side_ * downwards(edge, n), x);
+      // Tresca's traction acts without pressure, too.
+      const bool pressed = at.eta[0] * pressure(0) + at.eta[1] * pressure(1) > 0;
+      if (pressed && side_ != 0) check_pressed_side(side_ * downwards(edge, n), x);
       for (std::size_t a = 0; a < 2; ++a) {
         if (rows[a] < 0) continue;
         const double eta = at.weight * whole * at.eta[a];
