@@ -73,7 +73,7 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
   errors.tangential_floor.resize(truths.tangential_norm.size());
   for (Index p = 0; p < count; ++p) {
     ReducedAnswer projected;
-    projected.mu = expand(model.parameters, truths.mu[p]);
+    projected.mu = expand(model.scene.parameters, truths.mu[p]);
     projected.u = projections.col(p);
     const Vector difference = solver.multiplier(projected) - truths.lambda.col(p);
     const PartNorms norms = part_norms(w, difference, normal);

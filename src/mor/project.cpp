@@ -155,7 +155,6 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   ReducedModel model;
   model.scene = scene;
   model.settings[whole_scene] = scene_text(scene, problem.contact());
-  model.parameters = scene.parameters;
   model.modes = bases.modes;
   model.supremizers = bases.supremizers + bases.responses;
   model.online_enriched = bases.online_enriched;

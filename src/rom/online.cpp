@@ -53,13 +53,13 @@ Index solved_size(const ReducedModel &model) {
 } // namespace
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &options)
-    : OnlineSolver(model, scene_of(model), options) {}
+    : OnlineSolver(model, model.scene, options) {}
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
       options_(options), qp_(solved_size(model), model.free_modes),
-      starts_(model.parameters, model.trained_mu) {
+      starts_(model.scene.parameters, model.trained_mu) {
   check_terms_of(model.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.f, scene_.f, scene_.parameters, "f");
   check_imposed_by(model, scene_);
@@ -279,11 +279,11 @@ void OnlineSolver::solve_cone(ReducedAnswer &solution) {
 }
 
 void OnlineSolver::start_cone(const FullMu &all_parameters) {
-  const Vector here = parts_of_box(model_.parameters, all_parameters);
+  const Vector here = parts_of_box(model_.scene.parameters, all_parameters);
   const ConeStart &start = starts_.nearest(here, [&](Index sample) {
     const Vector mu = model_.trained_mu.col(sample);
     ReducedAnswer unused;
-    unused.mu = expand(model_.parameters, {mu.begin(), mu.end()});
+    unused.mu = expand(model_.scene.parameters, {mu.begin(), mu.end()});
     qp_.start_from({});
     solve_cone(unused);
     ConeStart found{qp_.active(), {}, y_number_};

@@ -108,7 +108,7 @@ void print_failed(std::ostream &out, const ReducedModel &model) {
                                << failed.size() + static_cast<std::size_t>(model.trained_mu.cols())
                                << ", without a high-fidelity answer at\n";
   for (std::size_t k = 0; k < std::min(most, failed.size()); ++k)
-    label(out, "") << describe(model.parameters, failed[k]) << '\n';
+    label(out, "") << describe(model.scene.parameters, failed[k]) << '\n';
   if (failed.size() > most) label(out, "") << "and " << failed.size() - most << " more\n";
 }
 
@@ -123,7 +123,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "scene") << model.scene.name
                       << (unnamed.empty() ? "" : ", whose code it needs: for " + unnamed) << '\n';
   label(out, "options") << joined(model.scene.options) << '\n';
-  print_parameters(out, model.parameters);
+  print_parameters(out, model.scene.parameters);
   print_failed(out, model);
   label(out, "modes") << model.modes << '\n';
   const bool joined = model.law && model.law->reduction == MultiplierReduction::condensed;
@@ -156,7 +156,7 @@ void print_model(std::ostream &out, const ReducedModel &model) {
     if (name != whole_scene) label(out, name) << value << '\n';
   print_expected_errors(out, model);
   label(out, "self-check");
-  print_self_check(out, model.self_check, model.parameters);
+  print_self_check(out, model.self_check, model.scene.parameters);
   print_several_answers(out, model);
   if (model.supremizers > 0)
     label(out, "  decorrelated") << validation(model.validation_decorrelated) << '\n';
@@ -170,7 +170,7 @@ void print_several_answers(std::ostream &out, const ReducedModel &model) {
   const bool reduced = model.law->reduction == MultiplierReduction::collocated;
   out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, "
       << short_number(known.front()) << " of the largest multiplier apart at "
-      << describe(model.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "
+      << describe(model.scene.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "
       << (reduced ? "the one that the nearest training parameter leads to"
                   : "the one that continues the answer without friction, and says where there are "
                     "others")

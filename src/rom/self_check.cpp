@@ -40,7 +40,7 @@ int queries_of_check(const ReducedModel &model) {
 }
 
 SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries) {
-  const std::vector<Mu> set = set_of_check(model.parameters, queries);
+  const std::vector<Mu> set = set_of_check(model.scene.parameters, queries);
   SelfCheck check;
   OnlineSolver solver(model, scene);
   check.queries = static_cast<int>(set.size());
@@ -70,7 +70,7 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries)
 
 void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set) {
   if (!has_friction(scene) || !model.law) return;
-  if (set.empty()) set = set_of_check(model.parameters, queries_of_check(model));
+  if (set.empty()) set = set_of_check(model.scene.parameters, queries_of_check(model));
   OnlineSolver solver(model, scene, {.looks_for_others = true});
   Worst farthest;
   for (const Mu &mu : set) {

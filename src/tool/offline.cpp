@@ -52,8 +52,8 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
   std::vector<Mu> failed;
   for (const auto &[mu, reason] : sweep.report.failed)
     failed.push_back(mu);
-  model.trained_mu = as_columns(parameters_of(sweep.samples), model.parameters.size());
-  model.failed_mu = as_columns(failed, model.parameters.size());
+  model.trained_mu = as_columns(parameters_of(sweep.samples), model.scene.parameters.size());
+  model.failed_mu = as_columns(failed, model.scene.parameters.size());
 }
 
 /// That nobody knows the errors of a new model; and where it has so few samples that it cannot even
@@ -64,12 +64,12 @@ void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run)
               run.c_str());
   const std::vector<Mu> trained = from_columns(model.trained_mu);
   const auto distinct = std::ssize(std::set<Mu>(trained.begin(), trained.end()));
-  if (distinct > model.parameters.size()) return;
+  if (distinct > model.scene.parameters.size()) return;
   std::printf(
       "warning: %s for %s: the tolerances are met at these samples, which says nothing about "
       "the rest of the box; give a larger -train\n",
       counted(distinct, "different sample").c_str(),
-      counted(model.parameters.size(), "free parameter").c_str());
+      counted(model.scene.parameters.size(), "free parameter").c_str());
 }
 
 } // namespace
@@ -146,7 +146,7 @@ void command_offline(const ToolOptions &options) {
   if (rank == 0) {
     print_stages(run.stages);
     std::cout << "Self-check: ";
-    print_self_check(std::cout, run.model.self_check, run.model.parameters);
+    print_self_check(std::cout, run.model.self_check, run.model.scene.parameters);
     tell_of_errors(run.model, options.out);
     print_several_answers(std::cout, run.model);
     tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,

@@ -24,7 +24,7 @@ void measure(const rbvi::synthetic::Sizes &sizes) {
   const double building = seconds_since(start);
   std::vector<double> seconds;
   double residual = 0, active = 0, iterations = 0;
-  const auto queries = rbvi::parse_set(model.parameters, "random:400:1");
+  const auto queries = rbvi::parse_set(model.scene.parameters, "random:400:1");
   for (const rbvi::Mu &mu : queries) {
     const auto query_start = Clock::now();
     const rbvi::ReducedAnswer solution = solver.solve(mu);

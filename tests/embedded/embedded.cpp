@@ -13,8 +13,8 @@ int main(int count, char **arguments) {
     ReducedModel model = read_model(arguments[i], catalogue());
     OnlineSolver solver(model);
     Mu mu;
-    for (int k = 0; k < model.parameters.size(); ++k)
-      mu.push_back((model.parameters.at(k).lower + model.parameters.at(k).upper) / 2);
+    for (int k = 0; k < model.scene.parameters.size(); ++k)
+      mu.push_back((model.scene.parameters.at(k).lower + model.scene.parameters.at(k).upper) / 2);
     ReducedAnswer solution = solver.solve(mu);
     const double energy = solver.outputs(mu, solution).energy.value_or(NAN);
     const Vector field = solver.field(solution);

@@ -32,7 +32,7 @@ inline Vector combine(const AffineTerms &terms, int form, double (*value)(int, i
 
 inline Operators assemble(const ReducedModel &model, double (*value)(int, int, const FullMu &),
                           const Mu &free) {
-  const FullMu mu = expand(model.parameters, free);
+  const FullMu mu = expand(model.scene.parameters, free);
   const Index n = model.primal_size(), r = model.generators;
   Operators result;
   const Vector a = combine(model.a, 0, value, mu), b = combine(model.b, 1, value, mu);

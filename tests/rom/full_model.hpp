@@ -7,8 +7,8 @@ namespace rbvi {
 
 inline ReducedModel full_model() {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
-  model.parameters = free_only(model.parameters, "radius,center_y");
-  model.parameters.all[1].value = 0.01;
+  model.scene.parameters = free_only(model.scene.parameters, "radius,center_y");
+  model.scene.parameters.all[1].value = 0.01;
   model.settings = {{"-pod_tolerance", "1e-3"}, {"-cone", "mcpg"}};
   model.mesh_fingerprint = "0123456789abcdef";
   model.free_modes = 1;

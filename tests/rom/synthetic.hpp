@@ -110,7 +110,6 @@ inline void scale_terms(AffineTerms &terms, const Vector &theta_in_the_middle) {
 template <class Sizes> ReducedModel named_model(const Scene &scene, const Sizes &sizes) {
   ReducedModel model;
   model.scene = scene;
-  model.parameters = scene.parameters;
   model.modes = sizes.modes;
   model.supremizers = sizes.supremizers;
   model.generators = sizes.generators;

@@ -47,12 +47,12 @@ ReducedModel unnamed_model() {
 TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
   const auto refusal = [&](double lower, double upper) -> std::string {
     ReducedModel model = unnamed_model();
-    model.parameters.all[0].lower = lower;
-    model.parameters.all[0].upper = upper;
-    model.parameters.all[0].valid = {};
+    model.scene.parameters.all[0].lower = lower;
+    model.scene.parameters.all[0].upper = upper;
+    model.scene.parameters.all[0].valid = {};
     write_model(model, path);
     try {
-      EXPECT_EQ(scene_of(read_model(path, catalogue())).parameters.all[0].valid.upper, 0.38);
+      EXPECT_EQ(read_model(path, catalogue()).scene.parameters.all[0].valid.upper, 0.38);
     } catch (const Error &error) {
       EXPECT_EQ(error.status(), Status::bad_input);
       return error.what();
@@ -67,7 +67,7 @@ TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
 /// A model knows what the functions of its scene returned when it was made.
 TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
   ReducedModel model = full_model();
-  const Scene scene = scene_of(model);
+  const Scene scene = model.scene;
   model.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
   write_model(model, path);
   EXPECT_EQ(read_model(path, catalogue()).settings, model.settings);
@@ -86,9 +86,9 @@ TEST_F(ModelFile, ReturnsTheModel) {
   const ReducedModel copy = read_model(path, catalogue());
   EXPECT_EQ(copy.scene.name, model.scene.name);
   EXPECT_EQ(copy.scene.options, model.scene.options);
-  EXPECT_EQ(copy.parameters.free, model.parameters.free);
-  EXPECT_EQ(copy.parameters.all[1].value, 0.01);
-  EXPECT_EQ(copy.parameters.all[2].unit, "m");
+  EXPECT_EQ(copy.scene.parameters.free, model.scene.parameters.free);
+  EXPECT_EQ(copy.scene.parameters.all[1].value, 0.01);
+  EXPECT_EQ(copy.scene.parameters.all[2].unit, "m");
   EXPECT_EQ(copy.settings, model.settings);
   EXPECT_EQ(copy.mesh_fingerprint, model.mesh_fingerprint);
   EXPECT_EQ(copy.primal_size(), 5);
@@ -266,7 +266,7 @@ TEST_F(ModelFile, WhatThisBuildLacksIsBadInput) {
   model.scene.options["colour"] = "red";
   EXPECT_TRUE(refused(model));
   model = unnamed_model();
-  model.parameters.all[0].name = "diameter";
+  model.scene.parameters.all[0].name = "diameter";
   EXPECT_TRUE(refused(model));
 }
 

@@ -21,7 +21,7 @@ template <synthetic::Value value> void expect_exact(const synthetic::Sizes &size
   for (unsigned seed = 0; seed < 6; ++seed) {
     const ReducedModel model = toy_model(sizes, seed);
     OnlineSolver solver(model, synthetic::toy_scene<value>());
-    for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
+    for (const Mu &mu : parse_set(model.scene.parameters, "random:12:" + std::to_string(seed))) {
       const ReducedAnswer solution = solver.solve(mu);
       const Operators o = assemble(model, value, mu);
       const Vector u = brute_force(o);
@@ -77,7 +77,7 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
     const ReducedModel part = leading(model, size, 4), part_of_changed = leading(changed, size, 4);
     OnlineSolver part_solver(part, synthetic::toy_scene<smooth>()),
         other_part(part_of_changed, synthetic::toy_scene<smooth>());
-    for (const Mu &mu : parse_set(model.parameters, "random:8:" + std::to_string(seed))) {
+    for (const Mu &mu : parse_set(model.scene.parameters, "random:8:" + std::to_string(seed))) {
       const ReducedAnswer a = solver.solve(mu), b = other.solve(mu);
       EXPECT_LE((a.u - b.u).norm(), 1e-11 * a.u.norm());
       EXPECT_LE((a.lambda - b.lambda).norm(), 1e-10 * a.lambda.norm());
@@ -122,7 +122,7 @@ TEST(OnlineSolver, MoreConstraintsThanUnknowns) {
   model.b.reduced(8 + 4, 0) = model.b.reduced(8, 0);
   model.g.reduced(4, 0) = model.g.reduced(0, 0);
   OnlineSolver solver(model, synthetic::toy_scene<smooth>());
-  for (const Mu &mu : parse_set(model.parameters, "grid:5,5,1")) {
+  for (const Mu &mu : parse_set(model.scene.parameters, "grid:5,5,1")) {
     const Vector u = brute_force(assemble(model, smooth, mu));
     EXPECT_LE((solver.solve(mu).u - u).norm(), 1e-10 * u.norm());
   }

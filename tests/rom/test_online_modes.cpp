@@ -27,7 +27,7 @@ template <synthetic::Value value> void expect_exact(const synthetic::Sizes &size
   for (unsigned seed = 0; seed < 6; ++seed) {
     const ReducedModel model = model_with_modes(sizes, seed, free);
     OnlineSolver solver(model, synthetic::toy_scene<value>());
-    for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
+    for (const Mu &mu : parse_set(model.scene.parameters, "random:12:" + std::to_string(seed))) {
       const ReducedAnswer solution = solver.solve(mu);
       const Operators o = assemble(model, value, mu);
       const PairAnswer exact = brute_force_pair(o, free);
@@ -154,7 +154,7 @@ template <synthetic::Value value> void expect_enriched(const synthetic::Sizes &s
     online.online_enriched = true;
     OnlineSolver solver(online, synthetic::toy_scene<value>());
     double changed = 0;
-    for (const Mu &mu : parse_set(model.parameters, "random:12:" + std::to_string(seed))) {
+    for (const Mu &mu : parse_set(model.scene.parameters, "random:12:" + std::to_string(seed))) {
       const ReducedAnswer solution = solver.solve(mu);
       const Operators o = assemble(model, value, mu);
       const Matrix c = compressed(o.b, sizes.modes);

@@ -13,7 +13,7 @@ namespace {
 /// More generators than functions: the multipliers are not unique, and a start chooses some.
 ReducedModel model_of_dependent_generators(bool trained) {
   ReducedModel model = synthetic::random_model({4, 2, 12, 2, 1, 1, 2}, 3);
-  if (trained) model.trained_mu = as_columns(parse_set(model.parameters, "grid:2,2,2"), 3);
+  if (trained) model.trained_mu = as_columns(parse_set(model.scene.parameters, "grid:2,2,2"), 3);
   return model;
 }
 
@@ -25,7 +25,7 @@ double distance(const Vector &one, const Vector &other) {
 TEST(OrderOfQueries, DoesNotMatter) {
   for (const bool trained : {false, true}) {
     const ReducedModel model = model_of_dependent_generators(trained);
-    const std::vector<Mu> set = parse_set(model.parameters, "random:40:1");
+    const std::vector<Mu> set = parse_set(model.scene.parameters, "random:40:1");
     OnlineSolver forwards(model), backwards(model);
     std::vector<ReducedAnswer> first;
     for (const Mu &mu : set)

@@ -13,7 +13,7 @@ namespace {
 
 std::string printed(const SelfCheck &check, const ReducedModel &model) {
   std::ostringstream out;
-  print_self_check(out, check, model.parameters);
+  print_self_check(out, check, model.scene.parameters);
   return out.str();
 }
 
@@ -23,7 +23,7 @@ bool contains(const std::string &text, const std::string &part) {
 
 TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
   const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
-  const SelfCheck check = self_check(model, scene_of(model), 30);
+  const SelfCheck check = self_check(model, model.scene, 30);
   EXPECT_EQ(check.queries, 44);
   EXPECT_EQ(check.at_boundary, 14);
   EXPECT_EQ(check.unanswered, 0);
@@ -31,8 +31,8 @@ TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
   OnlineSolver solver(model);
   const Outputs there = solver.outputs(check.penetration.at, solver.solve(check.penetration.at));
   EXPECT_NEAR(*there.max_penetration, check.penetration.value, 1e-9);
-  std::vector<Mu> set = parse_set(model.parameters, "random:30:17");
-  for (const Mu &mu : corners_and_faces(model.parameters))
+  std::vector<Mu> set = parse_set(model.scene.parameters, "random:30:17");
+  for (const Mu &mu : corners_and_faces(model.scene.parameters))
     set.push_back(mu);
   double displacement = 0;
   for (const Mu &mu : set) {
@@ -47,8 +47,8 @@ TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
 
 TEST(SelfCheck, IsTheSameEveryTime) {
   const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
-  const SelfCheck one = self_check(model, scene_of(model), 20),
-                  two = self_check(model, scene_of(model), 20);
+  const SelfCheck one = self_check(model, model.scene, 20),
+                  two = self_check(model, model.scene, 20);
   EXPECT_EQ(one.residual.value, two.residual.value);
   EXPECT_EQ(one.residual.at, two.residual.at);
 }
@@ -56,9 +56,9 @@ TEST(SelfCheck, IsTheSameEveryTime) {
 TEST(SelfCheck, SaysWhatHasNoAnswer) {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
   model.a.reduced *= -1; // not positive definite
-  const SelfCheck check = self_check(model, scene_of(model), 10);
+  const SelfCheck check = self_check(model, model.scene, 10);
   EXPECT_EQ(check.unanswered, 24);
-  EXPECT_EQ(check.unanswered_at, parse_set(model.parameters, "random:1:17")[0]);
+  EXPECT_EQ(check.unanswered_at, parse_set(model.scene.parameters, "random:1:17")[0]);
   EXPECT_FALSE(check.clean());
   const std::string text = printed(check, model);
   EXPECT_TRUE(contains(text, "24 without an answer")) << text;
@@ -67,7 +67,7 @@ TEST(SelfCheck, SaysWhatHasNoAnswer) {
   EXPECT_TRUE(contains(printed({}, model), "not made"));
   SelfCheck rough;
   rough.queries = 5;
-  rough.residual = {1e-7, model.parameters.size() == 3 ? Mu{0.2, 0, 0} : Mu{}};
+  rough.residual = {1e-7, model.scene.parameters.size() == 3 ? Mu{0.2, 0, 0} : Mu{}};
   EXPECT_FALSE(rough.clean());
   EXPECT_TRUE(contains(printed(rough, model), "residuals above 1e-10"));
 }
@@ -97,8 +97,8 @@ TEST(SelfCheck, IsNotCleanWhereBodiesPenetrateOrFrictionExceedsItsBound) {
 /// Where something is not finite between the training parameters the rest of the box has answers.
 TEST(SelfCheck, CountsBadInputAmongWhatHasNoAnswer) {
   const ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
-  Scene scene = scene_of(model);
-  const Mu second = parse_set(model.parameters, "random:2:17")[1];
+  Scene scene = model.scene;
+  const Mu second = parse_set(model.scene.parameters, "random:2:17")[1];
   scene.contacts.front().coefficients = {
       {"height", [second](const FullMu &mu) { return 1 / (mu[0] - second[0]); }}};
   const SelfCheck check = self_check(model, scene, 10);

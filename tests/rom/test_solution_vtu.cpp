@@ -22,7 +22,7 @@ TEST_F(ModelVtu, VtuHoldsTheMappedFieldAndContact) {
   const Mu mu{0.18, 0.02};
   const ReducedAnswer solution = solver.solve(mu);
   const auto write = [&](const std::filesystem::path &file) {
-    return write_vtu(file, solver.scene(), expand(model.parameters, mu), model,
+    return write_vtu(file, solver.scene(), expand(model.scene.parameters, mu), model,
                      solver.field(solution), solver.multiplier(solution));
   };
   const std::vector<std::filesystem::path> files = write(directory / "u.vtu");
@@ -59,7 +59,7 @@ TEST_F(ModelVtu, VtuReadsFieldsAndInterfacesAlone) {
   bare.mesh_points = model.mesh_points;
   bare.mesh_cells = model.mesh_cells;
   bare.interfaces = model.interfaces;
-  const Scene scene = scene_of(model);
+  const Scene scene = model.scene;
   const Vector u = Vector::LinSpaced(5, 0, 1), lambda = Vector::LinSpaced(3, 1, 2);
   const auto written = [&](const ReducedModel &of) {
     write_vtu(directory / "u.vtu", scene, {0.2, 0, 0}, of, u, lambda);

@@ -15,11 +15,11 @@ namespace {
 /// Two free parameters, the first with ten times the width of the second.
 ReducedModel wide_model() {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
-  model.parameters = free_only(model.parameters, "radius,center_y");
-  model.parameters.all[0].lower = 0.1;
-  model.parameters.all[0].upper = 1.1;
-  model.parameters.all[2].lower = -0.05;
-  model.parameters.all[2].upper = 0.05;
+  model.scene.parameters = free_only(model.scene.parameters, "radius,center_y");
+  model.scene.parameters.all[0].lower = 0.1;
+  model.scene.parameters.all[0].upper = 1.1;
+  model.scene.parameters.all[2].lower = -0.05;
+  model.scene.parameters.all[2].upper = 0.05;
   return model;
 }
 
@@ -62,7 +62,7 @@ TEST(TrainingSamples, TheModelFileKeepsThem) {
   const auto path = std::filesystem::path(testing::TempDir()) /
                     ("rbvi_training_" + std::to_string(::getpid()) + ".h5");
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
-  model.parameters = free_only(model.parameters, "radius,center_y");
+  model.scene.parameters = free_only(model.scene.parameters, "radius,center_y");
   model.trained_mu = as_columns({{0.18, 0.05}, {0.24, 0}}, 2);
   model.failed_mu = as_columns({{0.2, 0}}, 2);
   write_model(model, path);

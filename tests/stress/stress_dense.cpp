@@ -124,7 +124,7 @@ TEST(DenseStress, RandomReducedModelsSatisfyTheirOptimalitySystem) {
     sizes.generators = 1 + (size(random) - 1) % (sizes.modes + sizes.supremizers);
     const ReducedModel model = synthetic::random_model(sizes, seed);
     OnlineSolver warm(model);
-    for (const Mu &mu : parse_set(model.parameters, "random:20:" + std::to_string(seed))) {
+    for (const Mu &mu : parse_set(model.scene.parameters, "random:20:" + std::to_string(seed))) {
       const ReducedAnswer solution = warm.solve(mu);
       ASSERT_LE(solution.residual, 1e-10);
       OnlineSolver cold(model);

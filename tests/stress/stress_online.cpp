@@ -19,7 +19,7 @@ struct Extremes {
 
 Extremes query(const ReducedModel &model) {
   constexpr std::size_t cold_every = 50;
-  const std::vector<Mu> queries = parse_set(model.parameters, "random:100000:99");
+  const std::vector<Mu> queries = parse_set(model.scene.parameters, "random:100000:99");
   OnlineSolver warm(model);
   Extremes worst;
   for (std::size_t k = 0; k < queries.size(); ++k) {

@@ -213,7 +213,7 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
   model.nitsche = NitscheModel{};
   NitscheModel &nitsche = *model.nitsche;
   nitsche.consistency = interpolate_consistency(layer, samples, model.contact_trace);
-  nitsche.starts_mu.resize(model.parameters.size(), static_cast<Index>(samples.size()));
+  nitsche.starts_mu.resize(model.scene.parameters.size(), static_cast<Index>(samples.size()));
   for (std::size_t p = 0; p < samples.size(); ++p)
     std::copy(samples[p].mu.begin(), samples[p].mu.end(),
               nitsche.starts_mu.col(static_cast<Index>(p)).begin());

@@ -121,7 +121,7 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
           "law/reduction is none that this build has");
   for (const ChebyshevAxis &axis : condensed.axes)
     require(axis.points > 0 && axis.lower < axis.upper && axis.parameter >= 0 &&
-                axis.parameter < static_cast<int>(model.parameters.all.size()),
+                axis.parameter < static_cast<int>(model.scene.parameters.all.size()),
             "law/axes do not fit");
   if (condensed.terms.size() > 0) {
     require_shape(condensed.shape, condensed.shape.rows(), grid_size(condensed.axes), "law/shape");
@@ -142,7 +142,7 @@ void check_law(const ReducedModel &model, const NodalLaw &law) {
   require(model.b.interpolation.bottomLeftCorner(all - apart, apart).isZero(0),
           "b/interpolation mixes terms of B^n and of B^tau");
   require_shape(law.starts, m, law.starts.cols(), "law/starts");
-  require_shape(law.starts_mu, model.parameters.size(), law.starts.cols(), "law/starts_mu");
+  require_shape(law.starts_mu, model.scene.parameters.size(), law.starts.cols(), "law/starts_mu");
   if (law.states.size() > 0)
     require_shape(law.states, model.contact_trace.rows(), law.starts.cols(), "law/states");
 }
@@ -181,7 +181,7 @@ void check_model(const ReducedModel &model) {
   require_indices(model.trace_dofs, contact, "contact/trace_dofs");
   require_shape(model.contact_trace, partial ? std::ssize(model.trace_dofs) : contact, n,
                 "contact/trace");
-  const Index free = model.parameters.size();
+  const Index free = model.scene.parameters.size();
   for (const auto &[mu, name] :
        {std::pair{&model.trained_mu, "training/mu"}, {&model.failed_mu, "training/failed"}})
     require_shape(*mu, mu->cols() == 0 ? mu->rows() : free, mu->cols(), name);
@@ -247,13 +247,6 @@ Contact contact_of(const ReducedModel &model, const Scene &scene) {
   for (const InterfaceModel &interface : model.interfaces)
     meshes.push_back(interface.mesh);
   return make_contact(scene, std::move(meshes));
-}
-
-Scene scene_of(const ReducedModel &model) {
-  Scene scene = model.scene;
-  scene.parameters = model.parameters;
-  check_box(scene);
-  return scene;
 }
 
 Scene scene_by_code(const Scene &stored, const Registry &registry) {

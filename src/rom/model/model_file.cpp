@@ -2,6 +2,7 @@
 #include "model_fields.hpp"
 #include "nitsche_part.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_record.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
@@ -277,7 +278,6 @@ Scene read_scene(const H5Reader &file, const Registry &registry) {
 ReducedModel read_members(const H5Reader &file, const Registry &registry) {
   ReducedModel model;
   model.scene = read_scene(file, registry);
-  model.parameters = model.scene.parameters;
   model.settings = read_texts(file, "settings");
   model.mesh_fingerprint = file.string("mesh/fingerprint");
   model.modes = file.integer("size/modes");
@@ -301,7 +301,8 @@ ReducedModel read_members(const H5Reader &file, const Registry &registry) {
 /// Throws bad_input for functions that have other values than in the build that made the model,
 /// where it tells them.
 void check_functions_of(const ReducedModel &model) {
-  const Scene scene = scene_of(model);
+  const Scene &scene = model.scene;
+  check_box(scene);
   const auto text = model.settings.find(whole_scene);
   if (text == model.settings.end()) return;
   const std::string difference =
@@ -321,7 +322,7 @@ void write_model(const ReducedModel &model, const std::filesystem::path &path) {
   file.write("scene/name", model.scene.name);
   write_texts(file, "scene/options", model.scene.options);
   write_texts(file, "scene/functions", lines_of(record_of(model.scene)));
-  write_parameters(file, model.parameters);
+  write_parameters(file, model.scene.parameters);
   write_texts(file, "settings", model.settings);
   file.write("mesh/fingerprint", model.mesh_fingerprint);
   file.write("size/modes", model.modes);

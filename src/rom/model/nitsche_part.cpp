@@ -69,7 +69,7 @@ void check_nitsche(const ReducedModel &model) {
   require_shape(nitsche.factors, static_cast<Index>(nitsche.points.size()), 1, "nitsche/factors");
   require(nitsche.rule != CurveRule::interpolated || nitsche.starts.rows() == n,
           "nitsche/starts does not fit");
-  require_shape(nitsche.starts_mu, model.parameters.size(), nitsche.starts.cols(),
+  require_shape(nitsche.starts_mu, model.scene.parameters.size(), nitsche.starts.cols(),
                 "nitsche/starts_mu");
   if (nitsche.states.size() > 0)
     require_shape(nitsche.states, n, nitsche.starts.cols(), "nitsche/states");

@@ -39,13 +39,13 @@ std::vector<Mu> from_columns(const Matrix &columns) {
 }
 
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {
-  return distance_to(model.failed_mu, model.parameters, free) <
-         distance_to(model.trained_mu, model.parameters, free);
+  return distance_to(model.failed_mu, model.scene.parameters, free) <
+         distance_to(model.trained_mu, model.scene.parameters, free);
 }
 
 bool beyond_validation(const ReducedModel &model, const Mu &free) {
   return model.validated_mu.cols() > 0 && expected_errors(model).count > 0 &&
-         nearer_to_boundary(model.parameters, model.validated_mu, free);
+         nearer_to_boundary(model.scene.parameters, model.validated_mu, free);
 }
 
 } // namespace rbvi

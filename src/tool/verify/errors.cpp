@@ -45,7 +45,7 @@ void write_worst_pressure(const fs::path &path, const ReducedModel &model, const
   const Matrix reduced = by_node(solver.contact(), solver.multiplier(solver.solve(mu, true))),
                truth = by_node(solver.contact(), truths.lambda.col(worst));
   Table table;
-  table.add(model.parameters, std::vector<Mu>(points.size(), mu));
+  table.add(model.scene.parameters, std::vector<Mu>(points.size(), mu));
   std::vector<double> interface;
   for (const auto &one : solver.contact().interfaces)
     interface.resize(interface.size() + static_cast<std::size_t>(one->dual().nodes()),
@@ -169,7 +169,7 @@ std::vector<OutputError> check_outputs(const ReducedModel &model, const Truths &
                                        const Truths &boundary, const fs::path &out) {
   std::vector<Outputs> reduced = reduced_outputs(model, validation.mu), truths = validation.outputs;
   std::ostringstream table;
-  write_csv(table, model.parameters, validation.mu, reduced);
+  write_csv(table, model.scene.parameters, validation.mu, reduced);
   write_atomically(out / "reduced.csv", table.str());
   const std::vector<Outputs> further = reduced_outputs(model, boundary.mu);
   reduced.insert(reduced.end(), further.begin(), further.end());
@@ -189,7 +189,7 @@ void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &vali
                   const Truths &boundary, const fs::path &out) {
   const Rows rows = rows_of(model, validation, w);
   print_rows("over " + std::to_string(validation.mu.size()) + " validation mu", rows);
-  write_errors(out / "errors.csv", model.parameters, validation, rows);
+  write_errors(out / "errors.csv", model.scene.parameters, validation, rows);
   write_summary(out / "summary.csv", rows, model);
   if (rows.front().second.failed == 0)
     write_worst_pressure(out / "worst_pressure.csv", model, validation, rows.front().second);
@@ -199,7 +199,7 @@ void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &vali
     at_boundary = rows_of(model, boundary, w);
     print_rows("at " + std::to_string(boundary.mu.size()) + " corners and centres of faces",
                at_boundary);
-    write_errors(out / "errors_at_boundary.csv", model.parameters, boundary, at_boundary);
+    write_errors(out / "errors_at_boundary.csv", model.scene.parameters, boundary, at_boundary);
   }
   const auto summary_of = [&](std::size_t k) {
     std::vector<const ModelErrors *> sets{&rows[k].second};
@@ -212,7 +212,7 @@ void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &vali
       check_outputs(model, validation, boundary, out);
   std::vector<Mu> all = validation.mu;
   all.insert(all.end(), boundary.mu.begin(), boundary.mu.end());
-  model.validated_mu = as_columns(all, model.parameters.size());
+  model.validated_mu = as_columns(all, model.scene.parameters.size());
 }
 
 } // namespace rbvi

@@ -168,9 +168,8 @@ struct InterfaceModel {
 
 struct ReducedModel {
   /// Read from a file, what its record holds (scene_record.hpp), or by the scene's code where a
-  /// function has no name. Its parameters are those below.
+  /// function has no name. Its parameters are those of the model, free and fixed.
   Scene scene;
-  ParameterSpace parameters;
   std::map<std::string, std::string> settings; ///< tolerances and options that made it
   std::string mesh_fingerprint;
 
@@ -261,10 +260,6 @@ Point point_of(const Matrix &points, Index i);
 
 /// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.
 Contact contact_of(const ReducedModel &model, const Scene &scene);
-
-/// The scene of the model, with the model's free and fixed parameters. Throws bad_input where their
-/// box is not valid.
-Scene scene_of(const ReducedModel &model);
 
 /// The whole scene of this name, these options and parameters, by its code; ranges of validity are
 /// those of the code. Throws bad_input for what the registry does not have.
