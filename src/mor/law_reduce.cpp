@@ -130,10 +130,10 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
     ReducedAnswer unused;
-    const BodyAtMu body = solver.body_at(all, unused);
-    CollocatedProblem reduced = collocated_problem(law.basis, body);
+    const LawAtMu at_mu = solver.law_at(all, unused);
+    CollocatedProblem reduced = collocated_problem(law.basis, at_mu);
     problems.push_back({std::move(reduced.h), std::move(reduced.q),
-                        bounds_at(body.laws.bound, nodes),
+                        bounds_at(at_mu.laws.bound, nodes),
                         coefficients.col(static_cast<Index>(p)).tail(tangential)});
   }
   const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();

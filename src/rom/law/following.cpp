@@ -40,7 +40,7 @@ ReducedAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   ReducedAnswer answer;
   if (compliance_->set(term_coefficients(all_parameters, {})) && nodal_compliance_)
     nodal_compliance_->forget();
-  stiffness_.set(all_parameters);
+  at_mu_.set(all_parameters);
   const auto at_nodes = [this](const Vector &x) {
     return nodal_is_identity_ || x.size() == 0 ? x : Vector(nodal_.transpose() * x);
   };
@@ -67,9 +67,9 @@ ReducedAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   if (nodal_compliance_)
     problem.nodal.emplace(
         NodalContact{nodal_interface(contact_)->nodal_at(all_parameters), *nodal_compliance_});
-  if (model_.f.size() > 0) {
-    load = stiffness_.half_response(load_at(all_parameters));
-    problem.free = model_.contact_trace * stiffness_.transposed_half_response(load);
+  if (at_mu_.has_load()) {
+    load = at_mu_.half_response(at_mu_.load());
+    problem.free = model_.contact_trace * at_mu_.transposed_half_response(load);
   }
   NonlinearOptions options{.economical = true};
   if (!problem.nodal && problem.curvature && !problem.laws.has_tangents())
@@ -86,7 +86,7 @@ ReducedAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = moved_by(answer.reaction);
-  if (load.size() > 0) answer.u += stiffness_.transposed_half_response(load);
+  if (load.size() > 0) answer.u += at_mu_.transposed_half_response(load);
   answer.residual = found.residual;
   answer.iterations = found.steps;
   answer.load_steps = found.load_steps;

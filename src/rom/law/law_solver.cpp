@@ -34,7 +34,7 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
       reduced_(model.law && model.law->reduction == MultiplierReduction::collocated),
       by_rule_(model.law && !reduced_ && !options.warm && has_several_answers(model)),
       reduced_starts_(scene.parameters, model.law ? model.law->starts_mu : Matrix()),
-      columns_(laws_of_columns(contact, model.dual_basis)), stiffness_(model, scene) {
+      columns_(laws_of_columns(contact, model.dual_basis)), body_(model, scene), at_mu_(body_) {
   if (!model.law) throw bad_input("the model has no law of contact at nodes");
   options_.looks_for_others = options.looks_for_others || by_rule_;
   samples_ = parts_of_box(scene.parameters, model.law->starts_mu);
@@ -43,7 +43,7 @@ LawSolver::LawSolver(const ReducedModel &model, const Scene &scene, const Contac
     const std::vector<int> &dofs = model.law->condensed.dofs;
     nodal_ = Matrix(model.dual_basis.transpose()).sparseView();
     trace_ = dofs.empty() ? model.contact_trace : Matrix(model.contact_trace(dofs, Eigen::all));
-    unit_loads_ = stiffness_.turned(trace_.transpose());
+    unit_loads_ = body_.prepared(trace_.transpose());
     place_.assign(model.contact_trace.rows(), -1);
     for (std::size_t k = 0; k < dofs.size(); ++k)
       place_[dofs[k]] = static_cast<int>(k);
@@ -104,82 +104,78 @@ Vector LawSolver::term_coefficients(const FullMu &all_parameters, const Vector &
   return result;
 }
 
-Vector LawSolver::load_at(const FullMu &all_parameters) const {
-  return model_.f.reduced * affine_coefficients(model_.f, scene_.f, scene_, all_parameters);
-}
-
 Vector LawSolver::moved_by(const Vector &reaction) const {
   Vector load = Vector::Zero(unit_loads_.rows());
   for (Index dof = 0; dof < reaction.size(); ++dof)
     if (reaction[dof] != 0) load -= reaction[dof] * unit_loads_.col(dof);
-  return stiffness_.response_of_turned(load);
+  return at_mu_.response_of_prepared(load);
 }
 
-BodyAtMu LawSolver::body_at(const FullMu &all_parameters, ReducedAnswer &answer,
-                            const Vector &state) {
-  const NodalLaw &law = *model_.law;
-  BodyAtMu body;
+LawAtMu LawSolver::law_at(const FullMu &all_parameters, ReducedAnswer &answer,
+                          const Vector &state) {
+  const NodalLaw &of_model = *model_.law;
+  LawAtMu law;
   if (model_.evaluates_contact()) {
     assemble(contact_, all_parameters, {state}, answer.contact);
-    body.b_contact = known_columns(nodal_ * answer.contact.b);
-    body.q = nodal_ * answer.contact.g;
+    law.b_contact = known_columns(nodal_ * answer.contact.b);
+    law.q = nodal_ * answer.contact.g;
   } else {
     answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, all_parameters);
-    body.q = model_.g.reduced *
-             contact_coefficients(model_.g, Part::g, contact_, scene_, all_parameters);
+    law.q = model_.g.reduced *
+            contact_coefficients(model_.g, Part::g, contact_, scene_, all_parameters);
   }
   const Vector &theta_b = answer.theta_b;
-  if (law.condensed.terms.size() > 0) body.terms = term_coefficients(all_parameters, theta_b);
+  if (of_model.condensed.terms.size() > 0) law.terms = term_coefficients(all_parameters, theta_b);
   const bool with_b = reduced_ || model_.f.size() > 0;
   if (with_b && model_.evaluates_contact())
-    body.b = body.b_contact * trace_;
+    law.b = law.b_contact * trace_;
   else if (with_b)
-    body.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
-  stiffness_.set(all_parameters);
+    law.b = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
+  at_mu_.set(all_parameters);
   if (model_.online_enriched)
-    stiffness_.restrict_to(
-        enriched_subspace(multiplier_coefficients(law.basis).transpose() * body.b, model_.modes));
-  body.stiffness = &stiffness_;
+    at_mu_.restrict_to(enriched_subspace(
+        multiplier_coefficients(of_model.basis).transpose() * law.b, model_.modes));
+  law.body = &at_mu_;
   if (model_.f.size() > 0) {
-    body.load = stiffness_.half_response(load_at(all_parameters));
-    body.q -= stiffness_.half_response(body.b.transpose()).transpose() * body.load;
+    law.load = at_mu_.half_response(at_mu_.load());
+    law.q -= law.b * at_mu_.transposed_half_response(law.load);
   }
-  body.laws = rbvi::laws_at(columns_, contact_, all_parameters);
-  return body;
+  law.laws = rbvi::laws_at(columns_, contact_, all_parameters);
+  return law;
 }
 
-Matrix LawSolver::condensed_columns(const BodyAtMu &body, const std::vector<Index> &which) {
+Matrix LawSolver::condensed_columns(const LawAtMu &law, const std::vector<Index> &which) {
   const Matrix &terms = model_.law->condensed.terms;
   const auto count = static_cast<Index>(which.size());
   if (!model_.evaluates_contact()) {
     const Index m = model_.generators;
     Matrix result(m, count);
     for (Index k = 0; k < count; ++k)
-      result.col(k).noalias() = terms.middleRows(which[k] * m, m) * body.terms;
+      result.col(k).noalias() = terms.middleRows(which[k] * m, m) * law.terms;
     return result;
   }
   Matrix moved = Matrix::Zero(trace_.rows(), count); // contact dofs, by unit multipliers
-  compliance_->set(body.terms);
+  compliance_->set(law.terms);
   for (Index k = 0; k < count; ++k)
-    for (SparseMatrix::InnerIterator entry(body.b_contact, which[k]); entry; ++entry)
+    for (SparseMatrix::InnerIterator entry(law.b_contact, which[k]); entry; ++entry)
       compliance_->add(entry.col(), entry.value(), moved.col(k));
-  return body.b_contact * moved;
+  return law.b_contact * moved;
 }
 
-LawSolver::AtAllNodes LawSolver::at_all_nodes(const BodyAtMu &body, const Vector &x) {
+LawSolver::AtAllNodes LawSolver::at_all_nodes(const LawAtMu &law, const Vector &x) {
   std::vector<Index> all(model_.generators);
   std::iota(all.begin(), all.end(), 0);
-  const Matrix h = condensed_columns(body, all);
+  const Matrix h = condensed_columns(law, all);
   // A multiplier that faces no partner has no row.
-  AtAllNodes result{h * x + body.q, (h.diagonal().array() > 0).select(h.diagonal(), 1), {}};
+  AtAllNodes result{h * x + law.q, (h.diagonal().array() > 0).select(h.diagonal(), 1), {}};
   result.start = x - result.w.cwiseQuotient(result.diagonal);
   return result;
 }
 
 Vector LawSolver::start_of(const FullMu &all_parameters, const Vector &x, const Vector &state) {
   ReducedAnswer answer;
-  const BodyAtMu body = body_at(all_parameters, answer, state);
-  return at_all_nodes(body, x).start;
+  const LawAtMu law = law_at(all_parameters, answer, state);
+  return at_all_nodes(law, x).start;
 }
 
 Vector LawSolver::reduced_start(const Vector &here) {
@@ -188,23 +184,22 @@ Vector LawSolver::reduced_start(const Vector &here) {
   return reduced_starts_.nearest(here, [&](Index sample) {
     const Vector mu = model_.law->starts_mu.col(sample);
     ReducedAnswer unused;
-    const BodyAtMu body = body_at(expand(scene_.parameters, {mu.begin(), mu.end()}), unused);
-    return solve_reduced_law(model_.law->basis, body).x;
+    const LawAtMu law = law_at(expand(scene_.parameters, {mu.begin(), mu.end()}), unused);
+    return solve_reduced_law(model_.law->basis, law).x;
   });
 }
 
-bool LawSolver::answer_reduced_law(const BodyAtMu &body, const Vector &start,
-                                   ReducedAnswer &answer) {
+bool LawSolver::answer_reduced_law(const LawAtMu &law, const Vector &start, ReducedAnswer &answer) {
   const MultiplierBasis &basis = model_.law->basis;
   const bool checks = model_.law->condensed.terms.size() > 0;
   const bool mends = model_.law->mended && checks;
   try {
-    CollocatedResult reduced = solve_reduced_law(basis, body, start);
+    CollocatedResult reduced = solve_reduced_law(basis, law, start);
     const Matrix functions = multiplier_coefficients(basis);
     answer.lambda = functions * reduced.x;
     if (options_.looks_for_others)
       answer.to_other =
-          distance_of_answers(answer.lambda, functions * solve_reduced_law(basis, body).x);
+          distance_of_answers(answer.lambda, functions * solve_reduced_law(basis, law).x);
     answer.residual = reduced.residual;
     answer.iterations = reduced.iterations;
     last_reduced_ = std::move(reduced.x);
@@ -213,28 +208,28 @@ bool LawSolver::answer_reduced_law(const BodyAtMu &body, const Vector &start,
     return false;
   }
   if (!checks) return true;
-  AtAllNodes nodes = at_all_nodes(body, answer.lambda);
-  answer.energy = 0.5 * (answer.lambda.dot(nodes.w - body.q) - body.load.squaredNorm());
-  answer.residual = natural_residual(answer.lambda, nodes.w, nodes.diagonal, body.laws);
+  AtAllNodes nodes = at_all_nodes(law, answer.lambda);
+  answer.energy = 0.5 * (answer.lambda.dot(nodes.w - law.q) - law.load.squaredNorm());
+  answer.residual = natural_residual(answer.lambda, nodes.w, nodes.diagonal, law.laws);
   answer.start = std::move(nodes.start);
   return !mends || answer.residual <= mended_above;
 }
 
-void LawSolver::solve_at_nodes(const BodyAtMu &body, const Vector &here, ReducedAnswer &answer) {
+void LawSolver::solve_at_nodes(const LawAtMu &law, const Vector &here, ReducedAnswer &answer) {
   const auto columns = [&](const std::vector<Index> &which) {
-    return condensed_columns(body, which);
+    return condensed_columns(law, which);
   };
   Vector start = answer.start.size() > 0 ? answer.start : start_at(here);
-  for (Index i = 0; i < body.b_contact.rows() && start.size() > 0; ++i)
-    if (body.b_contact.row(i).norm() == 0) start[i] = std::min(start[i], 0.0); // faces no partner
-  FrictionAnswer found = friction_answer(columns, body.q, body.laws, start, by_rule_);
+  for (Index i = 0; i < law.b_contact.rows() && start.size() > 0; ++i)
+    if (law.b_contact.row(i).norm() == 0) start[i] = std::min(start[i], 0.0); // faces no partner
+  FrictionAnswer found = friction_answer(columns, law.q, law.laws, start, by_rule_);
   if (!found.converged || !(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
   if (options_.looks_for_others)
-    answer.to_other = distance_to_other_answer(columns, body.q, body.laws, found);
+    answer.to_other = distance_to_other_answer(columns, law.q, law.laws, found);
   if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
-  answer.energy = 0.5 * (found.x.dot(found.w - body.q) - body.load.squaredNorm());
+  answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());
   answer.residual = found.residual;
   answer.iterations += found.iterations;
   answer.lambda = std::move(found.x);
@@ -252,20 +247,19 @@ ReducedAnswer LawSolver::solve(const FullMu &all_parameters) {
   const Vector start = reduced_start(here);
   ReducedAnswer answer;
   answer.mu = all_parameters;
-  const BodyAtMu body = body_at(all_parameters, answer);
-  if (!reduced_ || !answer_reduced_law(body, start, answer)) solve_at_nodes(body, here, answer);
+  const LawAtMu law = law_at(all_parameters, answer);
+  if (!reduced_ || !answer_reduced_law(law, start, answer)) solve_at_nodes(law, here, answer);
   check_edge(answer.lambda);
   if (model_.evaluates_contact()) {
-    answer.reaction = body.b_contact.transpose() * answer.lambda;
+    answer.reaction = law.b_contact.transpose() * answer.lambda;
     answer.u = moved_by(answer.reaction);
   } else {
-    answer.u = -stiffness_.response(answer.theta_b, answer.lambda);
+    answer.u = -at_mu_.response(answer.theta_b, answer.lambda);
   }
-  if (body.load.size() > 0) answer.u += stiffness_.transposed_half_response(body.load);
+  if (law.load.size() > 0) answer.u += at_mu_.transposed_half_response(law.load);
   if (model_.law->condensed.terms.size() == 0)
-    answer.energy =
-        0.5 * (stiffness_.half_response(body.b.transpose() * answer.lambda).squaredNorm() -
-               body.load.squaredNorm());
+    answer.energy = 0.5 * (at_mu_.half_response(law.b.transpose() * answer.lambda).squaredNorm() -
+                           law.load.squaredNorm());
   last_start_ = answer.start;
   return answer;
 }

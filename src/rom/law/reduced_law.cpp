@@ -24,17 +24,17 @@ Matrix multiplier_coefficients(const MultiplierBasis &basis) {
   return result;
 }
 
-CollocatedProblem collocated_problem(const MultiplierBasis &basis, const BodyAtMu &body) {
+CollocatedProblem collocated_problem(const MultiplierBasis &basis, const LawAtMu &law) {
   const Matrix functions = multiplier_coefficients(basis);
-  const Matrix y = body.stiffness->half_response(body.b.transpose() * functions);
+  const Matrix y = law.body->half_response(law.b.transpose() * functions);
   Matrix h = y.transpose() * y;
   h.diagonal() *= 1 + ridge;
   const std::vector<Index> nodes(basis.nodes.begin(), basis.nodes.end());
   std::vector<Index> rows; // of the tangential multipliers that collocation nodes have
   for (const Index node : nodes)
-    rows.push_back(body.laws.tangent[node] - body.laws.nodes());
-  return {h, functions.transpose() * body.q, basis.normal(nodes, Eigen::all),
-          basis.tangential(rows, Eigen::all), bounds_at(body.laws.bound, nodes)};
+    rows.push_back(law.laws.tangent[node] - law.laws.nodes());
+  return {h, functions.transpose() * law.q, basis.normal(nodes, Eigen::all),
+          basis.tangential(rows, Eigen::all), bounds_at(law.laws.bound, nodes)};
 }
 
 double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal,
@@ -55,9 +55,9 @@ double natural_residual(const Vector &x, const Vector &w, const Vector &diagonal
   return size > 0 ? largest / size : largest;
 }
 
-CollocatedResult solve_reduced_law(const MultiplierBasis &basis, const BodyAtMu &body,
+CollocatedResult solve_reduced_law(const MultiplierBasis &basis, const LawAtMu &law,
                                    const Vector &start) {
-  CollocatedResult found = solve_collocated(collocated_problem(basis, body), start);
+  CollocatedResult found = solve_collocated(collocated_problem(basis, law), start);
   if (!found.converged)
     throw failure("the reduced law of contact is not solved: " + found.reason +
                   "; reduce again with -multiplier_reduction condensed, or with more functions");

@@ -3,7 +3,6 @@
 #include "nitsche_interpolated.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
-#include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/model/packed.hpp"
 
 #include <algorithm>
@@ -42,7 +41,7 @@ ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheLayer &layer)
 } // namespace
 
 ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
-    : model_(model), layer_(std::move(layer)),
+    : model_(model), layer_(std::move(layer)), body_(model, layer_.scene),
       consistency_(model.nitsche->consistency, layer_.cells) {
   system_ = std::make_unique<System>(model, layer_.cells, points_of(*model.nitsche, layer_));
   if (model.nitsche->rule == CurveRule::interpolated)
@@ -52,18 +51,14 @@ ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
 ReducedNitsche::~ReducedNitsche() = default;
 
 ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_parameters) const {
-  const Index n = model_.primal_size();
-  const Scene &scene = layer_.scene;
-  Quadratic result;
-  result.a =
-      unpacked(model_.a.reduced * affine_coefficients(model_.a, scene.a, scene, all_parameters), n);
-  result.f = Vector::Zero(n);
-  if (model_.f.size() > 0)
-    result.f = model_.f.reduced * affine_coefficients(model_.f, scene.f, scene, all_parameters);
+  BodyAtMu body(body_);
+  body.set(all_parameters);
+  Quadratic result{body.stiffness(), {}, body.load()};
   const std::vector<NitscheFace> faces =
       nitsche_faces(layer_, all_parameters, selected(layer_.cells, consistency_.cells()));
   const Vector theta = consistency_.of_blocks(nitsche_consistency(faces));
-  result.a_gamma = result.a + unpacked(model_.nitsche->consistency.reduced * theta, n);
+  result.a_gamma =
+      result.a + unpacked(model_.nitsche->consistency.reduced * theta, model_.primal_size());
   return result;
 }
 

@@ -13,14 +13,6 @@
 
 namespace rbvi {
 
-/// How queries are answered.
-struct QueryOptions {
-  /// Start from the last answer: queries that follow each other closely cost less, and where there
-  /// are several answers the order decides. Else a start is a function of mu and the model alone.
-  bool warm = false;
-  bool looks_for_others = false; ///< ReducedAnswer::to_other, from further starts
-};
-
 /// Whether the self-check met another answer at some parameter: its distance
 /// (ReducedAnswer::to_other) and the parameter are the history "self_check/other".
 bool has_several_answers(const ReducedModel &model);
@@ -31,17 +23,17 @@ class ModelCompliance;
 /// its own answer at the nearest of them. Where the self-check met another answer to the law at all
 /// nodes, every query is solved by the rule of the high-fidelity solver (friction_answer)
 /// and looks for others.
-class LawSolver {
+class LawSolver : public QueryMethod {
 public:
   /// `model`, `scene` and `contact` must outlive it. Throws bad_input where they do not fit.
   LawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
             const QueryOptions &options = {});
-  ~LawSolver();
+  ~LawSolver() override;
   /// Throws failure, saying what to try, if the law is not met to 1e-8.
-  ReducedAnswer solve(const FullMu &all_parameters);
+  ReducedAnswer solve(const FullMu &all_parameters) override;
   /// What the elastic body says at mu, contact at a state where it follows one; valid until the
   /// next call of either. Sets theta_b or contact of the answer.
-  BodyAtMu body_at(const FullMu &all_parameters, ReducedAnswer &answer, const Vector &state = {});
+  LawAtMu law_at(const FullMu &all_parameters, ReducedAnswer &answer, const Vector &state = {});
   /// x - w / H_jj (FrictionResult::start) of the multipliers x at mu, H from the condensed
   /// operator. `state`: the displacement at the contact dofs, where contact follows it.
   Vector start_of(const FullMu &all_parameters, const Vector &x, const Vector &state);
@@ -52,16 +44,15 @@ private:
     Vector w, diagonal; ///< H x + q, H_jj
     Vector start;       ///< x - w / H_jj
   };
-  AtAllNodes at_all_nodes(const BodyAtMu &body, const Vector &x);
+  AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);
   /// H(:, which), m x which.size().
-  Matrix condensed_columns(const BodyAtMu &body, const std::vector<Index> &which);
+  Matrix condensed_columns(const LawAtMu &law, const std::vector<Index> &which);
   Vector reduced_start(const Vector &here);
   /// Whether its answer stands; if not, exact steps follow, from it if there is one.
-  bool answer_reduced_law(const BodyAtMu &body, const Vector &start, ReducedAnswer &answer);
-  void solve_at_nodes(const BodyAtMu &body, const Vector &here, ReducedAnswer &answer);
+  bool answer_reduced_law(const LawAtMu &law, const Vector &start, ReducedAnswer &answer);
+  void solve_at_nodes(const LawAtMu &law, const Vector &here, ReducedAnswer &answer);
   /// Empty: from rest.
   Vector start_at(const Vector &here) const;
-  Vector load_at(const FullMu &all_parameters) const;
   NonlinearStart following_start(const FullMu &all_parameters) const;
   ReducedAnswer solve_following(const FullMu &all_parameters);
   Vector term_coefficients(const FullMu &all_parameters, const Vector &theta_b) const;
@@ -84,7 +75,7 @@ private:
   SparseMatrix nodal_;      ///< the dual basis transposed, where b does not separate
   std::vector<int> place_;  ///< of each contact dof in CondensedOperator::dofs; -1: it is not there
   Matrix trace_;            ///< the primal basis at these dofs, without an operator at all
-  Matrix unit_loads_;       ///< of a unit force at each of these dofs: ReducedStiffness::turned
+  Matrix unit_loads_;       ///< of a unit force at each of these dofs: ReducedBody::prepared
   std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
   Matrix samples_;          ///< where the starts are, as parts of the box
   Vector last_start_;       ///< of the last query
@@ -94,7 +85,8 @@ private:
   bool nodal_is_identity_ = false; ///< nodal_
   SparseMatrix w_product_;         ///< of the columns of the dual basis
   Vector last_state_;
-  ReducedStiffness stiffness_;
+  const ReducedBody body_;
+  BodyAtMu at_mu_;
 };
 
 } // namespace rbvi

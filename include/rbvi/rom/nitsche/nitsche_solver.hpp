@@ -12,6 +12,7 @@
 // points turn to those of every iterate.
 #pragma once
 
+#include "rbvi/rom/body/reduced_body.hpp"
 #include "rbvi/rom/model/answer.hpp"
 #include "rbvi/rom/nitsche/layer_terms.hpp"
 
@@ -19,15 +20,15 @@
 
 namespace rbvi {
 
-class ReducedNitsche {
+class ReducedNitsche : public QueryMethod {
 public:
   /// `model`, and the scene of the layer, must outlive it.
   ReducedNitsche(const ReducedModel &model, NitscheLayer layer);
-  ~ReducedNitsche();
+  ~ReducedNitsche() override;
   /// Starts from what the training samples predict; where there are none, from u = 0. Throws
   /// failure, saying what to try, where Newton's method does not converge or the tangent is not
   /// positive definite.
-  ReducedAnswer solve(const FullMu &all_parameters);
+  ReducedAnswer solve(const FullMu &all_parameters) override;
 
   /// What each point adds to the residual of the last answer, n x points, ...
   Matrix point_residuals() const;
@@ -59,6 +60,7 @@ private:
 
   const ReducedModel &model_;
   const NitscheLayer layer_;
+  const ReducedBody body_;
   SampledLayer consistency_;
   std::unique_ptr<System> system_;
   std::unique_ptr<Interpolated> interpolated_;

@@ -1,4 +1,4 @@
-#include "rbvi/rom/online.hpp"
+#include "rbvi/rom/law/cone_solver.hpp"
 
 #include "rbvi/core/largest.hpp"
 
