@@ -86,13 +86,6 @@ std::string solver_name(const Problem &problem, const HfOptions &options, bool c
   return "";
 }
 
-std::vector<Index> positive_entries(const Vector &lambda) {
-  std::vector<Index> active;
-  for (Index i = 0; i < lambda.size(); ++i)
-    if (lambda[i] > 0) active.push_back(i);
-  return active;
-}
-
 /// sum += weight * outputs, quantities alone.
 void add_outputs(double weight, const Outputs &outputs, Outputs &sum) {
   for (const OutputColumn &column : output_columns())
@@ -159,10 +152,10 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
   const std::vector<std::string> names{"assembly", "factorisation", "two linear solves",
                                        "columns and LCP"};
   std::vector<std::vector<double>> seconds(names.size());
-  Compliance compliance;
-  Compliance *kept = constant_stiffness(problem.scene()) ? &compliance : nullptr;
+  FactoredBody body(ksp.get(), problem.trace(),
+                    constant_stiffness(problem.scene()) ? ColumnsLast::for_all_mu
+                                                        : ColumnsLast::for_one_b);
   for (const Sample &truth : truths) {
-    const Start start{positive_entries(truth.lambda), truth.lambda};
     std::vector<double> at{MPI_Wtime()};
     const Operators &op = problem.assemble(truth.mu);
     at.push_back(MPI_Wtime());
@@ -174,7 +167,8 @@ std::vector<BenchRow> bench_parts(Problem &problem, const std::vector<Sample> &t
     solve_linear(ksp.get(), op.f, u.get());
     solve_linear(ksp.get(), op.f, u.get());
     at.push_back(MPI_Wtime());
-    solve_active_set(ksp.get(), problem.trace(), op, start, kept);
+    body.set(op.a);
+    solve_active_set(body, op, truth.lambda);
     const double both = MPI_Wtime() - at.back();
     for (std::size_t k = 0; k < 3; ++k)
       seconds[k].push_back(at[k + 1] - at[k]);
@@ -208,7 +202,7 @@ NonlinearStart nearest_start(const Problem &problem, const FullMu &at_mu,
 
 std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sample> &truths) {
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
-  Compliance kept;
+  FactoredBody body(ksp.get(), problem.trace(), ColumnsLast::for_all_mu);
   std::vector<double> linear;
   const auto seconds = [&](NonlinearMethod method, bool warm, bool timed) {
     NonlinearOptions options;
@@ -225,7 +219,8 @@ std::vector<BenchRow> bench_iterations(Problem &problem, const std::vector<Sampl
       solve_linear(ksp.get(), op.f, u.get());
       const double middle = MPI_Wtime();
       NonlinearResult steps;
-      solve_following(ksp.get(), problem, kept, op, {}, start, options, steps);
+      body.set(op.a);
+      solve_following(body, problem, op, {}, start, options, steps);
       linear.push_back(middle - begin);
       result.push_back(std::max(0.0, MPI_Wtime() - middle - linear.back()));
     }

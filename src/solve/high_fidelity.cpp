@@ -8,6 +8,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/eliminated.hpp"
+#include "rbvi/solve/linear/scaled_part.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
 
@@ -58,7 +59,7 @@ Vector slip_left(const Problem &problem, const Operators &op, const Vector &befo
 
 /// Where a few dozen accelerated Uzawa steps see contact: far cheaper than the columns of all
 /// nodes.
-Start rough_start(KSP ksp, Problem &problem, const Operators &op) {
+Vector rough_start(KSP ksp, Problem &problem, const Operators &op) {
   HfOptions rough;
   rough.uzawa_accelerated = true;
   rough.uzawa_tolerance = 1e-3;
@@ -67,7 +68,7 @@ Start rough_start(KSP ksp, Problem &problem, const Operators &op) {
   const DistributedContact contact = distribute(layout, op, op.laws);
   const Handle<Mat> w = distribute(layout, problem.w_product());
   MethodResult found = solve_uzawa(ksp, layout, contact, op.f, w.get(), rough);
-  return {in_contact(op.laws, found.lambda), std::move(found.lambda)};
+  return found.lambda;
 }
 
 } // namespace
@@ -108,12 +109,13 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
   if (options.contact == HfContact::eliminated && follows_state(problem.contact()))
     throw bad_input("-hf_contact eliminated is for small deformations: leave it out, or use "
                     "-kinematics small");
-  if (eliminates(problem, options)) {
-    grids_ = std::make_unique<GridSequence>(problem);
-    return;
-  }
-  part_fits_ = options.method == HfMethod::active_set && ScaledPart::fits(problem.scene());
-  if (constant_stiffness(problem.scene())) compliance_ = std::make_unique<Compliance>();
+  if (eliminates(problem, options)) grids_ = std::make_unique<GridSequence>(problem);
+  const ColumnsLast last = constant_stiffness(problem.scene()) && !grids_ ? ColumnsLast::for_all_mu
+                           : follows_state(problem.contact())             ? ColumnsLast::for_one_mu
+                                                                          : ColumnsLast::for_one_b;
+  body_ = std::make_unique<FactoredBody>(ksp_.get(), problem.trace(), last);
+  part_fits_ =
+      !grids_ && options.method == HfMethod::active_set && ScaledPart::fits(problem.scene());
 }
 
 HighFidelity::~HighFidelity() = default;
@@ -136,17 +138,16 @@ const HighFidelity::Solved *HighFidelity::nearest(const Mu &mu) const {
   return nearest;
 }
 
-Start HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
-  const bool columns_are_kept = part_ || (compliance_ && compliance_->count() > 0);
-  if (solved_.empty()) return columns_are_kept ? Start{} : rough_start(ksp_.get(), problem_, op);
+Vector HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
+  const bool columns_are_kept = part_ || body_->count() > 0;
+  if (solved_.empty()) return columns_are_kept ? Vector() : rough_start(ksp_.get(), problem_, op);
   return nearest(mu)->start;
 }
 
 MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, const Vector &slip) {
   if (part_) part_->set(op);
-  MethodResult result = part_ ? solve_active_set(*part_, op, nearest_start(mu, op))
-                              : solve_active_set(ksp_.get(), problem_.trace(), op,
-                                                 nearest_start(mu, op), compliance_.get());
+  FullBody &body = part_ ? static_cast<FullBody &>(*part_) : *body_;
+  MethodResult result = solve_active_set(body, op, nearest_start(mu, op));
   if (!result.converged) return result;
   result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
   measure(problem_, op, op.weights, result);
@@ -159,7 +160,7 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
                                                          const Vector &slip,
                                                          std::string &complaint) {
   try {
-    const Vector start = solved_.empty() ? Vector() : nearest(mu)->start.lambda;
+    const Vector start = solved_.empty() ? Vector() : nearest(mu)->start;
     MethodResult result = grids_->solve(mu, op, start);
     if (!result.converged) {
       complaint = result.reason;
@@ -189,12 +190,11 @@ MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
                                          const Vector &slip) {
   NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), at_rest.mu), {}};
   if (!solved_.empty() && !bounds_follow_pressure(at_rest.laws))
-    start = {nearest(mu)->state, nearest(mu)->start.lambda};
-  Compliance own;
+    start = {nearest(mu)->state, nearest(mu)->start};
   Operators op = at_rest;
   NonlinearResult steps;
-  MethodResult result = solve_following(ksp_.get(), problem_, compliance_ ? *compliance_ : own, op,
-                                        slip, start, options_.nonlinear, steps);
+  MethodResult result =
+      solve_following(*body_, problem_, op, slip, start, options_.nonlinear, steps);
   result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
   measure(problem_, op, op.weights, result);
   result.load_steps = result.outputs.load_steps = steps.load_steps;
@@ -234,8 +234,9 @@ MethodResult HighFidelity::run_over_ranks(const Operators &op, const Vector &sli
 }
 
 void HighFidelity::share_columns(const Groups &groups, const std::vector<Mu> &set) {
-  if (!compliance_ || groups.count() == 1 || std::ssize(set) < 2 * groups.count() ||
-      !problem_.scene().f.empty() || options_.method != HfMethod::active_set)
+  if (!body_ || !body_->keeps_columns() || groups.count() == 1 ||
+      std::ssize(set) < 2 * groups.count() || !problem_.scene().f.empty() ||
+      options_.method != HfMethod::active_set)
     return;
   std::set<Index> dofs;
   Operators rows;
@@ -253,15 +254,16 @@ void HighFidelity::share_columns(const Groups &groups, const std::vector<Mu> &se
   }
   if (a == nullptr) return;
   set_operator(ksp_.get(), a);
+  body_->set(a);
   if (takes_complement(problem_, static_cast<double>(dofs.size()) / groups.count()))
-    return compliance_->require_all(problem_.trace(), a, &groups);
-  compliance_->require(ksp_.get(), problem_.trace(), a, {dofs.begin(), dofs.end()}, &groups);
+    return body_->require_all(&groups);
+  body_->require({dofs.begin(), dofs.end()}, groups);
 }
 
-void HighFidelity::complete_compliance(Mat a) {
+void HighFidelity::complete_compliance() {
   const double half = problem_.trace().size / 2.0; // of the columns, as contact_cost has it
-  if (compliance_ && compliance_->count() == 0 && takes_complement(problem_, half))
-    compliance_->require_all(problem_.trace(), a);
+  if (body_->keeps_columns() && body_->count() == 0 && takes_complement(problem_, half))
+    body_->require_all();
 }
 
 HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
@@ -282,7 +284,8 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   }
   set_operator(ksp_.get(), op.a);
   const bool follows = follows_state(problem_.contact());
-  if (condensed) complete_compliance(op.a);
+  if (body_) body_->set(op.a);
+  if (condensed) complete_compliance();
   MethodResult result = follows     ? run_following(mu, op, slip)
                         : grids_    ? run_eliminated_or_condensed(mu, op, slip)
                         : condensed ? run_condensed(mu, op, slip)
@@ -302,7 +305,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
                   "-hf_pc_factor_mat_solver_type mumps, or with an iterative -hf_ksp_type a "
                   "smaller -hf_ksp_rtol");
   solved_.push_back({mu,
-                     {result.active, result.start.size() > 0 ? result.start : result.lambda},
+                     result.start.size() > 0 ? result.start : result.lambda,
                      {},
                      {},
                      follows ? result.states.back() : Vector{}});

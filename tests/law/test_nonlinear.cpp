@@ -12,23 +12,16 @@
 namespace rbvi::nonlinear_test {
 namespace {
 
-/// Columns of a dense matrix; counts those that were required.
-class DenseColumns : public ComplianceColumns {
+/// Columns of a dense matrix, those that are required.
+class DenseColumns : public Compliance {
 public:
-  explicit DenseColumns(Matrix c) : c_(std::move(c)), known_(c_.cols()) {}
-  Index size() const override { return c_.cols(); }
-  void require(const std::vector<Index> &dofs) override {
-    for (const Index dof : dofs)
-      known_[dof] = true;
-  }
-  Eigen::Map<const Vector> column(Index dof) const override {
-    EXPECT_TRUE(known_[dof]) << "column " << dof << " is not there";
-    return {c_.col(dof).data(), c_.rows()};
-  }
+  explicit DenseColumns(Matrix c) : Compliance(c.cols()), c_(std::move(c)) {}
 
 private:
+  void make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) override {
+    columns = c_(Eigen::all, dofs);
+  }
   Matrix c_;
-  std::vector<bool> known_;
 };
 
 /// Beads at `at`, two dofs each, outside of the disk of this radius about the origin, or inside.
@@ -42,7 +35,7 @@ struct Beads {
   bool friction = false;
 
   Index count() const { return at.cols(); }
-  NonlinearContact problem(ComplianceColumns &columns) const {
+  NonlinearContact problem(Compliance &columns) const {
     const Index n = count();
     NonlinearContact contact{
         [this](const Vector &state, Linearised &l) { linearise(state, l); },

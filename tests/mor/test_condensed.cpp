@@ -24,10 +24,12 @@ Matrix truth(Problem &problem, const Matrix &basis, const Mu &mu) {
   const Operators &op = problem.assemble(mu);
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
+  FactoredBody body(ksp.get(), problem.trace(), ColumnsLast::for_one_b);
+  body.set(op.a);
   std::vector<Index> all(problem.dual_size());
   for (std::size_t i = 0; i < all.size(); ++i)
     all[i] = static_cast<Index>(i);
-  return basis.transpose() * condensed_columns(ksp.get(), problem.trace(), op, all) * basis;
+  return basis.transpose() * condensed_columns(body, op.b, all) * basis;
 }
 
 /// The sum of the terms at mu, theta of b from its separation.

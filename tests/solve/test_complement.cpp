@@ -91,9 +91,12 @@ TEST(Complement, IsSharedByGroups) {
   const Groups groups(PETSC_COMM_WORLD, 1);
   Problem problem(groups.comm(), make_scene("two_disks"), {});
   const Mat a = problem.assemble({1.0}).a;
-  Compliance shared, own;
-  shared.require_all(problem.trace(), a, &groups);
-  own.require_all(problem.trace(), a);
+  FactoredBody shared(nullptr, problem.trace(), ColumnsLast::for_all_mu),
+      own(nullptr, problem.trace(), ColumnsLast::for_all_mu);
+  shared.set(a);
+  own.set(a);
+  shared.require_all(&groups);
+  own.require_all();
   ASSERT_EQ(shared.count(), problem.trace().size);
   for (Index dof = 0; dof < shared.count(); ++dof)
     EXPECT_LE((shared.column(dof) - own.column(dof)).norm(), 1e-12 * own.column(dof).norm());

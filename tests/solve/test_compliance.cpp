@@ -64,7 +64,8 @@ TEST_P(CompliancePerSpace, GivesTheCondensedColumnsAtEveryParameter) {
                   make_scene("two_disks", {{"degree", "1"}, {"multiplier", GetParam()}}), {});
   const Trace &trace = problem.trace();
   const CountingSolver solver(problem.assemble({0.7}).a);
-  Compliance kept;
+  FactoredBody kept(solver.get(), trace, ColumnsLast::for_all_mu),
+      once(solver.get(), trace, ColumnsLast::for_one_b);
   std::set<Index> seen;
   // More rows than one block of right-hand sides; repeated, reordered and overlapping ones; rows
   // without a partner at small radii; none.
@@ -79,9 +80,11 @@ TEST_P(CompliancePerSpace, GivesTheCondensedColumnsAtEveryParameter) {
     const std::size_t before = seen.size();
     seen.insert(wanted.begin(), wanted.end());
     const int solves = solver.solves();
-    const Matrix columns = kept.condensed_columns(solver.get(), trace, op, which);
+    kept.set(op.a);
+    const Matrix columns = condensed_columns(kept, op.b, which);
     EXPECT_EQ(solver.solves() - solves, static_cast<int>(seen.size() - before)) << radius;
-    const Matrix expected = condensed_columns(solver.get(), trace, op, which);
+    once.set(op.a);
+    const Matrix expected = condensed_columns(once, op.b, which);
     ASSERT_EQ(columns.rows(), expected.rows());
     ASSERT_EQ(columns.cols(), expected.cols());
     if (expected.norm() > 0)
@@ -102,9 +105,9 @@ TEST_P(CompliancePerSpace, TheCondensedOperatorIsSymmetric) {
   std::vector<Index> which;
   for (Index i = 0; i < 280 && op.weights[i] > 0; i += 7)
     which.push_back(i);
-  Compliance kept;
-  const Matrix block =
-      kept.condensed_columns(ksp.get(), problem.trace(), op, which)(which, Eigen::all);
+  FactoredBody kept(ksp.get(), problem.trace(), ColumnsLast::for_all_mu);
+  kept.set(op.a);
+  const Matrix block = condensed_columns(kept, op.b, which)(which, Eigen::all);
   EXPECT_LE((block - block.transpose()).norm(), 1e-12 * block.norm());
   EXPECT_GT(symmetric_eigenvalues(block)[0], 0);
 }
@@ -153,16 +156,19 @@ TEST(ComplianceOfASweep, SharedColumnsAreThoseOfOneGroup) {
   std::vector<Index> few, many;
   for (Index dof = 0; dof < 140; ++dof)
     (dof % 3 == 0 ? few : many).push_back(dof);
-  Compliance shared, own;
-  shared.require(solver.get(), trace, a, few);
+  FactoredBody shared(solver.get(), trace, ColumnsLast::for_all_mu),
+      own(solver.get(), trace, ColumnsLast::for_all_mu);
+  shared.set(a);
+  own.set(a);
+  shared.require(few);
   const int before = solver.solves();
   std::vector<Index> all = few;
   all.insert(all.end(), many.begin(), many.end());
-  shared.require(solver.get(), trace, a, all, &groups);
+  shared.require(all, groups);
   const int share = static_cast<int>(many.size()) / groups.count();
   EXPECT_GE(solver.solves() - before, share);
   EXPECT_LE(solver.solves() - before, share + 1);
-  own.require(solver.get(), trace, a, all);
+  own.require(all);
   for (const Index dof : all)
     EXPECT_LE(relative(shared.column(dof), own.column(dof)), 1e-12) << dof;
 }

@@ -76,8 +76,9 @@ Matrix compliance_of(Problem &problem, const Operators &op) {
   RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
   std::vector<Index> dofs(problem.trace().size);
   std::iota(dofs.begin(), dofs.end(), 0);
-  Compliance kept;
-  kept.require(ksp.get(), problem.trace(), op.a, dofs);
+  FactoredBody kept(ksp.get(), problem.trace(), ColumnsLast::for_all_mu);
+  kept.set(op.a);
+  kept.require(dofs);
   Matrix c(problem.trace().size, problem.trace().size);
   for (const Index dof : dofs)
     c.col(dof) = kept.column(dof);

@@ -3,6 +3,7 @@
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/solve/linear/scaled_part.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <gtest/gtest.h>
@@ -35,16 +36,24 @@ void expect_agreement(Problem &problem, const std::vector<Mu> &set) {
     const Operators &op = problem.assemble(mu);
     RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
     part.set(op);
-    EXPECT_LE(
-        relative(part.columns(which), condensed_columns(ksp.get(), problem.trace(), op, which)),
-        1e-11);
-    EXPECT_EQ(part.columns({}).cols(), 0);
+    FactoredBody body(ksp.get(), problem.trace(), ColumnsLast::for_one_b);
+    body.set(op.a);
+    EXPECT_LE(relative(condensed_columns(part, op.b, which), condensed_columns(body, op.b, which)),
+              1e-11);
+    EXPECT_EQ(condensed_columns(part, op.b, {}).cols(), 0);
+    FactoredBody columns(ksp.get(), problem.trace(), ColumnsLast::for_one_mu);
+    columns.set(op.a);
+    for (FullBody *of : {static_cast<FullBody *>(&part), static_cast<FullBody *>(&columns)})
+      of->require({2, 0, 5});
+    for (const Index dof : {0, 2, 5})
+      EXPECT_LE(relative(part.column(dof), columns.column(dof)), 1e-11);
+    EXPECT_THROW(part.column(1), Error);
     const Vector lambda = Vector::LinSpaced(problem.dual_size(), -1, 3);
     Handle<Vec> expected, found;
     RBVI_CALL(VecDuplicate(op.f, expected.put()));
     RBVI_CALL(VecDuplicate(op.f, found.put()));
-    solve_linear(ksp.get(), reaction_rhs(problem.trace(), op, lambda).get(), expected.get());
-    part.displacement(lambda, found.get());
+    body.displacement(op, lambda, expected.get());
+    part.displacement(op, lambda, found.get());
     EXPECT_LE(relative(natural(problem, found.get()), natural(problem, expected.get())), 1e-11);
   }
 }

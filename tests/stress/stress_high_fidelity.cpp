@@ -64,7 +64,11 @@ TEST_P(HighFidelityStress, EveryRandomStartEndsAtAnExactAnswer) {
     SCOPED_TRACE(describe(space, mu) + ", " + std::to_string(start.size()) + " nodes at the start");
     const Operators &op = problem.assemble(mu);
     RBVI_CALL(KSPSetOperators(ksp.get(), op.a, op.a));
-    const MethodResult result = solve_active_set(ksp.get(), problem.trace(), op, {start, {}});
+    FactoredBody body(ksp.get(), problem.trace(), ColumnsLast::for_one_b);
+    body.set(op.a);
+    Vector guess = Vector::Zero(problem.dual_size());
+    guess(start).setOnes();
+    const MethodResult result = solve_active_set(body, op, guess);
     ASSERT_TRUE(result.converged) << result.reason;
     const double kkt =
         kkt_residual(problem.trace(), op, result.free_u.get(), result.lambda).largest();

@@ -78,15 +78,9 @@ struct HfSolution : Answer {
 };
 
 struct MethodResult;
-class Compliance;
+class FactoredBody;
 class GridSequence;
 class ScaledPart;
-
-/// Where an active-set method starts.
-struct Start {
-  std::vector<Index> active; ///< without friction
-  Vector lambda;             ///< with friction: FrictionResult::start; empty: cold
-};
 
 /// Solves at many mu; remembers the active sets it has met (with friction the multipliers) and
 /// starts from those of the nearest mu, the first time from where a few accelerated Uzawa steps see
@@ -113,15 +107,15 @@ public:
 private:
   struct Solved {
     Mu mu;
-    Start start;
+    Vector start;  ///< as FrictionResult::start
     Handle<Vec> u; ///< Nitsche's method, as the pressures
     Matrix pressures;
     Vector state{}; ///< where contact follows the displacement
   };
   const Solved *nearest(const Mu &mu) const;
-  Start nearest_start(const Mu &mu, const Operators &op);
+  Vector nearest_start(const Mu &mu, const Operators &op);
   /// All columns of the compliance at once, where that takes less than those that are needed.
-  void complete_compliance(Mat a);
+  void complete_compliance();
   MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip);
   MethodResult run_condensed(const Mu &mu, const Operators &op, const Vector &slip);
   std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op, const Vector &slip,
@@ -137,8 +131,8 @@ private:
   HfOptions options_;
   Handle<KSP> ksp_;
   std::unique_ptr<NitscheSolver> nitsche_;
-  std::unique_ptr<GridSequence> grids_;    ///< active sets by elimination
-  std::unique_ptr<Compliance> compliance_; ///< where A is the same for all mu
+  std::unique_ptr<GridSequence> grids_; ///< active sets by elimination
+  std::unique_ptr<FactoredBody> body_;  ///< active sets on the multipliers
   bool part_fits_ = false;
   std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on
   Handle<Mat> w_product_;            ///< over the ranks, where a method wants it

@@ -3,8 +3,8 @@
 
 #include "rbvi/law/nonlinear/nonlinear.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "rbvi/solve/linear/full_body.hpp"
 #include "rbvi/solve/linear/linear.hpp"
-#include "rbvi/solve/linear/scaled_part.hpp"
 
 namespace rbvi {
 
@@ -23,56 +23,15 @@ struct MethodResult : HfSolution {
 /// At all dofs in natural order, the imposed values among them. Collective.
 Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u);
 
-/// F - B^T lambda. Collective.
-Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda);
-
-/// B A^-1 B^T(:, which), dual x which.size(), on every rank: the constraint values that unit
-/// multipliers cause. `ksp`: with op.a as its operator. Collective.
-Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
-                         const std::vector<Index> &which);
-
-/// E^T A^-1 E of one A, column by column when a contact dof is first asked for, and kept: one
-/// factorisation and at most n_c solves for a whole sweep in which B alone changes.
-class Compliance {
-public:
-  /// As condensed_columns. Collective.
-  Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
-                           const std::vector<Index> &which);
-
-  Index count() const { return count_; } ///< of the columns that are kept
-  /// Makes these columns exist. Collective; with `groups`, which all ask for the same ones, on all
-  /// of them, and each solves for its share.
-  void require(KSP ksp, const Trace &trace, Mat a, const std::vector<Index> &contact_dofs,
-               const Groups *groups = nullptr);
-  /// Makes all of them exist, by A's Schur complement on the contact dofs. Collective; with
-  /// `groups`, the first makes them for all.
-  void require_all(const Trace &trace, Mat a, const Groups *groups = nullptr);
-  /// One that was required.
-  Eigen::Map<const Vector> column(Index contact_dof) const {
-    return {columns_.col(slot_[contact_dof]).data(), columns_.rows()};
-  }
-
-  /// For contact that is nodal (contact/interface.hpp).
-  std::optional<NodalCompliance> nodal{};
-
-private:
-  Matrix columns_; ///< n_c x room
-  Index count_ = 0;
-  std::vector<Index> slot_; ///< per contact dof: its column, -1 if it has none yet
-};
-
-/// `kept`: for a sweep in which A stays the same. Friction by its rule (friction_answer).
-MethodResult solve_active_set(KSP ksp, const Trace &trace, const Operators &op, const Start &start,
-                              Compliance *kept = nullptr);
-
-/// Active set on a body with a scaled part, set to `op`.
-MethodResult solve_active_set(ScaledPart &part, const Operators &op, const Start &start);
+/// Active sets on the multipliers of a body that is set to `op`; friction by its rule
+/// (friction_answer). `start`: FrictionResult::start of a nearby problem; empty: cold. Collective.
+MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start);
 
 /// Contact that follows the displacement: Kacanov's or Newton's iteration on the condensed problem,
 /// every step on every rank. `op`: at mu; its contact operators become those of the solution.
 /// `steps` tells how it went; `slip`: the history of friction. Throws failure where it does not
 /// converge. Collective.
-MethodResult solve_following(KSP ksp, const Problem &problem, Compliance &compliance, Operators &op,
+MethodResult solve_following(FactoredBody &body, const Problem &problem, Operators &op,
                              const Vector &slip, const NonlinearStart &start,
                              const NonlinearOptions &options, NonlinearResult &steps);
 

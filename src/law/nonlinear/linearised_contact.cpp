@@ -1,8 +1,8 @@
 #include "linearised_contact.hpp"
 
+#include "../loaded_columns.hpp"
 #include "../pivoting.hpp"
 #include "fixed_point.hpp"
-#include "loaded_columns.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <Eigen/Cholesky>
@@ -59,7 +59,7 @@ private:
 /// C between dofs, which rise: a block for each body.
 class ComplianceBetween {
 public:
-  ComplianceBetween(const std::vector<Index> &dofs, const ComplianceColumns &compliance) {
+  ComplianceBetween(const std::vector<Index> &dofs, const Compliance &compliance) {
     for (auto first = dofs.begin(), after = first; first != dofs.end(); first = after) {
       const auto body = compliance.body_of(*first);
       after = std::lower_bound(first, dofs.end(), body.first + body.count);
@@ -78,7 +78,7 @@ public:
 
 private:
   /// Copied run by run, as most dofs follow each other.
-  static Matrix block(std::span<const Index> dofs, const ComplianceColumns &compliance) {
+  static Matrix block(std::span<const Index> dofs, const Compliance &compliance) {
     const Index count = std::ssize(dofs);
     Matrix result(count, count);
     for (Index first = 0, after = 0; first < count; first = after) {
@@ -105,21 +105,9 @@ LinearisedContact::LinearisedContact(const NonlinearContact &contact, const Vect
 }
 
 void LinearisedContact::move(const std::vector<Index> &which) {
-  std::vector<Index> dofs;
-  for (const Index row : which)
-    for (SparseMatrix::InnerIterator entry(at_.b, row); entry; ++entry)
-      dofs.push_back(entry.col());
-  std::sort(dofs.begin(), dofs.end());
-  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
-  contact_.compliance.require(dofs);
-  for (const Index row : which) {
-    LoadedColumns columns;
-    for (SparseMatrix::InnerIterator entry(at_.b, row); entry; ++entry)
-      columns.add(-entry.value(), contact_.compliance.column(entry.col()).data(),
-                  contact_.compliance.body_of(entry.col()));
-    moved_[row] = Vector::Zero(at_.b.cols());
-    columns.subtract_from(moved_[row], {0, at_.b.cols()});
-  }
+  const Matrix moved = contact_.compliance.moved(at_.b, which);
+  for (std::size_t k = 0; k < which.size(); ++k)
+    moved_[which[k]] = moved.col(static_cast<Index>(k));
 }
 
 Matrix LinearisedContact::columns(const std::vector<Index> &which) {

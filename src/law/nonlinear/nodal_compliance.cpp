@@ -1,6 +1,5 @@
 #include "rbvi/law/nonlinear/nodal.hpp"
 
-
 #include <algorithm>
 
 namespace rbvi {
@@ -19,7 +18,7 @@ NodalCompliance::NodalCompliance(SparseMatrix average)
   }
 }
 
-void NodalCompliance::require(const std::vector<Index> &nodes, ComplianceColumns &compliance) {
+void NodalCompliance::require(const std::vector<Index> &nodes, Compliance &compliance) {
   std::vector<Index> fresh, dofs;
   for (const Index node : nodes) {
     if (known_[node]) continue;
@@ -29,8 +28,6 @@ void NodalCompliance::require(const std::vector<Index> &nodes, ComplianceColumns
         dofs.push_back(entry.col());
   }
   if (fresh.empty()) return;
-  std::sort(dofs.begin(), dofs.end());
-  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
   compliance.require(dofs);
   for (const Index node : fresh) {
     known_[node] = true;

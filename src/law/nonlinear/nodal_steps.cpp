@@ -136,7 +136,7 @@ Eigen::Matrix2Xd NodalSteps::newton_on_active(double tolerance, Vector &x) const
 }
 
 /// The first of the nodes that are near, and how many there are up to the last.
-ComplianceColumns::Range NodalSteps::near_range() const {
+Compliance::Range NodalSteps::near_range() const {
   const Index nodes = contact_.laws.nodes();
   if (near_.empty()) return {0, nodes};
   const auto first = std::find(near_.begin(), near_.end(), true) - near_.begin();

@@ -3,8 +3,8 @@
 // exact, since the residuals are; the contraction is that of the tangent's error.
 #pragma once
 
+#include "../loaded_columns.hpp"
 #include "linearised_contact.hpp"
-#include "loaded_columns.hpp"
 
 #include <Eigen/Cholesky>
 
@@ -33,7 +33,7 @@ private:
   void see(const std::vector<Index> &nodes);
   /// u less what they move, on rows_.
   void subtract(const LoadedColumns &columns, Vector &u) const {
-    for (const ComplianceColumns::Range &rows : rows_)
+    for (const Compliance::Range &rows : rows_)
       columns.subtract_from(u, rows);
   }
   double diagonal(Index node, const Frame &along) const;
@@ -44,14 +44,14 @@ private:
   void set_tangent(const std::vector<Index> &active);
   /// The loads, two components a node, that a Newton step adds; changes x.
   Eigen::Matrix2Xd newton_on_active(double tolerance, Vector &x) const;
-  ComplianceColumns::Range near_range() const;
+  Compliance::Range near_range() const;
   std::vector<Index> violated(const Vector &x, const Eigen::Matrix2Xd &loads) const;
   Eigen::Matrix2Xd newton(Vector &x, double change);
   Eigen::Matrix2Xd kacanov(const Iterate &last, Iterate &next);
 
   const NonlinearContact &contact_;
-  std::vector<bool> near_;                     ///< per node; empty: all
-  std::vector<ComplianceColumns::Range> rows_; ///< the contact dofs beside them
+  std::vector<bool> near_;              ///< per node; empty: all
+  std::vector<Compliance::Range> rows_; ///< the contact dofs beside them
   NodalCondition here_;
   Eigen::Matrix2Xd e_;          ///< 2 x nodes, A (u_0 - C load - s)
   Eigen::Matrix2Xd tangent_at_; ///< the normals when the tangent was made; empty: there is none

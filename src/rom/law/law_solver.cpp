@@ -146,20 +146,15 @@ LawAtMu LawSolver::law_at(const FullMu &all_parameters, ReducedAnswer &answer,
 
 Matrix LawSolver::condensed_columns(const LawAtMu &law, const std::vector<Index> &which) {
   const Matrix &terms = model_.law->condensed.terms;
-  const auto count = static_cast<Index>(which.size());
-  if (!model_.evaluates_contact()) {
-    const Index m = model_.generators;
-    Matrix result(m, count);
-    for (Index k = 0; k < count; ++k)
-      result.col(k).noalias() = terms.middleRows(which[k] * m, m) * law.terms;
-    return result;
+  if (compliance_) {
+    compliance_->set(law.terms);
+    return rbvi::condensed_columns(*compliance_, law.b_contact, which);
   }
-  Matrix moved = Matrix::Zero(trace_.rows(), count); // contact dofs, by unit multipliers
-  compliance_->set(law.terms);
-  for (Index k = 0; k < count; ++k)
-    for (SparseMatrix::InnerIterator entry(law.b_contact, which[k]); entry; ++entry)
-      compliance_->add(entry.col(), entry.value(), moved.col(k));
-  return law.b_contact * moved;
+  const Index m = model_.generators;
+  Matrix result(m, std::ssize(which));
+  for (Index k = 0; k < result.cols(); ++k)
+    result.col(k).noalias() = terms.middleRows(which[k] * m, m) * law.terms;
+  return result;
 }
 
 LawSolver::AtAllNodes LawSolver::at_all_nodes(const LawAtMu &law, const Vector &x) {

@@ -7,9 +7,8 @@
 namespace rbvi {
 
 ModelCompliance::ModelCompliance(const CondensedOperator &operator_of)
-    : of_(operator_of),
-      size_(std::lround(std::sqrt(static_cast<double>(operator_of.terms.rows())))),
-      columns_(Matrix::Zero(size_, size_)), known_(size_) {
+    : Compliance(std::lround(std::sqrt(static_cast<double>(operator_of.terms.rows())))),
+      of_(operator_of) {
   for (const Index size : diagonal_blocks(operator_of.terms))
     bodies_.insert(bodies_.end(), static_cast<std::size_t>(size), {std::ssize(bodies_), size});
 }
@@ -17,21 +16,17 @@ ModelCompliance::ModelCompliance(const CondensedOperator &operator_of)
 bool ModelCompliance::set(const Vector &coefficients) {
   if (coefficients_.size() == coefficients.size() && coefficients_ == coefficients) return false;
   coefficients_ = coefficients;
-  known_.assign(known_.size(), false);
+  forget();
   return true;
 }
 
-void ModelCompliance::make(Index dof) {
-  if (known_[dof]) return;
-  const auto [first, count] = body_of(dof);
-  columns_.col(dof).segment(first, count).noalias() =
-      of_.terms.middleRows(dof * size_ + first, count) * coefficients_;
-  known_[dof] = true;
-}
-
-void ModelCompliance::require(const std::vector<Index> &dofs) {
-  for (const Index dof : dofs)
-    make(dof);
+void ModelCompliance::make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) {
+  columns.setZero();
+  for (std::size_t k = 0; k < dofs.size(); ++k) {
+    const auto [first, count] = body_of(dofs[k]);
+    columns.col(static_cast<Index>(k)).segment(first, count).noalias() =
+        of_.terms.middleRows(dofs[k] * size() + first, count) * coefficients_;
+  }
 }
 
 } // namespace rbvi

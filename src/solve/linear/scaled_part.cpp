@@ -76,7 +76,8 @@ void ScaledPart::find_interface(const Problem &problem) {
   }
 }
 
-ScaledPart::ScaledPart(const Problem &problem) : problem_(problem), contact_(problem.trace()) {
+ScaledPart::ScaledPart(const Problem &problem)
+    : FullBody(problem.trace().size), problem_(problem), contact_(problem.trace()) {
   const Summed<Mat> &a = problem.a_terms();
   const auto [lowest, highest] = range_of_coefficient(problem.scene(), a.split);
   lower_ = lowest;
@@ -109,29 +110,34 @@ ScaledPart::ScaledPart(const Problem &problem) : problem_(problem), contact_(pro
 }
 
 void ScaledPart::set(const Operators &op) {
-  op_ = &op;
+  forget();
   const Scene &scene = problem_.scene();
   const double theta =
       exact_coefficients(scene.a, problem_.a_terms().split, scene.parameters, op.mu).back();
   const double step = (theta - lower_) / width_;
   phi_ = (step * sigma_.array()) / (1 + step * sigma_.array());
-  by_ = op.b * y_;
 }
 
-Matrix ScaledPart::columns(const std::vector<Index> &which) const {
-  Matrix loads = Matrix::Zero(op_->b.cols(), static_cast<Index>(which.size()));
+Matrix ScaledPart::moved(const SparseMatrix &b, const std::vector<Index> &which) {
+  Matrix loads = Matrix::Zero(size(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
-    loads.col(static_cast<Index>(k)) = op_->b.row(which[k]).transpose();
-  Matrix result = op_->b * Matrix(compliance_ * loads.sparseView());
-  result.noalias() -= by_ * (phi_.asDiagonal() * by_(which, Eigen::all).transpose());
+    loads.col(static_cast<Index>(k)) = b.row(which[k]).transpose();
+  const SparseMatrix sparse = loads.sparseView();
+  Matrix result = compliance_ * sparse;
+  result.noalias() -= y_ * (phi_.asDiagonal() * Matrix(y_.transpose() * sparse));
   return result;
 }
 
-void ScaledPart::displacement(const Vector &lambda, Vec u) {
+void ScaledPart::make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) {
+  columns = compliance_(Eigen::all, dofs);
+  columns.noalias() -= y_ * (phi_.asDiagonal() * y_(dofs, Eigen::all).transpose());
+}
+
+void ScaledPart::displacement(const Operators &op, const Vector &lambda, Vec u) {
   Matrix load(both_.size, 1);
-  load.col(0).head(contact_.size) = -(op_->b.transpose() * lambda);
-  const Vector eliminated = phi_.cwiseProduct(y_.transpose() * load.col(0).head(contact_.size));
-  load.col(0).tail(interface_.size) = -(w_ * eliminated);
+  auto reaction = load.col(0).head(contact_.size);
+  reaction = -(op.b.transpose() * lambda);
+  load.col(0).tail(interface_.size) = -(w_ * phi_.cwiseProduct(y_.transpose() * reaction));
   const Handle<Mat> field = solver_->fields(load);
   Vec column = nullptr;
   RBVI_CALL(MatDenseGetColumnVecRead(field.get(), 0, &column));

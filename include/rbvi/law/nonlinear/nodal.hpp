@@ -11,7 +11,7 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
-#include "rbvi/law/nonlinear/compliance.hpp"
+#include "rbvi/law/compliance.hpp"
 
 #include <functional>
 #include <optional>
@@ -43,7 +43,7 @@ public:
   /// C is another one.
   void forget() { known_.assign(known_.size(), false); }
   /// Collective where `compliance` is.
-  void require(const std::vector<Index> &nodes, ComplianceColumns &compliance);
+  void require(const std::vector<Index> &nodes, Compliance &compliance);
 
   const SparseMatrix &average() const { return average_; }
   /// The nodes whose functions meet that of a node.

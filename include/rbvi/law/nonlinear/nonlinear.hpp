@@ -39,7 +39,7 @@ struct NonlinearContact {
   std::function<void(const Vector &state, Linearised &at_state)> linearise;
   /// Empty: there is none.
   std::function<CurvatureRows(const Vector &state, const Vector &x)> curvature{};
-  ComplianceColumns &compliance;
+  Compliance &compliance;
   Vector free;       ///< u_0
   Vector undeformed; ///< the state in which nothing has moved
   NodeLaws laws;

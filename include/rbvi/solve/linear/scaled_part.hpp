@@ -12,15 +12,15 @@
 // (Woodbury's formula, diagonal in the basis V). Each kappa then costs two small products.
 #pragma once
 
-#include "rbvi/solve/linear/response_solver.hpp"
-
 #include "rbvi/problem/problem.hpp"
+#include "rbvi/solve/linear/full_body.hpp"
+#include "rbvi/solve/linear/response_solver.hpp"
 
 #include <memory>
 
 namespace rbvi {
 
-class ScaledPart {
+class ScaledPart : public FullBody {
 public:
   /// Whether over the free parameters A = A_0 + theta(mu) A_1 of exact terms, theta > 0 and not the
   /// same at the two bounds of all of them, and nothing loads the body but contact.
@@ -30,15 +30,15 @@ public:
   /// (condensed_by_loads).
   /// `problem` must outlive it. Collective.
   explicit ScaledPart(const Problem &problem);
-  /// The operators of the next calls. Not collective.
+  /// A of the next calls, that of these operators. Not collective.
   void set(const Operators &op);
 
-  /// B A^-1 B^T(:, which), dual x which.size(). Not collective.
-  Matrix columns(const std::vector<Index> &which) const;
-  /// u = -A^-1 B^T lambda. Collective.
-  void displacement(const Vector &lambda, Vec u);
+  Matrix moved(const SparseMatrix &b, const std::vector<Index> &which) override;
+  Vector free(const Operators &) override { return Vector::Zero(size()); } ///< nothing loads it
+  void displacement(const Operators &op, const Vector &lambda, Vec u) override;
 
 private:
+  void make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) override;
   void find_interface(const Problem &problem);
 
   const Problem &problem_;
@@ -49,10 +49,7 @@ private:
   Matrix w_, y_;
   Vector sigma_; ///< times the width of the range of theta
 
-  // At the current mu.
-  const Operators *op_ = nullptr;
-  Vector phi_;
-  Matrix by_; ///< B Y
+  Vector phi_; ///< at the current mu
 };
 
 } // namespace rbvi

@@ -1,7 +1,7 @@
 // What loads on an elastic body move: columns of its compliance, each times its load.
 #pragma once
 
-#include "rbvi/law/nonlinear/compliance.hpp"
+#include "rbvi/law/compliance.hpp"
 
 #include <algorithm>
 
@@ -10,17 +10,17 @@ namespace rbvi {
 class LoadedColumns {
 public:
   /// `column`: of all contact dofs, zero outside of `rows`; must outlive this.
-  void add(double load, const double *column, ComplianceColumns::Range rows) {
+  void add(double load, const double *column, Compliance::Range rows) {
     columns_.push_back({load, column, rows});
   }
   /// Adds the columns of the loads that are not 0, one for each contact dof.
-  void add(const Vector &loads, const ComplianceColumns &compliance) {
+  void add(const Vector &loads, const Compliance &compliance) {
     for (Index dof = 0; dof < loads.size(); ++dof)
       if (loads[dof] != 0) add(loads[dof], compliance.column(dof).data(), compliance.body_of(dof));
   }
   /// Takes what they move from these entries of u. Four columns of one body at a time, for which u
   /// is read and written once.
-  void subtract_from(Vector &u, ComplianceColumns::Range within) const {
+  void subtract_from(Eigen::Ref<Vector> u, Compliance::Range within) const {
     for (std::size_t k = 0; k < columns_.size();) {
       const auto rows = columns_[k].rows;
       const Index first = std::max(rows.first, within.first);
@@ -43,7 +43,7 @@ private:
   struct Loaded {
     double load;
     const double *column;
-    ComplianceColumns::Range rows;
+    Compliance::Range rows;
   };
   std::vector<Loaded> columns_;
 };
