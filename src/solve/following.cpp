@@ -1,5 +1,4 @@
-#include "rbvi/contact/history.hpp"
-#include "rbvi/core/error.hpp"
+#include "rbvi/contact/following.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {
@@ -8,30 +7,16 @@ MethodResult solve_following(FactoredBody &body, const Problem &problem, Operato
                              const Vector &slip, const NonlinearStart &start,
                              const NonlinearOptions &options, NonlinearResult &steps) {
   const Contact &contact = problem.contact();
-  ContactOperators at_state;
-  NonlinearContact nonlinear{[&](const Vector &state, Linearised &linearised) {
-                               assemble(contact, op.mu, {state, slip}, at_state);
-                               linearised = {at_state.b, at_state.g, at_state.segments};
-                             },
-                             {},
-                             body,
-                             body.free(op),
-                             undeformed(contact, problem.scene(), op.mu),
-                             op.laws,
-                             problem.w_product()};
-  if (has_curvature(contact))
-    nonlinear.curvature = [&](const Vector &state, const Vector &x) -> CurvatureRows {
-      Curvature rows = curvature(contact, op.mu, {state}, x);
-      return {std::move(rows.s), std::move(rows.e)};
-    };
-  if (const ContactInterface *nodal = nodal_interface(contact)) {
-    if (!body.nodal) body.nodal.emplace(nodal->averages());
-    nonlinear.nodal.emplace(
-        NodalContact{nodal_with_history(contact, op.mu, slip, op.weights), *body.nodal});
-  }
-  steps = solve_nonlinear(nonlinear, start, options);
-  if (!steps.converged)
-    throw failure(failure_at(contact, op.mu, at_state, steps.last_x, steps.reason));
+  NonlinearContact nonlinear{.compliance = body,
+                             .free = body.free(op),
+                             .undeformed = undeformed(contact, problem.scene(), op.mu),
+                             .laws = op.laws,
+                             .w_product = problem.w_product()};
+  FollowedContact followed{.contact = contact, .mu = op.mu, .slip = slip, .weights = op.weights};
+  const ContactInterface *nodal = nodal_interface(contact);
+  if (nodal != nullptr && !body.nodal) body.nodal.emplace(nodal->averages());
+  steps = solve_following(followed, nodal != nullptr ? &*body.nodal : nullptr, nonlinear, start,
+                          options);
   assemble(contact, op.mu, {steps.state, slip}, op);
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.free_u.put()));

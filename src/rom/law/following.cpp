@@ -3,6 +3,7 @@
 // so that the multipliers are those of the full problem.
 #include "model_compliance.hpp"
 
+#include "rbvi/contact/following.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/core/text.hpp"
@@ -41,48 +42,31 @@ ReducedAnswer LawSolver::solve_following(const FullMu &all_parameters) {
   if (compliance_->set(term_coefficients(all_parameters, {})) && nodal_compliance_)
     nodal_compliance_->forget();
   at_mu_.set(all_parameters);
-  const auto at_nodes = [this](const Vector &x) {
-    return nodal_is_identity_ || x.size() == 0 ? x : Vector(nodal_.transpose() * x);
-  };
   Vector load; // half response to it
-  NonlinearContact problem{[&](const Vector &state, Linearised &linearised) {
-                             assemble(contact_, all_parameters, {state}, answer.contact);
-                             if (nodal_is_identity_)
-                               linearised = {answer.contact.b, answer.contact.g};
-                             else
-                               linearised = {nodal_ * answer.contact.b, nodal_ * answer.contact.g};
-                             linearised.segments = answer.contact.segments;
-                           },
-                           {},
-                           *compliance_,
-                           Vector::Zero(compliance_->size()),
-                           undeformed(contact_, scene_, all_parameters),
-                           laws_at(columns_, contact_, all_parameters),
-                           w_product_};
-  if (has_curvature(contact_))
-    problem.curvature = [&](const Vector &state, const Vector &x) -> CurvatureRows {
-      Curvature rows = curvature(contact_, all_parameters, {state}, at_nodes(x));
-      return {std::move(rows.s), std::move(rows.e)};
-    };
-  if (nodal_compliance_)
-    problem.nodal.emplace(
-        NodalContact{nodal_interface(contact_)->nodal_at(all_parameters), *nodal_compliance_});
+  NonlinearContact problem{.compliance = *compliance_,
+                           .free = Vector::Zero(compliance_->size()),
+                           .undeformed = undeformed(contact_, scene_, all_parameters),
+                           .laws = laws_at(columns_, contact_, all_parameters),
+                           .w_product = w_product_};
   if (at_mu_.has_load()) {
     load = at_mu_.half_response(at_mu_.load());
     problem.free = model_.contact_trace * at_mu_.transposed_half_response(load);
   }
   NonlinearOptions options{.economical = true};
-  if (!problem.nodal && problem.curvature && !problem.laws.has_tangents())
+  if (!nodal_compliance_ && has_curvature(contact_) && !problem.laws.has_tangents())
     options.tolerance = 1e-8; // the change after it is of second order
-  NonlinearResult found = solve_nonlinear(problem, following_start(all_parameters), options);
-  if (!found.converged)
-    throw failure(
-        failure_at(contact_, all_parameters, answer.contact, at_nodes(found.last_x), found.reason));
+  FollowedContact followed{
+      .contact = contact_, .mu = all_parameters, .rows = nodal_is_identity_ ? nullptr : &nodal_};
+  NonlinearResult found =
+      rbvi::solve_following(followed, nodal_compliance_ ? &*nodal_compliance_ : nullptr, problem,
+                            following_start(all_parameters), options);
   if (!(found.residual <= largest_residual))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: reduce again with more training parameters");
   if (options_.looks_for_others) answer.to_other = distance_from_rest(problem, found, options);
-  assemble_nodal(contact_, all_parameters, {found.state}, at_nodes(found.x), answer.contact);
+  answer.contact = std::move(followed.operators);
+  assemble_nodal(contact_, all_parameters, {found.state}, followed.at_dual_dofs(found.x),
+                 answer.contact);
   answer.reaction = std::move(found.reaction);
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = moved_by(answer.reaction);

@@ -36,7 +36,7 @@ struct NodalContact {
 };
 
 struct NonlinearContact {
-  std::function<void(const Vector &state, Linearised &at_state)> linearise;
+  std::function<void(const Vector &state, Linearised &at_state)> linearise{};
   /// Empty: there is none.
   std::function<CurvatureRows(const Vector &state, const Vector &x)> curvature{};
   Compliance &compliance;
