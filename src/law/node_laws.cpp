@@ -103,6 +103,12 @@ Vector admissible(const NodeLaws &laws, Vector x) {
   return x;
 }
 
+double violation(const NodeLaws &laws, const Vector &x, const Vector &start) {
+  const double size = x.cwiseAbs().maxCoeff();
+  const double largest = (x - admissible(laws, start)).cwiseAbs().maxCoeff();
+  return size > 0 ? largest / size : largest;
+}
+
 Vector normal_part(const NodeLaws &laws, const Vector &x) {
   Vector result = Vector::Zero(x.size());
   result(laws.normal) = x(laws.normal);

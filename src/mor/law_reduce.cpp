@@ -5,7 +5,7 @@
 #include "rbvi/mor/bases/near_contact.hpp"
 #include "rbvi/mor/bases/nodal_dual_basis.hpp"
 #include "rbvi/mor/separation/answered_responses.hpp"
-#include "rbvi/rom/law/law_solver.hpp"
+#include "rbvi/rom/law/collocated_law.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
 namespace rbvi {
@@ -91,12 +91,14 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
 
 void add_starts(ReducedModel &model, const Problem &problem) {
   Matrix starts = model.law->starts;
-  LawSolver solver(model, problem.scene(), problem.contact());
+  LawProblem of_model(model, problem.scene(), problem.contact());
   for (Index p = 0; p < starts.cols(); ++p) {
     const Vector mu = model.law->starts_mu.col(p);
-    starts.col(p) =
-        solver.start_of(expand(problem.scene().parameters, {mu.begin(), mu.end()}), starts.col(p),
-                        model.law->states.size() > 0 ? Vector(model.law->states.col(p)) : Vector());
+    ReducedAnswer unused;
+    const LawAtMu law =
+        of_model.at(expand(problem.scene().parameters, {mu.begin(), mu.end()}), unused,
+                    model.law->states.size() > 0 ? Vector(model.law->states.col(p)) : Vector());
+    starts.col(p) = of_model.at_all_nodes(law, starts.col(p)).start;
   }
   model.law->starts = std::move(starts);
 }
@@ -120,7 +122,7 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
                const GcnsOptions &options) {
   const Scene &scene = problem.scene();
   NodalLaw &law = *model.law;
-  LawSolver solver(model, problem.scene(), problem.contact());
+  LawProblem of_model(model, problem.scene(), problem.contact());
   const Index normal = law.normal, tangential = model.generators - normal;
   const std::vector<Index> nodes =
       nodes_with_tangent(laws_of_columns(problem.contact(), model.dual_basis).laws);
@@ -130,8 +132,8 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const FullMu all = expand(scene.parameters, samples[p].mu);
     ReducedAnswer unused;
-    const LawAtMu at_mu = solver.law_at(all, unused);
-    CollocatedProblem reduced = collocated_problem(law.basis, at_mu);
+    const LawAtMu at_mu = of_model.at(all, unused);
+    CollocatedProblem reduced = collocated_problem(law.basis, at_mu, of_model.body());
     problems.push_back({std::move(reduced.h), std::move(reduced.q),
                         bounds_at(at_mu.laws.bound, nodes),
                         coefficients.col(static_cast<Index>(p)).tail(tangential)});

@@ -51,7 +51,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
   }
   trace_.emplace(model, contact_);
   if (model.law)
-    method_ = std::make_unique<LawSolver>(model, scene_, contact_, options);
+    method_ = law_solver(model, scene_, contact_, options);
   else
     method_ = std::make_unique<ConeSolver>(model, scene_, contact_, options);
 }

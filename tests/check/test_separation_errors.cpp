@@ -6,7 +6,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/mor/stages.hpp"
-#include "rbvi/rom/law/law_solver.hpp"
+#include "rbvi/rom/law/collocated_law.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include <gtest/gtest.h>

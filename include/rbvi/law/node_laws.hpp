@@ -70,6 +70,10 @@ Vector bounds_of(const NodeLaws &laws, const Vector &x);
 /// The projection onto x_n >= 0, then |x_tau| <= s(x_n), node by node (corrected (3.32)).
 Vector admissible(const NodeLaws &laws, Vector x);
 
+/// Largest violation of the laws, relative: |x - P(start)| over max |x|, start = x - w / H_jj and P
+/// the projection of the laws; zero where x solves them.
+double violation(const NodeLaws &laws, const Vector &x, const Vector &start);
+
 /// Values of the rows x_n alone; zero in the others.
 Vector normal_part(const NodeLaws &laws, const Vector &x);
 

@@ -20,13 +20,6 @@ namespace {
 
 constexpr int patience = 15; ///< steps without a smaller change before it is given up
 
-/// |x - P(start)| over max |x|, start = x - w / H_jj, P the projection of the laws.
-double violation(const NodeLaws &laws, const Vector &x, const Vector &start) {
-  const double size = x.cwiseAbs().maxCoeff();
-  const double largest = (x - admissible(laws, start)).cwiseAbs().maxCoeff();
-  return size > 0 ? largest / size : largest;
-}
-
 /// Said where the segments of the last step were not those of the one before. B and g are
 /// continuous as a vertex passes another, so that nothing has to hold them.
 const char *moving_segments(const NonlinearResult &result) {

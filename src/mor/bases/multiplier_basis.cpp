@@ -2,7 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/small_svd.hpp"
-#include "rbvi/rom/law/reduced_law.hpp"
+#include "rbvi/rom/law/collocated_law.hpp"
 
 #include <cmath>
 

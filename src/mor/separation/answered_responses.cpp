@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t at_a_time = 100, most_queries = 10000; ///< queries
 
 /// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
-Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver &solver,
+Matrix answers_at(const Problem &problem, const CondensedLoads &loads, QueryMethod &solver,
                   const std::vector<Mu> &set) {
   Matrix answers = Matrix::Zero(loads.columns.cols(), std::ssize(set));
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
@@ -100,8 +100,8 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
   for (const auto &training : model.law->starts_mu.colwise())
     set.emplace_back(training.begin(), training.end());
   const Mu any = set.front();
-  LawSolver solver(model, problem.scene(), problem.contact());
-  Matrix answers = answers_at(problem, loads, solver, set);
+  const auto solver = law_solver(model, problem.scene(), problem.contact());
+  Matrix answers = answers_at(problem, loads, *solver, set);
   if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
   ParameterReader random(problem.scene().parameters,
                          "random:" + std::to_string(most_queries) + ":29");
@@ -117,7 +117,7 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
       throw failure("the responses to the answers of the law go on after " +
                     std::to_string(most_queries) +
                     " of them: use a smaller box, or -response_tolerance 0");
-    answers = answers_at(problem, loads, solver, set);
+    answers = answers_at(problem, loads, *solver, set);
   } while (directions.left(answers) > between * tolerance);
   ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it
