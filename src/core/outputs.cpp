@@ -1,11 +1,13 @@
 #include "rbvi/core/outputs.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 
 namespace rbvi {
 
@@ -75,7 +77,33 @@ void add_contact(const Outputs &one, Outputs &all) {
   for (const auto member : {&Outputs::peak_pressure, &Outputs::max_penetration,
                             &Outputs::friction_violation, &Outputs::slip_directions})
     combine(member, false);
+  all.interfaces.push_back(one);
 }
+
+std::array<double, 2> penetration_at(const Vector &left, const Vector &gaps) {
+  double deepest = 0, size = 0;
+  for (Index node = 0; node < left.size(); ++node) {
+    if (left[node] == std::numeric_limits<double>::infinity()) continue;
+    deepest = larger(deepest, -left[node]);
+    size = std::max({size, std::abs(gaps[node]), std::abs(gaps[node] - left[node])});
+  }
+  return {deepest, size};
+}
+
+void set_penetration(const std::array<double, 2> &penetration, Outputs &outputs) {
+  constexpr double round_off = 1e-10;
+  const auto [deepest, size] = penetration;
+  outputs.max_penetration = deepest;
+  if (deepest > round_off * size) outputs.overlap = deepest;
+}
+
+namespace {
+
+const char *name_of(std::optional<double> Outputs::*member) {
+  return std::ranges::find(output_columns(), member, &OutputColumn::value)->name;
+}
+
+} // namespace
 
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
   for (const OutputColumn &column : output_columns()) {
@@ -87,6 +115,15 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
     if (error != errors.end())
       out << std::setw(static_cast<int>(18 - digits.size())) << ""
           << "(largest error " << formatted("%.1e", error->second) << ')';
+    out << '\n';
+  }
+  for (std::size_t i = 0; i < outputs.interfaces.size(); ++i) {
+    out << "contact " << i + 1 << ':';
+    for (const auto member :
+         {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::contact_measure,
+          &Outputs::peak_pressure, &Outputs::contact_nodes, &Outputs::stick_nodes})
+      if (const std::optional<double> value = outputs.interfaces[i].*member)
+        out << ' ' << name_of(member) << ' ' << formatted("%.10g", *value);
     out << '\n';
   }
 }
@@ -119,15 +156,13 @@ std::string end_warning(long at_ends, long all, const char *answers) {
                "load, or a scene with a wider contact boundary";
 }
 
-} // namespace
-
-std::string resolution_warning(const Outputs &outputs) {
+/// Of one interface.
+std::string zone_warning(const Outputs &outputs) {
   // Measured on rigid_disk (its README): with 7 nodes in contact forces are 3e-3 off and the peak
   // 6e-2, with 9 they are 3e-4 and 1e-2. With 5 sticking nodes the tangential force is 2e-3 off,
   // with fewer by up to 1.5 times the share of one node, whose stress is undecided where the slip
   // turns.
   constexpr double fewest_in_contact = 9, fewest_that_stick = 5;
-  if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(1, 1, "");
   const double contact = outputs.contact_nodes.value_or(0);
   // Where all nodes are in contact it has no edge that the mesh could miss, and where all slip in
   // one direction the slip does not turn.
@@ -148,6 +183,21 @@ std::string resolution_warning(const Outputs &outputs) {
     text +=
         "where the slip turns, tangential_force may be off by " + formatted("%.1e", 1.5 / contact);
   return text + "; a finer mesh tells (-mesh_refine)";
+}
+
+} // namespace
+
+std::string resolution_warning(const Outputs &outputs) {
+  if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(1, 1, "");
+  if (outputs.overlap && outputs.contact_nodes == 0)
+    return "the bodies overlap by " + short_number(*outputs.overlap) +
+           " between nodes, and no multiplier carries a pressure: contact is narrower than the "
+           "mesh "
+           "sees, and the forces of this answer are zero; a finer mesh tells (-mesh_refine)";
+  for (std::size_t i = 0; i < outputs.interfaces.size(); ++i)
+    if (const std::string warning = zone_warning(outputs.interfaces[i]); !warning.empty())
+      return "contact " + std::to_string(i + 1) + ": " + warning;
+  return outputs.interfaces.empty() ? zone_warning(outputs) : "";
 }
 
 void ResolutionTally::add(const Outputs &outputs) {

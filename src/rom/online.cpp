@@ -118,7 +118,7 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   const ContactOperators operators = nodal_operators(solution, lambda);
   const Vector gap = trace_->gap_left(operators, solution.u);
   trace_->check_outside(operators, gap);
-  result.max_penetration = gap.size() > 0 ? larger(0, -gap.minCoeff<Eigen::PropagateNaN>()) : 0;
+  set_penetration(penetration_at(gap, operators.nodal_gap), result);
   const double least = solution.least_pressure * std::max(0.0, lambda.maxCoeff());
   contact_outputs(contact_, solution.mu, operators, lambda, least, result);
   check_finite(result);

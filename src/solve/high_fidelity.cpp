@@ -37,11 +37,10 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
   result.residual = result.kkt.largest();
   outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy);
   outputs.kkt_residual = result.residual;
-  const Vector excess =
-      op.nodal_b * restrict_to(problem.trace(), result.free_u.get()) - op.nodal_gap;
-  std::array<double, 1> penetration{excess.size() > 0 ? std::max(0.0, excess.maxCoeff()) : 0};
+  const Vector left = op.nodal_gap - op.nodal_b * restrict_to(problem.trace(), result.free_u.get());
+  std::array<double, 2> penetration = penetration_at(left, op.nodal_gap);
   over_ranks(problem.comm(), MPI_MAX, penetration);
-  outputs.max_penetration = penetration.front();
+  set_penetration(penetration, outputs);
   outputs.iterations = result.iterations;
   ContactOperators of_outputs;
   of_outputs.weights = weights;

@@ -33,10 +33,15 @@ struct DualMeasures {
   std::array<double, 4> sums{};
 };
 
-/// `weights`: per node; `excess`: B u - G, in its tangential rows the slip; `displacement`: the
-/// largest, of all nodes.
+/// What both are made of, the largest over all nodes of all ranks.
+struct Sizes {
+  double displacement, stress;
+};
+
+/// `weights`: per node; `excess`: B u - G, in its tangential rows the slip. A bound far above all
+/// stresses is as good as glue: it would turn the round-off of the slip into a violation.
 DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vector &g,
-                          const Vector &lambda, const Vector &excess, double displacement) {
+                          const Vector &lambda, const Vector &excess, const Sizes &sizes) {
   DualMeasures result;
   auto &[penetration, gap, negative, pressure, stress, above] = result.largest;
   auto &[idle, lambda_squared, terms_squared, idle_friction] = result.sums;
@@ -46,7 +51,7 @@ DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vec
     const Index row = laws.normal[i];
     if (weights[i] > 0) { // a multiplier without weight has no constraint
       penetration = std::max(penetration, excess[row] / weights[i]);
-      terms[row] = std::max(terms[row], share_of_u * displacement * weights[i]);
+      terms[row] = std::max(terms[row], share_of_u * sizes.displacement * weights[i]);
       gap = std::max(gap, terms[row] / weights[i]);
     }
     negative = std::max(negative, -lambda[row]);
@@ -57,7 +62,8 @@ DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vec
     const auto traction = lambda.segment(first, laws.tangents);
     const auto slip = excess.segment(first, laws.tangents);
     above = std::max(above, traction.norm() - bounds[i]);
-    idle_friction += std::abs(bounds[i] * slip.norm() - traction.dot(slip));
+    const double bound = std::min(bounds[i], 2 * sizes.stress);
+    idle_friction += std::abs(bound * slip.norm() - traction.dot(slip));
   }
   stress = lambda.size() > 0 ? lambda.cwiseAbs().maxCoeff() : 0;
   lambda_squared = lambda.squaredNorm();
@@ -94,8 +100,10 @@ double KktResidual::largest() const {
 
 KktResidual kkt_residual(const Trace &trace, const Operators &op, Vec u, const Vector &lambda) {
   const Vector excess = op.b * restrict_to(trace, u) - op.g;
-  KktResidual kkt = residual_of(measure_dual(op.laws, op.weights, op.g, lambda, excess, largest(u)),
-                                op.laws.has_tangents());
+  const double stress = lambda.size() > 0 ? lambda.lpNorm<Eigen::Infinity>() : 0;
+  KktResidual kkt =
+      residual_of(measure_dual(op.laws, op.weights, op.g, lambda, excess, {largest(u), stress}),
+                  op.laws.has_tangents());
   const Handle<Vec> reaction = like(op.f);
   RBVI_CALL(VecZeroEntries(reaction.get()));
   const Vector bt_lambda = op.b.transpose() * lambda;
@@ -110,9 +118,9 @@ KktResidual kkt_residual(const DistributedContact &contact, const Operators &op,
   RBVI_CALL(MatMult(contact.b.get(), u, excess.get()));
   RBVI_CALL(VecAXPY(excess.get(), -1, contact.g.get()));
   const Vector weights = LocalValues(contact.weights.get()).get()(contact.laws.normal);
-  DualMeasures dual =
-      measure_dual(contact.laws, weights, LocalValues(contact.g.get()).get(),
-                   LocalValues(lambda).get(), LocalValues(excess.get()).get(), largest(u));
+  DualMeasures dual = measure_dual(contact.laws, weights, LocalValues(contact.g.get()).get(),
+                                   LocalValues(lambda).get(), LocalValues(excess.get()).get(),
+                                   {largest(u), largest(lambda)});
   const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(lambda));
   over_ranks(comm, MPI_MAX, dual.largest);
   over_ranks(comm, MPI_SUM, dual.sums);

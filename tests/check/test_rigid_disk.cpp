@@ -7,6 +7,7 @@
 #include "rbvi/check/stability_report.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/rom/law/collocated_law.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
 
 #include <gtest/gtest.h>

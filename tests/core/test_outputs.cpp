@@ -119,6 +119,36 @@ TEST(ResolutionWarning, IsEmptyWhereNoZoneEnds) {
   EXPECT_NE(resolution_warning(outputs), "");
 }
 
+/// An interface that barely touches is not hidden by one that touches widely.
+TEST(ResolutionWarning, IsThatOfEachInterface) {
+  Outputs both;
+  add_contact(zones(40, 30, 1), both);
+  EXPECT_EQ(resolution_warning(both), "");
+  add_contact(zones(3, 3, 1e-3), both);
+  EXPECT_EQ(both.contact_nodes, 43);
+  EXPECT_EQ(resolution_warning(both), "contact 2: " + resolution_warning(zones(3, 3, 1e-3)));
+  std::ostringstream out;
+  print_outputs(out, both);
+  EXPECT_NE(out.str().find("\ncontact 2: tangential_force 0.001 contact_nodes 3 stick_nodes 3\n"),
+            std::string::npos)
+      << out.str();
+}
+
+/// Bodies that overlap between nodes without a pressure are no bodies apart.
+TEST(ResolutionWarning, NamesAnOverlapWithoutPressure) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const Vector gaps{{1e-3, 2e-3, 1e-3}};
+  const auto overlaps = [&](double contact, const Vector &left) {
+    Outputs outputs = zones(contact, 0, 0);
+    set_penetration(penetration_at(left, gaps), outputs);
+    return resolution_warning(outputs).find("overlap by 1e-05") != std::string::npos;
+  };
+  EXPECT_TRUE(overlaps(0, Vector{{-1e-5, 1e-3, none}}));
+  EXPECT_FALSE(overlaps(20, Vector{{-1e-5, 1e-3, none}}));
+  EXPECT_FALSE(overlaps(0, Vector{{-1e-17, 1e-3, none}}));
+  EXPECT_FALSE(overlaps(0, Vector{{0, 1e-3, 1e-3}}));
+}
+
 TEST(ResolutionWarning, IsEmptyWhereThereAreEnoughNodesOrNoZone) {
   EXPECT_EQ(resolution_warning({}), "");
   EXPECT_EQ(resolution_warning(zones(9, 5, 1)), "");

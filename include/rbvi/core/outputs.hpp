@@ -1,8 +1,10 @@
 // The quantities of interest of one solve, full or reduced, and their table.
 #pragma once
 
+#include "rbvi/core/dense.hpp"
 #include "rbvi/core/parameters.hpp"
 
+#include <array>
 #include <map>
 #include <optional>
 #include <ostream>
@@ -29,6 +31,8 @@ struct Outputs {
   /// For resolution_warning alone, without columns: nodes without pressure, and the number of
   /// directions, along the curve or against it, that the tangential stress has in contact.
   std::optional<double> free_nodes, slip_directions;
+  /// Likewise: max_penetration where it is beyond the round-off of the gaps.
+  std::optional<double> overlap;
   std::optional<double> min_u;
   /// Residual of the problem that was solved, relative: stationarity, feasibility, complementarity;
   /// of a reduced answer that of the reduced problem, by Nitsche's method that of its equation.
@@ -50,10 +54,11 @@ struct Outputs {
   /// Large deformations: the change in the last step over that in the one before.
   std::optional<double> contraction;
   std::optional<double> seconds;
+  std::vector<Outputs> interfaces{}; ///< of contact, each apart; empty: there is one
 };
 
-/// Adds the outputs of a further contact interface: sums of forces and measures, the largest of
-/// pressures and errors; the others stay as they are.
+/// Adds the outputs of a further contact interface: itself, sums of forces and measures, the
+/// largest of pressures and errors; the others stay as they are.
 void add_contact(const Outputs &one, Outputs &all);
 
 /// What an output is, which tells how accurate a reduced one must be.
@@ -79,14 +84,22 @@ const OutputColumn &output_column(const std::string &name);
 /// Measured errors of outputs by column name, absolute.
 using ErrorOfOutput = std::map<std::string, double>;
 
-/// "name value" lines for one answer, with "(largest error ...)" where one was measured.
+/// "name value" lines for one answer, with "(largest error ...)" where one was measured, and a line
+/// for each of several contact interfaces.
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors = {});
+
+/// The largest penetration at nodes, and of what it is made: gaps without displacement and
+/// displacements along them. `left`: the gaps that are left, infinite where they are not known.
+std::array<double, 2> penetration_at(const Vector &left, const Vector &gaps);
+/// Sets max_penetration and overlap from the largest of both.
+void set_penetration(const std::array<double, 2> &penetration, Outputs &outputs);
 
 /// Throws failure, naming it, where an output is not finite.
 void check_finite(const Outputs &outputs);
 
-/// What is not accurate in this answer because contact reaches the end of its boundary, or because
-/// so few nodes are in contact, or stick, and how far it may be off; empty: nothing.
+/// What is not accurate in this answer because contact reaches the end of its boundary, because so
+/// few nodes are in contact, or stick, at the interface where that is worst, or because none is
+/// though the bodies overlap, and how far it may be off; empty: nothing.
 std::string resolution_warning(const Outputs &outputs);
 
 /// The warnings of several answers.
