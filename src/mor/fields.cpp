@@ -170,7 +170,7 @@ void write_fields(const Problem &problem, const LinearBasis &basis, const Reduce
   collectively(comm, [&] {
     if (!writes) return;
     file = std::make_unique<FieldsFile>(model_path, model.fields_key);
-    file->write_mesh(mesh.mesh_points, mesh.mesh_cells, mesh.imposed_by);
+    file->write_mesh(mesh);
     file->begin_basis(problem.dofs().total, basis.size());
   });
   visit_rows(problem, basis, [&](Index first, Index, const Matrix &rows) {
