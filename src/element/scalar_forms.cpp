@@ -149,8 +149,7 @@ Form function_load(const std::string &region, double factor,
             for (const QuadraturePoint &q : rule[count - 3]) {
               Point x{};
               for (std::size_t i = 0; i < count; ++i)
-                for (std::size_t c = 0; c < 3; ++c)
-                  x[c] += q.barycentric[i] * cell.mapped[i][c];
+                x = x + q.barycentric[i] * cell.mapped[i];
               const double value = scale * q.weight * psi(mu, x);
               for (std::size_t i = 0; i < count; ++i)
                 values[i] += value * q.barycentric[i];

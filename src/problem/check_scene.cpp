@@ -217,29 +217,26 @@ struct Nearest {
 void check_normal(const ContactInterface &interface, const FullMu &mu, const Cell &facet,
                   const std::string &what, Nearest &nearest) {
   const FacetMeasure measure = facet_measure(facet.dim, facet.mapped);
-  const Point &a = facet.reference[0], &b = facet.reference[1];
-  const Point x{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0};
+  const Point x = (facet.reference[0] + facet.reference[1]) / 2;
   PointConstraint at, nearer;
   const double step = 1e-3 * measure.size;
   try {
     at = asked(what, [&] { return interface.constraint_at(mu, x); });
-    const Point &n = at.direction;
-    nearer = interface.constraint_at(mu, x, {step * n[0], step * n[1], 0});
+    nearer = interface.constraint_at(mu, x, step * at.direction);
   } catch (const Error &error) {
     if (error.status() == Status::bad_input) throw;
     return; // no point is faced at this mu
   }
-  const Point &n = at.direction, &m = nearer.direction;
-  const double length = std::hypot(n[0], n[1], n[2]);
+  const Point &n = at.direction;
+  const double length = norm(n);
   if (!(std::abs(length - 1) <= 1e-6))
     throw bad_input(what + " has a normal of the length " + short_number(length) + " at (" +
                     short_number(x[0]) + ", " + short_number(x[1]) + "): it must be 1");
-  double &of_side =
-      n[0] * measure.normal[0] + n[1] * measure.normal[1] > 0 ? nearest.outward : nearest.inward;
+  double &of_side = dot(n, measure.normal) > 0 ? nearest.outward : nearest.inward;
   of_side = std::min(of_side, std::abs(at.gap));
   if (!interface.follows_state()) return;
   // gap = distance + direction . displacement
-  const double closer = at.gap - (nearer.gap - step * (n[0] * m[0] + n[1] * m[1]));
+  const double closer = at.gap - (nearer.gap - step * dot(n, nearer.direction));
   if (!(std::abs(closer - step) <= 0.1 * step))
     throw bad_input(what + " has a normal that is no gradient of the distance to its surface at (" +
                     short_number(x[0]) + ", " + short_number(x[1]) + ")");

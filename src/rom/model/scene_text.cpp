@@ -65,11 +65,8 @@ Point random_point(int dim, double extent, Random &random) {
 Cell random_cell(const Scene &scene, const FullMu &mu, const Point &x, double size,
                  Random &random) {
   Cell cell{scene.dim, {}, {}};
-  for (std::size_t v = 0; v <= static_cast<std::size_t>(scene.dim); ++v) {
-    const Point step = random_point(scene.dim, size, random);
-    for (std::size_t c = 0; c < 3; ++c)
-      cell.reference[v][c] = x[c] + step[c];
-  }
+  for (int v = 0; v <= scene.dim; ++v)
+    cell.reference[v] = x + random_point(scene.dim, size, random);
   if (volume_of(cell.dim, cell.reference) < 0) std::swap(cell.reference[0], cell.reference[1]);
   cell.mapped = cell.reference;
   try {
