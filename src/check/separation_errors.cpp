@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"
 

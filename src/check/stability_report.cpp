@@ -2,6 +2,7 @@
 
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
 
@@ -19,11 +20,7 @@ constexpr double round_off = 1e-10;
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
   const Handle<Vec> like = make_vector(problem.dofs());
-  RBVI_CALL(BVCreate(problem.comm(), basis.columns.put()));
-  RBVI_CALL(BVSetSizesFromVec(basis.columns.get(), like.get(),
-                              static_cast<PetscInt>(natural_columns.cols())));
-  RBVI_CALL(BVSetFromOptions(basis.columns.get()));
-  RBVI_CALL(BVSetMatrix(basis.columns.get(), problem.v_product(), PETSC_FALSE));
+  basis.columns = make_columns(like.get(), natural_columns.cols(), problem.v_product());
   for (Index j = 0; j < natural_columns.cols(); ++j)
     RBVI_CALL(BVInsertVec(basis.columns.get(), static_cast<PetscInt>(j),
                           from_natural(problem.dofs(), natural_columns.col(j)).get()));

@@ -2,9 +2,9 @@
 
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/io/checksum.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/fields_file.hpp"
-#include "separation/dense_rows.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -105,33 +105,13 @@ std::vector<int> gather_imposed(const Problem &problem) {
   return imposed_by;
 }
 
-/// The columns of a basis, borrowed.
-class BorrowedBasis {
-public:
-  explicit BorrowedBasis(const LinearBasis &basis) : basis_(basis.columns.get()) {
-    RBVI_CALL(BVGetMat(basis_, &columns_));
-    rows_.emplace(columns_);
-  }
-  ~BorrowedBasis() {
-    rows_.reset();
-    (void)BVRestoreMat(basis_, &columns_);
-  }
-  BorrowedBasis(const BorrowedBasis &) = delete;
-  BorrowedBasis &operator=(const BorrowedBasis &) = delete;
-  BorrowedRows::LocalRows rows() const { return rows_->rows(); }
-
-private:
-  BV basis_;
-  Mat columns_ = nullptr;
-  std::optional<BorrowedRows> rows_;
-};
-
 /// Calls visit(first, count, rows) for the rows of the basis, block by block; rows: on the first
 /// rank.
 template <class Visit>
 void visit_rows(const Problem &problem, const LinearBasis &basis, Visit &&visit) {
   constexpr Index entries_at_a_time = Index{1} << 22;
-  const BorrowedBasis borrowed(basis);
+  const BorrowedColumns columns(basis.columns.get());
+  const BorrowedRows borrowed(columns.get());
   const Index total = problem.dofs().total;
   const Index step = std::max<Index>(1, entries_at_a_time / std::max<Index>(1, basis.size()));
   for (Index first = 0; first < total; first += step) {
@@ -149,7 +129,8 @@ void gather_mesh(const Problem &problem, ReducedModel &model) {
 }
 
 std::string key_of_fields(const Problem &problem, const LinearBasis &basis) {
-  const BorrowedBasis borrowed(basis);
+  const BorrowedColumns columns(basis.columns.get());
+  const BorrowedRows borrowed(columns.get());
   std::uint64_t own = fnv1a(nullptr, 0);
   for (Index j = 0; j < borrowed.rows().cols(); ++j)
     own = fnv1a(borrowed.rows().col(j).data(),

@@ -1,6 +1,7 @@
 #include "rbvi/problem/distributed_contact.hpp"
 
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <unordered_set>
@@ -184,11 +185,7 @@ Vector on_every_rank(const DualLayout &layout, const Vector &own) {
 }
 
 Vector on_every_rank(const DualLayout &layout, Vec multipliers) {
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetArrayRead(multipliers, &values));
-  const Vector own = Eigen::Map<const Vector>(values, std::ssize(layout.rows));
-  RBVI_CALL(VecRestoreArrayRead(multipliers, &values));
-  return on_every_rank(layout, own);
+  return on_every_rank(layout, local_values(multipliers));
 }
 
 void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t interface,

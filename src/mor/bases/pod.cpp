@@ -2,6 +2,7 @@
 
 #include "append_block.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
@@ -135,12 +136,8 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
 
   const auto count = static_cast<PetscInt>(snapshots.size());
   Pod result;
-  RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(product)),
-                     result.basis.columns.put()));
+  result.basis.columns = make_columns(snapshots.front(), count, product);
   const BV columns = result.basis.columns.get();
-  RBVI_CALL(BVSetSizesFromVec(columns, snapshots.front(), count));
-  RBVI_CALL(BVSetType(columns, BVMAT));
-  RBVI_CALL(BVSetMatrix(columns, product, PETSC_FALSE));
 
   Matrix factor = Matrix::Zero(count, count);
   PetscInt rank = 0;
@@ -180,13 +177,9 @@ std::vector<int> append(BvColumns &basis, Mat product, Mat columns, double toler
   constexpr PetscInt width = 48; ///< columns at a time
   PetscInt count = 0;
   Handle<Vec> work;
-  Handle<BV> block;
   RBVI_CALL(MatGetSize(columns, nullptr, &count));
   RBVI_CALL(MatCreateVecs(columns, nullptr, work.put()));
-  RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(columns)), block.put()));
-  RBVI_CALL(BVSetSizesFromVec(block.get(), work.get(), std::max(1, std::min(width, count))));
-  RBVI_CALL(BVSetType(block.get(), BVMAT));
-  RBVI_CALL(BVSetMatrix(block.get(), product, PETSC_FALSE));
+  const Handle<BV> block = make_columns(work.get(), std::max(1, std::min(width, count)), product);
   std::vector<int> taken;
   for (PetscInt first = 0; first < count; first += width) {
     const PetscInt many = std::min(width, count - first);

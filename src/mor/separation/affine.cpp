@@ -3,6 +3,7 @@
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>

@@ -35,16 +35,6 @@ Vector LowerTriangle::values(Mat a) const {
   return result;
 }
 
-Vector local_values(Vec vector) {
-  PetscInt size = 0;
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetLocalSize(vector, &size));
-  RBVI_CALL(VecGetArrayRead(vector, &values));
-  Vector result = Eigen::Map<const Vector>(values, size);
-  RBVI_CALL(VecRestoreArrayRead(vector, &values));
-  return result;
-}
-
 std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix) {
   std::vector<EntryKey> keys;
   for (Index row = 0; row < matrix.rows(); ++row)

@@ -1,6 +1,7 @@
 #include "rbvi/mor/stability/stability.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
@@ -56,10 +57,7 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   const Index contact = space.factor.rows();
   Matrix coordinates = Matrix::Zero(contact + count, count);
   if (count == 0) return coordinates;
-  Mat columns = nullptr;
-  RBVI_CALL(BVGetMat(modes.columns.get(), &columns));
-  Matrix top = restrict_to(space.trace, columns);
-  RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
+  Matrix top = restrict_to(space.trace, BorrowedColumns(modes.columns.get()).get());
   if (space.loads.size() > 0) top = (space.loads.transpose() * top).eval();
   solve_lower(space.factor, top);
   const EigenPairs rest = eigen_pairs(Matrix::Identity(count, count) - top.transpose() * top);

@@ -1,6 +1,7 @@
 #include "rbvi/solve/linear/scaled_part.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/solve/linear/complement.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -13,17 +14,12 @@ namespace {
 
 /// Whether each local row of A has an entry.
 std::vector<bool> rows_with_entries(Mat a) {
-  PetscInt rows = 0;
-  RBVI_CALL(MatGetLocalSize(a, &rows, nullptr));
   Handle<Vec> largest;
   RBVI_CALL(MatCreateVecs(a, nullptr, largest.put()));
   RBVI_CALL(MatGetRowMaxAbs(a, largest.get(), nullptr));
   std::vector<bool> result;
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetArrayRead(largest.get(), &values));
-  for (PetscInt i = 0; i < rows; ++i)
-    result.push_back(values[i] > 0);
-  RBVI_CALL(VecRestoreArrayRead(largest.get(), &values));
+  for (const double value : local_values(largest.get()))
+    result.push_back(value > 0);
   return result;
 }
 
