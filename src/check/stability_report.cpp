@@ -43,7 +43,7 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<ContactPoint> &set, bool b_is_scaled) {
   constexpr Index count = 5;
-  Matrix values = Matrix::Zero(count, static_cast<Index>(set.size()));
+  Matrix values = Matrix::Zero(count, std::ssize(set));
   const Matrix modes = check.coordinates.leftCols(check.modes);
   std::optional<PairConstants> per_b; // over |b|, where b is scaled
   const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
@@ -56,7 +56,7 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
       const PairConstants pair = high_fidelity_pair(problem, check.space, op, sparse);
       per_b = {pair.beta / size, pair.c / size};
     }
-    values.col(static_cast<Index>(p)) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
+    values.col(p) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
   });
   over_ranks(comm, MPI_SUM, values);
   std::vector<InfSup> result;
@@ -100,7 +100,7 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
                                           const std::vector<int> &counts) {
   // Columns: what the worst is the largest of. Smallest values enter with their sign changed.
   enum { sigma, condition, minus_classic, minus_bound, minus_ratio, minus_beta, columns };
-  const auto size = static_cast<Index>(counts.size());
+  const auto size = std::ssize(counts);
   Matrix worst = Matrix::Constant(size, columns, -std::numeric_limits<double>::infinity());
   std::vector<int> exceptions(counts.size(), 0);
   take_turns(comm, set.size(), [&](std::size_t p) {

@@ -23,7 +23,7 @@ const std::array<int, 4> &order_of(int dim, int facet) {
 
 Cell facet_cell(const Cell &cell, int facet) {
   Cell result{cell.dim, {}, {}};
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i) {
+  for (int i = 0; i <= cell.dim; ++i) {
     const auto from = static_cast<std::size_t>(order_of(cell.dim, facet)[i]);
     result.reference[i] = cell.reference[from];
     result.mapped[i] = cell.mapped[from];

@@ -277,9 +277,8 @@ Vector imposed_values(const Scene &scene, const FullMu &all_parameters,
   for (std::size_t i = 0; i < imposed_by.size(); ++i)
     if (imposed_by[i] >= 0) {
       const std::size_t c = i % static_cast<std::size_t>(scene.components);
-      result[static_cast<Index>(i)] =
-          imposed_value(scene, all_parameters, imposed_by[i],
-                        nodes[i / static_cast<std::size_t>(scene.components)])[c];
+      result[i] = imposed_value(scene, all_parameters, imposed_by[i],
+                                nodes[i / static_cast<std::size_t>(scene.components)])[c];
     }
   return result;
 }

@@ -137,7 +137,7 @@ Form function_load(const std::string &region, double factor,
   if (lumped)
     return {region, [factor, psi](const FullMu &mu, const Cell &cell, double *values) {
               const double share = factor * volume_of(cell.dim, cell.mapped) / (cell.dim + 1);
-              for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
+              for (int i = 0; i <= cell.dim; ++i)
                 values[i] = share * psi(mu, cell.mapped[i]);
             }};
   return {region,

@@ -200,7 +200,7 @@ void fill_cells(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt firs
   for (PetscInt cell = begin; cell < end; ++cell) {
     const auto vertices = vertices_of(mesh.dm.get(), cell);
     std::array<int, 4> local{-1, -1, -1, -1};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i)
+    for (int i = 0; i <= mesh.dim; ++i)
       local[i] = static_cast<int>(vertices[i] - first_vertex);
     mesh.cells.push_back(local);
     mesh.natural_cell.push_back(original[cell]);

@@ -37,7 +37,7 @@ Matrix rows_of_basis(const Problem &problem, const BorrowedRows::LocalRows &loca
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] < first || numbers[i] >= first + count) continue;
     records.push_back(static_cast<double>(numbers[i] - first));
-    const auto row = local.row(static_cast<Index>(i));
+    const auto row = local.row(i);
     records.insert(records.end(), row.begin(), row.end());
   }
   const std::vector<double> all = gathered(problem.comm(), records);
@@ -71,7 +71,7 @@ std::vector<int> gather_cells(const Mesh &mesh) {
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     records.push_back(static_cast<double>(mesh.natural_cell[k]));
     const auto nodes = nodes_of(mesh, k);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
+    for (int i = 0; i < per_cell; ++i)
       records.push_back(static_cast<double>(mesh.natural_node[nodes[i]]));
   }
   const std::vector<double> all = gathered(mesh.comm, records);

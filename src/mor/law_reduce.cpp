@@ -130,8 +130,7 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
     const BodyAtMu body = solver.body_at(all, unused);
     CollocatedProblem reduced = collocated_problem(law.basis, body);
     problems.push_back({std::move(reduced.h), std::move(reduced.q),
-                        bounds_at(body.laws.bound, nodes),
-                        coefficients.col(static_cast<Index>(p)).tail(tangential)});
+                        bounds_at(body.laws.bound, nodes), coefficients.col(p).tail(tangential)});
   }
   const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
   Gcns selected =

@@ -129,8 +129,7 @@ void store_multipliers(const Problem &problem, const std::vector<Sample> &sample
   if (!follows_state(problem.scene())) return;
   law.states.resize(problem.trace().size, law.starts.cols());
   for (std::size_t p = 0; p < samples.size(); ++p)
-    law.states.col(static_cast<Index>(p)) =
-        displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
+    law.states.col(p) = displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
 }
 
 /// e_EIM along the terms, and the training number of each.

@@ -178,7 +178,7 @@ Handle<Vec> distribute(const DualLayout &layout, const Vector &multipliers) {
 }
 
 Vector on_every_rank(const DualLayout &layout, const Vector &own) {
-  Vector result = Vector::Zero(static_cast<Index>(layout.numbers.size()));
+  Vector result = Vector::Zero(std::ssize(layout.numbers));
   result(layout.rows) = own;
   over_ranks(layout.comm, MPI_SUM, result); // exact: zero but on the owner
   return result;
@@ -192,7 +192,7 @@ void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t i
                  ContactOperators &operators) {
   std::vector<Index> nodes, rows;
   const WantedNodes &own = layout.own[interface];
-  for (Index node = 0; node < static_cast<Index>(own.size()); ++node) {
+  for (Index node = 0; node < std::ssize(own); ++node) {
     if (!own[node]) continue;
     nodes.push_back(node);
     for (const Index row : rows_of(contact, interface, node))

@@ -34,7 +34,7 @@ Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &
 
 Matrix condensed_columns(KSP ksp, const Trace &trace, const Operators &op,
                          const std::vector<Index> &which) {
-  Matrix columns(op.b.rows(), static_cast<Index>(which.size()));
+  Matrix columns(op.b.rows(), std::ssize(which));
   for (Index first = 0; first < columns.cols(); first += block) {
     const Index count = std::min(block, columns.cols() - first);
     Matrix loads = Matrix::Zero(op.b.cols(), count);
@@ -98,18 +98,18 @@ Matrix Compliance::condensed_columns(KSP ksp, const Trace &trace, const Operator
   for (const Index row : which)
     for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
       if (Index &at = position[entry.col()]; at < 0) {
-        at = static_cast<Index>(touched.size());
+        at = std::ssize(touched);
         touched.push_back(entry.col());
       }
   require(ksp, trace, op.a, touched);
-  Matrix unit(trace.size, static_cast<Index>(touched.size()));
+  Matrix unit(trace.size, std::ssize(touched));
   for (std::size_t k = 0; k < touched.size(); ++k)
-    unit.col(static_cast<Index>(k)) = columns_.col(slot_[touched[k]]);
+    unit.col(k) = columns_.col(slot_[touched[k]]);
   const Matrix constraint = op.b * unit;
-  Matrix result = Matrix::Zero(op.b.rows(), static_cast<Index>(which.size()));
+  Matrix result = Matrix::Zero(op.b.rows(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
     for (SparseMatrix::InnerIterator entry(op.b, which[k]); entry; ++entry)
-      result.col(static_cast<Index>(k)) += entry.value() * constraint.col(position[entry.col()]);
+      result.col(k) += entry.value() * constraint.col(position[entry.col()]);
   return result;
 }
 

@@ -54,8 +54,8 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
                       ": use another -out or restore the option");
   }
   const auto found = theirs.find(whole_scene);
-  const std::string difference =
-      scene_difference(found == theirs.end() ? "" : found->second, mine.at(whole_scene), true);
+  const std::string difference = scene_difference(found == theirs.end() ? "" : found->second,
+                                                  mine.at(whole_scene), Further::refused);
   if (!difference.empty())
     throw bad_input("the samples in " + path.parent_path().string() + " are of another scene: " +
                     difference + ": rbvi offline makes them anew in another -out");

@@ -23,7 +23,7 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, LawSolver
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
     try {
       const ReducedAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
-      answers.col(static_cast<Index>(p)) =
+      answers.col(p) =
           !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
     } catch (const Error &) { // the self-check tells of such mu
     }

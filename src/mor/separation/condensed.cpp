@@ -252,14 +252,14 @@ Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOpti
     const std::vector<Vector> blocks = blocks_at(added);
     for (std::size_t k = 0; k < added.size(); ++k)
       known.emplace(added[k], blocks[k]);
-    Matrix values(known.begin()->second.size(), static_cast<Index>(grid.size()));
+    Matrix values(known.begin()->second.size(), std::ssize(grid));
     for (std::size_t k = 0; k < grid.size(); ++k)
-      values.col(static_cast<Index>(k)) = known.at(grid[k]);
+      values.col(k) = known.at(grid[k]);
     const Vector tails = chebyshev_tails(condensed.axes, values);
     condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
     if (condensed.error <= options.tolerance) return values;
     for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
-      if (tails[static_cast<Index>(d)] <= options.tolerance) continue;
+      if (tails[d] <= options.tolerance) continue;
       ChebyshevAxis &axis = condensed.axes[d];
       if (2 * axis.points - 1 > options.max_points)
         throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +

@@ -26,7 +26,7 @@ LowerTriangle::LowerTriangle(Mat a, const Dofs &dofs) {
 }
 
 Vector LowerTriangle::values(Mat a) const {
-  Vector result(static_cast<Index>(keys_.size()));
+  Vector result(std::ssize(keys_));
   auto taken = taken_.begin();
   Index next = 0;
   visit_entries(a, [&](PetscInt, PetscInt, double value) {

@@ -29,7 +29,7 @@ void check_functions_of(const ReducedModel &model) {
   const auto text = model.settings.find(whole_scene);
   if (text == model.settings.end()) return;
   const std::string difference =
-      scene_difference(text->second, scene_text(scene, contact_of(model, scene)), false);
+      scene_difference(text->second, scene_text(scene, contact_of(model, scene)), Further::allowed);
   if (!difference.empty())
     throw bad_input("the scene of the model is another one in this build: " + difference +
                     ": make the model again by rbvi offline with another -out, or use the build "

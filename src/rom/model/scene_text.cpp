@@ -303,7 +303,7 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   return text.str();
 }
 
-std::string scene_difference(const std::string &theirs, const std::string &mine, bool whole) {
+std::string scene_difference(const std::string &theirs, const std::string &mine, Further further) {
   const Lines before = lines_in(theirs), now = lines_in(mine);
   const auto value_in = [](const Lines &lines, const std::string &name) -> std::string {
     const auto found = std::ranges::find(lines, name, &Lines::value_type::first);
@@ -313,7 +313,8 @@ std::string scene_difference(const std::string &theirs, const std::string &mine,
     if (const std::string old = value_in(before, name); !same(name, old, value))
       return name + " is " + value + ", it was " + old;
   for (const auto &[name, value] : before)
-    if (whole && value_in(now, name) == "not there") return name + " was " + value + " and is gone";
+    if (further == Further::refused && value_in(now, name) == "not there")
+      return name + " was " + value + " and is gone";
   return "";
 }
 

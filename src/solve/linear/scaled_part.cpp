@@ -115,9 +115,9 @@ void ScaledPart::set(const Operators &op) {
 }
 
 Matrix ScaledPart::columns(const std::vector<Index> &which) const {
-  Matrix loads = Matrix::Zero(op_->b.cols(), static_cast<Index>(which.size()));
+  Matrix loads = Matrix::Zero(op_->b.cols(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
-    loads.col(static_cast<Index>(k)) = op_->b.row(which[k]).transpose();
+    loads.col(k) = op_->b.row(which[k]).transpose();
   Matrix result = op_->b * Matrix(compliance_ * loads.sparseView());
   result.noalias() -= by_ * (phi_.asDiagonal() * by_(which, Eigen::all).transpose());
   return result;
