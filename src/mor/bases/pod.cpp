@@ -85,20 +85,6 @@ void fix_signs(SmallSvd &svd) {
   }
 }
 
-std::vector<double> projection_errors(const Vector &values) {
-  std::vector<double> errors(static_cast<std::size_t>(values.size()) + 1, 0.0);
-  const Vector scaled = values / values(0);
-  double tail = 0;
-  for (Index n = values.size() - 1; n >= 0; --n) {
-    tail += scaled(n) * scaled(n);
-    errors[n] = std::sqrt(tail);
-  }
-  const double total = errors[0];
-  for (double &error : errors)
-    error /= total;
-  return errors;
-}
-
 Index truncation(const Vector &values, const std::vector<double> &errors,
                  const PodOptions &options) {
   const auto splits = [&](Index n) {
@@ -121,6 +107,20 @@ Index truncation(const Vector &values, const std::vector<double> &errors,
 }
 
 } // namespace
+
+std::vector<double> projection_errors(const Vector &values) {
+  std::vector<double> errors(static_cast<std::size_t>(values.size()) + 1, 0.0);
+  const Vector scaled = values / values(0);
+  double tail = 0;
+  for (Index n = values.size() - 1; n >= 0; --n) {
+    tail += scaled(n) * scaled(n);
+    errors[n] = std::sqrt(tail);
+  }
+  const double total = errors[0];
+  for (double &error : errors)
+    error /= total;
+  return errors;
+}
 
 PetscInt LinearBasis::size() const {
   PetscInt count = 0;
