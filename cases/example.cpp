@@ -40,7 +40,7 @@ Sweep snapshots(const Scene &scene, const std::string &directory) {
   const Groups groups(PETSC_COMM_WORLD, 1);
   Problem problem(groups.comm(), scene, {});
   return run_sweep(PETSC_COMM_WORLD, groups, problem, {}, parse_set(scene.parameters, "grid:9,9"),
-                   directory);
+                   {directory});
 }
 
 /// 4. The primal basis V_N: modes of the displacements, orthonormal in V, as many as leave the

@@ -41,14 +41,9 @@ constexpr double deepest_narrow = 0.13, deepest_wide = 0.2;
 /// Positions of the parameters.
 enum Position { radius, indentation, friction, core_stiffness, poisson_ratio, offset };
 
-double norm(const Point &x) {
-  return std::sqrt(x[0] * x[0] + x[1] * x[1]);
-}
-
 /// Point of the exact arc.
 Point on_arc(const FullMu &mu, const Point &x) {
-  const double scale = mu[radius] / norm(x);
-  return {scale * x[0], scale * x[1], 0};
+  return mu[radius] / norm(x) * x;
 }
 
 /// From the centre of the rigid disk, (offset, -R - initial_gap - 1), to a point.
@@ -57,21 +52,19 @@ Point from_support(const FullMu &mu, const Point &x) {
 }
 
 Point radial_normal(const FullMu &, const Point &x) {
-  const double distance = norm(x);
-  return {x[0] / distance, x[1] / distance, 0};
+  return x / norm(x);
 }
 
 /// Normal of the rigid disk at the point next to x, towards it.
 Point rigid_normal(const FullMu &mu, const Point &x) {
   const Point p = from_support(mu, on_arc(mu, x));
-  const double distance = norm(p);
-  return {-p[0] / distance, -p[1] / distance, 0};
+  return Point{} - p / norm(p);
 }
 
 /// Along the normal n from p to the disk |p| = 1 (p being from its centre).
 double gap_along(const Point &p, const Point &n) {
-  const double half = p[0] * n[0] + p[1] * n[1];
-  const double root = half * half - (p[0] * p[0] + p[1] * p[1] - 1);
+  const double half = dot(p, n);
+  const double root = half * half - (dot(p, p) - 1);
   if (!(root > 0)) throw failure("a ray along the normal misses the rigid disk: use -gap closest");
   return -half - std::sqrt(root);
 }
@@ -80,7 +73,7 @@ SurfacePoint rigid_disk_at(const FullMu &mu, const Point &y) {
   const Point p = from_support(mu, y);
   const double distance = norm(p);
   if (!(distance > 0)) throw failure("a point of the body is at the centre of the rigid disk");
-  return {distance - 1, {p[0] / distance, p[1] / distance, 0}, 1 / distance};
+  return {distance - 1, p / distance, 1 / distance};
 }
 
 const auto surfaces = plain<Surface>("rigid_disk/surface", 1, rigid_disk_at);
@@ -94,14 +87,14 @@ std::function<PointValue> gap_function(const std::string &kind, bool from_arc,
                                        const std::function<PointMap> &normal) {
   return [=, along_normal = kind == "ray", vertical = kind == "vertical"](const FullMu &mu,
                                                                           const Point &x) {
-    const Point at = from_arc ? on_arc(mu, x) : Point{mu[radius] * x[0], mu[radius] * x[1], 0};
+    const Point at = from_arc ? on_arc(mu, x) : mu[radius] * x;
     const Point p = from_support(mu, at), n = normal(mu, x);
     if (along_normal) return gap_along(p, n);
     if (vertical) {
       if (!(std::abs(p[0]) < 1)) throw failure("no point of the rigid disk is below the arc");
       return (std::sqrt(1 - p[0] * p[0]) - p[1]) * n[1];
     }
-    return (1 / norm(p) - 1) * (p[0] * n[0] + p[1] * n[1]);
+    return (1 / norm(p) - 1) * dot(p, n);
   };
 }
 
@@ -196,8 +189,8 @@ void check_on_wide_arc(const FullMu &all) {
 void check_facing(const FullMu &all, double half_angle) {
   for (const double angle : {-half_angle, half_angle}) {
     const Point n{std::sin(angle), -std::cos(angle), 0};
-    const Point p = from_support(all, {all[radius] * n[0], all[radius] * n[1], 0});
-    if (!(p[0] * n[0] + p[1] * n[1] < 0))
+    const Point p = from_support(all, all[radius] * n);
+    if (!(dot(p, n) < 0))
       throw bad_input("at a radius of " + short_number(all[radius]) + " and an offset of " +
                       short_number(all[offset]) +
                       " an end of the contact arc faces away from the rigid disk: make them "
@@ -251,9 +244,8 @@ const Maker<Material> ring_and_core{
       };
     }};
 
-const auto scaled = plain<PointMap>("rigid_disk/scaled", 1, [](const FullMu &mu, const Point &x) {
-  return Point{mu[radius] * x[0], mu[radius] * x[1], 0};
-});
+const auto scaled = plain<PointMap>(
+    "rigid_disk/scaled", 1, [](const FullMu &mu, const Point &x) { return mu[radius] * x; });
 
 const auto pushed_down =
     plain<PointMap>("rigid_disk/pushed_down", 1, [](const FullMu &mu, const Point &) {

@@ -123,7 +123,8 @@ double quantile(std::vector<double> values, double fraction) {
 }
 
 BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vector<Sample> &truths,
-                      std::size_t count, bool cold) {
+                      std::size_t count, From from) {
+  const bool cold = from == From::cold;
   HfOptions of_all = options;
   of_all.samples = cold ? 1 : static_cast<int>(count);
   HighFidelity solver(problem, of_all);
@@ -253,7 +254,7 @@ BenchRow bench_vi(Problem &lumped, const std::vector<Mu> &set) {
     HfSolution truth = active_set.solve(mu);
     truths.push_back({mu, std::move(truth.u), std::move(truth.lambda), truth.outputs});
   }
-  return bench_solver(lumped, options, truths, truths.size(), true);
+  return bench_solver(lumped, options, truths, truths.size(), From::cold);
 }
 
 BenchRow bench_interpolation(Problem &problem, const std::vector<Sample> &snapshots,

@@ -128,7 +128,7 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
   for (std::size_t v = 0; v < mesh.points.size(); ++v) {
     const Point motion = scene.motion ? scene.motion(all, mesh.points[v]) : Point{};
     for (std::size_t c = 0; c < count; ++c)
-      whole[static_cast<Index>(v * count + c)] =
+      whole[v * count + c] =
           motion[c] + u[mesh.natural_node[v] * scene.components + static_cast<Index>(c)];
   }
   double square =
@@ -139,7 +139,7 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
 
 Truths make_truths(Problem &problem, const ReducedModel &model,
                    const std::vector<Sample> &samples) {
-  const Index n = model.primal_size(), count = static_cast<Index>(samples.size());
+  const Index n = model.primal_size(), count = std::ssize(samples);
   if (model.primal_basis.rows() != problem.dofs().total)
     throw failure("errors of the displacement need the fields of the model");
   Mat v = problem.v_product();
@@ -186,7 +186,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
 ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, const Truths &truths,
                          const SparseMatrix &w_product) {
   using Clock = std::chrono::steady_clock;
-  const Index count = static_cast<Index>(truths.mu.size()), k = model.primal_size();
+  const Index count = std::ssize(truths.mu), k = model.primal_size();
   OnlineSolver solver(model);
   const bool friction = truths.tangential_norm.size() > 0;
   const Vector normal = normal_rows(solver.contact());

@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 #include "rbvi/rom/online.hpp"
 
@@ -87,7 +88,7 @@ const std::vector<double> &history(const ReducedModel &model, const std::string 
 /// sum up to the operator. Entries x terms. Collective.
 Matrix functions_of(Problem &problem, const ReducedModel &model, const Separated &part) {
   const std::vector<double> &selected = history(model, "eim_selected/" + part.name);
-  if (static_cast<Index>(selected.size()) != part.terms)
+  if (std::ssize(selected) != part.terms)
     throw failure("the model does not say where the terms of " + part.name + " are from");
   Matrix functions;
   for (Index i = 0; i < part.terms; ++i) {

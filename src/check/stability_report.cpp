@@ -2,6 +2,7 @@
 
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/stability/high_fidelity_pair.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/par/turns.hpp"
 
@@ -19,11 +20,7 @@ constexpr double round_off = 1e-10;
 LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
   LinearBasis basis;
   const Handle<Vec> like = make_vector(problem.dofs());
-  RBVI_CALL(BVCreate(problem.comm(), basis.columns.put()));
-  RBVI_CALL(BVSetSizesFromVec(basis.columns.get(), like.get(),
-                              static_cast<PetscInt>(natural_columns.cols())));
-  RBVI_CALL(BVSetFromOptions(basis.columns.get()));
-  RBVI_CALL(BVSetMatrix(basis.columns.get(), problem.v_product(), PETSC_FALSE));
+  basis.columns = make_columns(like.get(), natural_columns.cols(), problem.v_product());
   for (Index j = 0; j < natural_columns.cols(); ++j)
     RBVI_CALL(BVInsertVec(basis.columns.get(), static_cast<PetscInt>(j),
                           from_natural(problem.dofs(), natural_columns.col(j)).get()));
@@ -46,7 +43,7 @@ StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model)
 std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
                                 const std::vector<ContactPoint> &set, bool b_is_scaled) {
   constexpr Index count = 5;
-  Matrix values = Matrix::Zero(count, static_cast<Index>(set.size()));
+  Matrix values = Matrix::Zero(count, std::ssize(set));
   const Matrix modes = check.coordinates.leftCols(check.modes);
   std::optional<PairConstants> per_b; // over |b|, where b is scaled
   const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
@@ -59,7 +56,7 @@ std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const Stability
       const PairConstants pair = high_fidelity_pair(problem, check.space, op, sparse);
       per_b = {pair.beta / size, pair.c / size};
     }
-    values.col(static_cast<Index>(p)) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
+    values.col(p) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
   });
   over_ranks(comm, MPI_SUM, values);
   std::vector<InfSup> result;
@@ -103,7 +100,7 @@ std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
                                           const std::vector<int> &counts) {
   // Columns: what the worst is the largest of. Smallest values enter with their sign changed.
   enum { sigma, condition, minus_classic, minus_bound, minus_ratio, minus_beta, columns };
-  const auto size = static_cast<Index>(counts.size());
+  const auto size = std::ssize(counts);
   Matrix worst = Matrix::Constant(size, columns, -std::numeric_limits<double>::infinity());
   std::vector<int> exceptions(counts.size(), 0);
   take_turns(comm, set.size(), [&](std::size_t p) {

@@ -74,12 +74,6 @@ Matrix triangular_factor(const Matrix &matrix) {
       .triangularView<Eigen::Upper>();
 }
 
-Matrix pivoted_range(const Matrix &matrix, double threshold) {
-  Eigen::ColPivHouseholderQR<Matrix> qr(matrix);
-  qr.setThreshold(threshold);
-  return qr.householderQ() * Matrix::Identity(matrix.rows(), qr.maxPivot() > 0 ? qr.rank() : 0);
-}
-
 EigenPairs eigen_pairs(const Matrix &matrix) {
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(matrix);
   if (solver.info() != Eigen::Success || !solver.eigenvalues().allFinite())

@@ -218,23 +218,12 @@ void ResolutionTally::print(std::ostream &out, const char *answers) const {
 }
 
 bool is_table_column(const std::string &name) {
-  static const std::vector<std::string> others{"id",
-                                               "status",
-                                               "training",
-                                               "max_aspect_ratio",
-                                               "u_enriched",
-                                               "u_floor",
-                                               "lambda_floor",
-                                               "lambda_enriched",
-                                               "tangential_enriched",
-                                               "u_decorrelated",
-                                               "lambda_decorrelated",
-                                               "tangential_decorrelated",
-                                               "beta_hf",
-                                               "beta_on",
-                                               "beta_off",
-                                               "beta_dec"};
-  if (std::find(others.begin(), others.end(), name) != others.end()) return true;
+  static const std::vector<std::string> others =
+      split("id status training max_aspect_ratio u_enriched u_floor lambda_floor lambda_enriched "
+            "tangential_enriched u_decorrelated lambda_decorrelated tangential_decorrelated "
+            "beta_hf beta_on beta_off beta_dec",
+            ' ');
+  if (std::ranges::find(others, name) != others.end()) return true;
   return std::any_of(output_columns().begin(), output_columns().end(),
                      [&](const OutputColumn &column) {
                        return name == column.name || name == std::string(column.name) + "_error";

@@ -22,7 +22,7 @@ Index component_count(int dim) {
 Cell cell_of(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
              const int *nodes) {
   Cell cell{scene.dim, {}, {}};
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(scene.dim); ++i)
+  for (int i = 0; i <= scene.dim; ++i)
     for (Index k = 0; k < points.cols(); ++k)
       cell.reference[i][k] = points(nodes[i], k);
   map_cell(scene, all_parameters, cell);
@@ -96,8 +96,7 @@ Vector body_numbers(const std::vector<int> &cells, int per_cell, Index nodes, in
   Vector result(static_cast<Index>(cells.size() / step));
   for (std::size_t k = 0; k < cells.size(); k += step) {
     const int next = static_cast<int>(numbers.size()) + 1;
-    result[static_cast<Index>(k / step)] =
-        numbers.try_emplace(root_of(above, cells[k]), next).first->second;
+    result[k / step] = numbers.try_emplace(root_of(above, cells[k]), next).first->second;
   }
   return result;
 }

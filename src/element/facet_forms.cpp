@@ -37,9 +37,8 @@ std::array<std::vector<FacetPoint>, 2> facet_rules(int degree) {
 
 Point mapped_point(const Cell &cell, const FacetPoint &point) {
   Point x{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(cell.dim); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      x[c] += point.barycentric[i] * cell.mapped[i][c];
+  for (int i = 0; i < cell.dim; ++i)
+    x = x + point.barycentric[i] * cell.mapped[i];
   return x;
 }
 

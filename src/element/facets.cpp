@@ -23,7 +23,7 @@ const std::array<int, 4> &order_of(int dim, int facet) {
 
 Cell facet_cell(const Cell &cell, int facet) {
   Cell result{cell.dim, {}, {}};
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i) {
+  for (int i = 0; i <= cell.dim; ++i) {
     const auto from = static_cast<std::size_t>(order_of(cell.dim, facet)[i]);
     result.reference[i] = cell.reference[from];
     result.mapped[i] = cell.mapped[from];
@@ -46,15 +46,11 @@ std::vector<int> facet_nodes(int dim, int degree, int facet) {
 }
 
 FacetMeasure facet_measure(int dim, const std::array<Point, 4> &vertices) {
-  const auto edge = [&](std::size_t end) {
-    return Eigen::Vector3d(vertices[end][0] - vertices[0][0], vertices[end][1] - vertices[0][1],
-                           vertices[end][2] - vertices[0][2]);
-  };
-  const Eigen::Vector3d first = edge(1);
-  const Eigen::Vector3d outwards =
-      dim == 2 ? Eigen::Vector3d(first[1], -first[0], 0) : (edge(2).cross(first) / 2).eval();
-  const double size = outwards.norm();
-  return {size, {outwards[0] / size, outwards[1] / size, outwards[2] / size}};
+  const Point first = vertices[1] - vertices[0];
+  const Point outwards =
+      dim == 2 ? Point{first[1], -first[0], 0} : cross(vertices[2] - vertices[0], first) / 2;
+  const double size = norm(outwards);
+  return {size, outwards / size};
 }
 
 } // namespace rbvi

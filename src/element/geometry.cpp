@@ -8,24 +8,20 @@ namespace rbvi {
 
 namespace {
 
-Eigen::Vector3d difference(const Point &x, const Point &y) {
-  return {x[0] - y[0], x[1] - y[1], x[2] - y[2]};
-}
-
 /// Columns: the edges from vertex 0; in 2D the third is e_z.
 Eigen::Matrix3d edges_of(int dim, const std::array<Point, 4> &vertices) {
   Eigen::Matrix3d edges = Eigen::Matrix3d::Identity();
   for (int j = 0; j < dim; ++j)
-    edges.col(j) = difference(vertices[static_cast<std::size_t>(j) + 1], vertices[0]);
+    edges.col(j) = Eigen::Vector3d((vertices[j + 1] - vertices[0]).data());
   return edges;
 }
 
 double longest_edge(int dim, const std::array<Point, 4> &vertices) {
   double longest = 0;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      longest = std::max(longest, difference(vertices[i], vertices[j]).squaredNorm());
-  return std::sqrt(longest);
+  for (int i = 0; i <= dim; ++i)
+    for (int j = 0; j < i; ++j)
+      longest = std::max(longest, norm(vertices[i] - vertices[j]));
+  return longest;
 }
 
 } // namespace
@@ -50,12 +46,9 @@ double volume_of(int dim, const std::array<Point, 4> &vertices) {
 
 Point reference_centre(const Cell &cell) {
   Point sum{};
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      sum[c] += cell.reference[i][c];
-  for (double &coordinate : sum)
-    coordinate /= cell.dim + 1;
-  return sum;
+  for (int i = 0; i <= cell.dim; ++i)
+    sum = sum + cell.reference[i];
+  return sum / (cell.dim + 1);
 }
 
 void check_orientation(const Scene &scene, const FullMu &mu, const Cell &cell) {
@@ -67,7 +60,7 @@ void check_orientation(const Scene &scene, const FullMu &mu, const Cell &cell) {
 }
 
 void map_cell(const Scene &scene, const FullMu &mu, Cell &cell) {
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
+  for (int i = 0; i <= cell.dim; ++i)
     cell.mapped[i] = scene.map(mu, cell.reference[i]);
   check_orientation(scene, mu, cell);
 }

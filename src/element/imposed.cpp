@@ -66,9 +66,7 @@ Point sum_of(const std::vector<ImposedTerm> &terms, bool with_exact, const FullM
   for (const ImposedTerm &term : terms) {
     if (term.theta && !with_exact) continue;
     const double theta = product_of(term.theta, mu);
-    const Point value = term.value(term.theta ? FullMu{} : mu, x);
-    for (std::size_t c = 0; c < sum.size(); ++c)
-      sum[c] += theta * value[c];
+    sum = sum + theta * term.value(term.theta ? FullMu{} : mu, x);
   }
   return sum;
 }
@@ -207,8 +205,7 @@ std::vector<Point> node_points(int dim, int degree, const Cell &cell) {
   std::vector<Point> points(cell.reference.begin(), cell.reference.begin() + dim + 1);
   const auto count = static_cast<std::size_t>(nodes_per_cell(dim, degree));
   for (std::size_t e = 0; points.size() < count; ++e) {
-    const Point &a = cell.reference[simplex_edges[e][0]], &b = cell.reference[simplex_edges[e][1]];
-    points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+    points.push_back((points[simplex_edges[e][0]] + points[simplex_edges[e][1]]) / 2);
   }
   return points;
 }
@@ -280,9 +277,8 @@ Vector imposed_values(const Scene &scene, const FullMu &all_parameters,
   for (std::size_t i = 0; i < imposed_by.size(); ++i)
     if (imposed_by[i] >= 0) {
       const std::size_t c = i % static_cast<std::size_t>(scene.components);
-      result[static_cast<Index>(i)] =
-          imposed_value(scene, all_parameters, imposed_by[i],
-                        nodes[i / static_cast<std::size_t>(scene.components)])[c];
+      result[i] = imposed_value(scene, all_parameters, imposed_by[i],
+                                nodes[i / static_cast<std::size_t>(scene.components)])[c];
     }
   return result;
 }

@@ -38,7 +38,7 @@ std::vector<QuadraturePoint> simplex_quadrature(int dim, int degree) {
       weight *= denominator;
     for (const std::array<int, 4> &k : compositions(dim, s - i)) {
       QuadraturePoint point{{0, 0, 0, 0}, weight};
-      for (std::size_t j = 0; j <= static_cast<std::size_t>(dim); ++j)
+      for (int j = 0; j <= dim; ++j)
         point.barycentric[j] = (2.0 * k[j] + 1) / denominator;
       points.push_back(point);
     }
@@ -49,9 +49,9 @@ std::vector<QuadraturePoint> simplex_quadrature(int dim, int degree) {
 std::vector<QuadraturePoint> positive_quadrature(int dim) {
   const double far = (1 - 1 / std::sqrt(dim + 2.0)) / (dim + 1), near = 1 - dim * far;
   std::vector<QuadraturePoint> points;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i) {
+  for (int i = 0; i <= dim; ++i) {
     QuadraturePoint point{{0, 0, 0, 0}, 1.0 / (dim + 1)};
-    for (std::size_t j = 0; j <= static_cast<std::size_t>(dim); ++j)
+    for (int j = 0; j <= dim; ++j)
       point.barycentric[j] = i == j ? near : far;
     points.push_back(point);
   }

@@ -137,7 +137,7 @@ Form function_load(const std::string &region, double factor,
   if (lumped)
     return {region, [factor, psi](const FullMu &mu, const Cell &cell, double *values) {
               const double share = factor * volume_of(cell.dim, cell.mapped) / (cell.dim + 1);
-              for (std::size_t i = 0; i <= static_cast<std::size_t>(cell.dim); ++i)
+              for (int i = 0; i <= cell.dim; ++i)
                 values[i] = share * psi(mu, cell.mapped[i]);
             }};
   return {region,
@@ -149,8 +149,7 @@ Form function_load(const std::string &region, double factor,
             for (const QuadraturePoint &q : rule[count - 3]) {
               Point x{};
               for (std::size_t i = 0; i < count; ++i)
-                for (std::size_t c = 0; c < 3; ++c)
-                  x[c] += q.barycentric[i] * cell.mapped[i][c];
+                x = x + q.barycentric[i] * cell.mapped[i];
               const double value = scale * q.weight * psi(mu, x);
               for (std::size_t i = 0; i < count; ++i)
                 values[i] += value * q.barycentric[i];

@@ -43,7 +43,7 @@ std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell
 Cell cell_of(const Mesh &mesh, std::size_t cell, const MappedVertices &mapped) {
   Cell result{mesh.dim, {}, {}};
   const std::vector<Point> &moved = mapped.empty() ? mesh.points : mapped;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i) {
+  for (int i = 0; i <= mesh.dim; ++i) {
     const auto vertex = static_cast<std::size_t>(mesh.cells[cell][i]);
     result.reference[i] = mesh.points[vertex];
     result.mapped[i] = moved[vertex];

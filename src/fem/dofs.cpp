@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 
 #include <algorithm>
 
@@ -114,11 +115,7 @@ Handle<Vec> make_vector(const Dofs &dofs) {
 
 Vector to_natural(const Dofs &dofs, Vec free) {
   Vector natural = Vector::Zero(dofs.total);
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetArrayRead(free, &values));
-  for (std::size_t i = 0; i < dofs.natural_owned.size(); ++i)
-    natural[dofs.natural_owned[i]] = values[i];
-  RBVI_CALL(VecRestoreArrayRead(free, &values));
+  natural(dofs.natural_owned) = local_values(free);
   over_ranks(dofs.comm, MPI_SUM, natural);
   return natural;
 }

@@ -302,7 +302,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
     places.natural_nodes.push_back(std::move(found.natural));
   }
   for (InterfaceMesh &interface : places.meshes)
-    interface.columns = static_cast<Index>(natural_dofs.size());
+    interface.columns = std::ssize(natural_dofs);
   places.trace = make_trace(dofs, natural_dofs);
   return places;
 }

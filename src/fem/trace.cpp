@@ -1,6 +1,7 @@
 #include "rbvi/fem/trace.hpp"
 
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 
 #include <unordered_map>
 
@@ -43,26 +44,15 @@ std::vector<PetscInt> global_rows(const Trace &trace, PetscInt first) {
 
 Vector restrict_to(const Trace &trace, Vec u) {
   Vector values = Vector::Zero(trace.size);
-  const double *local = nullptr;
-  RBVI_CALL(VecGetArrayRead(u, &local));
-  for (std::size_t k = 0; k < trace.index.size(); ++k)
-    values(trace.index[k]) = local[trace.local_row[k]];
-  RBVI_CALL(VecRestoreArrayRead(u, &local));
+  values(trace.index) = local_values(u)(trace.local_row);
   over_ranks(trace.comm, MPI_SUM, values); // exact: zero but on the owner
   return values;
 }
 
 Matrix restrict_to(const Trace &trace, Mat dense) {
-  PetscInt columns = 0, stride = 0;
-  RBVI_CALL(MatGetSize(dense, nullptr, &columns));
-  RBVI_CALL(MatDenseGetLDA(dense, &stride));
-  Matrix values = Matrix::Zero(trace.size, columns);
-  const double *local = nullptr;
-  RBVI_CALL(MatDenseGetArrayRead(dense, &local));
-  for (Index j = 0; j < columns; ++j)
-    for (std::size_t k = 0; k < trace.index.size(); ++k)
-      values(trace.index[k], j) = local[trace.local_row[k] + j * stride];
-  RBVI_CALL(MatDenseRestoreArrayRead(dense, &local));
+  const BorrowedRows local(dense);
+  Matrix values = Matrix::Zero(trace.size, local.rows().cols());
+  values(trace.index, Eigen::all) = local.rows()(trace.local_row, Eigen::all);
   over_ranks(trace.comm, MPI_SUM, values); // exact: zero but on the owner
   return values;
 }
@@ -76,11 +66,8 @@ void add_extension(const Trace &trace, const Eigen::Ref<const Vector> &values, V
 }
 
 Handle<Mat> extension(const Trace &trace, const Matrix &values, Mat like) {
-  PetscInt local_rows = 0, stride = 0;
-  RBVI_CALL(MatGetLocalSize(like, &local_rows, nullptr));
-  Handle<Mat> dense;
-  RBVI_CALL(MatCreateDense(trace.comm, local_rows, PETSC_DECIDE, PETSC_DETERMINE,
-                           static_cast<PetscInt>(values.cols()), nullptr, dense.put()));
+  Handle<Mat> dense = make_dense(like, values.cols());
+  PetscInt stride = 0;
   RBVI_CALL(MatDenseGetLDA(dense.get(), &stride));
   double *local = nullptr;
   RBVI_CALL(MatDenseGetArray(dense.get(), &local));
@@ -88,8 +75,6 @@ Handle<Mat> extension(const Trace &trace, const Matrix &values, Mat like) {
     for (std::size_t k = 0; k < trace.index.size(); ++k)
       local[trace.local_row[k] + j * stride] += values(trace.index[k], j);
   RBVI_CALL(MatDenseRestoreArray(dense.get(), &local));
-  RBVI_CALL(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
-  RBVI_CALL(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));
   return dense;
 }
 

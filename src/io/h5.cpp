@@ -263,7 +263,7 @@ struct H5Reader::Impl {
   Container list(const std::string &name, H5T_class_t type, hid_t memory) const {
     const Id set = open(name);
     const std::vector<hsize_t> size = shape(name, set.get(), 1, type);
-    Container values(static_cast<Container::size_type>(size[0]));
+    Container values(static_cast<Index>(size[0]));
     read(name, set.get(), memory, values.data());
     return values;
   }
@@ -306,7 +306,7 @@ bool H5Reader::has(const std::string &name) const {
   return impl_->has(name);
 }
 
-Matrix H5Reader::matrix(const std::string &name) const {
+template <> Matrix H5Reader::read(const std::string &name) const {
   const Id set = impl_->open(name);
   const std::vector<hsize_t> shape = impl_->shape(name, set.get(), 2, H5T_FLOAT);
   RowMajor rows(static_cast<Index>(shape[0]), static_cast<Index>(shape[1]));
@@ -314,20 +314,19 @@ Matrix H5Reader::matrix(const std::string &name) const {
   return rows;
 }
 
-Vector H5Reader::vector(const std::string &name) const {
-  const std::vector<double> values = doubles(name);
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+template <> Vector H5Reader::read(const std::string &name) const {
+  return impl_->list<Vector>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
 }
 
-std::vector<double> H5Reader::doubles(const std::string &name) const {
+template <> std::vector<double> H5Reader::read(const std::string &name) const {
   return impl_->list<std::vector<double>>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
 }
 
-std::vector<int> H5Reader::ints(const std::string &name) const {
+template <> std::vector<int> H5Reader::read(const std::string &name) const {
   return impl_->list<std::vector<int>>(name, H5T_INTEGER, H5T_NATIVE_INT);
 }
 
-std::vector<std::string> H5Reader::strings(const std::string &name) const {
+template <> std::vector<std::string> H5Reader::read(const std::string &name) const {
   std::vector<std::string> texts;
   const Id type = text_type();
   for (char *text : impl_->list<std::vector<char *>>(name, H5T_STRING, type.get()))
@@ -335,16 +334,16 @@ std::vector<std::string> H5Reader::strings(const std::string &name) const {
   return texts;
 }
 
-std::string H5Reader::string(const std::string &name) const {
+template <> std::string H5Reader::read(const std::string &name) const {
   const Id type = text_type();
   return take(impl_->scalar<char *>(name, H5T_STRING, type.get()));
 }
 
-double H5Reader::number(const std::string &name) const {
+template <> double H5Reader::read(const std::string &name) const {
   return impl_->scalar<double>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
 }
 
-int H5Reader::integer(const std::string &name) const {
+template <> int H5Reader::read(const std::string &name) const {
   return impl_->scalar<int>(name, H5T_INTEGER, H5T_NATIVE_INT);
 }
 

@@ -20,9 +20,7 @@ std::string place(const Point &x) {
 
 /// `what`: "the contact boundary 'arc' of the built-in mesh".
 void check_curve(const SerialMesh &mesh, const std::string &name, const std::string &what) {
-  const auto at = [&](int vertex) -> const Point & {
-    return mesh.points[static_cast<std::size_t>(vertex)];
-  };
+  const auto at = [&](int vertex) -> const Point & { return mesh.points[vertex]; };
   std::vector<Edge> edges;
   for (const auto &facet : mesh.boundary.at(name)) {
     const auto [left, right] =

@@ -62,8 +62,7 @@ std::string text_of(const Subject &s, const Facet &facet) {
 Point centre_of(const SerialMesh &mesh, const int *vertices, int count) {
   Point centre{};
   for (int i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < 3; ++c)
-      centre[c] += mesh.points[vertices[i]][c] / count;
+    centre = centre + mesh.points[vertices[i]] / count;
   return centre;
 }
 
@@ -72,9 +71,7 @@ double measure(const SerialMesh &mesh, const Facet &facet) {
   const Point &a = mesh.points[facet[0]], &b = mesh.points[facet[1]];
   if (mesh.dim == 2) return distance(a, b);
   const Point &c = mesh.points[facet[2]];
-  const Point u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-  return 0.5 * std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                          u[0] * v[1] - u[1] * v[0]);
+  return 0.5 * norm(cross(b - a, c - a));
 }
 
 double measure(const SerialMesh &mesh, int cell) {

@@ -111,9 +111,7 @@ void fill_middles(Mesh &mesh, const std::vector<PetscInt> &original, const EdgeP
   RBVI_CALL(DMPlexGetDepthStratum(mesh.dm.get(), 1, &begin, &end));
   for (PetscInt edge = begin; edge < end; ++edge) {
     const auto [i, j] = ends_of(mesh.dm.get(), edge, first_vertex);
-    const Point a = mesh.points[i];
-    const Point b = mesh.points[j];
-    mesh.points.push_back({(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2});
+    mesh.points.push_back((mesh.points[i] + mesh.points[j]) / 2);
     mesh.dm_point.push_back(edge);
     mesh.natural_node.push_back(mesh.total_vertices + original[edge] - edges.begin);
   }
@@ -202,7 +200,7 @@ void fill_cells(Mesh &mesh, const std::vector<PetscInt> &original, PetscInt firs
   for (PetscInt cell = begin; cell < end; ++cell) {
     const auto vertices = vertices_of(mesh.dm.get(), cell);
     std::array<int, 4> local{-1, -1, -1, -1};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(mesh.dim); ++i)
+    for (int i = 0; i <= mesh.dim; ++i)
       local[i] = static_cast<int>(vertices[i] - first_vertex);
     mesh.cells.push_back(local);
     mesh.natural_cell.push_back(original[cell]);

@@ -105,7 +105,7 @@ void orient_cells(int dim, const std::vector<Point> &points,
                   std::vector<std::array<int, 4>> &cells) {
   for (auto &cell : cells) {
     std::array<Point, 4> vertices{};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+    for (int i = 0; i <= dim; ++i)
       vertices[i] = points[cell[i]];
     if (simplex(dim, vertices).volume < 0)
       std::swap(cell[static_cast<std::size_t>(dim) - 1], cell[dim]);
@@ -145,7 +145,7 @@ SerialMesh from_plex(DM dm, const SerialMesh &like) {
   for (PetscInt cell = first_cell; cell < last_cell; ++cell) {
     const auto vertices = vertices_of(dm, cell);
     std::array<int, 4> numbers{-1, -1, -1, -1};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+    for (int i = 0; i <= dim; ++i)
       numbers[i] = static_cast<int>(vertices[i] - first_vertex);
     mesh.cells.push_back(numbers);
   }
@@ -157,7 +157,7 @@ SerialMesh from_plex(DM dm, const SerialMesh &like) {
     for (const PetscInt facet : labelled_points(dm, name, 1)) {
       const auto vertices = vertices_of(dm, facet);
       std::array<int, 3> numbers{-1, -1, -1};
-      for (std::size_t i = 0; i < static_cast<std::size_t>(dim); ++i)
+      for (int i = 0; i < dim; ++i)
         numbers[i] = static_cast<int>(vertices[i] - first_vertex);
       mesh.boundary[name].push_back(numbers);
     }

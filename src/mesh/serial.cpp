@@ -64,11 +64,7 @@ template <class T> void append(std::string &bytes, const T &value) {
 
 /// The point at a distance from the centre, on the ray through x.
 Point at_distance(double d, const Point &x, const Point &centre) {
-  const double factor = d / distance(x, centre);
-  Point moved{};
-  for (std::size_t k = 0; k < 3; ++k)
-    moved[k] = centre[k] + factor * (x[k] - centre[k]);
-  return moved;
+  return centre + d / distance(x, centre) * (x - centre);
 }
 
 /// Whether each cell is in a region.

@@ -2,9 +2,9 @@
 
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/io/checksum.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
 #include "rbvi/rom/model/fields_file.hpp"
-#include "separation/dense_rows.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -37,7 +37,7 @@ Matrix rows_of_basis(const Problem &problem, const BorrowedRows::LocalRows &loca
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (numbers[i] < first || numbers[i] >= first + count) continue;
     records.push_back(static_cast<double>(numbers[i] - first));
-    const auto row = local.row(static_cast<Index>(i));
+    const auto row = local.row(i);
     records.insert(records.end(), row.begin(), row.end());
   }
   const std::vector<double> all = gathered(problem.comm(), records);
@@ -71,7 +71,7 @@ std::vector<int> gather_cells(const Mesh &mesh) {
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     records.push_back(static_cast<double>(mesh.natural_cell[k]));
     const auto nodes = nodes_of(mesh, k);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i)
+    for (int i = 0; i < per_cell; ++i)
       records.push_back(static_cast<double>(mesh.natural_node[nodes[i]]));
   }
   const std::vector<double> all = gathered(mesh.comm, records);
@@ -105,33 +105,13 @@ std::vector<int> gather_imposed(const Problem &problem) {
   return imposed_by;
 }
 
-/// The columns of a basis, borrowed.
-class BorrowedBasis {
-public:
-  explicit BorrowedBasis(const LinearBasis &basis) : basis_(basis.columns.get()) {
-    RBVI_CALL(BVGetMat(basis_, &columns_));
-    rows_.emplace(columns_);
-  }
-  ~BorrowedBasis() {
-    rows_.reset();
-    (void)BVRestoreMat(basis_, &columns_);
-  }
-  BorrowedBasis(const BorrowedBasis &) = delete;
-  BorrowedBasis &operator=(const BorrowedBasis &) = delete;
-  BorrowedRows::LocalRows rows() const { return rows_->rows(); }
-
-private:
-  BV basis_;
-  Mat columns_ = nullptr;
-  std::optional<BorrowedRows> rows_;
-};
-
 /// Calls visit(first, count, rows) for the rows of the basis, block by block; rows: on the first
 /// rank.
 template <class Visit>
 void visit_rows(const Problem &problem, const LinearBasis &basis, Visit &&visit) {
   constexpr Index entries_at_a_time = Index{1} << 22;
-  const BorrowedBasis borrowed(basis);
+  const BorrowedColumns columns(basis.columns.get());
+  const BorrowedRows borrowed(columns.get());
   const Index total = problem.dofs().total;
   const Index step = std::max<Index>(1, entries_at_a_time / std::max<Index>(1, basis.size()));
   for (Index first = 0; first < total; first += step) {
@@ -149,7 +129,8 @@ void gather_mesh(const Problem &problem, ReducedModel &model) {
 }
 
 std::string key_of_fields(const Problem &problem, const LinearBasis &basis) {
-  const BorrowedBasis borrowed(basis);
+  const BorrowedColumns columns(basis.columns.get());
+  const BorrowedRows borrowed(columns.get());
   std::uint64_t own = fnv1a(nullptr, 0);
   for (Index j = 0; j < borrowed.rows().cols(); ++j)
     own = fnv1a(borrowed.rows().col(j).data(),
@@ -170,7 +151,7 @@ void write_fields(const Problem &problem, const LinearBasis &basis, const Reduce
   collectively(comm, [&] {
     if (!writes) return;
     file = std::make_unique<FieldsFile>(model_path, model.fields_key);
-    file->write_mesh(mesh.mesh_points, mesh.mesh_cells, mesh.imposed_by);
+    file->write_mesh(mesh);
     file->begin_basis(problem.dofs().total, basis.size());
   });
   visit_rows(problem, basis, [&](Index first, Index, const Matrix &rows) {

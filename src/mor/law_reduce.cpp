@@ -61,10 +61,8 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
     CondensedLoads loads = condensed_loads(problem, affine, training, multipliers, nodal);
     const bool awaits = !collocated && awaits_answers(problem, loads, options.condensed);
     LinearBasis *modes = collocated || awaits ? nullptr : &bases.pod.basis;
-    Condensation made =
-        condense(problem, loads, separable_contact(scene) ? nodal.cols() : loads.columns.cols(),
-                 expand(scene.parameters, training.front()), options.condensed, modes,
-                 nodal_coefficients(nodal, multipliers));
+    Condensation made = condense(problem, loads, expand(scene.parameters, training.front()),
+                                 options.condensed, modes, nodal_coefficients(nodal, multipliers));
     bases.condensed = std::move(made.condensed);
     bases.responses = made.responses;
     if (!scene.f.empty())
@@ -83,9 +81,8 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
   if (!will_run(stages, stage::pga)) return bases;
   std::vector<ContactPoint> points = contact_points(samples);
   if (affine.b_size() == 1) points.resize(1);
-  const Mu reference = options.reference.empty() ? box_centre(scene.parameters) : options.reference;
-  add_supremizers(problem, points, reference, options,
-                  multiplier_functions(nodal, bases.multipliers.basis), bases, stages);
+  add_supremizers(problem, points, options, multiplier_functions(nodal, bases.multipliers.basis),
+                  bases, stages);
   return bases;
 }
 
@@ -135,8 +132,7 @@ Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sa
     const LawAtMu at_mu = of_model.at(all, unused);
     CollocatedProblem reduced = collocated_problem(law.basis, at_mu, of_model.body());
     problems.push_back({std::move(reduced.h), std::move(reduced.q),
-                        bounds_at(at_mu.laws.bound, nodes),
-                        coefficients.col(static_cast<Index>(p)).tail(tangential)});
+                        bounds_at(at_mu.laws.bound, nodes), coefficients.col(p).tail(tangential)});
   }
   const SparseMatrix w = (nodal.transpose() * problem.w_product() * nodal).sparseView();
   Gcns selected =

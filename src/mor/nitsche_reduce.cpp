@@ -11,11 +11,11 @@ namespace {
 /// The coefficients of each sample in the modes, n x P.
 Matrix coefficients_of(const Problem &problem, const std::vector<Sample> &samples,
                        const LinearBasis &modes) {
-  Matrix result(modes.size(), static_cast<Index>(samples.size()));
+  Matrix result(modes.size(), std::ssize(samples));
   for (std::size_t p = 0; p < samples.size(); ++p)
     RBVI_CALL(BVDotVec(modes.columns.get(),
                        from_natural(problem.dofs(), displacement(problem.comm(), samples[p])).get(),
-                       result.col(static_cast<Index>(p)).data()));
+                       result.col(p).data()));
   return result;
 }
 

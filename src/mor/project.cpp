@@ -5,10 +5,10 @@
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
 #include "rbvi/mor/separation/stiffness_change.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/rom/model/packed.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/rom/model/training_samples.hpp"
-#include "separation/dense_rows.hpp"
 #include "separation/eim_terms.hpp"
 
 #include <algorithm>
@@ -31,9 +31,8 @@ Vector project_stiffness(Mat a, Mat basis) {
     const PetscInt count = std::min(width, n - first);
     Handle<Mat> block, product;
     RBVI_CALL(MatDenseGetArray(basis, &values));
-    RBVI_CALL(MatCreateDense(PetscObjectComm(reinterpret_cast<PetscObject>(a)), local, PETSC_DECIDE,
-                             PETSC_DETERMINE, count, values + std::ptrdiff_t{first} * stride,
-                             block.put()));
+    RBVI_CALL(MatCreateDense(comm_of(a), local, PETSC_DECIDE, PETSC_DETERMINE, count,
+                             values + std::ptrdiff_t{first} * stride, block.put()));
     RBVI_CALL(MatDenseSetLDA(block.get(), stride));
     RBVI_CALL(MatAssemblyBegin(block.get(), MAT_FINAL_ASSEMBLY));
     RBVI_CALL(MatAssemblyEnd(block.get(), MAT_FINAL_ASSEMBLY));
@@ -43,7 +42,7 @@ Vector project_stiffness(Mat a, Mat basis) {
         BorrowedRows(basis).rows().rightCols(n - first).transpose() *
         BorrowedRows(product.get()).rows();
   }
-  over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(a)), MPI_SUM, lower);
+  over_ranks(comm_of(a), MPI_SUM, lower);
   return pack(lower);
 }
 
@@ -130,8 +129,7 @@ void store_multipliers(const Problem &problem, const std::vector<Sample> &sample
   if (!follows_state(problem.scene())) return;
   law.states.resize(problem.trace().size, law.starts.cols());
   for (std::size_t p = 0; p < samples.size(); ++p)
-    law.states.col(static_cast<Index>(p)) =
-        displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
+    law.states.col(p) = displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
 }
 
 /// e_EIM along the terms, and the training number of each.
@@ -286,13 +284,13 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   describe_mesh(problem, model);
   start_operators(problem, samples, affine, bases, model);
   model.imposed_energy = separate_imposed_energy(problem);
-  Mat basis = nullptr;
-  RBVI_CALL(BVGetMat(bases.pod.basis.columns.get(), &basis));
-  project_exact(problem, samples, affine, basis, model);
-  model.contact_trace = restrict_to(problem.trace(), basis);
-  project_snapshots(problem, samples, affine, basis, model);
+  {
+    const BorrowedColumns basis(bases.pod.basis.columns.get());
+    project_exact(problem, samples, affine, basis.get(), model);
+    model.contact_trace = restrict_to(problem.trace(), basis.get());
+    project_snapshots(problem, samples, affine, basis.get(), model);
+  }
   restrict_trace(problem, samples.front().mu, model);
-  RBVI_CALL(BVRestoreMat(bases.pod.basis.columns.get(), &basis));
   model.fields_key = key_of_fields(problem, bases.pod.basis);
   store_histories(affine, bases, model.histories);
   return model;

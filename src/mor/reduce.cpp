@@ -16,6 +16,10 @@ namespace rbvi {
 
 namespace {
 
+Mu reference_of(const Problem &problem, const ReduceOptions &options) {
+  return options.reference.empty() ? box_centre(problem.scene().parameters) : options.reference;
+}
+
 Cone build_dual_basis(Problem &problem, const Mu &reference, const Matrix &snapshots,
                       ConeOptions options) {
   if (options.level > 0) options.hats = hats_of_level(problem, options.level);
@@ -105,8 +109,8 @@ std::vector<Matrix> supremizers_at(Problem &problem, const RieszSpace &riesz, co
 }
 
 void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training,
-                     const Mu &reference, const ReduceOptions &options, Matrix dual,
-                     ReducedBases &bases, StageTable &stages) {
+                     const ReduceOptions &options, Matrix dual, ReducedBases &bases,
+                     StageTable &stages) {
   const bool energy = options.product == SupremizerProduct::energy;
   bases.online_enriched = options.enrichment == Enrichment::online;
   Handle<Mat> stiffness;
@@ -115,7 +119,8 @@ void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training
   {
     const Stage stage(stages, stage::riesz);
     if (energy)
-      RBVI_CALL(MatDuplicate(problem.assemble(reference).a, MAT_COPY_VALUES, stiffness.put()));
+      RBVI_CALL(MatDuplicate(problem.assemble(reference_of(problem, options)).a, MAT_COPY_VALUES,
+                             stiffness.put()));
     const std::vector<Index> dofs = coupled_dofs(problem, dual, training);
     riesz = make_riesz_space(energy ? stiffness.get() : problem.v_product(), problem.trace(), dofs,
                              training.size() == 1
@@ -168,17 +173,15 @@ void add_modes(Problem &problem, const std::vector<Sample> &samples, const PodOp
 ReducedBases build_bases(Problem &problem, const std::vector<Sample> &samples,
                          const ReduceOptions &options, bool b_is_scaled, StageTable &stages) {
   const Matrix multipliers = multipliers_of(samples);
-  const Mu reference =
-      options.reference.empty() ? box_centre(problem.scene().parameters) : options.reference;
   ReducedBases bases;
   add_modes(problem, samples, options.pod, bases, stages);
   bases.cone = timed(stages, stage::cone, [&] {
-    return build_dual_basis(problem, reference, multipliers, options.cone);
+    return build_dual_basis(problem, reference_of(problem, options), multipliers, options.cone);
   });
   if (!will_run(stages, stage::pga)) return bases;
   std::vector<ContactPoint> training = contact_points(samples);
   if (b_is_scaled) training.resize(1);
-  add_supremizers(problem, training, reference, options, bases.cone.all(), bases, stages);
+  add_supremizers(problem, training, options, bases.cone.all(), bases, stages);
   return bases;
 }
 

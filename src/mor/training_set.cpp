@@ -34,9 +34,9 @@ bool holds_corners(const ParameterSpace &space, const std::vector<Mu> &training)
 
 Matrix multipliers_of(const std::vector<Sample> &samples) {
   if (samples.empty()) throw failure("there is no sample to build a basis from");
-  Matrix lambda(samples.front().lambda.size(), static_cast<Index>(samples.size()));
+  Matrix lambda(samples.front().lambda.size(), std::ssize(samples));
   for (std::size_t p = 0; p < samples.size(); ++p)
-    lambda.col(static_cast<Index>(p)) = samples[p].lambda;
+    lambda.col(p) = samples[p].lambda;
   if ((lambda.array() == 0).all())
     throw failure(
         "all multipliers are zero: there is no contact at any training mu, and nothing to "

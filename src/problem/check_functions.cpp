@@ -77,8 +77,7 @@ void check_factor(const Scene &scene, const Factor &factor, const std::string &o
   }
   for (const auto &[parameter, coordinate] : factor.coordinates) {
     check_positions(scene, {parameter}, what);
-    check_coordinate(coordinate, mu[static_cast<std::size_t>(parameter)],
-                     "the coordinate of " + what);
+    check_coordinate(coordinate, mu[parameter], "the coordinate of " + what);
   }
 }
 

@@ -54,7 +54,7 @@ std::vector<Cell> cells_of(const Mesh &mesh, const Form &form) {
 }
 
 Cell mapped_at(const Scene &scene, const FullMu &mu, Cell cell) {
-  for (std::size_t v = 0; v <= static_cast<std::size_t>(cell.dim); ++v)
+  for (int v = 0; v <= cell.dim; ++v)
     cell.mapped[v] =
         asked("the map of scene " + scene.name, [&] { return scene.map(mu, cell.reference[v]); });
   return cell;
@@ -80,13 +80,16 @@ Vector values_on(const SampledTerm &of, const FullMu &mu, const Cell &cell) {
   return result;
 }
 
-/// On all sampled cells, one after the other; `reference`: as if the map were the identity.
-Vector values_on_all(const SampledTerm &of, const FullMu &mu, bool reference) {
+/// Cells as they are mapped, or as if the map were the identity.
+enum class On { reference, mapped };
+
+/// On all sampled cells, one after the other.
+Vector values_on_all(const SampledTerm &of, const FullMu &mu, On cells) {
   const Index rows = of.rows(), count = of.bilinear ? rows * rows : rows;
   Vector all(count * std::ssize(of.cells));
   for (std::size_t k = 0; k < of.cells.size(); ++k) {
     Cell cell = of.cells[k];
-    if (reference)
+    if (cells == On::reference)
       cell.mapped = cell.reference;
     else
       cell = mapped_at(of.scene, mu, cell);
@@ -119,7 +122,7 @@ void visit_undeclared(const SampledTerm &of, const FullMu &mu, Visitor &&visitor
 
 void check_mapped(const SampledTerm &of, const FullMu &mu, const Vector &values) {
   visit_undeclared(of, mu, [&](const std::string &parameter, const FullMu &other) {
-    if (differ(values_on_all(of, other, false), values))
+    if (differ(values_on_all(of, other, On::mapped), values))
       throw bad_input(of.name + " depends on the parameter " + parameter +
                       ", by its kernel or by the map, which its list of parameters lacks");
   });
@@ -137,13 +140,13 @@ std::optional<double> ratio(const Vector &one, const Vector &other) {
 void check_constant(const SampledTerm &of, const FullMu &mu, const Vector &values) {
   const ParameterSpace &space = of.scene.parameters;
   for (std::size_t i = 0; i < mu.size(); ++i)
-    if (differ(values_on_all(of, with_other_value(space, mu, i), true), values))
+    if (differ(values_on_all(of, with_other_value(space, mu, i), On::reference), values))
       throw bad_input(of.name + " is exact, and its kernel depends on the parameter " +
                       space.all[i].name + ": take that into a factor, or use mapped_term");
 }
 
 void check_exact(const SampledTerm &of, const FullMu &mu, const Vector &mapped) {
-  const Vector values = values_on_all(of, mu, true);
+  const Vector values = values_on_all(of, mu, On::reference);
   check_constant(of, mu, values);
   if (values.isZero(0) && mapped.isZero(0)) return;
   const std::optional<double> by_map = ratio(mapped, values);
@@ -151,7 +154,7 @@ void check_exact(const SampledTerm &of, const FullMu &mu, const Vector &mapped) 
     throw bad_input(of.name + " is exact, but the map deforms its cells: on them it is no multiple "
                               "of what it is on the reference domain; use mapped_term");
   visit_undeclared(of, mu, [&](const std::string &parameter, const FullMu &other) {
-    const std::optional<double> here = ratio(values_on_all(of, other, false), values);
+    const std::optional<double> here = ratio(values_on_all(of, other, On::mapped), values);
     if (!here || differ(*here, *by_map))
       throw bad_input(of.name + " is exact, but changes with the parameter " + parameter +
                       " by the map: give it a factor that declares this parameter, or use "
@@ -185,7 +188,7 @@ void check_motion(const SampledTerm &of, const FullMu &mu, const Vector &mapped)
 
 void check_term(const SampledTerm &of, const FullMu &mu, bool of_product) {
   if (of.cells.empty()) return;
-  const Vector mapped = values_on_all(of, mu, of_product);
+  const Vector mapped = values_on_all(of, mu, of_product ? On::reference : On::mapped);
   if (of.bilinear) check_symmetry(of, mapped);
   if (of_product) return;
   if (of.term.theta)
@@ -217,29 +220,26 @@ struct Nearest {
 void check_normal(const ContactInterface &interface, const FullMu &mu, const Cell &facet,
                   const std::string &what, Nearest &nearest) {
   const FacetMeasure measure = facet_measure(facet.dim, facet.mapped);
-  const Point &a = facet.reference[0], &b = facet.reference[1];
-  const Point x{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, 0};
+  const Point x = (facet.reference[0] + facet.reference[1]) / 2;
   PointConstraint at, nearer;
   const double step = 1e-3 * measure.size;
   try {
     at = asked(what, [&] { return interface.constraint_at(mu, x); });
-    const Point &n = at.direction;
-    nearer = interface.constraint_at(mu, x, {step * n[0], step * n[1], 0});
+    nearer = interface.constraint_at(mu, x, step * at.direction);
   } catch (const Error &error) {
     if (error.status() == Status::bad_input) throw;
     return; // no point is faced at this mu
   }
-  const Point &n = at.direction, &m = nearer.direction;
-  const double length = std::hypot(n[0], n[1], n[2]);
+  const Point &n = at.direction;
+  const double length = norm(n);
   if (!(std::abs(length - 1) <= 1e-6))
     throw bad_input(what + " has a normal of the length " + short_number(length) + " at (" +
                     short_number(x[0]) + ", " + short_number(x[1]) + "): it must be 1");
-  double &of_side =
-      n[0] * measure.normal[0] + n[1] * measure.normal[1] > 0 ? nearest.outward : nearest.inward;
+  double &of_side = dot(n, measure.normal) > 0 ? nearest.outward : nearest.inward;
   of_side = std::min(of_side, std::abs(at.gap));
   if (!interface.follows_state()) return;
   // gap = distance + direction . displacement
-  const double closer = at.gap - (nearer.gap - step * (n[0] * m[0] + n[1] * m[1]));
+  const double closer = at.gap - (nearer.gap - step * dot(n, nearer.direction));
   if (!(std::abs(closer - step) <= 0.1 * step))
     throw bad_input(what + " has a normal that is no gradient of the distance to its surface at (" +
                     short_number(x[0]) + ", " + short_number(x[1]) + ")");
@@ -269,7 +269,7 @@ void check_exact_kernels(const Scene &scene) {
   visit_terms(
       scene, [&](const Form &) { return std::vector{unit}; },
       [&](const SampledTerm &term, bool) {
-        if (term.term.theta) check_constant(term, mu, values_on_all(term, mu, true));
+        if (term.term.theta) check_constant(term, mu, values_on_all(term, mu, On::reference));
       });
 }
 

@@ -1,6 +1,7 @@
 #include "rbvi/problem/distributed_contact.hpp"
 
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <unordered_set>
@@ -177,25 +178,21 @@ Handle<Vec> distribute(const DualLayout &layout, const Vector &multipliers) {
 }
 
 Vector on_every_rank(const DualLayout &layout, const Vector &own) {
-  Vector result = Vector::Zero(static_cast<Index>(layout.numbers.size()));
+  Vector result = Vector::Zero(std::ssize(layout.numbers));
   result(layout.rows) = own;
   over_ranks(layout.comm, MPI_SUM, result); // exact: zero but on the owner
   return result;
 }
 
 Vector on_every_rank(const DualLayout &layout, Vec multipliers) {
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetArrayRead(multipliers, &values));
-  const Vector own = Eigen::Map<const Vector>(values, std::ssize(layout.rows));
-  RBVI_CALL(VecRestoreArrayRead(multipliers, &values));
-  return on_every_rank(layout, own);
+  return on_every_rank(layout, local_values(multipliers));
 }
 
 void gather_rows(const DualLayout &layout, const Contact &contact, std::size_t interface,
                  ContactOperators &operators) {
   std::vector<Index> nodes, rows;
   const WantedNodes &own = layout.own[interface];
-  for (Index node = 0; node < static_cast<Index>(own.size()); ++node) {
+  for (Index node = 0; node < std::ssize(own); ++node) {
     if (!own[node]) continue;
     nodes.push_back(node);
     for (const Index row : rows_of(contact, interface, node))

@@ -77,7 +77,7 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
   ContactInterface &interface = *contact.interfaces[number];
   const std::vector<int> &nodes = state.model.interfaces[number].nodes;
   const Index components = state.scene.components;
-  Vector u(static_cast<Index>(nodes.size()) * components);
+  Vector u(std::ssize(nodes) * components);
   for (std::size_t k = 0; k < nodes.size(); ++k)
     u.segment(static_cast<Index>(k) * components, components) =
         state.u.segment(nodes[k] * components, components);

@@ -191,10 +191,12 @@ void Eliminated::precondition(const Operators &op, const Elimination &z) {
   ++factorisations_;
 }
 
-/// Sets u and returns this rank's multipliers y. Throws failure where the equation cannot be
-/// solved.
-Vector Eliminated::eliminate(const Operators &op, const Elimination &z, const Elimination &w,
-                             bool symmetric, const Vector &constraint, Vec force, double accuracy) {
+/// Sets u and returns this rank's multipliers y. `other`: W of a system that is not symmetric;
+/// null: Z. Throws failure where the equation cannot be solved.
+Vector Eliminated::eliminate(const Operators &op, const Elimination &z, const Elimination *other,
+                             const Vector &constraint, Vec force, double accuracy) {
+  const bool symmetric = other == nullptr;
+  const Elimination &w = symmetric ? z : *other;
   if (of_another_a_) precondition(op, z);
   const Handle<Vec> scratch = like(op.f);
   ReducedSystem reduced{op.a, z, w, factor_.get(), scratch.get()};
@@ -251,7 +253,7 @@ SetSolution Eliminated::solve_system(const Operators &op, const OwnContact &cont
       const Elimination z(layout_, c, pivots);
       std::optional<Elimination> unsymmetric;
       if (!symmetric) unsymmetric.emplace(layout_, reactions, pivots);
-      y = eliminate(op, z, unsymmetric ? *unsymmetric : z, symmetric, constraint, force.get(),
+      y = eliminate(op, z, unsymmetric ? &*unsymmetric : nullptr, constraint, force.get(),
                     accuracy);
     } catch (const Error &error) { // of every rank
       complaint_ = error.what();

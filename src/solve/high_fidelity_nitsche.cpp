@@ -8,7 +8,7 @@ namespace rbvi {
 
 Matrix HighFidelity::predicted_pressures(const Mu &mu) const {
   const ParameterSpace &space = problem_.scene().parameters;
-  const auto count = static_cast<Index>(solved_.size());
+  const auto count = std::ssize(solved_);
   Matrix pressures(solved_.front().pressures.size(), count), points(space.size(), count);
   for (Index p = 0; p < count; ++p) {
     const Solved &solved = solved_[p];

@@ -2,7 +2,7 @@
 #include "sample_file.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/io/h5.hpp"
+#include "rbvi/io/fields.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/rom/model/scene_text.hpp"
 
@@ -54,8 +54,8 @@ void check_settings(const std::filesystem::path &path, const Settings &mine,
                       ": use another -out or restore the option");
   }
   const auto found = theirs.find(whole_scene);
-  const std::string difference =
-      scene_difference(found == theirs.end() ? "" : found->second, mine.at(whole_scene), true);
+  const std::string difference = scene_difference(found == theirs.end() ? "" : found->second,
+                                                  mine.at(whole_scene), Further::refused);
   if (!difference.empty())
     throw bad_input("the samples in " + path.parent_path().string() + " are of another scene: " +
                     difference + ": rbvi offline makes them anew in another -out");
@@ -81,53 +81,51 @@ H5Reader open_sample(const std::filesystem::path &path) {
   }
 }
 
-Settings settings_in(const H5Reader &file) {
-  const std::vector<std::string> names = file.strings("settings/names");
-  const std::vector<std::string> values = file.strings("settings/values");
-  if (names.size() != values.size()) throw bad_input("settings without values");
-  Settings settings;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    settings[names[i]] = values[i];
-  return settings;
+template <class Store, class Of> void list_sample(const Store &store, Of &sample) {
+  store("mu", sample.mu);
+  store("u", sample.u);
+  store("lambda", sample.lambda);
+  store("states", sample.states);
+  list_as(
+      store, "outputs", sample.outputs,
+      [](const Outputs &outputs) {
+        std::vector<double> values;
+        for (const auto member : stored_outputs)
+          values.push_back((outputs.*member).value_or(std::numeric_limits<double>::quiet_NaN()));
+        return values;
+      },
+      [](const std::vector<double> &values) {
+        if (values.size() != stored_outputs.size()) throw bad_input("another number of outputs");
+        Outputs outputs;
+        for (std::size_t i = 0; i < values.size(); ++i)
+          if (!std::isnan(values[i])) outputs.*stored_outputs[i] = values[i];
+        return outputs;
+      });
 }
 
-Sample sample_in(const H5Reader &file) {
-  Sample sample{
-      Mu(file.doubles("mu")), file.vector("u"), file.vector("lambda"), {}, file.matrix("states")};
-  const std::vector<double> outputs = file.doubles("outputs");
-  if (outputs.size() != stored_outputs.size()) throw bad_input("another number of outputs");
-  for (std::size_t i = 0; i < stored_outputs.size(); ++i)
-    if (!std::isnan(outputs[i])) sample.outputs.*stored_outputs[i] = outputs[i];
-  return sample;
+template <class Store, class Of> void list_settings(const Store &store, Of &settings) {
+  list_map(store, "settings/names", "settings/values", settings);
 }
 
 } // namespace
 
 void write_sample(const std::filesystem::path &path, const Sample &sample,
                   const Settings &settings) {
-  std::vector<std::string> names, values;
-  for (const auto &[name, value] : settings) {
-    names.push_back(name);
-    values.push_back(value);
-  }
-  std::vector<double> outputs;
-  for (const auto member : stored_outputs)
-    outputs.push_back((sample.outputs.*member).value_or(std::numeric_limits<double>::quiet_NaN()));
   H5Writer file;
-  file.write("mu", sample.mu);
-  file.write("u", sample.u);
-  file.write("lambda", sample.lambda);
-  file.write("states", sample.states);
-  file.write("outputs", outputs);
-  file.write("settings/names", names);
-  file.write("settings/values", values);
+  const FieldWriter writer{file};
+  list_sample(writer, sample);
+  list_settings(writer, settings);
   file.commit(path, "sample", sample_schema);
 }
 
 Sample read_sample(const std::filesystem::path &path, const Settings &settings) {
   const H5Reader file = open_sample(path);
-  check_settings(path, settings, contents([&] { return settings_in(file); }));
-  Sample sample = contents([&] { return sample_in(file); });
+  const FieldReader reader{file};
+  Settings stored;
+  Sample sample;
+  contents([&] { list_settings(reader, stored); });
+  check_settings(path, settings, stored);
+  contents([&] { list_sample(reader, sample); });
   if (sample_file(path.parent_path(), sample.mu).filename() != path.filename())
     throw DamagedFile(path.string() + " holds the answer at another parameter than its name says");
   sample.file = path;
@@ -137,7 +135,8 @@ Sample read_sample(const std::filesystem::path &path, const Settings &settings) 
 Vector displacement(MPI_Comm comm, const Sample &sample) {
   if (sample.u.size() > 0) return sample.u;
   Vector u;
-  collectively(comm, [&] { u = contents([&] { return open_sample(sample.file).vector("u"); }); });
+  collectively(comm,
+               [&] { u = contents([&] { return open_sample(sample.file).read<Vector>("u"); }); });
   return u;
 }
 

@@ -86,22 +86,30 @@ void check_directory(const fs::path &directory, const Settings &settings) {
   }
 }
 
-/// What there is of a set.
+/// What a sweep is asked for.
+struct Wanted {
+  const std::vector<Mu> &set;
+  const SampleStore &store;
+  Settings settings;
+};
+
+/// What there is of it.
 struct Stock {
   std::vector<int> missing;      ///< 1 where there is no sample, 0 where there is one
   std::vector<fs::path> damaged; ///< files in the way of a sample or of its reason
   std::string damage;            ///< what the first one is
 };
 
-Stock take_stock(const std::vector<Mu> &set, const fs::path &directory, const Settings &settings) {
+Stock take_stock(const Wanted &wanted) {
+  const auto &[set, store, settings] = wanted;
   Stock stock{std::vector<int>(set.size(), 1), {}, ""};
   const auto note = [&](const fs::path &file, const std::string &damage) {
     if (stock.damaged.empty()) stock.damage = damage;
     stock.damaged.push_back(file);
   };
-  check_directory(directory, settings);
+  check_directory(store.directory, settings);
   for (std::size_t i = 0; i < set.size(); ++i) {
-    const fs::path file = sample_file(directory, set[i]), reason = failure_file(file);
+    const fs::path file = sample_file(store.directory, set[i]), reason = failure_file(file);
     if (fs::is_directory(reason)) note(reason, reason.string() + " is a directory");
     if (!fs::exists(file)) continue;
     try {
@@ -146,17 +154,16 @@ void prepare_directory(const fs::path &directory, const Stock &stock) {
 
 /// The numbers of `set` that have no sample yet, agreed by rank 0 for all; the directory is ready
 /// for them. Collective.
-std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
-                                 const fs::path &directory, const Settings &settings,
-                                 const std::function<void()> &begin, SweepReport &report) {
+std::vector<int> missing_samples(MPI_Comm world, const Wanted &wanted, SweepReport &report) {
   const int rank = rank_of(world);
+  const std::vector<Mu> &set = wanted.set;
   Stock stock{std::vector<int>(set.size(), 1), {}, ""};
   collectively(world, [&] {
-    if (rank == 0) stock = take_stock(set, directory, settings);
+    if (rank == 0) stock = take_stock(wanted);
   });
-  begin();
+  wanted.store.begin();
   collectively(world, [&] {
-    if (rank == 0) prepare_directory(directory, stock);
+    if (rank == 0) prepare_directory(wanted.store.directory, stock);
   });
   report.set_aside = static_cast<int>(stock.damaged.size());
   MPI_Bcast(&report.set_aside, 1, MPI_INT, 0, world);
@@ -168,15 +175,14 @@ std::vector<int> missing_samples(MPI_Comm world, const std::vector<Mu> &set,
 }
 
 /// The samples that are there, and the reasons of those that are not. Collective.
-void collect(MPI_Comm world, const std::vector<Mu> &set, const fs::path &directory,
-             const Settings &settings, Fields fields, Sweep &sweep) {
+void collect(MPI_Comm world, const Wanted &wanted, Sweep &sweep) {
   collectively(world, [&] {
-    for (const Mu &mu : set) {
-      const fs::path file = sample_file(directory, mu);
+    for (const Mu &mu : wanted.set) {
+      const fs::path file = sample_file(wanted.store.directory, mu);
       if (fs::exists(file)) {
         try {
-          sweep.samples.push_back(read_sample(file, settings));
-          if (fields == Fields::in_files) sweep.samples.back().u = Vector();
+          sweep.samples.push_back(read_sample(file, wanted.settings));
+          if (wanted.store.fields == Fields::in_files) sweep.samples.back().u = Vector();
         } catch (const DamagedFile &error) { // since the sweep began
           throw failure(error.what());
         }
@@ -228,29 +234,28 @@ bool tell(Progress &progress, const SharedQueue &queue, const Groups &groups) {
 /// All groups together solve the missing samples, each the next ones when it has none. What one
 /// group throws ends all of them, the others after the sample that they are at.
 void solve_missing(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                   const std::vector<Mu> &set, const std::vector<int> &missing,
-                   const fs::path &directory, const Settings &settings) {
+                   const Wanted &wanted, const std::vector<int> &missing) {
   const int rank = rank_of(world);
   SharedQueue queue(world, groups, static_cast<int>(missing.size()));
-  const ToldWhenInterrupted told(queue, set.size());
+  const ToldWhenInterrupted told(queue, wanted.set.size());
   Progress progress(groups.count() == 1 ? "samples"
                                         : "samples, " + std::to_string(groups.count()) + " groups",
                     queue.count(), rank == 0);
-  std::vector<Mu> wanted;
+  std::vector<Mu> unsolved;
   for (const int k : missing)
-    wanted.push_back(set[k]);
+    unsolved.push_back(wanted.set[k]);
   HfOptions of_all = options;
-  of_all.samples = static_cast<int>(set.size()) / groups.count();
+  of_all.samples = static_cast<int>(wanted.set.size()) / groups.count();
   collectively(world, [&] {
     try {
       HighFidelity solver(problem, of_all);
-      solver.share_columns(groups, wanted);
+      solver.share_columns(groups, unsolved);
       while (const std::optional<int> k = queue.next()) {
-        const Mu &mu = wanted[*k];
+        const Mu &mu = unsolved[*k];
         bool solved = false;
         collectively(groups.comm(), [&] {
           solved = solve_sample(solver, groups, problem.scene().parameters, mu,
-                                sample_file(directory, mu), settings);
+                                sample_file(wanted.store.directory, mu), wanted.settings);
         });
         queue.finish(solved);
         if (progress.due()) (void)tell(progress, queue, groups);
@@ -282,7 +287,7 @@ Sample make_sample(const Mu &mu, HfSolution solution) {
   if (!solution.states.empty())
     sample.states.resize(solution.states.front().size(), std::ssize(solution.states));
   for (std::size_t k = 0; k < solution.states.size(); ++k)
-    sample.states.col(static_cast<Index>(k)) = solution.states[k];
+    sample.states.col(k) = solution.states[k];
   return sample;
 }
 
@@ -335,17 +340,15 @@ fs::path sample_file(const fs::path &directory, const Mu &mu) {
 }
 
 Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-                const std::vector<Mu> &set, const fs::path &directory,
-                const std::function<void()> &begin, Fields fields) {
-  const Settings settings = sample_settings(problem, options);
+                const std::vector<Mu> &set, const SampleStore &store) {
+  const Wanted wanted{set, store, sample_settings(problem, options)};
   Sweep sweep;
-  const std::vector<int> missing =
-      missing_samples(world, set, directory, settings, begin, sweep.report);
+  const std::vector<int> missing = missing_samples(world, wanted, sweep.report);
   MPI_Barrier(world);
   const double start = MPI_Wtime();
-  solve_missing(world, groups, problem, options, set, missing, directory, settings);
+  solve_missing(world, groups, problem, options, wanted, missing);
   sweep.report.seconds = MPI_Wtime() - start;
-  collect(world, set, directory, settings, fields, sweep);
+  collect(world, wanted, sweep);
   sweep.report.reused = static_cast<int>(set.size() - missing.size());
   sweep.report.solved = static_cast<int>(missing.size() - sweep.report.failed.size());
   sweep.report.seconds_per_solve = median_seconds(sweep.samples, set, missing);

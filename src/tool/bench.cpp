@@ -76,7 +76,7 @@ Sweep samples_at(Problem &problem, const ToolOptions &options, const std::vector
                  const std::string &name) {
   const Groups alone(PETSC_COMM_SELF, 1);
   Sweep sweep =
-      run_sweep(PETSC_COMM_SELF, alone, problem, options.hf, set, options.out / "samples");
+      run_sweep(PETSC_COMM_SELF, alone, problem, options.hf, set, {options.out / "samples"});
   check_failures(options, sweep.report, set.size(), name);
   return sweep;
 }
@@ -103,21 +103,21 @@ std::vector<BenchRow> bench_baselines(Problem &problem, const ToolOptions &optio
   std::vector<BenchRow> rows;
   HfOptions hf = options.hf;
   hf.method = HfMethod::active_set;
-  rows.push_back(bench_solver(problem, hf, truths, truths.size(), false));
+  rows.push_back(bench_solver(problem, hf, truths, truths.size(), From::last));
   if (!has_multipliers(problem.scene())) {
-    rows.push_back(bench_solver(problem, hf, truths, few, true));
+    rows.push_back(bench_solver(problem, hf, truths, few, From::cold));
     return rows;
   }
   const bool follows = follows_state(problem.contact());
   for (BenchRow &part : follows ? bench_iterations(problem, truths) : bench_parts(problem, truths))
     rows.push_back(std::move(part));
-  rows.push_back(bench_solver(problem, hf, truths, truths.size(), true));
+  rows.push_back(bench_solver(problem, hf, truths, truths.size(), From::cold));
   if (follows) return rows;
   hf.method = HfMethod::uzawa;
   hf.uzawa_accelerated = true;
-  rows.push_back(bench_solver(problem, hf, truths, few, true));
+  rows.push_back(bench_solver(problem, hf, truths, few, From::cold));
   hf.uzawa_accelerated = false;
-  rows.push_back(bench_solver(problem, hf, truths, few_slow, true));
+  rows.push_back(bench_solver(problem, hf, truths, few_slow, From::cold));
   if (vi_fits(options.scene)) {
     SceneOptions lumped = options.scene.options;
     lumped["lumped"] = "yes";

@@ -128,7 +128,7 @@ void check_problem(const Problem &problem, const ReducedModel &model, const Tool
   const std::string of_model = setting(model, whole_scene);
   if (of_model.empty()) throw bad_input(its + " does not say of which scene it is" + again);
   const std::string difference =
-      scene_difference(of_model, scene_text(problem.scene(), problem.contact()), true);
+      scene_difference(of_model, scene_text(problem.scene(), problem.contact()), Further::refused);
   if (!difference.empty()) throw bad_input(its + " is of another scene: " + difference + again);
 }
 

@@ -90,8 +90,8 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
   check_imposed_at(work.group_problem(), training);
   Sweep sweep = timed(before, stage::snapshots, [&] {
     return run_sweep(
-        world, groups, work.group_problem(), options.hf, training, options.out / "samples",
-        [&] { begin_run(world, options); }, Fields::in_files);
+        world, groups, work.group_problem(), options.hf, training,
+        {options.out / "samples", [&] { begin_run(world, options); }, Fields::in_files});
   });
   work.end_of_solves();
   check_failures(options, sweep.report, training.size(), "training");

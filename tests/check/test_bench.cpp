@@ -35,7 +35,7 @@ TEST(Bench, ErrorsVanishAtTheSnapshotsAndNotBetween) {
   const std::vector<Sample> snapshots = solved(problem, parse_set(space, "grid:2,2,1"));
   const std::vector<Sample> between = solved(problem, {{0.2, 0, 0}});
 
-  const BenchRow solver = bench_solver(problem, {}, snapshots, 3, true);
+  const BenchRow solver = bench_solver(problem, {}, snapshots, 3, From::cold);
   EXPECT_EQ(solver.queries, 3);
   EXPECT_LT(std::max(solver.u_max, solver.lambda_max), 1e-10);
   EXPECT_GT(solver.median, 0);

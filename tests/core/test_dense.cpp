@@ -73,16 +73,6 @@ TEST(Dense, ThinQrOfTallAndOfWideMatrices) {
   }
 }
 
-TEST(Dense, ThePivotedRangeLeavesOutWhatDepends) {
-  Matrix a = random_matrix(8, 4);
-  a.col(2) = a.col(0) + 2 * a.col(3);
-  const Matrix q = pivoted_range(a, 1e-12);
-  ASSERT_EQ(q.cols(), 3);
-  EXPECT_LT(distance(q.transpose() * q, Matrix::Identity(3, 3)), 1e-14);
-  EXPECT_LT(distance(q * (q.transpose() * a), a), 1e-13);
-  EXPECT_EQ(pivoted_range(Matrix::Zero(8, 4), 1e-12).cols(), 0);
-}
-
 TEST(Dense, EigenPairsOfOneMatrixAndOfTwo) {
   const Matrix a = random_matrix(7, 7) + random_matrix(7, 7).transpose(), b = definite(7);
   const EigenPairs one = eigen_pairs(a), two = eigen_pairs(a, b);

@@ -81,18 +81,18 @@ TEST_F(SealedFile, ReturnsWhatWasWritten) {
   writer.commit(path, "sample", 3);
 
   const H5Reader reader(path, "sample", 3);
-  EXPECT_EQ(reader.matrix("m"), matrix);
-  EXPECT_EQ(reader.vector("deep/er/v"), vector);
-  EXPECT_TRUE(reader.doubles("deep/d").empty());
-  EXPECT_EQ(reader.matrix("none").rows(), 0);
-  EXPECT_EQ(reader.matrix("none").cols(), 5);
-  EXPECT_EQ(reader.ints("i"), (std::vector<int>{7, -7}));
-  EXPECT_EQ(reader.strings("s"), texts);
-  EXPECT_TRUE(reader.strings("no_s").empty());
-  EXPECT_EQ(reader.string("text"), "solve");
-  EXPECT_EQ(reader.string("empty"), "");
-  EXPECT_EQ(reader.number("x"), 0.1);
-  EXPECT_EQ(reader.integer("n"), 42);
+  EXPECT_EQ(reader.read<Matrix>("m"), matrix);
+  EXPECT_EQ(reader.read<Vector>("deep/er/v"), vector);
+  EXPECT_TRUE(reader.read<std::vector<double>>("deep/d").empty());
+  EXPECT_EQ(reader.read<Matrix>("none").rows(), 0);
+  EXPECT_EQ(reader.read<Matrix>("none").cols(), 5);
+  EXPECT_EQ(reader.read<std::vector<int>>("i"), (std::vector<int>{7, -7}));
+  EXPECT_EQ(reader.read<std::vector<std::string>>("s"), texts);
+  EXPECT_TRUE(reader.read<std::vector<std::string>>("no_s").empty());
+  EXPECT_EQ(reader.read<std::string>("text"), "solve");
+  EXPECT_EQ(reader.read<std::string>("empty"), "");
+  EXPECT_EQ(reader.read<double>("x"), 0.1);
+  EXPECT_EQ(reader.read<int>("n"), 42);
   EXPECT_TRUE(reader.has("deep/er"));
   EXPECT_FALSE(reader.has("deep/no/v"));
 }
@@ -104,7 +104,7 @@ TEST_F(SealedFile, MatricesOfMostlyZerosAreSmall) {
   H5Writer writer;
   writer.write("sparse", sparse);
   writer.commit(path, "sample", 3);
-  EXPECT_EQ(H5Reader(path, "sample", 3).matrix("sparse"), sparse);
+  EXPECT_EQ(H5Reader(path, "sample", 3).read<Matrix>("sparse"), sparse);
   EXPECT_LT(std::filesystem::file_size(path), 200000U);
 }
 
@@ -116,9 +116,9 @@ TEST_F(SealedFile, SeveralAreOpenAtOnceAndMove) {
   moved.commit(path, "sample", 3);
   two.commit(directory / "b.h5", "sample", 3);
   H5Reader a(path, "sample", 3), b(directory / "b.h5", "sample", 3);
-  EXPECT_EQ(b.number("x"), 2.0);
+  EXPECT_EQ(b.read<double>("x"), 2.0);
   b = std::move(a);
-  EXPECT_EQ(b.number("x"), 1.0);
+  EXPECT_EQ(b.read<double>("x"), 1.0);
 }
 
 TEST_F(SealedFile, OnTheDiskIsTheSameAsInMemory) {
@@ -131,8 +131,8 @@ TEST_F(SealedFile, OnTheDiskIsTheSameAsInMemory) {
   EXPECT_FALSE(std::filesystem::exists(path));
   disk.commit(path, "sample", 3);
   const H5Reader reader(path, "sample", 3);
-  EXPECT_EQ(reader.matrix("deep/m"), matrix);
-  EXPECT_EQ(reader.number("x"), 0.1);
+  EXPECT_EQ(reader.read<Matrix>("deep/m"), matrix);
+  EXPECT_EQ(reader.read<double>("x"), 0.1);
   EXPECT_EQ(files(), 1U);
 }
 
@@ -180,11 +180,11 @@ TEST_F(SealedFile, DataSetsAreChecked) {
   writer.write("v", std::vector<double>{1, 2});
   writer.commit(path, "sample", 3);
   const H5Reader reader(path, "sample", 3);
-  EXPECT_THROW(reader.number("y"), Error);
-  EXPECT_THROW(reader.number("v"), Error);
-  EXPECT_THROW(reader.matrix("v"), Error);
-  EXPECT_THROW(reader.ints("v"), Error);
-  EXPECT_THROW(reader.string("x"), Error);
+  EXPECT_THROW(reader.read<double>("y"), Error);
+  EXPECT_THROW(reader.read<double>("v"), Error);
+  EXPECT_THROW(reader.read<Matrix>("v"), Error);
+  EXPECT_THROW(reader.read<std::vector<int>>("v"), Error);
+  EXPECT_THROW(reader.read<std::string>("x"), Error);
 }
 
 TEST_F(SealedFile, EveryFlippedBitIsNoticed) {

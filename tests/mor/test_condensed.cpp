@@ -62,8 +62,7 @@ CondensedOperator condensed_operator(Problem &problem, const AffineOperators &af
                                      const std::vector<Mu> &training, const Matrix &basis,
                                      const CondensedOptions &options) {
   const CondensedLoads loads = condensed_loads(problem, affine, training, {}, basis);
-  return condense(problem, loads, basis.cols(),
-                  expand(problem.scene().parameters, training.front()), options)
+  return condense(problem, loads, expand(problem.scene().parameters, training.front()), options)
       .condensed;
 }
 

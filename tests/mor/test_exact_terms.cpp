@@ -3,6 +3,7 @@
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/mor/separation/affine.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include <gtest/gtest.h>

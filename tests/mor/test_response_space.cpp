@@ -68,7 +68,7 @@ TEST(ResponseSpace, HoldsTheResponsesAtUnseenParameters) {
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
     LinearBasis basis = one_mode(problem, loads);
     const ResponseSpace space =
-        append_responses(problem, loads, weights, axes(), all, tolerance, 100, basis);
+        append_responses(problem, loads, weights, {axes(), all, tolerance, 100}, basis);
     EXPECT_LE(space.left, tolerance * 1e4) << "the last point was worth taking";
     EXPECT_EQ(basis.size(), 1 + space.functions);
     EXPECT_GT(space.points, points);
@@ -88,8 +88,8 @@ TEST(ResponseSpace, DoesNotDependOnTheNumberOfRanks) {
   for (Problem *problem : {&world, &alone}) {
     const Matrix loads = unit_loads(*problem, 30);
     LinearBasis basis = one_mode(*problem, loads);
-    spaces.push_back(
-        append_responses(*problem, loads, Matrix::Identity(30, 30), axes(), all, 1e-4, 100, basis));
+    spaces.push_back(append_responses(*problem, loads, Matrix::Identity(30, 30),
+                                      {axes(), all, 1e-4, 100}, basis));
     found.push_back(ReducedResponses(*problem, loads, basis)
                         .compliance(expand(problem->scene().parameters, unseen.front())));
   }
@@ -103,7 +103,8 @@ TEST(ResponseSpace, TooFewPointsAreSaid) {
   const Matrix loads = unit_loads(problem, 4);
   LinearBasis basis = one_mode(problem, loads);
   EXPECT_THROW(
-      append_responses(problem, loads, Matrix::Identity(4, 4), axes(), all, 1e-9, 3, basis), Error);
+      append_responses(problem, loads, Matrix::Identity(4, 4), {axes(), all, 1e-9, 3}, basis),
+      Error);
 }
 
 } // namespace

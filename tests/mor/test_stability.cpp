@@ -186,7 +186,7 @@ TEST(OrthonormalRange, reveals_the_rank) {
   EXPECT_EQ(orthonormal_range(Matrix::Zero(6, 3)).cols(), 0);
 }
 
-/// Large sizes: full rank is seen without pivots, less than that is not taken for it.
+/// Several blocks of columns, of which one depends on columns of another block.
 TEST(OrthonormalRange, RevealsTheRankOfManyVectors) {
   const Matrix vectors = random_matrix(320, 300, 8);
   const Matrix range = orthonormal_range(vectors);

@@ -218,7 +218,8 @@ TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
   };
   const auto expect_complaint = [&](const std::string &member, auto change) {
     const std::string message = complaint(change);
-    EXPECT_NE(message.find("interfaces/" + member), std::string::npos) << member << ": " << message;
+    EXPECT_NE(message.find("interfaces/0/" + member), std::string::npos)
+        << member << ": " << message;
   };
   using I = InterfaceModel;
   EXPECT_EQ(complaint([](I &) {}), "");

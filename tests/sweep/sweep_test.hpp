@@ -73,7 +73,7 @@ struct SweepTest : testing::Test {
               const std::string &where = "samples") const {
     const Groups groups(PETSC_COMM_WORLD, ranks_per_group);
     Problem problem(groups.comm(), scene, {mesh.string(), 0});
-    return run_sweep(PETSC_COMM_WORLD, groups, problem, options, set, directory / where);
+    return run_sweep(PETSC_COMM_WORLD, groups, problem, options, set, {directory / where});
   }
 
   /// What sweeping `five` throws on this rank.

@@ -158,11 +158,12 @@ TEST_F(SweepTest, ARunBeginsOnceItsSamplesAreFoundGood) {
   const auto run = [&](const Scene &scene) {
     const Groups groups(PETSC_COMM_WORLD, 1);
     Problem problem(groups.comm(), scene, {mesh.string(), 0});
-    (void)run_sweep(PETSC_COMM_WORLD, groups, problem, {}, {five[0]}, samples, [&] {
-      ++begun;
-      EXPECT_EQ(fs::exists(sample_file(samples, five[0])), begun > 1);
-      MPI_Barrier(PETSC_COMM_WORLD);
-    });
+    (void)run_sweep(PETSC_COMM_WORLD, groups, problem, {}, {five[0]},
+                    {samples, [&] {
+                       ++begun;
+                       EXPECT_EQ(fs::exists(sample_file(samples, five[0])), begun > 1);
+                       MPI_Barrier(PETSC_COMM_WORLD);
+                     }});
   };
   run(wide_scene());
   run(wide_scene());

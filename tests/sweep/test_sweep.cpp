@@ -47,7 +47,7 @@ TEST_F(SweepTest, SamplesTellTheirLoadStepsAndTheEndsOfContact) {
   Problem problem(groups.comm(), scene, {});
   for (const int reused : {0, 3}) {
     const Sweep result =
-        run_sweep(PETSC_COMM_WORLD, groups, problem, options, set, directory / "large");
+        run_sweep(PETSC_COMM_WORLD, groups, problem, options, set, {directory / "large"});
     EXPECT_EQ(result.report.reused, reused);
     ASSERT_EQ(result.samples.size(), 3U) << result.report.failed.front().second;
     for (const Sample &sample : result.samples) {
@@ -65,8 +65,8 @@ TEST_F(SweepTest, FieldsAreReadFromTheirFilesWhenAsked) {
   const Sweep held = sweep(five);
   const Groups groups(PETSC_COMM_WORLD, 1);
   Problem problem(groups.comm(), wide_scene(), {mesh.string(), 0});
-  const Sweep left = run_sweep(
-      PETSC_COMM_WORLD, groups, problem, {}, five, directory / "samples", [] {}, Fields::in_files);
+  const Sweep left = run_sweep(PETSC_COMM_WORLD, groups, problem, {}, five,
+                               {directory / "samples", [] {}, Fields::in_files});
   ASSERT_EQ(left.samples.size(), five.size());
   for (std::size_t i = 0; i < five.size(); ++i) {
     EXPECT_EQ(left.samples[i].u.size(), 0);
@@ -92,7 +92,7 @@ TEST_F(SweepTest, SameSamplesOfARandomSetForAnyGroups) {
     const Groups groups(PETSC_COMM_WORLD, k);
     Problem shared(groups.comm(), scene, {});
     const Sweep result = run_sweep(PETSC_COMM_WORLD, groups, shared, {}, nine,
-                                   directory / ("nine_" + std::to_string(k)));
+                                   {directory / ("nine_" + std::to_string(k))});
     ASSERT_EQ(result.samples.size(), nine.size());
     for (std::size_t i = 0; i < nine.size(); ++i) {
       EXPECT_EQ(result.samples[i].mu, nine[i]);

@@ -28,7 +28,7 @@ void expect_noticed(const Scene &scene, const std::vector<Change> &changes) {
   for (const Change &change : changes) {
     Scene other = scene;
     change.make(other);
-    const std::string found = scene_difference(before, text_of(other), true);
+    const std::string found = scene_difference(before, text_of(other), Further::refused);
     EXPECT_TRUE(found.starts_with(change.line + " ")) << change.line << ": " << found;
     EXPECT_EQ(found.find('\n'), std::string::npos);
   }
@@ -128,21 +128,24 @@ TEST(WholeScene, WhatAUserChoosesIsNoChangeOfIt) {
 TEST(WholeScene, IsTheSameOnEveryRankAndForAnyNumberOfThem) {
   for (const std::string name : {"roller", "rigid_disk"}) {
     const Scene scene = make_scene(name, {{"arc_edges", "16"}});
-    EXPECT_EQ(scene_difference(text_of(scene, PETSC_COMM_WORLD), text_of(scene), true), "");
+    EXPECT_EQ(scene_difference(text_of(scene, PETSC_COMM_WORLD), text_of(scene), Further::refused),
+              "");
   }
 }
 
 TEST(WholeScene, LastDigitsAreNoDifference) {
   const std::string one = "a: 1\nmap values: 1.23456789\n", name = "map values: ";
-  EXPECT_EQ(scene_difference(one, "a: 1\n" + name + "1.23456790\n", true), "");
-  EXPECT_EQ(scene_difference(one, "a: 1\n" + name + "1.23456989\n", true),
+  EXPECT_EQ(scene_difference(one, "a: 1\n" + name + "1.23456790\n", Further::refused), "");
+  EXPECT_EQ(scene_difference(one, "a: 1\n" + name + "1.23456989\n", Further::refused),
             "map values is 1.23456989, it was 1.23456789");
-  EXPECT_EQ(scene_difference(one, "a: 1\n" + name + "1.23456789 of 15\n", true),
+  EXPECT_EQ(scene_difference(one, "a: 1\n" + name + "1.23456789 of 15\n", Further::refused),
             "map values is 1.23456789 of 15, it was 1.23456789");
-  EXPECT_EQ(scene_difference(one, "a: 2\n" + name + "2\n", true), "a is 2, it was 1");
-  EXPECT_EQ(scene_difference(one, "a: 1\n", false), "");
-  EXPECT_EQ(scene_difference(one, "a: 1\n", true), "map values was 1.23456789 and is gone");
-  EXPECT_EQ(scene_difference("a: 1\n", one, false), "map values is 1.23456789, it was not there");
+  EXPECT_EQ(scene_difference(one, "a: 2\n" + name + "2\n", Further::refused), "a is 2, it was 1");
+  EXPECT_EQ(scene_difference(one, "a: 1\n", Further::allowed), "");
+  EXPECT_EQ(scene_difference(one, "a: 1\n", Further::refused),
+            "map values was 1.23456789 and is gone");
+  EXPECT_EQ(scene_difference("a: 1\n", one, Further::allowed),
+            "map values is 1.23456789, it was not there");
 }
 
 TEST_F(SweepTest, SamplesOfAnotherSceneAreRefused) {

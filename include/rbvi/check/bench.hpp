@@ -32,10 +32,13 @@ std::vector<double> seconds_each(const std::vector<Mu> &set,
 /// The value that a fraction of `values` does not exceed. Throws failure if there is none.
 double quantile(std::vector<double> values, double fraction);
 
-/// High-fidelity solves at the first `count` truths; `cold` forgets earlier active sets. Collective
-/// on the problem's communicator, as are the next three.
+/// What a high-fidelity solve starts from: the active set of the one before, or none.
+enum class From { last, cold };
+
+/// High-fidelity solves at the first `count` truths. Collective on the problem's communicator, as
+/// are the next three.
 BenchRow bench_solver(Problem &problem, const HfOptions &options, const std::vector<Sample> &truths,
-                      std::size_t count, bool cold);
+                      std::size_t count, From from);
 
 /// The parts of an active_set solve that starts from the active set of the truth: assembly,
 /// factorisation, two linear solves, columns and LCP.

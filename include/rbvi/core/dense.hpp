@@ -50,9 +50,6 @@ struct ThinQr {
 ThinQr thin_qr(const Matrix &matrix);
 /// R alone.
 Matrix triangular_factor(const Matrix &matrix);
-/// Q of a square factor: orthonormal columns of the same span as the first `rank` pivoted columns.
-/// Directions below `threshold` of the largest are left out: m x rank.
-Matrix pivoted_range(const Matrix &matrix, double threshold);
 
 /// Columns of `vectors` belong to `values`, which increase.
 struct EigenPairs {

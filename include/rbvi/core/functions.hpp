@@ -4,15 +4,13 @@
 #pragma once
 
 #include "rbvi/core/parameters.hpp"
+#include "rbvi/core/point.hpp"
 #include "rbvi/core/record.hpp"
 
 #include <array>
 #include <variant>
 
 namespace rbvi {
-
-/// Coordinates; in 2D the third is zero.
-using Point = std::array<double, 3>;
 
 /// One simplex: dim + 1 vertices, in the reference and in the mapped domain.
 struct Cell {
@@ -52,9 +50,9 @@ using Kernel = void(const FullMu &mu, const Cell &cell, double *values); ///< se
 /// A force per length or area at a point x of the mapped boundary, n its unit normal outwards.
 using Traction = Point(const FullMu &mu, const Point &x, const Point &n);
 
-using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
-                              Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>,
-                              Maker<Traction>>;
+using AnyMaker =
+    std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
+                 Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>, Maker<Traction>>;
 using FunctionLibrary = std::vector<AnyMaker>;
 
 /// The makers of the functions below.

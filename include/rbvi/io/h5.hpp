@@ -79,14 +79,8 @@ public:
   H5Reader(H5Reader &&) noexcept;
   H5Reader &operator=(H5Reader &&) noexcept;
   bool has(const std::string &name) const;
-  Matrix matrix(const std::string &name) const;
-  Vector vector(const std::string &name) const;
-  std::vector<double> doubles(const std::string &name) const;
-  std::vector<int> ints(const std::string &name) const;
-  std::vector<std::string> strings(const std::string &name) const;
-  std::string string(const std::string &name) const;
-  double number(const std::string &name) const;
-  int integer(const std::string &name) const;
+  /// T: what H5Writer writes.
+  template <class T> T read(const std::string &name) const;
 
 private:
   struct Impl;

@@ -125,8 +125,8 @@ void compress_responses(Problem &problem, const std::vector<Sample> &samples,
 /// Adds supremizers of the greedy, or the span of all of them, behind the modes of `bases`. `dual`:
 /// functions that span the dual space, dual dofs x any number. Collective.
 void add_supremizers(Problem &problem, const std::vector<ContactPoint> &training,
-                     const Mu &reference, const ReduceOptions &options, Matrix dual,
-                     ReducedBases &bases, StageTable &stages);
+                     const ReduceOptions &options, Matrix dual, ReducedBases &bases,
+                     StageTable &stages);
 
 /// The middle of the box. Free parameters.
 Mu box_centre(const ParameterSpace &space);

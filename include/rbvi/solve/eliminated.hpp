@@ -45,7 +45,7 @@ public:
 private:
   SetSolution solve_system(const Operators &op, const OwnContact &contact, const SetSystem &system,
                            double accuracy);
-  Vector eliminate(const Operators &op, const Elimination &z, const Elimination &w, bool symmetric,
+  Vector eliminate(const Operators &op, const Elimination &z, const Elimination *other,
                    const Vector &constraint, Vec force, double accuracy);
   void drop_pivots(Mat a, const Elimination &z);
   void tie_pivots(Mat a, const Elimination &z, const SparseMatrix &ties);

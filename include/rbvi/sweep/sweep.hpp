@@ -63,16 +63,22 @@ struct Sweep {
 /// Of the samples of a sweep: held on every rank, all of them, or left in their files.
 enum class Fields { held, in_files };
 
+/// Where a sweep keeps its samples, and what it does with them.
+struct SampleStore {
+  std::filesystem::path directory;
+  /// Called on every rank once it is known that there are no samples of other settings, before
+  /// anything is written.
+  std::function<void()> begin = [] {};
+  Fields fields = Fields::held;
+};
+
 /// `samples/<hash of mu>.h5`
 std::filesystem::path sample_file(const std::filesystem::path &directory, const Mu &mu);
 
-/// Collective on `world`. `problem` lives on the communicator of this rank's group. Samples of
-/// `directory` that are there already are reused; throws bad_input, naming the setting and both
-/// values, if one was made with other settings. `begin` is called on every rank once that is known,
-/// before anything is written. What remains there of killed runs is removed.
-Sweep run_sweep(
-    MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
-    const std::vector<Mu> &set, const std::filesystem::path &directory,
-    const std::function<void()> &begin = [] {}, Fields fields = Fields::held);
+/// Collective on `world`. `problem` lives on the communicator of this rank's group. Samples that
+/// are there already are reused; throws bad_input, naming the setting and both values, if one was
+/// made with other settings. What remains there of killed runs is removed.
+Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const HfOptions &options,
+                const std::vector<Mu> &set, const SampleStore &store);
 
 } // namespace rbvi

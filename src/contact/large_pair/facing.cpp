@@ -12,18 +12,6 @@ namespace rbvi {
 
 namespace {
 
-double cross(const Point &a, const Point &b) {
-  return a[0] * b[1] - a[1] * b[0];
-}
-
-Point minus(const Point &a, const Point &b) {
-  return {a[0] - b[0], a[1] - b[1], 0};
-}
-
-double norm(const Point &x) {
-  return std::sqrt(x[0] * x[0] + x[1] * x[1]);
-}
-
 /// A quarter turn to the left of a tangent, of length 1.
 Point upwards(const Point &tangent) {
   const double length = norm(tangent);
@@ -93,9 +81,9 @@ double Projection::abscissa_of(Index master_vertex, Index &from) const {
   const Point &origin = master_.vertex(master_vertex);
   const Point &n = normals_[master_vertex];
   const auto beside = [&](Index edge, double s) { // > 0: to the right of the normal
-    return cross(minus(slave_.at(edge, s), origin), n);
+    return cross(slave_.at(edge, s) - origin, n)[2];
   };
-  const double edge_length = norm(minus(slave_.vertex(1), slave_.vertex(0)));
+  const double edge_length = norm(slave_.vertex(1) - slave_.vertex(0));
   const double round_off = 1e-12 * edge_length;
   if (beside(0, 0) > round_off) return -1;
   while (from + 1 < slave_.edges() && beside(from, 1) <= round_off)
@@ -107,7 +95,7 @@ double Projection::abscissa_of(Index master_vertex, Index &from) const {
     const double value = beside(from, s);
     if (std::abs(value) <= 1e-15 * edge_length) break;
     (value > 0 ? high : low) = s;
-    const double next = s - value / cross(slave_.tangent(from, s), n);
+    const double next = s - value / cross(slave_.tangent(from, s), n)[2];
     s = next > low && next < high ? next : 0.5 * (low + high);
   }
   return static_cast<double>(from) + s;
@@ -130,12 +118,12 @@ Facing Projection::facing(Index slave_edge, double s, Index master_edge) const {
   Facing result{slave_edge, master_edge, s, 0, 0, {}, 0, 0};
   double last = 1;
   for (int k = 0; k < 30; ++k) {
-    const Point away = minus(y, master_.at(master_edge, t));
+    const Point away = y - master_.at(master_edge, t);
     const Point field = master_.sum(master_edge, master_.values(t), normals_);
     const Point turn = master_.sum(master_edge, master_.slopes(t), normals_);
     const Point tangent = master_.tangent(master_edge, t);
     const double length = norm(field), stretch = norm(tangent);
-    const double step = cross(away, field) / (cross(tangent, field) - cross(away, turn));
+    const double step = cross(away, field)[2] / (cross(tangent, field) - cross(away, turn))[2];
     if (std::abs(step) > round_off && std::abs(last) > settled) {
       t += std::clamp(step, -0.5, 0.5);
       last = step;

@@ -26,7 +26,7 @@ Point polar(double radius, double angle) {
 
 /// From x (t = 0) to y (t = 1).
 Point between(const Point &x, const Point &y, double t) {
-  return {(1 - t) * x[0] + t * y[0], (1 - t) * x[1] + t * y[1], 0};
+  return (1 - t) * x + t * y;
 }
 
 Curve arc(double radius, double from, double to) {
@@ -130,10 +130,7 @@ Curve ring_curve(const QuarterDisc &shape, double d) {
   const double blend = std::max(0.0, (d - offset_distance) / (1 - core_radius - offset_distance));
   const Point end = between(offset.at(1), last(1), blend);
   const Point rim = polar(1, (1 - blend) * offset.end_angle() + blend * shape.outer_end);
-  return [=](double s) -> Point {
-    const Point x = between(offset.at(s), last(s), blend);
-    return {x[0] + s * (rim[0] - end[0]), x[1] + s * (rim[1] - end[1]), 0};
-  };
+  return [=](double s) { return between(offset.at(s), last(s), blend) + s * (rim - end); };
 }
 
 /// The quarter in three parts: the fan of rings about the contact arc, the rest of the

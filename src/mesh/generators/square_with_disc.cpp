@@ -54,10 +54,8 @@ Point on_square(double t) {
 /// Point of the regular hexagon of the unit circle's area, corners at turns 0, 1/6, ...
 Point on_hexagon(double t) {
   const double corner = std::floor(6 * t), along = 6 * t - corner;
-  const Point c = on_circle(corner / 6), d = on_circle((corner + 1) / 6);
   const double size = std::sqrt(2 * std::numbers::pi / (3 * std::sqrt(3.0)));
-  return {size * ((1 - along) * c[0] + along * d[0]), size * ((1 - along) * c[1] + along * d[1]),
-          0};
+  return size * ((1 - along) * on_circle(corner / 6) + along * on_circle((corner + 1) / 6));
 }
 
 /// Ring at the fraction rho of the radius: a lattice of equilateral triangles near the centre,
@@ -65,20 +63,16 @@ Point on_hexagon(double t) {
 /// concentric with the contact set would gain or lose whole rings of contact nodes at once.
 Point in_disc(double rho, double t, double turn) {
   constexpr std::array shift{0.0061, 0.0043};
-  const Point h = on_hexagon(t), c = on_circle(t);
   const double blend = rho * rho, rest = 1 - rho * rho;
-  const double x = radius * rho * ((1 - blend) * h[0] + blend * c[0]);
-  const double y = radius * rho * ((1 - blend) * h[1] + blend * c[1]);
+  const Point x = radius * rho * ((1 - blend) * on_hexagon(t) + blend * on_circle(t));
   const Point rotation = on_circle(turn);
-  return {rotation[0] * x - rotation[1] * y + rest * shift[0],
-          rotation[1] * x + rotation[0] * y + rest * shift[1], 0};
+  return {rotation[0] * x[0] - rotation[1] * x[1] + rest * shift[0],
+          rotation[1] * x[0] + rotation[0] * x[1] + rest * shift[1], 0};
 }
 
 /// Ring at the fraction blend of the way from the circle to the square.
 Point in_frame(double blend, double t) {
-  const Point c = on_circle(t), s = on_square(t);
-  const double circle = radius * (1 - blend);
-  return {circle * c[0] + blend * s[0], circle * c[1] + blend * s[1], 0};
+  return radius * (1 - blend) * on_circle(t) + blend * on_square(t);
 }
 
 using Zip = void (*)(SerialMesh &, const Ring &, const Ring &);

@@ -68,13 +68,11 @@ struct RingCurve {
   double blend;
   double length() const { return (1 - blend) * offset.length() + blend; }
   Point straight(double s) const {
-    const Point x = offset.at(s);
-    return {(1 - blend) * x[0] + blend * s, (1 - blend) * x[1] + blend * centre, 0};
+    return (1 - blend) * offset.at(s) + blend * Point{s, centre, 0};
   }
   Point at(double s) const {
-    const Point x = straight(s), end = straight(1);
     const Point rim = polar(1, (1 - blend) * offset.end_angle() + blend * std::numbers::pi / 2);
-    return {x[0] + s * (rim[0] - end[0]), x[1] + s * (rim[1] - end[1]), 0};
+    return straight(s) + s * (rim - straight(1));
   }
 };
 

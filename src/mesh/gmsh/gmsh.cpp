@@ -98,7 +98,7 @@ public:
   Vertices(const GmshFile &file, const Elements &cells, int dim) : nodes_(file.nodes) {
     std::vector<bool> used(nodes_.size(), false);
     for (const auto &cell : cells.nodes)
-      for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+      for (int i = 0; i <= dim; ++i)
         used[position(cell[i])] = true;
     int count = 0;
     for (const bool one : used)
@@ -182,7 +182,7 @@ SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
   if (dim == 2) flatten(mesh.points);
   for (const auto &nodes : cells.nodes) {
     std::array<int, 4> cell{-1, -1, -1, -1};
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(dim); ++i)
+    for (int i = 0; i <= dim; ++i)
       cell[i] = vertices[nodes[i]];
     mesh.cells.push_back(cell);
   }
@@ -193,7 +193,7 @@ SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
   for (const std::string &name : scene.mesh.boundaries)
     for (const std::size_t member : members(file, facets, dim - 1, name)) {
       std::array<int, 3> facet{-1, -1, -1};
-      for (std::size_t i = 0; i < static_cast<std::size_t>(dim); ++i) {
+      for (int i = 0; i < dim; ++i) {
         const std::size_t number = facets.nodes[member][i];
         facet[i] = vertices[number];
         if (facet[i] < 0)

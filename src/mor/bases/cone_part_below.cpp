@@ -45,14 +45,14 @@ PartBelow largest_part_below(const Vector &theta, double slack, const Matrix &ge
   PartBelow result{Vector::Zero(generators.cols()), {}};
   const std::vector<Index> allowed = allowed_generators(bound, generators);
   if (allowed.empty()) return result;
-  const Index count = static_cast<Index>(allowed.size());
+  const Index count = std::ssize(allowed);
   const Matrix n = generators(Eigen::all, allowed);
   const auto [r, z0] = triangular_form(coordinates(Eigen::all, allowed), target);
 
   std::vector<Index> nodes;
   for (Index i = 0; i < n.rows(); ++i)
     if ((n.row(i).array() > 0).any()) nodes.push_back(i);
-  const Index rows = static_cast<Index>(nodes.size());
+  const Index rows = std::ssize(nodes);
 
   // In z = R a: min |z - z0| with N R^-1 z <= bound and -R^-1 z <= 0, of which the QP is the dual.
   Matrix y(count, rows + count);

@@ -150,13 +150,12 @@ private:
   std::vector<int> largest(const Answer &answer) const {
     double most = 0;
     for (std::size_t j = 0; j < taken_.size(); ++j)
-      if (taken_[j] == 0) most = std::max(most, answer.excess[static_cast<Index>(j)]);
+      if (taken_[j] == 0) most = std::max(most, answer.excess[j]);
     std::vector<int> result;
     if (most <= solve_noise * answer.scale) return result;
     const double least = most * (1 - tie) - 0.1 * solve_noise * answer.scale;
     for (std::size_t j = 0; j < taken_.size(); ++j)
-      if (taken_[j] == 0 && answer.excess[static_cast<Index>(j)] >= least)
-        result.push_back(static_cast<int>(j));
+      if (taken_[j] == 0 && answer.excess[j] >= least) result.push_back(static_cast<int>(j));
     return result;
   }
 

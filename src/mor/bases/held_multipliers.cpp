@@ -46,7 +46,7 @@ std::optional<HeldDofs> held_dofs(const SparseMatrix &b, const std::vector<Index
       if (entry.value() == 0) continue;
       if (result.dofs.size() > k || taken[entry.col()]) return std::nullopt;
       taken[entry.col()] = true;
-      result.entries[static_cast<Index>(k)] = entry.value();
+      result.entries[k] = entry.value();
       result.dofs.push_back(entry.col());
     }
     if (result.dofs.size() == k) return std::nullopt;

@@ -166,7 +166,7 @@ Cone hybrid_cone(const Matrix &snapshots, const SparseMatrix &product, const Con
   cone.history.error.push_back(1);
   cone.basis.generators = Matrix::Zero(snapshots.rows(), moving);
   cone.basis.generators(nodes, Eigen::all) = functions_there;
-  const auto permanent = static_cast<Index>(zones.permanent.size());
+  const auto permanent = std::ssize(zones.permanent);
   cone.modes.columns = Matrix::Zero(snapshots.rows(), 0);
   if (permanent == 0) {
     cone.history.size.push_back(static_cast<int>(moving));

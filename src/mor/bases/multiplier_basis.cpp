@@ -1,10 +1,9 @@
 #include "rbvi/mor/bases/multiplier_basis.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/mor/bases/pod.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/rom/law/collocated_law.hpp"
-
-#include <cmath>
 
 namespace rbvi {
 
@@ -23,17 +22,9 @@ struct DenseModes {
 /// QR, then SVD of the small factor.
 DenseModes dense_pod(const Matrix &snapshots, const SparseMatrix &product, double tolerance) {
   const Matrix factor = product_factor(product);
-  const Matrix coordinates = factor * snapshots;
-  const double total = coordinates.norm();
-  const SmallSvd svd = small_svd(coordinates);
+  const SmallSvd svd = small_svd(factor * snapshots);
   DenseModes modes;
-  double rest = 0;
-  std::vector<double> tail{0};
-  for (Index k = svd.values.size(); k-- > 0;) {
-    rest += svd.values[k] * svd.values[k];
-    tail.push_back(std::sqrt(rest) / total);
-  }
-  modes.error.assign(tail.rbegin(), tail.rend());
+  modes.error = projection_errors(svd.values);
   Index count = 1;
   while (count < svd.values.size() && modes.error[count] > tolerance)
     ++count;

@@ -37,9 +37,8 @@ std::vector<bool> near_contact(const Contact &contact, std::size_t interface,
   if (carrying.size() < 2) return near;
   const double reach = ring * extent(carrying);
   for (std::size_t node = 0; node < near.size(); ++node)
-    near[node] = std::ranges::any_of(carrying, [&](const Point &point) {
-      return (At(point.data()) - At(dual.points[node].data())).norm() <= reach;
-    });
+    near[node] = std::ranges::any_of(
+        carrying, [&](const Point &point) { return norm(point - dual.points[node]) <= reach; });
   return near;
 }
 

@@ -81,7 +81,7 @@ public:
     std::vector<Index> used;
     for (Index k = 0; k < size; ++k)
       if ((factors.g.col(k).array() > 0).any()) used.push_back(k);
-    Attempt result{Matrix::Zero(start_.rows(), static_cast<Index>(used.size()))};
+    Attempt result{Matrix::Zero(start_.rows(), std::ssize(used))};
     result.generators(rows_, Eigen::all) =
         weights_.cwiseInverse().asDiagonal() * factors.g(Eigen::all, used);
     const Vector norms = (factor_ * result.generators).colwise().norm();

@@ -15,7 +15,7 @@ Cone nodal_cone(const Matrix &snapshots, const SparseMatrix &product, const Cone
       nodes.push_back(i);
       outside.row(i).setZero();
     }
-  const auto count = static_cast<Index>(nodes.size());
+  const auto count = std::ssize(nodes);
   Cone cone;
   cone.basis.generators = Matrix::Zero(snapshots.rows(), count);
   for (Index k = 0; k < count; ++k) {

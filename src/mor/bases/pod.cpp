@@ -1,9 +1,9 @@
 #include "rbvi/mor/bases/pod.hpp"
 
+#include "append_block.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -16,186 +16,63 @@ namespace {
 constexpr double dependent = 1e-13; // remainder of a snapshot, relative to its norm
 constexpr double equal = 1e-8;      // singular values this close are kept or cut together
 constexpr double sign_tie = 1e-10;
-constexpr double much_removed = 0.1; // what is left of a column is no longer orthogonal to the rest
 
-/// Classical Gram-Schmidt in the product of `basis`; twice, but for blocks that lose little.
-class GramSchmidt {
+/// What append_block wants of a basis over the ranks. BVOrthogonalize does the same of columns that
+/// are all far from dependent; of others it says neither which nor how much is left of them.
+class BvColumns {
 public:
-  GramSchmidt(BV basis, PetscInt size, PetscInt capacity) : basis_(basis), size_(size) {
-    RBVI_CALL(BVGetMatrix(basis_, &product_, nullptr));
-    RBVI_CALL(BVResize(basis_, capacity, PETSC_TRUE));
-    RBVI_CALL(MatCreateVecs(product_, nullptr, image_.put()));
+  BvColumns(const LinearBasis &basis, PetscInt more)
+      : basis_(basis.columns.get()), size_(basis.size()) {
+    RBVI_CALL(BVResize(basis_, size_ + more, PETSC_TRUE));
   }
-
-  PetscInt size() const { return size_; }
-
-  /// Coefficients of `column` in the basis, the new column's last if it is taken; `column` becomes
-  /// its remainder.
-  Vector add(Vec column, double tolerance) {
-    Vector coefficients = remove(column, 0);
-    coefficients += remove(column, 0);
-    return keep(column, coefficients, 0, tolerance);
+  Matrix gram(BV block, Index n) const {
+    use(block, n);
+    return products(block, block, n, n);
   }
-
-  /// Whether each column of a block was taken. All of them against the basis first, by products of
-  /// matrices; then those that have enough of their own together, and the others one by one.
-  std::vector<bool> add_block(BV block, double tolerance) {
-    PetscInt count = 0;
-    RBVI_CALL(BVGetActiveColumns(block, nullptr, &count));
-    const PetscInt known = size_;
-    Vector removed = remove(block, count);
-    Matrix gram = gram_of(block, count);
-    // What is left of less than 0.7 of a column is no longer orthogonal to the rest.
-    if (known > 0 && (gram.diagonal().array() < removed.array().square()).any()) {
-      removed = (removed.array().square() + remove(block, count).array().square()).sqrt();
-      gram = gram_of(block, count);
-    }
-    std::vector<bool> taken = orthonormalise(block, gram, removed, tolerance);
-    for (PetscInt j = 0; j < count; ++j)
-      if (taken[j]) insert(block, j);
-    for (PetscInt j = 0; j < count; ++j) {
-      if (taken[j]) continue;
+  Vector remove(BV block, Index n) const {
+    if (size_ == 0) return Vector::Zero(n);
+    use(block, n);
+    use(basis_, size_);
+    Matrix inside = products(basis_, block, size_, n);
+    RBVI_CALL(BVMult(block, -1.0, 1.0, basis_, sequential_dense(inside).get()));
+    return inside.colwise().norm();
+  }
+  static void rotate(BV block, const Matrix &rotation) {
+    use(block, rotation.rows());
+    RBVI_CALL(BVMultInPlace(block, sequential_dense(rotation).get(), 0,
+                            static_cast<PetscInt>(rotation.cols())));
+  }
+  void take(BV block, Index n) {
+    for (PetscInt j = 0; j < n; ++j) {
       Vec column = nullptr;
       RBVI_CALL(BVGetColumn(block, j, &column));
-      const double before = product_norm(column);
-      Vector coefficients = remove(column, known);
-      const bool reduced = size_ > known && product_norm(column) < much_removed * before;
-      coefficients += remove(column, reduced ? 0 : known).tail(coefficients.size());
-      const PetscInt size = size_;
-      keep(column, coefficients, removed[j], tolerance);
+      RBVI_CALL(BVInsertVec(basis_, size_++, column));
       RBVI_CALL(BVRestoreColumn(block, j, &column));
-      taken[j] = size_ > size;
     }
-    return taken;
   }
-
   /// Cuts the storage of the basis down to its columns, all of them active.
-  void finish() {
-    PetscInt capacity = 0;
-    RBVI_CALL(BVGetSizes(basis_, nullptr, nullptr, &capacity));
-    if (size_ < capacity) RBVI_CALL(BVResize(basis_, size_, PETSC_TRUE));
-    RBVI_CALL(BVSetActiveColumns(basis_, 0, size_));
+  void finish() const {
+    RBVI_CALL(BVResize(basis_, size_, PETSC_TRUE));
+    use(basis_, size_);
   }
 
 private:
-  /// Makes a column orthogonal to those from `first` on; its coefficients in them.
-  Vector remove(Vec column, PetscInt first) {
-    Vector step(size_ - first);
-    if (step.size() == 0) return step;
-    RBVI_CALL(BVSetActiveColumns(basis_, first, size_));
-    RBVI_CALL(BVDotVec(basis_, column, step.data()));
-    RBVI_CALL(BVMultVec(basis_, -1.0, 1.0, column, step.data()));
-    return step;
+  static void use(BV columns, Index n) {
+    RBVI_CALL(BVSetActiveColumns(columns, 0, static_cast<PetscInt>(n)));
   }
-  /// Makes columns orthogonal to the basis; the norm of what each loses.
-  Vector remove(BV block, PetscInt count) {
-    if (size_ == 0) return Vector::Zero(count);
-    RBVI_CALL(BVSetActiveColumns(basis_, 0, size_));
-    Matrix coefficients(size_, count);
+  /// X^T P Y.
+  static Matrix products(BV x, BV y, Index rows, Index columns) {
+    Matrix result(rows, columns);
     Handle<Mat> view;
-    RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, size_, count, coefficients.data(), view.put()));
-    RBVI_CALL(BVDot(block, basis_, view.get()));
-    RBVI_CALL(BVMult(block, -1.0, 1.0, basis_, view.get()));
-    return coefficients.colwise().norm();
-  }
-  /// X^T X of a block X in the product.
-  static Matrix gram_of(BV block, PetscInt count) {
-    Matrix gram(count, count);
-    Handle<Mat> view;
-    RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, count, count, gram.data(), view.put()));
-    RBVI_CALL(BVDot(block, block, view.get()));
-    if (!gram.allFinite())
-      throw failure("a column to orthonormalise has entries that are not finite");
-    return gram;
-  }
-  /// Those columns of a block that have enough of their own, and how much they have of it.
-  struct Fit {
-    std::vector<Index> columns;
-    Matrix factor;    ///< lower triangle, of their Gram matrix scaled to a diagonal of 1
-    double least = 1; ///< its smallest pivot
-  };
-  /// `gram`: of the block; `removed`: the norm of what is no longer in each column.
-  static Fit fit_columns(const Matrix &gram, const Vector &norms, const Vector &removed,
-                         double tolerance) {
-    constexpr double own = 1e-4; // one Cholesky factor leaves angles of round-off over its square
-    Fit fit;
-    Matrix factor = Matrix::Zero(gram.rows(), gram.cols());
-    for (Index j = 0; j < gram.cols(); ++j) {
-      if (!(norms[j] > 0)) continue;
-      const auto size = std::ssize(fit.columns);
-      Vector row = gram(fit.columns, j).cwiseQuotient(norms(fit.columns)) / norms[j];
-      factor.topLeftCorner(size, size).triangularView<Eigen::Lower>().solveInPlace(row);
-      const double left = std::sqrt(std::max(0.0, 1 - row.squaredNorm()));
-      if (!(left > own) || left * norms[j] <= tolerance * std::hypot(removed[j], norms[j]))
-        continue;
-      factor.row(size).head(size) = row.transpose();
-      factor(size, size) = left;
-      fit.least = std::min(fit.least, left);
-      fit.columns.push_back(j);
-    }
-    const auto size = std::ssize(fit.columns);
-    fit.factor = factor.topLeftCorner(size, size);
-    return fit;
-  }
-  /// The columns of a block that have enough of their own, made orthonormal to each other by a
-  /// Cholesky factor of their Gram matrix, twice. Which they are; the others are as they were.
-  std::vector<bool> orthonormalise(BV block, const Matrix &gram, const Vector &removed,
-                                   double tolerance) {
-    const auto count = static_cast<PetscInt>(gram.cols());
-    const Vector norms = gram.diagonal().cwiseMax(0).cwiseSqrt();
-    const Fit fit = fit_columns(gram, norms, removed, tolerance);
-    std::vector<bool> taken(count, false);
-    if (fit.columns.empty()) return taken;
-    rotate(block, count, fit.columns, norms(fit.columns).cwiseInverse(), fit.factor);
-    if (fit.least < much_removed) remove(block, count);
-    const Matrix again = gram_of(block, count)(fit.columns, fit.columns);
-    rotate(block, count, fit.columns, Vector::Ones(again.cols()),
-           cholesky(again, "the Gram matrix of fields that are nearly orthonormal"));
-    for (const Index j : fit.columns)
-      taken[j] = true;
-    return taken;
-  }
-  /// X <- X D L^-T for these columns of a block.
-  static void rotate(BV block, PetscInt count, const std::vector<Index> &columns,
-                     const Vector &scale, const Matrix &lower) {
-    Matrix inverse = scale.asDiagonal();
-    lower.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(inverse);
-    Matrix rotation = Matrix::Identity(count, count);
-    rotation(columns, columns) = inverse;
-    RBVI_CALL(BVMultInPlace(block, sequential_dense(rotation).get(), 0, count));
-  }
-  void insert(BV block, PetscInt j) {
-    Vec column = nullptr;
-    RBVI_CALL(BVGetColumn(block, j, &column));
-    RBVI_CALL(BVInsertVec(basis_, size_++, column));
-    RBVI_CALL(BVRestoreColumn(block, j, &column));
-  }
-  double product_norm(Vec column) {
-    double square = 0;
-    RBVI_CALL(MatMult(product_, column, image_.get()));
-    RBVI_CALL(VecDot(column, image_.get(), &square));
-    if (!std::isfinite(square))
-      throw failure("a column to orthonormalise has entries that are not finite");
-    return std::sqrt(std::max(square, 0.0));
-  }
-  /// Takes the remainder of a column unless it is small beside the column; `removed`: the norm of
-  /// what was removed beside the coefficients.
-  Vector keep(Vec column, Vector coefficients, double removed, double tolerance) {
-    const double remainder = product_norm(column);
-    const double norm = std::hypot(removed, coefficients.norm(), remainder);
-    if (remainder <= tolerance * norm) return coefficients;
-    coefficients.conservativeResize(coefficients.size() + 1);
-    coefficients.tail(1)[0] = remainder;
-    RBVI_CALL(VecScale(column, 1 / remainder));
-    RBVI_CALL(BVInsertVec(basis_, size_, column));
-    ++size_;
-    return coefficients;
+    RBVI_CALL(MatCreateSeqDense(PETSC_COMM_SELF, static_cast<PetscInt>(rows),
+                                static_cast<PetscInt>(columns), result.data(), view.put()));
+    RBVI_CALL(BVDot(y, x, view.get()));
+    if (!result.allFinite()) throw failure("columns to orthonormalise are not finite");
+    return result;
   }
 
   BV basis_;
   PetscInt size_;
-  Mat product_ = nullptr;
-  Handle<Vec> image_;
 };
 
 void fix_signs(SmallSvd &svd) {
@@ -206,20 +83,6 @@ void fix_signs(SmallSvd &svd) {
       ++first;
     if (svd.right(first, k) < 0) svd.left.col(k) = -svd.left.col(k);
   }
-}
-
-std::vector<double> projection_errors(const Vector &values) {
-  std::vector<double> errors(static_cast<std::size_t>(values.size()) + 1, 0.0);
-  const Vector scaled = values / values(0);
-  double tail = 0;
-  for (Index n = values.size() - 1; n >= 0; --n) {
-    tail += scaled(n) * scaled(n);
-    errors[n] = std::sqrt(tail);
-  }
-  const double total = errors[0];
-  for (double &error : errors)
-    error /= total;
-  return errors;
 }
 
 Index truncation(const Vector &values, const std::vector<double> &errors,
@@ -245,6 +108,20 @@ Index truncation(const Vector &values, const std::vector<double> &errors,
 
 } // namespace
 
+std::vector<double> projection_errors(const Vector &values) {
+  std::vector<double> errors(static_cast<std::size_t>(values.size()) + 1, 0.0);
+  const Vector scaled = values / values(0);
+  double tail = 0;
+  for (Index n = values.size() - 1; n >= 0; --n) {
+    tail += scaled(n) * scaled(n);
+    errors[n] = std::sqrt(tail);
+  }
+  const double total = errors[0];
+  for (double &error : errors)
+    error /= total;
+  return errors;
+}
+
 PetscInt LinearBasis::size() const {
   PetscInt count = 0;
   RBVI_CALL(BVGetSizes(columns.get(), nullptr, nullptr, &count));
@@ -259,23 +136,22 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
 
   const auto count = static_cast<PetscInt>(snapshots.size());
   Pod result;
-  RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(product)),
-                     result.basis.columns.put()));
+  result.basis.columns = make_columns(snapshots.front(), count, product);
   const BV columns = result.basis.columns.get();
-  RBVI_CALL(BVSetSizesFromVec(columns, snapshots.front(), count));
-  RBVI_CALL(BVSetType(columns, BVMAT));
-  RBVI_CALL(BVSetMatrix(columns, product, PETSC_FALSE));
 
-  GramSchmidt factorisation(columns, 0, count);
-  Handle<Vec> work;
-  RBVI_CALL(VecDuplicate(snapshots.front(), work.put()));
   Matrix factor = Matrix::Zero(count, count);
+  PetscInt rank = 0;
   for (PetscInt p = 0; p < count; ++p) {
-    RBVI_CALL(VecCopy(snapshots[p], work.get()));
-    const Vector coefficients = factorisation.add(work.get(), dependent);
-    factor.col(p).head(coefficients.size()) = coefficients;
+    double norm = 0, remainder = 0;
+    RBVI_CALL(VecNorm(snapshots[p], NORM_2, &norm));
+    if (!std::isfinite(norm)) throw failure("a snapshot has entries that are not finite");
+    RBVI_CALL(BVInsertVec(columns, rank, snapshots[p]));
+    RBVI_CALL(BVOrthogonalizeColumn(columns, rank, factor.col(p).data(), &remainder, nullptr));
+    factor(rank, p) = 0;
+    if (remainder <= dependent * std::hypot(factor.col(p).norm(), remainder)) continue;
+    RBVI_CALL(BVScaleColumn(columns, rank, 1 / remainder));
+    factor(rank++, p) = remainder;
   }
-  const PetscInt rank = factorisation.size();
   if (rank == 0)
     throw failure("the displacements at all training parameters are zero: nothing moves the body; "
                   "is there a load, a motion or an imposed displacement, and -train with other "
@@ -296,19 +172,14 @@ Pod pod(const std::vector<Vec> &snapshots, Mat product, const PodOptions &option
 
 namespace {
 
-/// Makes columns orthonormal to a basis and to each other, and appends them; which were taken.
-/// Collective.
-std::vector<int> append(GramSchmidt &factorisation, Mat product, Mat columns, double tolerance) {
+/// append_block() of columns, some at a time. Collective.
+std::vector<int> append(BvColumns &basis, Mat product, Mat columns, double tolerance) {
   constexpr PetscInt width = 48; ///< columns at a time
   PetscInt count = 0;
   Handle<Vec> work;
-  Handle<BV> block;
   RBVI_CALL(MatGetSize(columns, nullptr, &count));
   RBVI_CALL(MatCreateVecs(columns, nullptr, work.put()));
-  RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(columns)), block.put()));
-  RBVI_CALL(BVSetSizesFromVec(block.get(), work.get(), std::max(1, std::min(width, count))));
-  RBVI_CALL(BVSetType(block.get(), BVMAT));
-  RBVI_CALL(BVSetMatrix(block.get(), product, PETSC_FALSE));
+  const Handle<BV> block = make_columns(work.get(), std::max(1, std::min(width, count)), product);
   std::vector<int> taken;
   for (PetscInt first = 0; first < count; first += width) {
     const PetscInt many = std::min(width, count - first);
@@ -317,9 +188,9 @@ std::vector<int> append(GramSchmidt &factorisation, Mat product, Mat columns, do
       RBVI_CALL(MatGetColumnVector(columns, work.get(), first + j));
       RBVI_CALL(BVInsertVec(block.get(), j, work.get()));
     }
-    const std::vector<bool> kept = factorisation.add_block(block.get(), tolerance);
-    for (PetscInt j = 0; j < many; ++j)
-      if (kept[j]) taken.push_back(static_cast<int>(first + j));
+    BV filled = block.get();
+    for (const int j : append_block(basis, filled, many, tolerance))
+      taken.push_back(static_cast<int>(first) + j);
   }
   return taken;
 }
@@ -335,9 +206,9 @@ Mat product_of(const LinearBasis &basis) {
 std::vector<int> append_orthonormalised(LinearBasis &basis, Mat columns, double tolerance) {
   PetscInt count = 0;
   RBVI_CALL(MatGetSize(columns, nullptr, &count));
-  GramSchmidt factorisation(basis.columns.get(), basis.size(), basis.size() + count);
-  const std::vector<int> taken = append(factorisation, product_of(basis), columns, tolerance);
-  factorisation.finish();
+  BvColumns growing(basis, count);
+  const std::vector<int> taken = append(growing, product_of(basis), columns, tolerance);
+  growing.finish();
   return taken;
 }
 
@@ -346,16 +217,15 @@ std::vector<int> append_fields(ResponseSolver &solver, const Matrix &loads, Line
   constexpr Index at_a_time = 192;
   std::vector<int> taken;
   if (traces != nullptr) traces->resize(loads.rows(), loads.cols());
-  GramSchmidt factorisation(basis.columns.get(), basis.size(),
-                            basis.size() + static_cast<PetscInt>(loads.cols()));
+  BvColumns growing(basis, static_cast<PetscInt>(loads.cols()));
   for (Index first = 0; first < loads.cols(); first += at_a_time) {
     const Index count = std::min(at_a_time, loads.cols() - first);
     const Handle<Mat> fields = solver.fields(loads.middleCols(first, count));
     if (traces != nullptr) traces->middleCols(first, count) = solver.restrict(fields.get());
-    for (const int k : append(factorisation, product_of(basis), fields.get(), tolerance))
+    for (const int k : append(growing, product_of(basis), fields.get(), tolerance))
       taken.push_back(static_cast<int>(first) + k);
   }
-  factorisation.finish();
+  growing.finish();
   return taken;
 }
 

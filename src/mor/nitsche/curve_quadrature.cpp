@@ -28,10 +28,9 @@ public:
   AllPoints(const ReducedModel &model, const NitscheLayer &layer,
             const std::vector<Sample> &samples)
       : model_(model), solver_(model_, layer), scene_(layer.scene), samples_(samples),
-        of_curve_(4 * static_cast<Index>(layer.cells.size())),
-        symmetric_(is_symmetric(layer.scene)) {
+        of_curve_(4 * std::ssize(layer.cells)), symmetric_(is_symmetric(layer.scene)) {
     const std::vector<CurveCell> &cells = layer.cells;
-    const auto count = static_cast<Index>(samples.size());
+    const auto count = std::ssize(samples);
     answers_.resize(model.primal_size(), count);
     std::vector<char> met(4 * cells.size(), 0); // some answer has contact or friction there
     const Vector x = point_abscissae(cells);
@@ -116,12 +115,12 @@ void set_points(const AllPoints &all, const Vector &factors, const Matrix &press
   nitsche.points.clear();
   std::vector<double> positive;
   for (std::size_t k = 0; k < all.points().size(); ++k) {
-    const double factor = all.share() * factors[static_cast<Index>(k)];
+    const double factor = all.share() * factors[k];
     if (!(factor > 0)) continue;
     nitsche.points.push_back(all.points()[k]);
     positive.push_back(factor);
   }
-  nitsche.factors = Eigen::Map<const Vector>(positive.data(), static_cast<Index>(positive.size()));
+  nitsche.factors = Eigen::Map<const Vector>(positive.data(), std::ssize(positive));
   std::vector<int> rows = nitsche.points;
   const Index count = all.of_curve();
   for (std::size_t k = 0; k < nitsche.points.size() && pressures.rows() > count; ++k)
@@ -149,13 +148,13 @@ Vector errors_of_points(const ReducedModel &model, const NitscheLayer &layer,
 }
 
 /// Non-negative least squares, point by point, until every answer of the model itself is met: to
-/// first order, at some training parameters and at those that turn out worst. `pressures`: at all
-/// points, of the samples.
+/// first order, at some training parameters and at those that turn out worst. `model`: starts at
+/// all points.
 void choose_points(AllPoints &all, double tolerance, const NitscheLayer &layer,
-                   const std::vector<Sample> &samples, const Matrix &pressures, ReducedModel &model,
-                   CurveReport &report) {
+                   const std::vector<Sample> &samples, ReducedModel &model, CurveReport &report) {
+  const Matrix pressures = model.nitsche->starts;
   constexpr Index few = 64;
-  const auto count = static_cast<Index>(samples.size());
+  const auto count = std::ssize(samples);
   std::vector<char> taken(samples.size(), 0);
   PointFit fit;
   const auto take = [&](Index p) {
@@ -189,13 +188,13 @@ void choose_points(AllPoints &all, double tolerance, const NitscheLayer &layer,
 /// P_n and, with friction, P_tau of the samples at all points.
 Matrix pressures_of(const Problem &problem, const std::vector<Sample> &samples) {
   const NitscheLayer layer = layer_of(problem.contact());
-  const Index points = 4 * static_cast<Index>(layer.cells.size());
-  Matrix result(layer.friction() ? 2 * points : points, static_cast<Index>(samples.size()));
+  const Index points = 4 * std::ssize(layer.cells);
+  Matrix result(layer.friction() ? 2 * points : points, std::ssize(samples));
   for (std::size_t p = 0; p < samples.size(); ++p) {
     const Vector u = displacement(problem.comm(), samples[p])(problem.places().natural_dofs);
     const auto faces =
         nitsche_faces(layer, expand(layer.scene.parameters, samples[p].mu), layer.cells, u);
-    result.col(static_cast<Index>(p)) = nitsche_pressures(faces, u).reshaped().head(result.rows());
+    result.col(p) = nitsche_pressures(faces, u).reshaped().head(result.rows());
   }
   return result;
 }
@@ -213,22 +212,20 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
   model.nitsche = NitscheModel{};
   NitscheModel &nitsche = *model.nitsche;
   nitsche.consistency = interpolate_consistency(layer, samples, model.contact_trace);
-  nitsche.starts_mu.resize(model.scene.parameters.size(), static_cast<Index>(samples.size()));
+  nitsche.starts_mu.resize(model.scene.parameters.size(), std::ssize(samples));
   for (std::size_t p = 0; p < samples.size(); ++p)
-    std::copy(samples[p].mu.begin(), samples[p].mu.end(),
-              nitsche.starts_mu.col(static_cast<Index>(p)).begin());
+    std::copy(samples[p].mu.begin(), samples[p].mu.end(), nitsche.starts_mu.col(p).begin());
   nitsche.rule = CurveRule::full;
   nitsche.starts = pressures_of(problem, samples);
   if (layer.follows_state()) nitsche.states = coefficients;
   if (options.rule == CurveRule::empirical) {
     AllPoints all(model, layer, samples);
-    const Matrix pressures = nitsche.starts;
     if (all.points().empty())
       throw failure("there is no contact at any training mu, and nothing to integrate: widen the "
                     "parameter box");
     nitsche.rule = CurveRule::empirical;
     choose_points(all, options.tolerance > 0 ? options.tolerance : std::max(u_left, round_off),
-                  layer, samples, pressures, model, report);
+                  layer, samples, model, report);
   } else if (options.rule == CurveRule::interpolated) {
     interpolate_terms(problem, samples, options, model, report);
     nitsche.rule = CurveRule::interpolated;

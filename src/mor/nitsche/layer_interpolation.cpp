@@ -22,7 +22,7 @@ public:
   const std::vector<EntryKey> &keys() const { return keys_; }
 
   Vector values(const std::vector<CurveCell> &cells, const std::vector<FaceBlock> &blocks) const {
-    Vector result = Vector::Zero(static_cast<Index>(keys_.size()));
+    Vector result = Vector::Zero(std::ssize(keys_));
     for (std::size_t k = 0; k < cells.size(); ++k)
       visit(cells[k].dofs, [&](int row, int column, Index i, Index j) {
         const auto found = std::lower_bound(keys_.begin(), keys_.end(), EntryKey{row, column});
@@ -36,7 +36,7 @@ public:
     SparseMatrix lower(trace.rows(), trace.rows());
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t k = 0; k < keys_.size(); ++k)
-      entries.emplace_back(keys_[k].row, keys_[k].column, values[static_cast<Index>(k)]);
+      entries.emplace_back(keys_[k].row, keys_[k].column, values[k]);
     lower.setFromTriplets(entries.begin(), entries.end());
     return pack(trace.transpose() * (lower.selfadjointView<Eigen::Lower>() * trace));
   }
@@ -102,9 +102,9 @@ void add_errors_over(Matrix others, const std::vector<Index> &converged, const M
 }
 
 Matrix side_by_side(const std::vector<Vector> &columns) {
-  Matrix result(columns.empty() ? 0 : columns.front().size(), static_cast<Index>(columns.size()));
+  Matrix result(columns.empty() ? 0 : columns.front().size(), std::ssize(columns));
   for (std::size_t k = 0; k < columns.size(); ++k)
-    result.col(static_cast<Index>(k)) = columns[k];
+    result.col(k) = columns[k];
   return result;
 }
 

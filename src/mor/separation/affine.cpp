@@ -3,6 +3,7 @@
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ SampleMesh to_sample_mesh(int dim, int corners, std::vector<TouchedCell> cells) 
   });
   SampleMesh sample;
   sample.corners = corners;
-  sample.vertices.resize(static_cast<Index>(cells.size()) * corners, dim);
+  sample.vertices.resize(std::ssize(cells) * corners, dim);
   for (std::size_t k = 0; k < cells.size(); ++k) {
     for (int i = 0; i < corners; ++i)
       for (int c = 0; c < dim; ++c)

@@ -23,7 +23,7 @@ Matrix answers_at(const Problem &problem, const CondensedLoads &loads, QueryMeth
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
     try {
       const ReducedAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
-      answers.col(static_cast<Index>(p)) =
+      answers.col(p) =
           !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
     } catch (const Error &) { // the self-check tells of such mu
     }
@@ -49,12 +49,6 @@ ResponseDirections::ResponseDirections(const Matrix &compliance) {
   root_.transposeInPlace();
 }
 
-Matrix ResponseDirections::remainder(Matrix moved) const {
-  for (int pass = 0; pass < 2 && space_.cols() > 0; ++pass)
-    moved -= space_ * (space_.transpose() * moved).eval();
-  return moved;
-}
-
 namespace {
 
 /// As many of the first singular vectors as leave at most this of every column.
@@ -73,22 +67,21 @@ Matrix leading_vectors(const Matrix &columns, double allowed) {
 void ResponseDirections::add(const Matrix &answers, double tolerance) {
   const Matrix moved = root_.triangularView<Eigen::Upper>() * answers;
   largest_ = std::max(largest_, moved.colwise().norm().maxCoeff());
-  const Matrix fresh = leading_vectors(remainder(moved), tolerance * largest_);
-  const Index before = parts_.cols(), size = space_.cols();
-  space_.conservativeResize(moved.rows(), size + fresh.cols());
-  space_.rightCols(fresh.cols()) = fresh;
-  parts_.conservativeResize(space_.cols(), before + moved.cols());
-  parts_.bottomRows(fresh.cols()).setZero(); // add() has left them out
-  parts_.rightCols(moved.cols()) = space_.transpose() * moved;
+  constexpr double dependent = 0.5; // none is: they are orthonormal and beside the space
+  space_.append(leading_vectors(space_.remainder(moved), tolerance * largest_), dependent);
+  const Index before = parts_.cols(), known = parts_.rows(), size = space_.columns().cols();
+  parts_.conservativeResize(size, before + moved.cols());
+  parts_.bottomRows(size - known).setZero(); // add() has left them out
+  parts_.rightCols(moved.cols()) = space_.coordinates(moved);
 }
 
 double ResponseDirections::left(const Matrix &answers) const {
   const Matrix moved = root_.triangularView<Eigen::Upper>() * answers;
-  return remainder(moved).colwise().norm().maxCoeff() / largest_;
+  return space_.remainder(moved).colwise().norm().maxCoeff() / largest_;
 }
 
 Matrix ResponseDirections::coefficients(double tolerance) const {
-  return solve_upper(root_, space_ * leading_vectors(parts_, tolerance * largest_));
+  return solve_upper(root_, space_.columns() * leading_vectors(parts_, tolerance * largest_));
 }
 
 int append_answered_responses(Problem &problem, const CondensedLoads &loads,

@@ -172,10 +172,12 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
   if (!separable_contact(problem.scene())) {
     const Index dofs = problem.trace().size;
     std::vector<int> met = met_dofs(problem, training, basis);
-    Matrix units = unit_loads(dofs, met);
-    return {std::move(units), std::move(met), false, loaded_dofs(problem, training, multipliers)};
+    const auto size = std::ssize(met);
+    return {unit_loads(dofs, met), size, std::move(met), false,
+            loaded_dofs(problem, training, multipliers)};
   }
-  CondensedLoads loads{separated_loads(problem, affine, training, basis), {}, affine.b_size() == 1};
+  CondensedLoads loads{
+      separated_loads(problem, affine, training, basis), basis.cols(), {}, affine.b_size() == 1};
   if (!loads.join && affine.b.exact()) loads.dofs = loaded_dofs(problem, training, multipliers);
   return loads;
 }
@@ -197,10 +199,9 @@ Matrix weights_of(const Matrix &multipliers) {
 /// H at single mu, each A factorised; what `condense` appends to the modes on the way.
 class FactorisedResponses {
 public:
-  /// `size`: columns of a block of H.
-  FactorisedResponses(Problem &problem, const CondensedLoads &loads, Index size, double responses,
+  FactorisedResponses(Problem &problem, const CondensedLoads &loads, double responses,
                       LinearBasis *modes, std::vector<Mu> ends)
-      : problem_(problem), of_(loads), size_(size), responses_(responses), modes_(modes),
+      : problem_(problem), of_(loads), responses_(responses), modes_(modes),
         ends_(std::move(ends)) {}
 
   /// Collective.
@@ -209,11 +210,13 @@ public:
     const Mat a = problem_.assemble(mu).a;
     if (modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end()) {
       ResponseSolver solver(a, problem_.trace(), "hf_");
-      if (of_.join) return blocks_of(of_.columns.transpose() * append(solver, of_.columns), size_);
+      if (of_.join)
+        return blocks_of(of_.columns.transpose() * append(solver, of_.columns), of_.size);
       append(solver, unit_loads(of_.columns.rows(), of_.dofs));
-      return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns, &solver), size_);
+      return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns, &solver),
+                       of_.size);
     }
-    return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns), size_);
+    return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns), of_.size);
   }
 
   int factorisations = 0, appended = 0;
@@ -229,7 +232,6 @@ private:
 
   Problem &problem_;
   const CondensedLoads &of_;
-  Index size_;
   double responses_;
   LinearBasis *modes_;
   std::vector<Mu> ends_;
@@ -250,14 +252,14 @@ Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOpti
     const std::vector<Vector> blocks = blocks_at(added);
     for (std::size_t k = 0; k < added.size(); ++k)
       known.emplace(added[k], blocks[k]);
-    Matrix values(known.begin()->second.size(), static_cast<Index>(grid.size()));
+    Matrix values(known.begin()->second.size(), std::ssize(grid));
     for (std::size_t k = 0; k < grid.size(); ++k)
-      values.col(static_cast<Index>(k)) = known.at(grid[k]);
+      values.col(k) = known.at(grid[k]);
     const Vector tails = chebyshev_tails(condensed.axes, values);
     condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
     if (condensed.error <= options.tolerance) return values;
     for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
-      if (tails[static_cast<Index>(d)] <= options.tolerance) continue;
+      if (tails[d] <= options.tolerance) continue;
       ChebyshevAxis &axis = condensed.axes[d];
       if (2 * axis.points - 1 > options.max_points)
         throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
@@ -287,16 +289,16 @@ int add_load_responses(Problem &problem, const AffineOperators &affine,
   for (const Handle<Vec> &exact : problem.f_terms().exact)
     loads.push_back(exact.get());
   const Scene &scene = problem.scene();
-  return append_load_responses(problem, loads, axes_of(scene, 1),
-                               expand(scene.parameters, training.front()), load_tolerance,
-                               most_responses, modes)
-      .functions;
+  const ResponseSearch search{axes_of(scene, 1), expand(scene.parameters, training.front()),
+                              load_tolerance, most_responses};
+  return append_load_responses(problem, loads, search, modes).functions;
 }
 
-Condensation condense(Problem &problem, const CondensedLoads &loads, Index size, const FullMu &all,
+Condensation condense(Problem &problem, const CondensedLoads &loads, const FullMu &all,
                       const CondensedOptions &options, LinearBasis *modes,
                       const Matrix &multipliers) {
   const Scene &scene = problem.scene();
+  const Index size = loads.size;
   const bool appends =
       modes != nullptr && (loads.join || !loads.dofs.empty()) && options.responses > 0;
   const SplitSum &split = problem.a_terms().split;
@@ -305,8 +307,8 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
   Matrix values;
   if (appends && loads.join && split.mapped.empty() && split.exact.size() > 2) {
     const ResponseSpace space =
-        append_responses(problem, loads.columns, weights_of(multipliers), axes_of(scene, 1), all,
-                         response_tolerance, most_responses, *modes);
+        append_responses(problem, loads.columns, weights_of(multipliers),
+                         {axes_of(scene, 1), all, response_tolerance, most_responses}, *modes);
     const ReducedResponses reduced(problem, loads.columns, *modes);
     values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
       std::vector<Vector> blocks(set.size(), Vector::Zero(size * size));
@@ -320,7 +322,7 @@ Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
     result.responses = space.functions;
     result.factorisations = space.points;
   } else {
-    FactorisedResponses exact(problem, loads, size, options.responses, appends ? modes : nullptr,
+    FactorisedResponses exact(problem, loads, options.responses, appends ? modes : nullptr,
                               free_grid(scene, axes_of(scene, 3), all));
     values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
       std::vector<Vector> blocks;

@@ -26,22 +26,12 @@ LowerTriangle::LowerTriangle(Mat a, const Dofs &dofs) {
 }
 
 Vector LowerTriangle::values(Mat a) const {
-  Vector result(static_cast<Index>(keys_.size()));
+  Vector result(std::ssize(keys_));
   auto taken = taken_.begin();
   Index next = 0;
   visit_entries(a, [&](PetscInt, PetscInt, double value) {
     if (*taken++) result[next++] = value;
   });
-  return result;
-}
-
-Vector local_values(Vec vector) {
-  PetscInt size = 0;
-  const PetscScalar *values = nullptr;
-  RBVI_CALL(VecGetLocalSize(vector, &size));
-  RBVI_CALL(VecGetArrayRead(vector, &values));
-  Vector result = Eigen::Map<const Vector>(values, size);
-  RBVI_CALL(VecRestoreArrayRead(vector, &values));
   return result;
 }
 

@@ -1,8 +1,9 @@
 #include "rbvi/mor/separation/response_space.hpp"
 
-#include "dense_rows.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
 #include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -93,26 +94,6 @@ struct SparseGrid {
   }
 };
 
-/// Columns as a dense distributed matrix with the rows of `like`. Collective.
-Handle<Mat> dense_like(Mat like, const Matrix &local) {
-  PetscInt rows = 0, all = 0;
-  RBVI_CALL(MatGetLocalSize(like, &rows, nullptr));
-  RBVI_CALL(MatGetSize(like, &all, nullptr));
-  Handle<Mat> dense;
-  RBVI_CALL(MatCreateDense(PetscObjectComm(reinterpret_cast<PetscObject>(like)), rows, PETSC_DECIDE,
-                           all, static_cast<PetscInt>(local.cols()), nullptr, dense.put()));
-  PetscScalar *values = nullptr;
-  PetscInt stride = 0;
-  RBVI_CALL(MatDenseGetLDA(dense.get(), &stride));
-  RBVI_CALL(MatDenseGetArrayWrite(dense.get(), &values));
-  Eigen::Map<Matrix, 0, Eigen::OuterStride<>>(values, rows, local.cols(),
-                                              Eigen::OuterStride<>(stride)) = local;
-  RBVI_CALL(MatDenseRestoreArrayWrite(dense.get(), &values));
-  RBVI_CALL(MatAssemblyBegin(dense.get(), MAT_FINAL_ASSEMBLY));
-  RBVI_CALL(MatAssemblyEnd(dense.get(), MAT_FINAL_ASSEMBLY));
-  return dense;
-}
-
 /// A basis that grows, with its product P V, so that what is inside costs no product.
 class GrowingBasis {
 public:
@@ -127,7 +108,7 @@ public:
   Appended append_remainder(Mat fields, double least) {
     Matrix rest = BorrowedRows(fields).rows();
     Matrix inside = of_product_.leftCols(known_).transpose() * rest;
-    over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(fields)), MPI_SUM, inside);
+    over_ranks(comm_of(fields), MPI_SUM, inside);
     with_columns(0, known_,
                  [&](Mat columns) { rest.noalias() -= BorrowedRows(columns).rows() * inside; });
     const Handle<Mat> outside = dense_like(fields, rest);
@@ -157,11 +138,8 @@ private:
   /// Calls use(these columns of the basis). Collective.
   template <class Use> void with_columns(PetscInt first, PetscInt after, const Use &use) {
     const BV columns = basis_.columns.get();
-    Mat borrowed = nullptr;
     RBVI_CALL(BVSetActiveColumns(columns, first, after));
-    RBVI_CALL(BVGetMat(columns, &borrowed));
-    use(borrowed);
-    RBVI_CALL(BVRestoreMat(columns, &borrowed));
+    use(BorrowedColumns(columns).get());
     RBVI_CALL(BVSetActiveColumns(columns, 0, basis_.size()));
   }
 
@@ -206,8 +184,8 @@ double append_by_combinations(const FieldSource &source, double least, std::mt19
 /// Appends what the fields of each point of a sparse grid have outside the basis, point by point
 /// where most is expected. Collective.
 ResponseSpace append_fields(Problem &problem, const FieldSource &source,
-                            const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
-                            double tolerance, int most, LinearBasis &basis) {
+                            const ResponseSearch &search, LinearBasis &basis) {
+  const auto &[axes, all_parameters, tolerance, most] = search;
   const std::vector<double> leja = leja_points(most);
   const PetscInt before = basis.size();
   GrowingBasis growing(basis, problem.v_product());
@@ -246,8 +224,7 @@ ResponseSpace append_fields(Problem &problem, const FieldSource &source,
 } // namespace
 
 ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matrix &weights,
-                               const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
-                               double tolerance, int most, LinearBasis &basis) {
+                               const ResponseSearch &search, LinearBasis &basis) {
   const Matrix weighted = loads * weights;
   std::optional<ResponseSolver> solver;
   const FieldSource source{
@@ -259,13 +236,11 @@ ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matr
           solver.emplace(op.a, problem.trace(), "hf_");
       },
       [&](const Matrix &combinations) { return solver->fields(weighted * combinations); }};
-  return append_fields(problem, source, axes, all_parameters, tolerance, most, basis);
+  return append_fields(problem, source, search, basis);
 }
 
 ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &loads,
-                                    const std::vector<ChebyshevAxis> &axes,
-                                    const FullMu &all_parameters, double tolerance, int most,
-                                    LinearBasis &basis) {
+                                    const ResponseSearch &search, LinearBasis &basis) {
   const Handle<KSP> ksp = make_direct_solver(problem.comm(), "hf_");
   Mat a = nullptr;
   const FieldSource source{std::ssize(loads),
@@ -280,27 +255,22 @@ ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &lo
                              Matrix fields(rows, std::ssize(loads));
                              for (Index k = 0; k < fields.cols(); ++k) {
                                solve_linear(ksp.get(), loads[k], u.get());
-                               const PetscScalar *values = nullptr;
-                               RBVI_CALL(VecGetArrayRead(u.get(), &values));
-                               fields.col(k) = Eigen::Map<const Vector>(values, rows);
-                               RBVI_CALL(VecRestoreArrayRead(u.get(), &values));
+                               fields.col(k) = local_values(u.get());
                              }
                              return dense_like(a, fields * combinations);
                            }};
-  return append_fields(problem, source, axes, all_parameters, tolerance, most, basis);
+  return append_fields(problem, source, search, basis);
 }
 
 ReducedResponses::ReducedResponses(const Problem &problem, const Matrix &loads,
                                    const LinearBasis &basis)
     : problem_(problem) {
-  Mat columns = nullptr;
-  RBVI_CALL(BVGetMat(basis.columns.get(), &columns));
+  const BorrowedColumns columns(basis.columns.get());
   for (const Handle<Mat> &term : problem.a_terms().exact) {
-    const Matrix full = projected(columns, term.get(), columns);
+    const Matrix full = projected(columns.get(), term.get(), columns.get());
     terms_.push_back((full + full.transpose()) / 2);
   }
-  loads_ = restrict_to(problem.trace(), columns).transpose() * loads;
-  RBVI_CALL(BVRestoreMat(basis.columns.get(), &columns));
+  loads_ = restrict_to(problem.trace(), columns.get()).transpose() * loads;
 }
 
 Matrix ReducedResponses::compliance(const FullMu &all_parameters) const {

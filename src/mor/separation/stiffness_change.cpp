@@ -1,8 +1,9 @@
 #include "rbvi/mor/separation/stiffness_change.hpp"
 
-#include "dense_rows.hpp"
 #include "eim_terms.hpp"
 #include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
 #include "rbvi/rom/model/packed.hpp"
 
@@ -57,14 +58,6 @@ Matrix masked(Matrix rows, const std::vector<bool> &changing) {
   return rows;
 }
 
-Matrix rows_of(BV columns) {
-  Mat matrix = nullptr;
-  RBVI_CALL(BVGetMat(columns, &matrix));
-  const Matrix result = BorrowedRows(matrix).rows();
-  RBVI_CALL(BVRestoreMat(columns, &matrix));
-  return result;
-}
-
 void set_rows(BV columns, const Matrix &rows) {
   PetscScalar *values = nullptr;
   RBVI_CALL(BVGetArray(columns, &values));
@@ -80,12 +73,9 @@ Handle<BV> sampled_range(Mat basis, const std::vector<bool> &changing, Index cou
   const BorrowedRows rows(basis);
   const Matrix mixed =
       Matrix::NullaryExpr(rows.rows().cols(), count, [&] { return normal(generator); });
-  Handle<BV> range;
   Handle<Vec> column;
   RBVI_CALL(MatCreateVecs(basis, nullptr, column.put()));
-  RBVI_CALL(BVCreate(PetscObjectComm(reinterpret_cast<PetscObject>(basis)), range.put()));
-  RBVI_CALL(BVSetSizesFromVec(range.get(), column.get(), static_cast<PetscInt>(count)));
-  RBVI_CALL(BVSetType(range.get(), BVMAT));
+  Handle<BV> range = make_columns(column.get(), count, nullptr);
   RBVI_CALL(BVSetOrthogonalization(range.get(), BV_ORTHOG_CGS, BV_ORTHOG_REFINE_ALWAYS,
                                    PETSC_DEFAULT, BV_ORTHOG_BLOCK_TSQR));
   set_rows(range.get(), masked(rows.rows() * mixed, changing));
@@ -98,7 +88,7 @@ Handle<BV> sampled_range(Mat basis, const std::vector<bool> &changing, Index cou
   RBVI_CALL(BVResize(range.get(), static_cast<PetscInt>(rank), PETSC_TRUE));
   RBVI_CALL(BVSetActiveColumns(range.get(), 0, static_cast<PetscInt>(rank)));
   // The last columns have round-off of their own beyond the rows that change.
-  set_rows(range.get(), masked(rows_of(range.get()), changing));
+  set_rows(range.get(), masked(BorrowedRows(BorrowedColumns(range.get()).get()).rows(), changing));
   return range;
 }
 
@@ -115,14 +105,14 @@ bool holds_all(Mat basis, const std::vector<bool> &changing, Mat range, const Ma
     block.noalias() -= few_rows.rows() * coordinates.middleRows(first, count).transpose();
     squares.segment(n + first, count) = block.colwise().squaredNorm();
   }
-  over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(basis)), MPI_SUM, squares);
+  over_ranks(comm_of(basis), MPI_SUM, squares);
   return squares.tail(n).maxCoeff() <= accurate * accurate * squares.head(n).maxCoeff();
 }
 
 /// V^T U. Collective.
 Matrix coordinates_in(Mat basis, Mat range) {
   Matrix result = BorrowedRows(basis).rows().transpose() * BorrowedRows(range).rows();
-  over_ranks(PetscObjectComm(reinterpret_cast<PetscObject>(basis)), MPI_SUM, result);
+  over_ranks(comm_of(basis), MPI_SUM, result);
   return result;
 }
 
@@ -156,14 +146,12 @@ StiffnessChange stiffness_change(Problem &problem, const Eim &eim, const std::ve
   const std::vector<bool> changing = changing_rows(problem, set, first.get());
   for (Index sampled = 128; sampled <= n / 2; sampled *= 2) {
     const Handle<BV> range = sampled_range(basis, changing, sampled);
-    Mat columns = nullptr;
+    const BorrowedColumns columns(range.get());
     StiffnessChange change;
-    RBVI_CALL(BVGetMat(range.get(), &columns));
-    change.range = coordinates_in(basis, columns);
-    const bool enough = 3 * change.rank() <= n && holds_all(basis, changing, columns, change.range);
-    if (enough) add_cores(problem, eim, set, first.get(), columns, change);
-    RBVI_CALL(BVRestoreMat(range.get(), &columns));
-    if (enough) return change;
+    change.range = coordinates_in(basis, columns.get());
+    if (3 * change.rank() > n || !holds_all(basis, changing, columns.get(), change.range)) continue;
+    add_cores(problem, eim, set, first.get(), columns.get(), change);
+    return change;
   }
   return {};
 }

@@ -24,7 +24,7 @@ std::vector<Index> covered_multipliers(const Operators &op) {
 
 /// What takes these rows of a matrix of `size` rows.
 SparseMatrix rows_of_identity(const std::vector<Index> &rows, Index size) {
-  SparseMatrix chosen(static_cast<Index>(rows.size()), size);
+  SparseMatrix chosen(std::ssize(rows), size);
   for (std::size_t i = 0; i < rows.size(); ++i)
     chosen.insert(static_cast<Index>(i), rows[i]) = 1;
   chosen.makeCompressed();

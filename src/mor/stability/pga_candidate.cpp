@@ -9,7 +9,9 @@ namespace rbvi {
 
 namespace {
 
-constexpr double cancellation = 1e-6; // a Gram matrix that shrank this much is computed afresh
+// A Gram matrix that shrank this much is computed afresh: round-off in the range, which began as
+// the whole of it, is then far below a tie.
+constexpr double cancellation = 1e-4;
 constexpr int power_iterations = 4;
 
 /// Norm of `matrix` x after some steps towards its dominant eigenvector.

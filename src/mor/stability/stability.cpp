@@ -1,7 +1,7 @@
 #include "rbvi/mor/stability/stability.hpp"
 
-#include "../bases/cone_tools.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/par/columns.hpp"
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>
@@ -12,8 +12,6 @@
 namespace rbvi {
 
 namespace {
-
-constexpr double range_tolerance = 1e-12;
 
 /// All that inf-sup constants, c and sigma are read off.
 Vector stretches(const Matrix &matrix) {
@@ -59,10 +57,7 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   const Index contact = space.factor.rows();
   Matrix coordinates = Matrix::Zero(contact + count, count);
   if (count == 0) return coordinates;
-  Mat columns = nullptr;
-  RBVI_CALL(BVGetMat(modes.columns.get(), &columns));
-  Matrix top = restrict_to(space.trace, columns);
-  RBVI_CALL(BVRestoreMat(modes.columns.get(), &columns));
+  Matrix top = restrict_to(space.trace, BorrowedColumns(modes.columns.get()).get());
   if (space.loads.size() > 0) top = (space.loads.transpose() * top).eval();
   solve_lower(space.factor, top);
   const EigenPairs rest = eigen_pairs(Matrix::Identity(count, count) - top.transpose() * top);
@@ -74,103 +69,11 @@ Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes) {
   return coordinates;
 }
 
-namespace {
-
-/// X^T W X.
-Matrix gram_of(const Matrix &x, const SparseMatrix &w_product) {
-  if (!mostly_zero(x)) return x.transpose() * (w_product * x);
-  const SparseMatrix sparse = x.sparseView();
-  return Matrix(SparseMatrix(sparse.transpose()) * SparseMatrix(w_product * sparse));
-}
-
-/// Columns with small angles between none of them, made orthonormal by Cholesky factors of their
-/// Gram matrix, twice. Empty where they are not that.
-Matrix orthonormal_by_cholesky(const Matrix &columns, const SparseMatrix &w_product) {
-  constexpr double well = 1e-2;
-  if (columns.cols() == 0) return {};
-  Matrix rows = columns.transpose();
-  for (int pass = 0; pass < 2; ++pass) {
-    Matrix factor = gram_of(rows.transpose(), w_product);
-    if (!cholesky_in_place(factor)) return {};
-    const auto pivots = factor.diagonal();
-    if (!(pivots.minCoeff() > well * pivots.maxCoeff())) return {};
-    solve_lower(factor, rows);
-  }
-  return rows.transpose();
-}
-
-} // namespace
-
 Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
                               double tolerance) {
-  std::vector<Index> rows;
-  for (Index i = 0; i < generators.rows(); ++i)
-    if ((generators.row(i).array() != 0).any()) rows.push_back(i);
-  if (std::ssize(rows) < generators.rows()) {
-    const Matrix part =
-        orthonormal_dual_basis(generators(rows, Eigen::all), block_of(w_product, rows), tolerance);
-    Matrix basis = Matrix::Zero(generators.rows(), part.cols());
-    basis(rows, Eigen::all) = part;
-    return basis;
-  }
-  const auto squares = [&](const Matrix &x) -> Vector {
-    return x.cwiseProduct(w_product * x).colwise().sum().transpose().cwiseMax(0);
-  };
-  const Vector norms = squares(generators).cwiseSqrt();
-  Matrix remainders = generators;
-  for (Index r = 0; r < remainders.cols(); ++r)
-    if (norms(r) > 0) remainders.col(r) /= norms(r);
-  if (Matrix basis = orthonormal_by_cholesky(remainders, w_product); basis.size() > 0) return basis;
-  Matrix basis(generators.rows(), generators.cols());
-  Index rank = 0;
-  for (; rank < generators.cols(); ++rank) {
-    Index next = 0;
-    if (std::sqrt(squares(remainders).maxCoeff(&next)) <= tolerance) break;
-    Vector column = remainders.col(next);
-    Vector image = w_product * column;
-    const auto known = basis.leftCols(rank);
-    column -= known * (known.transpose() * image);
-    image = w_product * column;
-    const double norm = std::sqrt(column.dot(image));
-    basis.col(rank) = column / norm;
-    remainders -= basis.col(rank) * ((image / norm).transpose() * remainders).eval();
-    remainders.col(next).setZero();
-  }
-  return basis.leftCols(rank);
-}
-
-namespace {
-
-/// Whether a large triangle has full rank beyond doubt, by a few steps of inverse iteration.
-bool clearly_regular(const Matrix &triangle) {
-  constexpr Index large = 256;
-  constexpr double doubtful = 1e-6;
-  constexpr int steps = 8;
-  if (triangle.rows() < large || triangle.rows() != triangle.cols()) return false;
-  const auto upper = triangle.triangularView<Eigen::Upper>();
-  const double largest = triangle.colwise().norm().maxCoeff();
-  if (!(triangle.diagonal().cwiseAbs().minCoeff() > doubtful * largest)) return false;
-  Vector x = Vector::Ones(triangle.cols()).normalized();
-  double inverse = 0;
-  for (int k = 0; k < steps; ++k) {
-    const Vector y = upper.solve(triangle.transpose().triangularView<Eigen::Lower>().solve(x));
-    inverse = std::sqrt(y.norm());
-    x = y.normalized();
-  }
-  return inverse * largest * doubtful < 1;
-}
-
-} // namespace
-
-Matrix orthonormal_range(const Matrix &vectors) {
-  const Index size = std::min(vectors.rows(), vectors.cols());
-  if (!vectors.allFinite()) throw failure("supremizers with entries that are not finite");
-  if (size == 0) return Matrix(vectors.rows(), 0);
-  // Blocked, then pivoted on the small factor: pivoting the tall matrix costs several times more.
-  const auto [q, triangle] = thin_qr(vectors);
-  if (clearly_regular(triangle)) return q;
-  const Matrix part = pivoted_range(triangle, range_tolerance);
-  return part.cols() == size ? q : Matrix(q * part);
+  OrthonormalColumns basis(&w_product);
+  basis.append(generators, tolerance);
+  return basis.columns();
 }
 
 Matrix supremizer_coordinates(const RieszSpace &space, const SparseMatrix &b_contact,

@@ -13,7 +13,7 @@ namespace {
 /// Whether the file holds the fields of this key.
 bool holds_fields(const std::filesystem::path &path, const std::string &key) {
   try {
-    return H5Reader(path, "fields", model_schema).string("key") == key;
+    return H5Reader(path, "fields", model_schema).read<std::string>("key") == key;
   } catch (const Error &) {
     return false;
   }
@@ -36,11 +36,9 @@ FieldsFile::FieldsFile(const std::filesystem::path &model_path, const std::strin
   file_.write("key", key);
 }
 
-void FieldsFile::write_mesh(const Matrix &points, const std::vector<int> &cells,
-                            const std::vector<int> &imposed_by) {
-  file_.write("points", points);
-  file_.write("cells", cells);
-  file_.write("imposed_by", imposed_by);
+void FieldsFile::write_mesh(const ReducedModel &model) {
+  const FieldWriter writer{file_};
+  list_mesh(writer, "", model);
 }
 
 void FieldsFile::begin_basis(Index dofs, Index functions) {
@@ -59,7 +57,7 @@ void write_fields(const ReducedModel &model, const std::filesystem::path &model_
   const std::string key = key_of_fields(model);
   if (model.primal_basis.size() == 0 || holds_fields(fields_file(model_path), key)) return;
   FieldsFile file(model_path, key);
-  file.write_mesh(model.mesh_points, model.mesh_cells, model.imposed_by);
+  file.write_mesh(model);
   file.begin_basis(model.primal_basis.rows(), model.primal_basis.cols());
   file.write_basis(0, model.primal_basis);
   file.commit();
@@ -73,13 +71,11 @@ void read_fields(const std::filesystem::path &model_path, const std::string &key
     throw bad_input(path.string() + " is missing: it has the fields of the model and belongs "
                                     "beside it; put it there, or make the model again");
   const H5Reader file(path, "fields", model_schema);
-  if (file.string("key") != key)
+  if (file.read<std::string>("key") != key)
     throw bad_input(path.string() + " has the fields of another model: put its own beside it, or "
                                     "make the model again");
-  model.primal_basis = file.matrix("primal_basis");
-  model.mesh_points = file.matrix("points");
-  model.mesh_cells = file.ints("cells");
-  model.imposed_by = file.ints("imposed_by");
+  const FieldReader reader{file};
+  list_fields(reader, "", model);
 }
 
 std::filesystem::path fields_file(const std::filesystem::path &model) {

@@ -14,124 +14,131 @@ std::string numbered(const std::string &name, std::size_t i) {
   return name + "_" + std::to_string(i);
 }
 
-std::vector<double> as_numbers(const std::vector<int> &integers) {
-  return {integers.begin(), integers.end()};
-}
+/// Lists of the parts of a record write them, or read them, each part once.
+struct RecordWriter {
+  static constexpr bool reads = false;
+  Record &record;
 
-std::vector<int> as_integers(const std::vector<double> &numbers) {
-  std::vector<int> integers;
-  for (const double value : numbers)
-    integers.push_back(static_cast<int>(value));
-  return integers;
-}
-
-/// The parts "name_0", "name_1", ... of a list.
-template <class List, class RecordOf>
-void add_list(const std::string &name, const List &list, Record &record, RecordOf &&record_of) {
-  for (std::size_t i = 0; i < list.size(); ++i)
-    record.parts[numbered(name, i)] = record_of(list[i]);
-}
-
-template <class List, class MadeOf>
-void read_list(const std::string &name, const Stored &of, List &list, MadeOf &&made_of) {
-  for (std::size_t i = 0; of.record.parts.contains(numbered(name, i)); ++i)
-    list.push_back(made_of(part(of, numbered(name, i))));
-}
-
-Record record_of(const Factor &factor) {
-  Record record{"factor",
-                1,
-                {{"parameters", as_numbers(factor.parameters)}},
-                {{"name", factor.name}},
-                {{"value", factor.value.record}}};
-  for (const auto &[parameter, coordinate] : factor.coordinates) {
-    record.parts["of_" + std::to_string(parameter)] = coordinate.of.record;
-    record.parts["back_" + std::to_string(parameter)] = coordinate.back.record;
+  bool has(const std::string &, bool there) const { return there; }
+  void number(const std::string &name, double value) const { record.numbers[name] = {value}; }
+  void integers(const std::string &name, const std::vector<int> &values) const {
+    record.numbers[name] = std::vector<double>(values.begin(), values.end());
   }
-  return record;
+  void text(const std::string &name, const std::string &value) const { record.texts[name] = value; }
+  template <class Function> void function(const std::string &name, const Function &value) const {
+    record.parts[name] = value.record;
+  }
+  template <class List, class Visit>
+  void items(const std::string &name, const List &list, Visit &&visit) const {
+    for (std::size_t i = 0; i < list.size(); ++i)
+      visit(RecordWriter{record.parts[numbered(name, i)]}, list[i]);
+  }
+};
+
+struct RecordReader {
+  static constexpr bool reads = true;
+  Stored of;
+
+  bool has(const std::string &name, bool) const {
+    return of.record.parts.contains(name) || of.record.numbers.contains(name);
+  }
+  void number(const std::string &name, double &value) const { value = rbvi::number(of, name); }
+  template <class Integer> void number(const std::string &name, Integer &value) const {
+    value = static_cast<Integer>(integer(of, name));
+  }
+  void integers(const std::string &name, std::vector<int> &values) const {
+    for (const double value : numbers(of, name))
+      values.push_back(static_cast<int>(value));
+  }
+  void text(const std::string &name, std::string &value) const { value = rbvi::text(of, name); }
+  template <class Signature> void function(const std::string &name, Named<Signature> &value) const {
+    value = made<Signature>(part(of, name));
+  }
+  template <class List, class Visit>
+  void items(const std::string &name, List &list, Visit &&visit) const {
+    for (std::size_t i = 0; of.record.parts.contains(numbered(name, i)); ++i)
+      visit(RecordReader{part(of, numbered(name, i))}, list.emplace_back());
+  }
+};
+
+template <class Store> void name_record(const Store &store, const std::string &name) {
+  if constexpr (!Store::reads) store.record.name = name;
 }
 
-Factor factor_in(const Stored &of) {
-  Factor factor{text(of, "name"), made<Coefficient>(part(of, "value")),
-                as_integers(numbers(of, "parameters"))};
-  for (const int parameter : factor.parameters)
-    if (const std::string own = std::to_string(parameter); of.record.parts.contains("of_" + own))
-      factor.coordinates[parameter] = {made<NumberMap>(part(of, "of_" + own)),
-                                       made<NumberMap>(part(of, "back_" + own))};
-  return factor;
+template <class Store, class Of> void list_factor(const Store &store, Of &factor) {
+  name_record(store, "factor");
+  store.integers("parameters", factor.parameters);
+  store.text("name", factor.name);
+  store.function("value", factor.value);
+  for (const int parameter : factor.parameters) {
+    const std::string own = std::to_string(parameter);
+    if (!store.has("of_" + own, factor.coordinates.contains(parameter))) continue;
+    if constexpr (Store::reads) factor.coordinates.try_emplace(parameter);
+    auto &coordinate = factor.coordinates.at(parameter);
+    store.function("of_" + own, coordinate.of);
+    store.function("back_" + own, coordinate.back);
+  }
 }
 
-/// theta of a record, the product of its factors.
-void add_factors(const std::vector<Factor> &factors, Record &record) {
-  add_list("factor", factors, record, [](const Factor &f) { return record_of(f); });
-}
-
-std::vector<Factor> factors_in(const Stored &of) {
-  std::vector<Factor> factors;
-  read_list("factor", of, factors, factor_in);
-  return factors;
-}
-
-std::optional<std::vector<int>> parameters_in(const Record &record) {
-  if (!record.numbers.contains("parameters")) return std::nullopt;
-  return as_integers(numbers(record, "parameters"));
+/// theta of a term, the product of its factors; without it what else its values depend on.
+template <class Store, class Of> void list_theta(const Store &store, Of &term) {
+  name_record(store, term.theta ? "exact" : "mapped");
+  if constexpr (Store::reads)
+    if (store.of.record.name == "exact") term.theta.emplace();
+  if (term.theta)
+    store.items("factor", *term.theta,
+                [](const Store &part, auto &factor) { list_factor(part, factor); });
+  if (term.theta || !store.has("parameters", term.parameters.has_value())) return;
+  if constexpr (Store::reads) term.parameters.emplace();
+  store.integers("parameters", *term.parameters);
 }
 
 /// `with_kernel`: of an exact term, too.
-Record record_of(const Term &term, bool with_kernel) {
-  Record record{term.theta ? "exact" : "mapped"};
-  if (term.theta) add_factors(*term.theta, record);
-  if (term.theta && !with_kernel) return record;
-  record.texts = {{"region", term.form.region}, {"boundary", term.form.boundary}};
-  if (term.parameters) record.numbers["parameters"] = as_numbers(*term.parameters);
-  record.parts["kernel"] = term.form.kernel.record;
-  return record;
+template <class Store, class Of> void list_term(const Store &store, Of &term, bool with_kernel) {
+  list_theta(store, term);
+  if (!store.has("kernel", !term.theta || with_kernel)) return;
+  store.text("region", term.form.region);
+  store.text("boundary", term.form.boundary);
+  store.function("kernel", term.form.kernel);
 }
 
-Term term_in(const Stored &of) {
-  Form form;
-  if (of.record.parts.contains("kernel"))
-    form = {text(of, "region"), made<Kernel>(part(of, "kernel")), text(of, "boundary")};
-  if (of.record.name == "exact") return exact_term(std::move(form), factors_in(of));
-  return mapped_term(std::move(form), parameters_in(of));
+template <class Store, class Of> void list_fixed(const Store &store, Of &boundary) {
+  name_record(store, "fixed");
+  store.integers("components", boundary.components);
+  store.text("name", boundary.name);
+  store.items("value", boundary.values, [](const Store &part, auto &value) {
+    list_theta(part, value);
+    part.function("value", value.value);
+  });
 }
 
-Record record_of(const ImposedTerm &value) {
-  Record record{value.theta ? "exact" : "mapped"};
-  if (value.theta) add_factors(*value.theta, record);
-  if (value.parameters) record.numbers["parameters"] = as_numbers(*value.parameters);
-  record.parts["value"] = value.value.record;
-  return record;
-}
-
-ImposedTerm imposed_in(const Stored &of) {
-  ImposedTerm value{made<PointMap>(part(of, "value"))};
-  if (of.record.name == "exact")
-    value.theta = factors_in(of);
-  else
-    value.parameters = parameters_in(of);
-  return value;
-}
-
-Record record_of(const FixedBoundary &boundary) {
-  Record record{
-      "fixed", 1, {{"components", as_numbers(boundary.components)}}, {{"name", boundary.name}}};
-  add_list("value", boundary.values, record, [](const ImposedTerm &v) { return record_of(v); });
-  return record;
-}
-
-FixedBoundary fixed_in(const Stored &of) {
-  FixedBoundary boundary{text(of, "name"), as_integers(numbers(of, "components"))};
-  read_list("value", of, boundary.values, imposed_in);
-  return boundary;
-}
-
-/// Every function that is there as a part of its own.
-void add_functions(const Scene &scene, Record &record) {
-  record.parts["map"] = scene.map.record;
-  if (scene.motion) record.parts["motion"] = scene.motion.record;
-  if (scene.material) record.parts["material"] = scene.material.record;
-  if (scene.check_parameters) record.parts["check"] = scene.check_parameters.record;
+template <class Store, class Of> void list_scene(const Store &store, Of &scene) {
+  const auto function_if = [&](const std::string &name, auto &function) {
+    if (store.has(name, static_cast<bool>(function))) store.function(name, function);
+  };
+  store.number("dim", scene.dim);
+  store.number("components", scene.components);
+  store.number("degree", scene.degree);
+  store.number("symmetric", scene.symmetric);
+  store.number("skewed_by", scene.skewed_by);
+  store.number("mirror_images", scene.mirror_images);
+  store.function("map", scene.map);
+  function_if("motion", scene.motion);
+  function_if("material", scene.material);
+  function_if("check", scene.check_parameters);
+  store.items("contact", scene.contacts, [](const Store &part, auto &recipe) {
+    if constexpr (Store::reads)
+      recipe = contact_in(part.of);
+    else
+      part.record = recipe.record;
+  });
+  // Loads of imposed values are made again from these values and the kernels of a.
+  const bool imposes = imposes_values(scene);
+  const auto term = [&](const Store &part, auto &of) { list_term(part, of, imposes); };
+  store.items("a", scene.a, term);
+  store.items("f", scene.f, term);
+  if (imposes || Store::reads)
+    store.items("fixed", scene.fixed, [](const Store &part, auto &of) { list_fixed(part, of); });
 }
 
 std::string line(const std::vector<double> &numbers) {
@@ -155,45 +162,17 @@ void add_lines(const Record &record, const std::string &path,
 } // namespace
 
 Record record_of(const Scene &scene) {
-  Record record{scene.name.empty() ? "scene" : scene.name,
-                1,
-                {{"dim", {double(scene.dim)}},
-                 {"components", {double(scene.components)}},
-                 {"degree", {double(scene.degree)}},
-                 {"symmetric", {double(scene.symmetric)}},
-                 {"skewed_by", {double(scene.skewed_by)}},
-                 {"mirror_images", {scene.mirror_images}}}};
-  add_functions(scene, record);
-  add_list("contact", scene.contacts, record, [](const ContactRecipe &c) { return c.record; });
-  // Loads of imposed values are made again from these values and the kernels of a.
-  const bool imposes = imposes_values(scene);
-  const auto of_term = [&](const Term &term) { return record_of(term, imposes); };
-  add_list("a", scene.a, record, of_term);
-  Sum own = scene.f;
-  std::erase_if(own, [](const Term &term) { return term.of_imposed; });
-  add_list("f", own, record, of_term);
-  if (imposes)
-    add_list("fixed", scene.fixed, record, [](const FixedBoundary &b) { return record_of(b); });
+  Scene own = scene;
+  std::erase_if(own.f, [](const Term &term) { return term.of_imposed; });
+  Record record{scene.name.empty() ? "scene" : scene.name};
+  list_scene(RecordWriter{record}, own);
   return record;
 }
 
 Scene scene_in(const Stored &of) {
   Scene scene;
   scene.name = of.record.name;
-  scene.dim = integer(of, "dim");
-  scene.components = integer(of, "components");
-  scene.degree = integer(of, "degree");
-  scene.symmetric = integer(of, "symmetric") != 0;
-  scene.skewed_by = integer(of, "skewed_by");
-  scene.mirror_images = number(of, "mirror_images");
-  scene.map = made<PointMap>(part(of, "map"));
-  if (of.record.parts.contains("motion")) scene.motion = made<PointMap>(part(of, "motion"));
-  if (of.record.parts.contains("material")) scene.material = made<Material>(part(of, "material"));
-  if (of.record.parts.contains("check")) scene.check_parameters = made<Check>(part(of, "check"));
-  read_list("contact", of, scene.contacts, contact_in);
-  read_list("a", of, scene.a, term_in);
-  read_list("f", of, scene.f, term_in);
-  read_list("fixed", of, scene.fixed, fixed_in);
+  list_scene(RecordReader{of}, scene);
   return scene;
 }
 

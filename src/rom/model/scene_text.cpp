@@ -65,11 +65,8 @@ Point random_point(int dim, double extent, Random &random) {
 Cell random_cell(const Scene &scene, const FullMu &mu, const Point &x, double size,
                  Random &random) {
   Cell cell{scene.dim, {}, {}};
-  for (std::size_t v = 0; v <= static_cast<std::size_t>(scene.dim); ++v) {
-    const Point step = random_point(scene.dim, size, random);
-    for (std::size_t c = 0; c < 3; ++c)
-      cell.reference[v][c] = x[c] + step[c];
-  }
+  for (int v = 0; v <= scene.dim; ++v)
+    cell.reference[v] = x + random_point(scene.dim, size, random);
   if (volume_of(cell.dim, cell.reference) < 0) std::swap(cell.reference[0], cell.reference[1]);
   cell.mapped = cell.reference;
   try {
@@ -306,7 +303,7 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   return text.str();
 }
 
-std::string scene_difference(const std::string &theirs, const std::string &mine, bool whole) {
+std::string scene_difference(const std::string &theirs, const std::string &mine, Further further) {
   const Lines before = lines_in(theirs), now = lines_in(mine);
   const auto value_in = [](const Lines &lines, const std::string &name) -> std::string {
     const auto found = std::ranges::find(lines, name, &Lines::value_type::first);
@@ -316,7 +313,8 @@ std::string scene_difference(const std::string &theirs, const std::string &mine,
     if (const std::string old = value_in(before, name); !same(name, old, value))
       return name + " is " + value + ", it was " + old;
   for (const auto &[name, value] : before)
-    if (whole && value_in(now, name) == "not there") return name + " was " + value + " and is gone";
+    if (further == Further::refused && value_in(now, name) == "not there")
+      return name + " was " + value + " and is gone";
   return "";
 }
 

@@ -25,9 +25,9 @@ double distance_to(const Matrix &columns, const ParameterSpace &space, const Mu 
 } // namespace
 
 Matrix as_columns(const std::vector<Mu> &set, int rows) {
-  Matrix columns(rows, static_cast<Index>(set.size()));
+  Matrix columns(rows, std::ssize(set));
   for (std::size_t k = 0; k < set.size(); ++k)
-    columns.col(static_cast<Index>(k)) = Eigen::Map<const Vector>(set[k].data(), rows);
+    columns.col(k) = Eigen::Map<const Vector>(set[k].data(), rows);
   return columns;
 }
 

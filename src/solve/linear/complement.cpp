@@ -122,11 +122,11 @@ TouchedLoads touched_by(const Matrix &loads, const std::vector<PetscInt> &rows) 
   const std::vector<Index> place = places_of(rows, first);
   Matrix sums = Matrix::Zero(std::ssize(first), loads.cols());
   for (std::size_t i = 0; i < place.size(); ++i)
-    sums.row(place[i]) += loads.row(static_cast<Index>(i));
+    sums.row(place[i]) += loads.row(i);
   std::vector<Index> touched;
   TouchedLoads result;
   for (std::size_t k = 0; k < first.size(); ++k)
-    if ((sums.row(static_cast<Index>(k)).array() != 0).any()) {
+    if ((sums.row(k).array() != 0).any()) {
       touched.push_back(static_cast<Index>(k));
       result.dofs.push_back(first[k]);
     }

@@ -35,7 +35,7 @@ Matrix FactoredBody::moved(const SparseMatrix &b, const std::vector<Index> &whic
   if (last_ != ColumnsLast::for_one_b) return FullBody::moved(b, which);
   Matrix loads = Matrix::Zero(size(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
-    loads.col(static_cast<Index>(k)) = b.row(which[k]).transpose();
+    loads.col(k) = b.row(which[k]).transpose();
   return loads.cols() > 0 ? responses(loads) : loads;
 }
 

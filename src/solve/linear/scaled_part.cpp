@@ -121,7 +121,7 @@ void ScaledPart::set(const Operators &op) {
 Matrix ScaledPart::moved(const SparseMatrix &b, const std::vector<Index> &which) {
   Matrix loads = Matrix::Zero(size(), std::ssize(which));
   for (std::size_t k = 0; k < which.size(); ++k)
-    loads.col(static_cast<Index>(k)) = b.row(which[k]).transpose();
+    loads.col(k) = b.row(which[k]).transpose();
   const SparseMatrix sparse = loads.sparseView();
   Matrix result = compliance_ * sparse;
   result.noalias() -= y_ * (phi_.asDiagonal() * Matrix(y_.transpose() * sparse));

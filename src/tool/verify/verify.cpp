@@ -191,7 +191,7 @@ std::vector<Sample> boundary_samples(MPI_Comm world, const Groups &groups, Probl
   std::erase_if(
       set, [&](const Mu &mu) { return std::ranges::find(validation, mu) != validation.end(); });
   if (set.empty()) return {};
-  Sweep sweep = run_sweep(world, groups, problem, options.hf, set, options.out / "samples");
+  Sweep sweep = run_sweep(world, groups, problem, options.hf, set, {options.out / "samples"});
   if (const auto &failed = sweep.report.failed; rank_of(world) == 0 && !failed.empty())
     std::printf(
         "%zu of %zu corners and centres of faces have no high-fidelity answer, the first at "
@@ -217,7 +217,7 @@ void command_verify(const ToolOptions &given) {
   Workspace work(world, groups, options);
   check_problem(work.group_problem(), model, options);
   const Sweep sweep = run_sweep(world, groups, work.group_problem(), options.hf, validation,
-                                options.out / "samples");
+                                {options.out / "samples"});
   check_failures(options, sweep.report, validation.size(), "validation");
   const std::vector<Sample> &answers = sweep.samples;
   const std::vector<Sample> further =
@@ -243,9 +243,8 @@ void command_verify(const ToolOptions &given) {
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);
   const std::vector<ContactPoint> points =
       follows_state(problem.scene())
-          ? contact_points(run_sweep(
-                               world, groups, work.group_problem(), options.hf, training,
-                               options.out / "samples", [] {}, Fields::in_files)
+          ? contact_points(run_sweep(world, groups, work.group_problem(), options.hf, training,
+                                     {options.out / "samples", [] {}, Fields::in_files})
                                .samples)
           : at_rest(training);
   write_separation(out / "eim.csv", problem, model, points, contact_points(answers), truths.mu);

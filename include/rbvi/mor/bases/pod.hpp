@@ -26,6 +26,10 @@ struct Pod {
   std::vector<double> error;           ///< e_POD(n), n = 0, 1, ..., rank (2.11)
 };
 
+/// Root of the sum of squares of the singular values (decreasing) behind the first n, relative to
+/// that of all: n = 0, 1, ...
+std::vector<double> projection_errors(const Vector &values);
+
 /// Collective. `snapshots`: free dofs, all of one layout; `product`: Gram matrix of V. Columns
 /// whose remainder is below 1e-13 of their norm are dropped; singular values equal to 1e-8 relative
 /// are kept or cut together. The sign of each mode is fixed (largest projection coefficient

@@ -3,6 +3,7 @@
 // say which of them there are. Their number depends on how far contact moves, not on the mesh.
 #pragma once
 
+#include "rbvi/mor/bases/orthonormal.hpp"
 #include "rbvi/mor/separation/condensed.hpp"
 
 namespace rbvi {
@@ -33,11 +34,9 @@ public:
   Matrix coefficients(double tolerance) const;
 
 private:
-  Matrix remainder(Matrix moved) const; ///< beside the space
-
-  Matrix root_;  ///< R with H = R^T R: the energy of loads c is |R c|^2
-  Matrix space_; ///< R times what was taken, orthonormal
-  Matrix parts_; ///< of the answers in it
+  Matrix root_;              ///< R with H = R^T R: the energy of loads c is |R c|^2
+  OrthonormalColumns space_; ///< R times what was taken
+  Matrix parts_;             ///< of the answers in it
   double largest_ = 0;
 };
 

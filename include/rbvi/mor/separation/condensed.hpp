@@ -36,6 +36,7 @@ struct Condensation {
 /// What A^-1 is asked for on the contact dofs.
 struct CondensedLoads {
   Matrix columns; ///< contact dofs x any number
+  Index size;     ///< of a block of H: so many of them
   /// The contact dofs that they are the unit loads of, rising; empty: they are no unit loads.
   std::vector<int> units{};
   bool join = false; ///< the responses to all of them can join the modes
@@ -57,7 +58,7 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
                                const std::vector<Mu> &training, const Matrix &multipliers,
                                const Matrix &basis);
 
-/// H = loads^T A^-1 loads in blocks of `size` columns. One factorisation and a solve for each load
+/// H = loads^T A^-1 loads in its blocks. One factorisation and a solve for each load
 /// at each Chebyshev point, shared among the ranks. Collective. Throws failure where the tolerance
 /// needs more points.
 ///
@@ -69,8 +70,8 @@ CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
 /// two exact terms, fewer A are factorised: responses are appended until those to multipliers like
 /// `multipliers` (coefficients of the loads x samples) are in the span to 3e-7, and H is taken from
 /// Galerkin's method in this span.
-Condensation condense(Problem &problem, const CondensedLoads &loads, Index size,
-                      const FullMu &all_parameters, const CondensedOptions &options,
-                      LinearBasis *modes = nullptr, const Matrix &multipliers = {});
+Condensation condense(Problem &problem, const CondensedLoads &loads, const FullMu &all_parameters,
+                      const CondensedOptions &options, LinearBasis *modes = nullptr,
+                      const Matrix &multipliers = {});
 
 } // namespace rbvi

@@ -22,9 +22,6 @@ private:
   std::vector<bool> taken_;
 };
 
-/// This rank's entries.
-Vector local_values(Vec vector);
-
 /// All stored entries, row by row.
 std::vector<EntryKey> nonzero_keys(const SparseMatrix &matrix);
 Vector nonzero_values(const SparseMatrix &matrix);

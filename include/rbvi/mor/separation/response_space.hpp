@@ -20,21 +20,25 @@ struct ResponseSpace {
   double left = 0;   ///< largest remainder at the last point of each direction, relative
 };
 
+/// Where responses are asked for, and until when.
+struct ResponseSearch {
+  std::vector<ChebyshevAxis> axes; ///< of the free parameters of A
+  FullMu all_parameters;
+  double tolerance; ///< of the largest response
+  int most;         ///< points, each a factorisation
+};
+
 /// Appends to `basis` what the responses to `loads` (contact dofs x m) have outside it, in the
-/// directions whose remainder, weighted, is above `tolerance` of the largest response. `weights`: m
-/// x any number, combinations of the loads that are as large as the multipliers can be. `axes`: of
-/// the free parameters of A. Collective. Throws failure where `most` points do not reach the
-/// tolerance.
+/// directions whose remainder, weighted, is above the tolerance. `weights`: m x any number,
+/// combinations of the loads that are as large as the multipliers can be. Collective. Throws
+/// failure where the most points do not reach the tolerance.
 ResponseSpace append_responses(Problem &problem, const Matrix &loads, const Matrix &weights,
-                               const std::vector<ChebyshevAxis> &axes, const FullMu &all_parameters,
-                               double tolerance, int most, LinearBasis &basis);
+                               const ResponseSearch &search, LinearBasis &basis);
 
 /// The same for the responses to `loads` on the whole body, until all of them are there to the
 /// tolerance.
 ResponseSpace append_load_responses(Problem &problem, const std::vector<Vec> &loads,
-                                    const std::vector<ChebyshevAxis> &axes,
-                                    const FullMu &all_parameters, double tolerance, int most,
-                                    LinearBasis &basis);
+                                    const ResponseSearch &search, LinearBasis &basis);
 
 /// Galerkin's method in a basis, for a sum of exact terms.
 class ReducedResponses {

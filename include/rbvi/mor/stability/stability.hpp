@@ -12,6 +12,7 @@
 
 #include "rbvi/core/dense.hpp"
 #include "rbvi/fem/trace.hpp"
+#include "rbvi/mor/bases/orthonormal.hpp"
 #include "rbvi/mor/bases/pod.hpp"
 #include "rbvi/solve/linear/response_solver.hpp"
 
@@ -49,9 +50,8 @@ std::vector<int> append_representers(const RieszSpace &space, const Matrix &repr
 /// basis is not orthonormal in the product of `space`.
 Matrix mode_coordinates(const RieszSpace &space, const LinearBasis &modes);
 
-/// Columns orthonormal in W that span the columns of `generators` (rank-revealing: the largest
-/// remainder first, relative to the norm of its generator, until none is above `tolerance`): dual
-/// dofs x rank.
+/// Columns orthonormal in W that span the columns of `generators`, without those of which
+/// `tolerance` of their norm is left beside those before them: dual dofs x rank.
 Matrix orthonormal_dual_basis(const Matrix &generators, const SparseMatrix &w_product,
                               double tolerance = 1e-9);
 
@@ -90,10 +90,6 @@ struct StabilityStep {
 std::vector<StabilityStep> stability_path(const Matrix &coordinates, Index modes,
                                           const std::vector<int> &counts,
                                           const Matrix &supremizers);
-
-/// Orthonormal columns that span those of `vectors` (directions below 1e-12 of the largest left
-/// out): rows x rank.
-Matrix orthonormal_range(const Matrix &vectors);
 
 /// The constants at one mu (2.14), (2.18), (2.30), beta_HF left out. `modes`: coordinates of V_N;
 /// `enriched`: of V_N + S; `x`: orthonormal dual basis.

@@ -10,9 +10,8 @@ class FieldsFile {
 public:
   /// `key`: of the model beside it. Throws failure, like all others.
   FieldsFile(const std::filesystem::path &model_path, const std::string &key);
-  /// As in ReducedModel.
-  void write_mesh(const Matrix &points, const std::vector<int> &cells,
-                  const std::vector<int> &imposed_by);
+  /// That of a model.
+  void write_mesh(const ReducedModel &model);
   void begin_basis(Index dofs, Index functions);
   void write_basis(Index first, const Matrix &rows);
   void commit();

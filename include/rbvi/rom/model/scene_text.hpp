@@ -15,9 +15,11 @@ inline constexpr const char *whole_scene = "whole scene";
 /// points and parameters, to 9 digits. `contact`: the interfaces of the scene, on any ranks.
 std::string scene_text(const Scene &scene, const Contact &contact);
 
+/// Lines of another scene that one's own has not: a difference, or none.
+enum class Further { refused, allowed };
+
 /// The first line of `mine` that is not the same in `theirs`: "map values is 1, it was 2". Empty:
-/// there is none. Sums are the same to 1e-8: the last digits are the processor's. `whole`: theirs
-/// has no further lines either.
-std::string scene_difference(const std::string &theirs, const std::string &mine, bool whole);
+/// there is none. Sums are the same to 1e-8: the last digits are the processor's.
+std::string scene_difference(const std::string &theirs, const std::string &mine, Further further);
 
 } // namespace rbvi

@@ -1,0 +1,78 @@
+// Block Gram-Schmidt, with BV on the ranks and with matrices on one core.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace rbvi {
+
+/// Columns that have enough of their own beside those before them for one Cholesky factor of their
+/// Gram matrix.
+struct Fit {
+  std::vector<Index> columns;
+  Matrix rotation;  ///< X times it: these columns, orthonormal
+  double least = 1; ///< the part of its norm that one of them has of its own
+};
+
+/// Of these candidates, in their order. `gram`: X^T P X of all columns.
+Fit fit_columns(const Matrix &gram, const std::vector<Index> &candidates);
+
+/// Makes the first `count` columns of a block orthonormal to a basis and to each other, and appends
+/// them, but for those of which no more than `tolerance` of their norm is left. Returns which were
+/// taken. A column of which little is left waits for the others, so that factors have small
+/// condition. The basis has, for the first n columns of a block X,
+///   Matrix gram(block, n)            X^T P X; throws failure where it is not finite
+///   Vector remove(block, n)          X <- X - Q Q^T P X; the norm of what each column loses
+///   void rotate(block, Y)            X <- X Y
+///   void take(block, n)              Q <- (Q, X)
+template <class Basis, class Block>
+std::vector<int> append_block(Basis &basis, Block &block, Index count, double tolerance) {
+  constexpr double little = 0.1; // of its own: what one step leaves is not orthogonal to the rest
+  std::vector<Index> waiting(count); // the numbers of the first columns of the block
+  std::iota(waiting.begin(), waiting.end(), Index{0});
+  Vector whole;
+  std::vector<int> taken;
+  while (!waiting.empty()) {
+    const Index n = std::ssize(waiting);
+    Matrix gram;
+    std::vector<Index> candidates;
+    for (bool lost = true; lost;) { // until what is left is orthogonal to the basis
+      const Vector removed = basis.remove(block, n);
+      gram = basis.gram(block, n);
+      const Vector left = gram.diagonal().cwiseMax(0).cwiseSqrt();
+      if (whole.size() == 0) whole = (left.array().square() + removed.array().square()).sqrt();
+      candidates.clear();
+      for (Index j = 0; j < n; ++j)
+        if (left[j] > tolerance * whole[waiting[j]]) candidates.push_back(j);
+      lost = std::ranges::any_of(candidates, [&](Index j) { return left[j] < removed[j]; });
+    }
+    if (candidates.empty()) break;
+    const Fit fit = fit_columns(gram, candidates);
+    std::vector<Index> rest;
+    std::ranges::set_difference(candidates, fit.columns, std::back_inserter(rest));
+    const Index fitting = std::ssize(fit.columns), others = std::ssize(rest);
+    Matrix rotation = Matrix::Zero(n, fitting + others);
+    rotation.leftCols(fitting) = fit.rotation;
+    for (Index k = 0; k < others; ++k)
+      rotation(rest[k], fitting + k) = 1;
+    basis.rotate(block, rotation);
+    if (fit.least < little) basis.remove(block, fitting);
+    std::vector<Index> all(fitting);
+    std::iota(all.begin(), all.end(), Index{0});
+    basis.rotate(block, fit_columns(basis.gram(block, fitting), all).rotation);
+    basis.take(block, fitting);
+    if (others > 0)
+      basis.rotate(block, Matrix::Identity(fitting + others, fitting + others).rightCols(others));
+    for (const Index j : fit.columns)
+      taken.push_back(static_cast<int>(waiting[j]));
+    std::ranges::transform(rest, waiting.begin(), [&](Index j) { return waiting[j]; });
+    waiting.resize(others);
+  }
+  std::ranges::sort(taken);
+  return taken;
+}
+
+} // namespace rbvi
