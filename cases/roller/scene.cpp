@@ -9,6 +9,7 @@
 // turns with its tilt.
 #include "scene.hpp"
 
+#include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
@@ -93,7 +94,8 @@ Scene make(const SceneOptions &options) {
   scene.map = identity();
   scene.snap = on_circles;
   scene.fixed = {{"hub", {}}};
-  scene.contacts = {half_plane_contact(upper, options), half_plane_contact(lower, options)};
+  scene.contacts = {contact_by(options, rigid_contact(upper)),
+                    contact_by(options, rigid_contact(lower))};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = everywhere(material);
   scene.a = {exact_term(elasticity("", material, scene.degree))};

@@ -10,10 +10,6 @@ namespace rbvi {
 
 using PointField = std::function<Point(const Point &)>;
 
-inline double dot(const Point &a, const Point &b) {
-  return a[0] * b[0] + a[1] * b[1];
-}
-
 inline Point turned(const Point &n) { // tau of n
   return {-n[1], n[0], 0};
 }

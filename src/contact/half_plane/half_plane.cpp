@@ -50,30 +50,26 @@ HalfPlane half_plane_in(const Stored &of) {
   return plane;
 }
 
-ContactRecipe half_plane(HalfPlane plane, const SupportContact &by) {
+RigidContact rigid_contact(const HalfPlane &plane) {
   const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
   if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
     throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
                     short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
                     short_number(plane.normal[2]) +
                     "): give one of length 1 in the plane of x and y");
-  Support support{plane.boundary, {}, {}, plane.friction, plane.lumped};
-  support.body_normal = plane.body_normal;
-  support.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
-  ContactRecipe recipe = by(support);
-  recipe.coefficients.push_back({"position of the half-plane", plane.position});
-  if (plane.tilt) recipe.coefficients.push_back({"tilt of the half-plane", plane.tilt});
-  recipe.make = [plane, support, by](const Scene &scene, InterfaceMesh mesh) {
-    Support placed = support;
-    placed.gap = [plane, &scene](const FullMu &mu, const Point &x) {
-      const Point n = normal_of(plane, mu),
-                  at = plane.surface ? plane.surface(mu, x) : scene.map(mu, x);
-      return plane.position(mu) - (at[0] - plane.pivot[0]) * n[0] - (at[1] - plane.pivot[1]) * n[1];
-    };
-    return by(placed).make(scene, std::move(mesh));
+  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped, record_of(plane)};
+  rigid.facing.at = [plane](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal_of(plane, mu);
+    const double gap = plane.position(mu) - (point.y[0] - plane.pivot[0]) * n[0] -
+                       (point.y[1] - plane.pivot[1]) * n[1];
+    return FacedPoint{n, gap, slip_along(n, point.motion)};
   };
-  recipe.record = record_of(plane);
-  return recipe;
+  rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
+  rigid.facing.at_rest = plane.surface;
+  rigid.facing.body_normal = plane.body_normal;
+  rigid.coefficients.push_back({"position of the half-plane", plane.position});
+  if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
+  return rigid;
 }
 
 ContactKind half_plane_kind() {

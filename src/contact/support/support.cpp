@@ -1,64 +1,32 @@
 #include "rbvi/contact/support/support.hpp"
 
 #include "rbvi/contact/curve.hpp"
-#include "rbvi/contact/support/curve_support.hpp"
-#include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 
 namespace rbvi {
 
-namespace {
-
-class SupportInterface : public CurveSupport {
-public:
-  SupportInterface(const Scene &scene, InterfaceMesh interface_mesh, Support support)
-      : CurveSupport(scene, std::move(interface_mesh), support.friction, support.lumped),
-        support_(std::move(support)) {
-    find_side();
-  }
-
-  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
-                                const Point &) const override {
-    const SupportPoint at = support_point(scene_, support_, mu, x);
-    return {at.normal, at.gap};
-  }
-
-protected:
-  SupportPoint support_at(const FullMu &mu, const Cell &, const TracePoint &,
-                          const Point &x) const override {
-    return support_point(scene_, support_, mu, x);
-  }
-  Point normal_at(const FullMu &mu, const Cell &, const TracePoint &,
-                  const Point &x) const override {
-    return support_.normal(mu, x);
-  }
-  bool counts_ends() const override { return !support_.closed_ends; }
-
-private:
-  Support support_;
-};
-
-} // namespace
-
-SupportPoint support_point(const Scene &scene, const Support &support, const FullMu &mu,
-                           const Point &x) {
-  const Point n = support.normal(mu, x);
-  SupportPoint point{n, support.gap(mu, x), 0};
-  if (scene.motion) {
-    const Point motion = scene.motion(mu, x);
-    point.gap -= motion[0] * n[0] + motion[1] * n[1];
-    point.slip = motion[1] * n[0] - motion[0] * n[1];
-  }
-  return point;
-}
-
-void check_pressed_side(double cosine, const Point &x) {
-  if (!(cosine > 0))
-    throw failure(
-        "contact through the body: it is pressed at (" + short_number(x[0]) + ", " +
-        short_number(x[1]) +
-        ") of its boundary from inside, as what it faces there lies behind it; move less, "
-        "or pose contact on a shorter boundary");
+RigidContact rigid_contact(const Support &support) {
+  RigidContact rigid{support.boundary,
+                     {},
+                     support.friction,
+                     support.lumped,
+                     {"rigid_support",
+                      1,
+                      {{"lumped", {support.lumped ? 1.0 : 0.0}}},
+                      {{"boundary", support.boundary}},
+                      {{"normal", support.normal.record}, {"gap", support.gap.record}}}};
+  rigid.facing.at = [normal = support.normal,
+                     gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal(mu, point.x);
+    return FacedPoint{n, gap(mu, point.x) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
+  rigid.facing.normal = support.normal;
+  rigid.facing.asks_place = false;
+  rigid.facing.body_normal = support.body_normal;
+  rigid.facing.closed_ends = {support.closed_ends, support.closed_ends};
+  if (support.closed_ends) rigid.record.numbers["closed_ends"] = {1};
+  if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
+  add_friction(support.friction, rigid.record);
+  return rigid;
 }
 
 Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
@@ -81,33 +49,8 @@ Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface
   return grid;
 }
 
-ContactRecipe rigid_support(Support support) {
-  ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {support.boundary}};
-  add_friction(support.friction, recipe);
-  recipe.nodal = support.lumped;
-  recipe.keeps_nodes = true;
-  recipe.make = [support](const Scene &scene, InterfaceMesh mesh) {
-    return std::make_unique<SupportInterface>(scene, std::move(mesh), support);
-  };
-  recipe.record = record_of(support);
-  return recipe;
-}
-
 ContactKind rigid_support_kind() {
   return {"rigid_support", 1, [](const Stored &of) { return rigid_support(support_in(of)); }};
-}
-
-Record record_of(const Support &support) {
-  Record record{"rigid_support",
-                1,
-                {{"lumped", {support.lumped ? 1.0 : 0.0}}},
-                {{"boundary", support.boundary}},
-                {{"normal", support.normal.record}, {"gap", support.gap.record}}};
-  if (support.closed_ends) record.numbers["closed_ends"] = {1};
-  if (support.body_normal) record.parts["body_normal"] = support.body_normal.record;
-  add_friction(support.friction, record);
-  return record;
 }
 
 Support support_in(const Stored &of) {

@@ -23,11 +23,12 @@ struct HalfPlane {
   Named<PointMap> body_normal{}; ///< Support::body_normal
 };
 
-/// Contact with a support, by some formulation.
-using SupportContact = std::function<ContactRecipe(const Support &)>;
+/// Throws bad_input for a normal whose length is not 1.
+RigidContact rigid_contact(const HalfPlane &plane);
 
-/// `by`: of the support that the plane is. Throws bad_input for a normal whose length is not 1.
-ContactRecipe half_plane(HalfPlane plane, const SupportContact &by = rigid_support);
+inline ContactRecipe half_plane(const HalfPlane &plane) {
+  return by_multipliers(rigid_contact(plane));
+}
 
 /// The half-plane of a record.
 HalfPlane half_plane_in(const Stored &of);

@@ -11,8 +11,8 @@
 // B w - g is the slip in the others (3.12), (3.17).
 #pragma once
 
-#include "rbvi/contact/entity_sum.hpp"
-#include "rbvi/contact/friction.hpp"
+#include "rbvi/contact/facing.hpp"
+#include "rbvi/contact/interface.hpp"
 
 namespace rbvi {
 
@@ -32,28 +32,21 @@ struct Support {
   Named<PointMap> body_normal{};
 };
 
-ContactRecipe rigid_support(Support support);
+RigidContact rigid_contact(const Support &support);
+
+/// Contact with something rigid by multipliers, at rest (above) or where the body now is
+/// (contact/surface).
+ContactRecipe by_multipliers(const RigidContact &rigid);
+
+inline ContactRecipe rigid_support(const Support &support) {
+  return by_multipliers(rigid_contact(support));
+}
 
 /// "rigid_support" in files.
 ContactKind rigid_support_kind();
 
-/// What files store of a support, and the support of a record.
-Record record_of(const Support &support);
+/// The support of a record.
 Support support_in(const Stored &of);
-
-/// normal . w <= gap at a point of the reference boundary, and the slip of the motion there.
-struct SupportPoint {
-  Point normal;
-  double gap;           ///< less the motion's share
-  double slip;          ///< of the motion
-  double curvature = 0; ///< of a surface that the displacement meets elsewhere: SurfacePoint
-};
-SupportPoint support_point(const Scene &scene, const Support &support, const FullMu &mu,
-                           const Point &x);
-
-/// Throws failure where a body is pressed at x (reference) along a normal that points into it, so
-/// that it would have to be behind what it touches. `cosine`: between that normal and the body's.
-void check_pressed_side(double cosine, const Point &x);
 
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields.

@@ -30,15 +30,13 @@ struct RigidSurface {
   bool lumped = false; ///< vertex quadrature
 };
 
-ContactRecipe rigid_surface(RigidSurface surface);
+RigidContact rigid_contact(const RigidSurface &surface);
 
-/// What the point x of the reference boundary faces; the state there is `displacement`. With the
-/// surface's own normal.
-SupportPoint surface_point(const Scene &scene, const RigidSurface &surface, const FullMu &mu,
-                           const Point &x, const Point &displacement);
+inline ContactRecipe rigid_surface(const RigidSurface &surface) {
+  return by_multipliers(rigid_contact(surface));
+}
 
-/// What files store of a surface, and the surface of a record.
-Record record_of(const RigidSurface &surface);
+/// The surface of a record.
 RigidSurface surface_in(const Stored &of);
 
 /// "rigid_surface" in files.
