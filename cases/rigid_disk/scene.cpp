@@ -16,7 +16,6 @@
 #include "scene.hpp"
 
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
-#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"

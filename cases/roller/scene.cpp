@@ -9,7 +9,6 @@
 // turns with its tilt.
 #include "scene.hpp"
 
-#include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"

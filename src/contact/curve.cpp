@@ -31,7 +31,7 @@ std::vector<double> NodalCurve::lengths() const {
   std::vector<double> lengths;
   lengths.reserve(edges_);
   for (Index e = 0; e < edges_; ++e)
-    lengths.push_back(length(nodes_[e], nodes_[e + 1]));
+    lengths.push_back(edge_length(nodes_[e], nodes_[e + 1]));
   return lengths;
 }
 
@@ -70,7 +70,7 @@ Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string
 
 SparseMatrix linear_gram(const std::vector<Point> &points, int copies) {
   const auto vertices = static_cast<Index>(points.size()), rows = vertices * copies;
-  const auto length_of = [&](Index edge) { return length(points[edge], points[edge + 1]); };
+  const auto length_of = [&](Index edge) { return edge_length(points[edge], points[edge + 1]); };
   SparseMatrix product(rows, rows);
   product.reserve(Eigen::VectorXi::Constant(rows, 3));
   for (Index row = 0; row < rows; ++row) {

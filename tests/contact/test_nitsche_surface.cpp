@@ -2,7 +2,6 @@
 // what does not.
 #include "../element/cells.hpp"
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
-#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "support_scenes.hpp"

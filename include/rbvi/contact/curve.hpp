@@ -6,7 +6,7 @@
 namespace rbvi {
 
 /// Of a straight edge.
-inline double length(const Point &begin, const Point &end) {
+inline double edge_length(const Point &begin, const Point &end) {
   const double x = end[0] - begin[0], y = end[1] - begin[1];
   return std::sqrt(x * x + y * y);
 }

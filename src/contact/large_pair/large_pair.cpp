@@ -90,8 +90,8 @@ CurvePlace Projection::place_of(Index master_vertex, int &from) const {
   const auto beside = [&](Index edge, double s) { // > 0: to the right of the normal
     return cross(minus(slave_.at(edge, s), origin), n);
   };
-  const double edge_length = length(slave_.point(0), slave_.point(1));
-  const double round_off = 1e-12 * edge_length;
+  const double size = edge_length(slave_.point(0), slave_.point(1));
+  const double round_off = 1e-12 * size;
   if (beside(0, 0) > round_off) return {-1};
   while (from + 1 < slave_.edges() && beside(from, 1) <= round_off)
     ++from;
@@ -100,7 +100,7 @@ CurvePlace Projection::place_of(Index master_vertex, int &from) const {
   double low = 0, high = 1, s = 0.5; // safeguarded Newton steps
   for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
     const double value = beside(from, s);
-    if (std::abs(value) <= 1e-15 * edge_length) break;
+    if (std::abs(value) <= 1e-15 * size) break;
     (value > 0 ? high : low) = s;
     const double next = s - value / cross(slave_.tangent(from, s), n);
     s = next > low && next < high ? next : 0.5 * (low + high);

@@ -76,7 +76,7 @@ NitschePoint nitsche_point(const Scene &scene, const Facing &facing, const FullM
   const Point x{(1 - s) * reference[begin][0] + s * reference[end][0],
                 (1 - s) * reference[begin][1] + s * reference[end][1], 0};
   // Made in place: copies of what has just been written stall the processor.
-  NitschePoint point{.weight = length(mapped[begin], mapped[end]),
+  NitschePoint point{.weight = edge_length(mapped[begin], mapped[end]),
                      .place = place(scene, facing, mu, x),
                      .facing = facing.at(mu, point.place, {}),
                      .body_normal = facing.body_normal ? facing.body_normal(mu, x)

@@ -60,9 +60,9 @@ Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Vector &f
   return result;
 }
 
-double edge_length(const std::array<Point, 4> &vertices, int edge) {
+double length_of(const std::array<Point, 4> &vertices, int edge) {
   const auto [i, j] = simplex_edges[edge];
-  return length(vertices[i], vertices[j]);
+  return edge_length(vertices[i], vertices[j]);
 }
 
 } // namespace
@@ -76,7 +76,7 @@ CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const C
   result.geometry = simplex(2, result.cell.mapped);
   result.gamma = layer.curve_of(beside).gamma0 *
                  (result.material.lambda + 2 * result.material.shear) /
-                 edge_length(beside.cell.reference, beside.edge);
+                 length_of(beside.cell.reference, beside.edge);
   return result;
 }
 
@@ -315,7 +315,7 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
       ++edges[vertex];
     }
     fields.arc_length[static_cast<Index>(k) + 1] =
-        fields.arc_length[static_cast<Index>(k)] + edge_length(at.cell.mapped, cells[k].edge);
+        fields.arc_length[static_cast<Index>(k)] + length_of(at.cell.mapped, cells[k].edge);
   }
   for (Vector *sum : {&fields.sigma_n, &fields.sigma_tau, &gamma})
     sum->array() /= edges.array();

@@ -2,8 +2,6 @@
 
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/curve.hpp"
-#include "rbvi/contact/half_plane/half_plane.hpp"
-#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
 
@@ -95,12 +93,20 @@ private:
   NitscheLayer layer_;
 };
 
-/// "nitsche_support" and the like in files: of what rigid_contact() makes of `thing`.
+/// "rigid_support" -> "nitsche_support", ...
+std::string nitsche_name(const std::string &name) {
+  return "nitsche_" + name.substr(name.starts_with("rigid_") ? 6 : 0);
+}
+
+/// `name`, and of Nitsche's method: of what `thing` makes of a record.
 template <class Thing>
-ContactKind nitsche_kind(const std::string &name, int version, Thing (*thing)(const Stored &)) {
-  return {name, version, [thing](const Stored &of) {
-            return by_nitsche(rigid_contact(thing(of)), number(of, "gamma0"));
-          }};
+void add_kinds(const std::string &name, int version, Thing (*thing)(const Stored &),
+               std::vector<ContactKind> &kinds) {
+  kinds.push_back(
+      {name, 1, [thing](const Stored &of) { return by_multipliers(rigid_contact(thing(of))); }});
+  kinds.push_back({nitsche_name(name), version, [thing](const Stored &of) {
+                     return by_nitsche(rigid_contact(thing(of)), number(of, "gamma0"));
+                   }});
 }
 
 } // namespace
@@ -141,18 +147,19 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
                                               NitscheCurve{rigid.friction, rigid.facing, gamma0});
   };
   recipe.record = rigid.record;
-  const std::string &name = rigid.record.name;
-  recipe.record.name = "nitsche_" + name.substr(name.starts_with("rigid_") ? 6 : 0);
+  recipe.record.name = nitsche_name(rigid.record.name);
   // 1: of a support the stress was on the normal of contact.
   recipe.record.version = rigid.facing.follows_state ? 1 : 2;
   recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
 }
 
-std::vector<ContactKind> nitsche_kinds() {
-  return {nitsche_kind("nitsche_support", 2, support_in),
-          nitsche_kind("nitsche_half_plane", 2, half_plane_in),
-          nitsche_kind("nitsche_surface", 1, surface_in)};
+std::vector<ContactKind> rigid_kinds() {
+  std::vector<ContactKind> kinds;
+  add_kinds("rigid_support", 2, support_in, kinds);
+  add_kinds("half_plane", 2, half_plane_in, kinds);
+  add_kinds("rigid_surface", 1, surface_in, kinds);
+  return kinds;
 }
 
 std::vector<SceneOption> nitsche_options() {

@@ -43,7 +43,7 @@ Point point_on(const Cell &edge, const TracePoint &at) {
 }
 
 double length_of(const Cell &edge) {
-  return length(edge.mapped[0], edge.mapped[1]);
+  return edge_length(edge.mapped[0], edge.mapped[1]);
 }
 
 /// n . the normal of the mapped edge that points down where the edge goes to the right.
@@ -167,8 +167,8 @@ Point CurveSupport::deformed_normal(const FullMu &mu, const Cell &edge, const Tr
 FacedPoint CurveSupport::faced_at(const FullMu &mu, const Cell &edge, const TracePoint &at) const {
   const PlacedPoint point = place(scene_, facing_, mu, point_on(edge, at));
   const Point displacement = sum(edge, at.phi);
+  if (!facing_.along_body) return facing_.at(mu, point, displacement);
   const FacedPoint here = facing_.at(mu, point, displacement);
-  if (!facing_.along_body) return here;
   const Point n = deformed_normal(mu, edge, at, point.x);
   const double distance = here.gap - dot(here.normal, displacement);
   return {n, dot(n, here.normal) * distance + dot(n, displacement), slip_along(n, point.motion)};

@@ -11,8 +11,9 @@ namespace rbvi {
 /// quadrature, and for the normal of the deformed body.
 ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0);
 
-/// "nitsche_support", "nitsche_half_plane", "nitsche_surface" in files.
-std::vector<ContactKind> nitsche_kinds();
+/// "rigid_support", "half_plane", "rigid_surface" in files, and by Nitsche's method
+/// "nitsche_support", "nitsche_half_plane", "nitsche_surface".
+std::vector<ContactKind> rigid_kinds();
 
 /// The options `formulation` and `nitsche_gamma0` of scenes with a support.
 std::vector<SceneOption> nitsche_options();
