@@ -140,7 +140,7 @@ Scene make_one(const SceneOptions &options) {
   support.friction.value = parameter(friction);
   support.lumped = options.at("lumped") == "yes";
   support.closed_ends = true;
-  scene.contacts = {support_contact(support, options)};
+  scene.contacts = {contact_by(options, rigid_contact(support))};
   scene.parameters = all_free({{"indentation", "m", 0.01, 0.1, 0.05, {0, largest_strain * height}},
                                {"shear", "m", 0, 0.2, 0.02, {-height / 2, height / 2}},
                                {"friction_coefficient", "", 0, 1, 0.3, friction_range}});

@@ -16,7 +16,6 @@
 #include "scene.hpp"
 
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
-#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"
@@ -273,7 +272,7 @@ ContactRecipe following_contact(const SceneOptions &options, const Friction &fri
   if (normal == "body") surface.body_normal = radial_normals();
   surface.friction = friction;
   surface.lumped = options.at("lumped") == "yes";
-  return surface_contact(std::move(surface), options);
+  return contact_by(options, rigid_contact(surface));
 }
 
 /// Contact on the undeformed body.
@@ -285,7 +284,7 @@ ContactRecipe contact_at_rest(const SceneOptions &options, const Friction &frict
   Support support{"contact", normal, gap_of(options, normal), friction,
                   options.at("lumped") == "yes"};
   support.body_normal = radial_normals();
-  return support_contact(support, options);
+  return contact_by(options, rigid_contact(support));
 }
 
 Scene make(const SceneOptions &options) {

@@ -93,7 +93,8 @@ Scene make(const SceneOptions &options) {
   scene.map = identity();
   scene.snap = on_circles;
   scene.fixed = {{"hub", {}}};
-  scene.contacts = {half_plane_contact(upper, options), half_plane_contact(lower, options)};
+  scene.contacts = {contact_by(options, rigid_contact(upper)),
+                    contact_by(options, rigid_contact(lower))};
   const Lame material = lame(number_in(options, "young"), number_in(options, "poisson_ratio"));
   scene.material = everywhere(material);
   scene.a = {exact_term(elasticity("", material, scene.degree))};

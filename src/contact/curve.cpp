@@ -24,6 +24,17 @@ Vector means_at_nodes(const Matrix &points, const Vector &of_edges) {
 
 } // namespace
 
+NodalCurve::NodalCurve(std::vector<Point> nodes, int degree)
+    : nodes_(std::move(nodes)), degree_(degree), edges_((std::ssize(nodes_) - 1) / degree) {}
+
+std::vector<double> NodalCurve::lengths() const {
+  std::vector<double> lengths;
+  lengths.reserve(edges_);
+  for (Index e = 0; e < edges_; ++e)
+    lengths.push_back(edge_length(nodes_[e], nodes_[e + 1]));
+  return lengths;
+}
+
 Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string &name) {
   if (mesh.dim != 2)
     throw bad_input("the " + name + " is a curve in two dimensions: the mesh has " +
@@ -59,15 +70,12 @@ Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string
 
 SparseMatrix linear_gram(const std::vector<Point> &points, int copies) {
   const auto vertices = static_cast<Index>(points.size()), rows = vertices * copies;
-  const auto length = [&](Index edge) {
-    const Point &a = points[edge], &b = points[static_cast<std::size_t>(edge) + 1];
-    return std::hypot(b[0] - a[0], b[1] - a[1]);
-  };
+  const auto length_of = [&](Index edge) { return edge_length(points[edge], points[edge + 1]); };
   SparseMatrix product(rows, rows);
   product.reserve(Eigen::VectorXi::Constant(rows, 3));
   for (Index row = 0; row < rows; ++row) {
     const Index i = row % vertices;
-    const double before = i > 0 ? length(i - 1) : 0, after = i + 1 < vertices ? length(i) : 0;
+    const double before = i > 0 ? length_of(i - 1) : 0, after = i + 1 < vertices ? length_of(i) : 0;
     if (i > 0) product.insert(row, row - 1) = before / 6;
     product.insert(row, row) = (before + after) / 3;
     if (i + 1 < vertices) product.insert(row, row + 1) = after / 6;

@@ -4,7 +4,7 @@
 
 #include "cases/catalogue.hpp"
 #include "rbvi/check/stability_report.hpp"
-#include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"

@@ -64,7 +64,7 @@ inline SupportScene half_disk(int degree) {
 
 /// gamma0 = 0.3.
 inline NitscheLayer layer_of(const SupportScene &scene, const Strip &s) {
-  return {scene, {{scene.support.friction, facing_support(scene, scene.support), 0.3}}, s.cells};
+  return {scene, {{scene.support.friction, rigid_contact(scene.support).facing, 0.3}}, s.cells};
 }
 
 } // namespace rbvi

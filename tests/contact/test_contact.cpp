@@ -197,7 +197,7 @@ TEST(Contact, MultipliersByNodeAreThoseOfTheRows) {
 
 TEST(Contact, NitschesMethodIsNotBesideMultipliers) {
   Stack stack;
-  stack.scene.contacts[0] = nitsche_support({"above", {}, {}}, 10);
+  stack.scene.contacts[0] = by_nitsche(rigid_contact(Support{"above", {}, {}}), 10);
   const auto refused = [&](const std::string &says) {
     return refuses(says, [&] { make_contact(stack.scene, stack.meshes); });
   };
@@ -232,7 +232,7 @@ TEST(ContactRecipes, AreAskedTogether) {
   EXPECT_TRUE(bounds_nodes(one));
   one.contacts.front().friction = FrictionLaw::coulomb;
   EXPECT_FALSE(bounds_nodes(one));
-  one.contacts = {nitsche_support({}, 10)};
+  one.contacts = {by_nitsche(rigid_contact(Support{}), 10)};
   EXPECT_FALSE(has_multipliers(one));
 }
 

@@ -1,8 +1,8 @@
 // Contact operators of two curves: against brute force, by balance of forces and exactness, and
 // where meshes coincide, slide past each other or overlap in part.
+#include "../couple.hpp"
 #include "../linear_algebra.hpp"
 #include "curves.hpp"
-#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,8 @@
 // single nodes, friction, what files store, and planes that cannot be.
 #include "../core/refuses.hpp"
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/half_plane/half_plane.hpp"
+#include "rbvi/contact/catalogue/registry.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/validity.hpp"
 #include "support_scenes.hpp"
 
@@ -190,7 +191,7 @@ TEST(HalfPlane, IsMadeAgainFromItsRecord) {
   HalfPlane plane = tilted_plane(FrictionLaw::coulomb);
   plane.lumped = true;
   const ContactRecipe recipe = half_plane(plane),
-                      again = half_plane_kind().make({half_plane(plane).record, &catalogue()});
+                      again = contact_in({half_plane(plane).record, &catalogue()});
   EXPECT_EQ(again.entities.parts, recipe.entities.parts);
   EXPECT_EQ(again.friction, recipe.friction);
   EXPECT_EQ(again.coefficients.size(), recipe.coefficients.size());

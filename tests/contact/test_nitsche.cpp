@@ -88,8 +88,9 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
     const auto a = static_cast<std::size_t>(ends[0]), b = static_cast<std::size_t>(ends[1]);
     double length = 0;
     for (std::size_t q = 0; q < 4; ++q) {
-      const NitschePoint point = nitsche_points(scene, facing_support(scene, scene.support), mu,
-                                                cell, edge, {material.lambda, material.shear})[q];
+      const NitschePoint point = nitsche_points(
+          scene, rigid_contact(scene.support).facing, mu,
+          {cell, edge, {material.lambda, material.shear}, simplex(2, cell.mapped)})[q];
       constexpr double at[] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
                                0.93056815579702629};
       const Point x = between(cell.reference[a], cell.reference[b], at[q]);
@@ -120,8 +121,8 @@ TEST_P(PerDegree, SeeTheStressAndTheDisplacementOfALinearField) {
 TEST(NitschePoints, AnInvertedCellIsAFailure) {
   const SupportScene scene = hertz(2);
   const Vertices inverted{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {}}};
-  EXPECT_THROW(nitsche_points(scene, facing_support(scene, scene.support), {1.0},
-                              {2, inverted, inverted}, 0, {1, 1}),
+  EXPECT_THROW(nitsche_points(scene, rigid_contact(scene.support).facing, {1.0},
+                              {{2, inverted, inverted}, 0, {1, 1}, simplex(2, inverted)}),
                Error);
 }
 

@@ -223,7 +223,7 @@ TEST(NitscheLaws, AreThoseOfTheSceneAndNotNegative) {
   const auto value = [](const FullMu &mu) { return mu[0]; };
   const Scene scene;
   const auto law_of = [&](const Friction &friction, const FullMu &mu) {
-    return NitscheCurve{friction, facing_support(scene, {}), 1}.law_at(mu);
+    return NitscheCurve{friction, {}, 1}.law_at(mu);
   };
   const NitscheLaw none = law_of({FrictionLaw::none, value}, {-1});
   EXPECT_EQ(none.law, FrictionLaw::none);

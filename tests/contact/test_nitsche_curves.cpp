@@ -123,14 +123,12 @@ TEST(NitscheCurves, TheMultiplierIsMinusTheStress) {
 /// Axes turn on the curve that follows the displacement alone.
 TEST(NitscheCurves, OneMayFollowTheDisplacement) {
   TwoCurves two({}, {FrictionLaw::coulomb, constant(0.3)});
-  const NitscheFacing turning{[](const FullMu &, const Point &, const Point &displacement) {
-                                const double angle = 0.3 + 2 * displacement[0];
-                                return SupportPoint{{std::sin(angle), -std::cos(angle), 0},
-                                                    0.02 - 0.5 * displacement[1],
-                                                    displacement[0],
-                                                    0.7};
-                              },
-                              true};
+  Facing turning{[](const FullMu &, const PlacedPoint &, const Point &displacement) {
+    const double angle = 0.3 + 2 * displacement[0];
+    return FacedPoint{
+        {std::sin(angle), -std::cos(angle), 0}, 0.02 - 0.5 * displacement[1], displacement[0], 0.7};
+  }};
+  turning.follows_state = true;
   two.other.curves.front().facing = two.both.curves.back().facing = turning;
   EXPECT_TRUE(two.both.follows_state());
   EXPECT_FALSE(two.one.follows_state());

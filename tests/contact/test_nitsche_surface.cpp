@@ -37,10 +37,15 @@ struct OnOneCell {
   OnOneCell() { cell.mapped = cell.reference; }
 };
 
+Facing faced(Surface *surface) {
+  return rigid_contact(RigidSurface{"support", surface}).facing;
+}
+
 /// Edge 0 of the cell.
-std::array<NitschePoint, 4> points_of(const Scene &scene, const NitscheFacing &facing,
+std::array<NitschePoint, 4> points_of(const Scene &scene, const Facing &facing,
                                       const OnOneCell &on) {
-  return nitsche_points(scene, facing, {1.0}, on.cell, 0, on.material);
+  return nitsche_points(scene, facing, {1.0},
+                        {on.cell, 0, on.material, simplex(2, on.cell.mapped)});
 }
 
 TEST(NitscheSurface, TurnsToTheNormalOfTheSurfaceWhereTheBodyIs) {
@@ -48,14 +53,14 @@ TEST(NitscheSurface, TurnsToTheNormalOfTheSurfaceWhereTheBodyIs) {
     const SupportScene scene = scene_of(degree);
     OnOneCell on;
     if (degree == 1) on.u.tail<6>().setZero();
-    const NitscheFacing facing = facing_surface(scene, {"support", disk_at});
+    const Facing facing = faced(disk_at);
     for (NitschePoint point : points_of(scene, facing, on)) {
       const NitschePoint rest = point;
       turn_to(facing, {1.0}, on.u, point);
-      Point y = point.x; // where the point is
+      Point y = point.place.x; // where the point is
       const Point n0 = rest.facing.normal;
       for (std::size_t c = 0; c < 2; ++c)
-        y[c] += scene.motion({1.0}, point.x)[c] + rest.n.dot(on.u) * n0[c] +
+        y[c] += scene.motion({1.0}, point.place.x)[c] + rest.n.dot(on.u) * n0[c] +
                 rest.tau.dot(on.u) * turned(n0)[c];
       const SurfacePoint below = disk_at({1.0}, y);
       EXPECT_NEAR(point.facing.normal[0], -below.normal[0], 1e-14);
@@ -78,11 +83,11 @@ TEST(NitscheSurface, TurnsToTheNormalOfTheSurfaceWhereTheBodyIs) {
 TEST(NitscheSurface, TheSlipIsMeasuredAlongTheTangentOfTheSurface) {
   const SupportScene scene = scene_of(2);
   const OnOneCell on;
-  const NitscheFacing facing = facing_surface(scene, {"support", disk_at});
+  const Facing facing = faced(disk_at);
   for (NitschePoint point : points_of(scene, facing, on)) {
     turn_to(facing, {1.0}, on.u, point);
     const Point &n = point.facing.normal;
-    const double from_x = point.x[0] - 0.1, from_y = point.x[1] + 1.2;
+    const double from_x = point.place.x[0] - 0.1, from_y = point.place.x[1] + 1.2;
     const double of_reference = std::atan2(from_x, from_y), of_now = std::atan2(-n[0], -n[1]);
     EXPECT_NEAR(point.tau.dot(on.u) + point.facing.slip,
                 std::hypot(from_x, from_y) * std::sin(of_now - of_reference), 1e-13);
@@ -94,10 +99,10 @@ TEST(NitscheSurface, TheSlipIsMeasuredAlongTheTangentOfTheSurface) {
 TEST(NitscheSurface, APlaneIsASupport) {
   const SupportScene scene = scene_of(2);
   const OnOneCell on;
-  const NitscheFacing plane = facing_surface(scene, {"support", plane_at});
+  const Facing plane = faced(plane_at);
   Support support = scene.support;
   support.gap = [](const FullMu &, const Point &x) { return x[1] + 0.3; };
-  const auto at_rest = points_of(scene, facing_support(scene, support), on);
+  const auto at_rest = points_of(scene, rigid_contact(support).facing, on);
   auto points = points_of(scene, plane, on);
   for (std::size_t q = 0; q < points.size(); ++q) {
     turn_to(plane, {1.0}, on.u, points[q]);
@@ -124,7 +129,7 @@ TEST(NitscheSurface, TheTangentHasWhatTheAxesTurnBy) {
   SupportScene scene = scene_of(2);
   const OnOneCell on;
   scene.material = [&](const FullMu &, const Point &) { return on.material; };
-  const NitscheLayer layer{scene, {{{}, facing_surface(scene, {"support", disk_at}), 1}}, {}};
+  const NitscheLayer layer{scene, {{{}, faced(disk_at), 1}}, {}};
   CurveCell beside{on.cell, 0, {}};
   for (int i = 0; i < 12; ++i)
     beside.dofs[i] = i;
@@ -135,20 +140,29 @@ TEST(NitscheSurface, TheTangentHasWhatTheAxesTurnBy) {
   auto held = faces;
   for (NitschePoint &point : held[0].points)
     point.turning = 0;
-  const double with = d.dot(nitsche_tangent(faces, pressures, {})[0] * d),
-               without = d.dot(nitsche_tangent(held, pressures, {})[0] * d);
-  EXPECT_NEAR(with - without, nitsche_turning(faces, pressures, d), 1e-12);
-  EXPECT_NE(nitsche_turning(faces, pressures, d), 0);
-  EXPECT_LE(nitsche_turning(faces, pressures, d), 0);
+  const auto of_turning = [&](const Matrix &at) {
+    return d.dot(nitsche_tangent(faces, at, {})[0] * d) -
+           d.dot(nitsche_tangent(held, at, {})[0] * d);
+  };
+  double turning = 0;
+  for (const std::size_t q : {0, 1, 3}) {
+    const NitschePoint &point = faces[0].points[q];
+    turning += point.weight * point.turning * std::pow(point.tau.dot(d), 2);
+  }
+  EXPECT_NEAR(of_turning(pressures), turning, 1e-12);
+  EXPECT_LT(turning, 0);
+  const NitscheLine line = nitsche_line(faces, u, d, {});
+  EXPECT_NEAR(line.turning, of_turning(line.start), 1e-12);
+  EXPECT_LT(line.turning, 0);
 }
 
 TEST(NitscheSurface, OnlyItsOwnNormalIsTaken) {
   RigidSurface surface{"support", disk_at};
   surface.body_normal = [](const FullMu &, const Point &) { return Point{0, -1, 0}; };
-  EXPECT_THROW(nitsche_surface(surface, 10), Error);
+  EXPECT_THROW(by_nitsche(rigid_contact(surface), 10), Error);
   surface = {"support", disk_at};
   surface.lumped = true;
-  EXPECT_THROW(nitsche_surface(surface, 10), Error);
+  EXPECT_THROW(by_nitsche(rigid_contact(surface), 10), Error);
 }
 
 } // namespace

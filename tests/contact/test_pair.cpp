@@ -1,6 +1,7 @@
 // Two bodies as an interface: the operators of couple() on mapped curves, with the motion, at the
 // columns of the problem.
 #include "../core/refuses.hpp"
+#include "../couple.hpp"
 #include "curves.hpp"
 #include "rbvi/contact/pair/pair.hpp"
 
@@ -90,9 +91,10 @@ TEST(PairInterface, ColumnsAreThoseOfTheProblem) {
     const FullMu mu{0.3};
     const ContactOperators op = at(scene, mesh, mu), moved = at(scene, other, mu);
     ASSERT_EQ(moved.b.cols(), other.columns);
-    EXPECT_EQ(moved.g, op.g);
+    // The share of the motion is a sum over columns, whose order is another.
+    EXPECT_LE((moved.g - op.g).norm(), 1e-15);
     EXPECT_EQ(moved.weights, op.weights);
-    EXPECT_EQ(moved.nodal_gap, op.nodal_gap);
+    EXPECT_LE((moved.nodal_gap - op.nodal_gap).norm(), 1e-15);
     EXPECT_EQ(moved.b.nonZeros(), op.b.nonZeros()) << "and nothing elsewhere";
     EXPECT_EQ(moved.nodal_b.nonZeros(), op.nodal_b.nonZeros());
     for (Index i = 0; i < mesh.nodes(); ++i) {

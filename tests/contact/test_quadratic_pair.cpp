@@ -1,7 +1,7 @@
 // Contact operators of two curves of degree 2: against analytic parabolas and quadratic
 // displacements, the operators of degree 1 on the same vertices, and by balance of forces.
+#include "../couple.hpp"
 #include "curves.hpp"
-#include "rbvi/contact/pair/contact_pair.hpp"
 #include "rbvi/core/error.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // plane has no curvature, and the slip is that of the angles.
 #include "rbvi/contact/catalogue/registry.hpp"
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/contact/surface/surface.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "support_scenes.hpp"
 
@@ -247,7 +247,7 @@ TEST(RigidSurface, AFileNamesIt) {
   const ContactRecipe recipe = rigid_surface(of.surface);
   EXPECT_TRUE(recipe.follows_state);
   EXPECT_FALSE(recipe.separable);
-  EXPECT_EQ(recipe.record.name, rigid_surface_kind().name);
+  EXPECT_EQ(recipe.record.name, "rigid_surface");
   EXPECT_EQ(first_unnamed(recipe.record), "friction/value"); // a lambda here
 }
 

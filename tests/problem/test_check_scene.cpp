@@ -3,7 +3,7 @@
 #include "../core/refuses.hpp"
 #include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
-#include "rbvi/contact/surface/surface.hpp"
+#include "rbvi/contact/support/support.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"

@@ -2,6 +2,7 @@
 // answer another way.
 #pragma once
 
+#include "../couple.hpp"
 #include "brute_force.hpp"
 
 #include "cases/catalogue.hpp"

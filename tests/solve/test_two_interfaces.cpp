@@ -82,8 +82,8 @@ Scene blocks_by_nitsche(bool with_floor, bool with_lid) {
   Support floor = floor_support();
   floor.friction = {FrictionLaw::coulomb, [](const FullMu &) { return 0.3; }};
   std::vector<ContactRecipe> contacts;
-  if (with_floor) contacts.push_back(nitsche_support(floor, 10));
-  if (with_lid) contacts.push_back(nitsche_support(lid_support(), 10));
+  if (with_floor) contacts.push_back(by_nitsche(rigid_contact(floor), 10));
+  if (with_lid) contacts.push_back(by_nitsche(rigid_contact(lid_support()), 10));
   return blocks(std::move(contacts));
 }
 

@@ -1,5 +1,5 @@
 // What a scene says of one contact interface before there is a mesh. Recipes are made by the kinds
-// of contact (contact/*/): obstacle(), two_bodies(), rigid_support(), nitsche_support(), ...
+// of contact (contact/*/): obstacle(), two_bodies(), by_multipliers(), by_nitsche(), ...
 #pragma once
 
 #include "rbvi/core/record.hpp"

@@ -1,12 +1,9 @@
 #include "rbvi/contact/catalogue/registry.hpp"
 
-#include "rbvi/contact/half_plane/half_plane.hpp"
 #include "rbvi/contact/large_pair/large_pair.hpp"
 #include "rbvi/contact/nitsche/nitsche_support.hpp"
 #include "rbvi/contact/obstacle/obstacle.hpp"
 #include "rbvi/contact/pair/pair.hpp"
-#include "rbvi/contact/support/support.hpp"
-#include "rbvi/contact/surface/surface.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
@@ -16,10 +13,10 @@ namespace rbvi {
 
 Registry registry_of(std::vector<SceneEntry> scenes) {
   Registry registry{std::move(scenes),
-                    {obstacle_kind(), two_bodies_kind(), rigid_support_kind(),
-                     nitsche_support_kind(), half_plane_kind(), nitsche_half_plane_kind(),
-                     rigid_surface_kind(), nitsche_surface_kind(), deformed_bodies_kind()},
+                    {obstacle_kind(), two_bodies_kind(), deformed_bodies_kind()},
                     common_functions()};
+  for (const ContactKind &kind : rigid_kinds())
+    registry.kinds.push_back(kind);
   const auto add = [&](const FunctionLibrary &more) {
     registry.functions.insert(registry.functions.end(), more.begin(), more.end());
   };

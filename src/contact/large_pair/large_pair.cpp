@@ -1,9 +1,8 @@
 #include "rbvi/contact/large_pair/large_pair.hpp"
 
-#include "facing.hpp"
-#include "rbvi/contact/curve.hpp"
-#include "rbvi/contact/interface.hpp"
+#include "rbvi/contact/pair/two_curves.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,64 +11,156 @@ namespace rbvi {
 
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
-class LargePairInterface : public ContactInterface {
+/// Points of the slave curve as it now is, projected onto the current master curve.
+class Projection {
 public:
-  LargePairInterface(const Scene &scene, InterfaceMesh mesh, LargePair pair);
+  /// `mirrored`: which ends of the master curve lie on an axis of symmetry, a vertical line: the
+  /// mirrored edge takes part in the normal there. Both curves must outlive it.
+  Projection(const NodalCurve &slave, const NodalCurve &master, std::array<bool, 2> mirrored);
+
+  const Cuts &cuts() const { return cuts_; }
+  /// Sets partner and normal of a point. Throws failure where it has no projection.
+  Bend project(PairPoint &point) const;
+
+private:
+  CurvePlace place_of(Index master_vertex, int &from) const;
+
+  const NodalCurve &slave_, &master_;
+  std::vector<Point> normals_; ///< of the master curve, upwards, of length 1, at every node
+  Cuts cuts_;
+};
+
+/// A quarter turn to the left of a tangent, of length 1.
+Point upwards(const Point &tangent) {
+  const double length = norm(tangent);
+  if (!(length > 0)) throw failure("an edge of a contact curve has lost its length");
+  return {-tangent[1] / length, tangent[0] / length, 0};
+}
+
+Point mean(const Point &a, const Point &b) {
+  const Point sum = a + b;
+  const double length = norm(sum);
+  if (!(length > 1e-3)) throw failure("a contact curve has folded back on itself");
+  return sum / length;
+}
+
+/// At vertices the mean of both edges.
+std::vector<Point> nodal_normals(const NodalCurve &curve, std::array<bool, 2> mirrored) {
+  std::vector<Point> normals;
+  const auto mirror = [](const Point &n) { return Point{-n[0], n[1], 0}; };
+  for (Index v = 0; v <= curve.edges(); ++v) {
+    const Index left = v - 1, right = v;
+    if (v == 0 || v == curve.edges()) {
+      const Point n = upwards(v == 0 ? curve.tangent(right, 0) : curve.tangent(left, 1));
+      normals.push_back((v == 0 ? mirrored[0] : mirrored[1]) ? mean(n, mirror(n)) : n);
+    } else {
+      normals.push_back(mean(upwards(curve.tangent(left, 1)), upwards(curve.tangent(right, 0))));
+    }
+  }
+  for (Index e = 0; e < curve.edges() && curve.per_edge() == 3; ++e)
+    normals.push_back(upwards(curve.tangent(e, 0.5)));
+  return normals;
+}
+
+Projection::Projection(const NodalCurve &slave, const NodalCurve &master,
+                       std::array<bool, 2> mirrored)
+    : slave_(slave), master_(master),
+      normals_(nodal_normals(master, mirrored)), cuts_{{}, static_cast<int>(slave.edges())} {
+  int from = 0;
+  for (Index v = 0; v <= master.edges(); ++v)
+    cuts_.places.push_back(place_of(v, from));
+}
+
+/// Where the normal of a master vertex meets the slave curve, searched from edge `from` onwards.
+CurvePlace Projection::place_of(Index master_vertex, int &from) const {
+  const Point &origin = master_.point(master_vertex);
+  const Point &n = normals_[master_vertex];
+  const auto beside = [&](Index edge, double s) { // > 0: to the right of the normal
+    return cross(slave_.at(edge, s) - origin, n)[2];
+  };
+  const double size = edge_length(slave_.point(0), slave_.point(1));
+  const double round_off = 1e-12 * size;
+  if (beside(0, 0) > round_off) return {-1};
+  while (from + 1 < slave_.edges() && beside(from, 1) <= round_off)
+    ++from;
+  const double end = beside(from, 1);
+  if (end < -round_off) return {cuts_.slave_edges + 1};
+  double low = 0, high = 1, s = 0.5; // safeguarded Newton steps
+  for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
+    const double value = beside(from, s);
+    if (std::abs(value) <= 1e-15 * size) break;
+    (value > 0 ? high : low) = s;
+    const double next = s - value / cross(slave_.tangent(from, s), n)[2];
+    s = next > low && next < high ? next : 0.5 * (low + high);
+  }
+  return {from, s};
+}
+
+/// Newton's method for (y - y(t)) x nu(t) = 0, from where the point is between the cuts.
+Bend Projection::project(PairPoint &point) const {
+  const Index master_edge = point.master_edge;
+  constexpr double round_off = 1e-13, settled = 1e-8; // what is left is the square of the last step
+  const Point y = slave_.at(point.slave_edge, point.s);
+  const CurvePlace &begin = cuts_.places[master_edge], &end = cuts_.places[master_edge + 1];
+  double t =
+      std::clamp(CurvePlace{point.slave_edge, point.s}.minus(begin) / end.minus(begin), 0.0, 1.0);
+  double last = 1;
+  for (int k = 0; k < 30; ++k) {
+    const Point away = y - master_.at(master_edge, t);
+    const Point field = master_.sum(master_edge, edge_functions(master_.degree(), t), normals_);
+    const Point turn = master_.sum(master_edge, edge_slopes(master_.degree(), t), normals_);
+    const Point tangent = master_.tangent(master_edge, t);
+    const double size = norm(field);
+    const double step = cross(away, field)[2] / (cross(tangent, field) - cross(away, turn))[2];
+    if (std::abs(step) > round_off && std::abs(last) > settled) {
+      t += std::clamp(step, -0.5, 0.5);
+      last = step;
+      continue;
+    }
+    point.t = t;
+    point.normal = {field[0] / size, field[1] / size, 0};
+    const double stretch = norm(tangent);
+    // d nu = -k tau along the curve
+    const Point tau{point.normal[1], -point.normal[0], 0};
+    return {stretch, -(tau[0] * turn[0] + tau[1] * turn[1]) / (size * stretch)};
+  }
+  throw failure("the bodies do not face each other at (" + short_number(y[0]) + ", " +
+                short_number(y[1]) +
+                ") of the upper contact curve, which has no projection onto the lower one there: "
+                "try a smaller indentation, or more -nonlinear_load_steps");
+}
+
+class LargePairInterface : public TwoCurves {
+public:
+  LargePairInterface(const Scene &scene, InterfaceMesh mesh, const LargePair &pair);
 
   bool follows_state() const override { return true; }
   bool has_curvature() const override { return true; }
-  void assemble(const FullMu &mu, const ContactState &state, const WantedNodes &wanted,
-                ContactOperators &operators) override;
   Curvature curvature(const FullMu &mu, const ContactState &state,
                       const Vector &lambda) const override;
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
-  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override;
 
 private:
-  /// Both curves in one configuration.
-  struct Curves {
-    CurrentCurve slave, master;
-  };
-  Curves curves(const FullMu &mu, const ContactState &state, bool moved) const;
-  Index node_of(const CurrentCurve &curve, bool of_master, Index edge, Index local) const {
-    return (of_master ? mesh_.parts[0] : 0) + curve.node(edge, local);
-  }
-  /// The multipliers of a point, and their values there.
-  std::array<std::pair<Index, double>, 2> multipliers(const Facing &point) const;
-  double length(const FullMu &mu, Index slave_edge) const;
-  /// The integral of each multiplier's function over the whole slave curve.
-  Vector whole_weights(const FullMu &mu) const;
-  MirroredEnds mirrored(bool of_master = true) const;
-  /// Adds factor * direction . (v(x) - v(xi)) to a row.
-  void add_difference(const Curves &now, const Facing &point, const Point &direction, double factor,
-                      Index row, Triplets &entries) const;
-  void set_nodal(const Projection &projection, const Curves &rest, const Curves &now,
-                 ContactOperators &operators) const;
-  /// Contact dofs only.
-  void add(Index row, Index node, const Point &values, double factor, Triplets &entries) const;
-
-  LargePair pair_;
-  std::vector<Point> slave_; ///< reference nodes
+  PairOperators operators_at(const FullMu &mu, const ContactState &state) const override;
+  /// Both curves in one configuration, nothing found yet.
+  Partners curves(const FullMu &mu, const ContactState &state, bool moved) const;
+  /// Where they now are, with four Gauss points on each piece; without gaps.
+  Partners partners(const FullMu &mu, const ContactState &state) const;
+  double pressure_at(const PairPoint &point, const Vector &lambda) const;
+  std::array<bool, 2> mirrored(bool of_master) const;
 };
 
 LargePairInterface::LargePairInterface(const Scene &scene, InterfaceMesh interface_mesh,
-                                       LargePair pair)
-    : ContactInterface(scene, std::move(interface_mesh)), pair_(std::move(pair)) {
-  (void)check_curve(mesh_, 0, "slave curve");
-  (void)check_curve(mesh_, 1, "master curve");
+                                       const LargePair &pair)
+    : TwoCurves(scene, std::move(interface_mesh), pair.multiplier) {
   if (mesh_.components != 2)
     throw bad_input("two deformed bodies meet with displacements of two components");
-  slave_.assign(mesh_.points.begin(), mesh_.points.begin() + mesh_.parts[0]);
-  dual_.points = multiplier_points(slave_, pair_.multiplier, mesh_.degree);
-  dual_.gram = multiplier_product(slave_, pair_.multiplier, mesh_.degree);
+  closed_ends_ = mirrored(false);
 }
 
 /// The bodies with their motion, and `moved` by the state.
-LargePairInterface::Curves LargePairInterface::curves(const FullMu &mu, const ContactState &state,
-                                                      bool moved) const {
+Partners LargePairInterface::curves(const FullMu &mu, const ContactState &state, bool moved) const {
   std::vector<Point> nodes;
   nodes.reserve(mesh_.points.size());
   for (std::size_t i = 0; i < mesh_.points.size(); ++i) {
@@ -83,172 +174,94 @@ LargePairInterface::Curves LargePairInterface::curves(const FullMu &mu, const Co
     nodes.push_back(y);
   }
   const auto master = nodes.begin() + mesh_.parts[0];
-  return {{{nodes.begin(), master}, mesh_.degree}, {{master, nodes.end()}, mesh_.degree}};
-}
-
-Vector LargePairInterface::whole_weights(const FullMu &mu) const {
-  Vector whole = Vector::Zero(dual_.nodes());
-  const Index edges = vertex_count(mesh_.parts[0], mesh_.degree) - 1;
-  for (Index e = 0; e < edges; ++e)
-    for (const auto &[row, value] : multipliers({e, 0, 0.5, 0, 0, {}, 0, 0}))
-      if (row >= 0) whole[row] += value * length(mu, e);
-  return whole;
+  return {
+      {{nodes.begin(), master}, mesh_.degree}, {{master, nodes.end()}, mesh_.degree}, lengths(mu)};
 }
 
 /// Ends of a curve that move vertically alone.
-MirroredEnds LargePairInterface::mirrored(bool of_master) const {
+std::array<bool, 2> LargePairInterface::mirrored(bool of_master) const {
   const auto on_axis = [&](Index vertex) {
-    const auto node = static_cast<std::size_t>((of_master ? mesh_.parts[0] : 0) + vertex);
+    const Index node = (of_master ? mesh_.parts[0] : 0) + vertex;
     return mesh_.dofs[2 * node] < 0 && mesh_.dofs[2 * node + 1] >= 0;
   };
   return {on_axis(0), on_axis(vertex_count(mesh_.parts[of_master ? 1 : 0], mesh_.degree) - 1)};
 }
 
-std::array<std::pair<Index, double>, 2> LargePairInterface::multipliers(const Facing &point) const {
-  if (pair_.multiplier == MultiplierSpace::macro_edges)
-    return {{{macro_edge_of(point.slave_edge, mesh_.parts[0], mesh_.degree), 1}, {-1, 0}}};
-  return {{{point.slave_edge, 1 - point.s}, {point.slave_edge + 1, point.s}}};
-}
-
-/// Of the straight slave edge, undeformed.
-double LargePairInterface::length(const FullMu &mu, Index slave_edge) const {
-  const Point a = scene_.map(mu, slave_[slave_edge]),
-              b = scene_.map(mu, slave_[static_cast<std::size_t>(slave_edge) + 1]);
-  return std::sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]));
-}
-
-void LargePairInterface::add(Index row, Index node, const Point &values, double factor,
-                             Triplets &entries) const {
-  for (std::size_t c = 0; c < 2; ++c)
-    if (const int dof = mesh_.dofs[2 * static_cast<std::size_t>(node) + c]; dof >= 0)
-      entries.emplace_back(row, dof, factor * values[c]);
-}
-
-void LargePairInterface::add_difference(const Curves &now, const Facing &point,
-                                        const Point &direction, double factor, Index row,
-                                        Triplets &entries) const {
-  const std::array<double, 3> at_slave = now.slave.values(point.s),
-                              at_master = now.master.values(point.t);
-  for (Index k = 0; k < now.slave.per_edge(); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    add(row, node_of(now.slave, false, point.slave_edge, k), direction, factor * at_slave[i],
-        entries);
-    add(row, node_of(now.master, true, point.master_edge, k), direction, -factor * at_master[i],
-        entries);
+Partners LargePairInterface::partners(const FullMu &mu, const ContactState &state) const {
+  Partners now = curves(mu, state, true);
+  const Projection projection(now.slave, now.master, mirrored(true));
+  now.cuts = projection.cuts();
+  now.points = now.cuts.on_pieces(edge_quadrature);
+  now.vertices = now.cuts.at_vertices();
+  for (PairPoint &p : now.points) {
+    now.bends.push_back(projection.project(p));
+    p.weight *= now.lengths[p.slave_edge];
   }
+  for (PairPoint &p : now.vertices)
+    (void)projection.project(p);
+  return now;
 }
 
-void LargePairInterface::set_nodal(const Projection &projection, const Curves &rest,
-                                   const Curves &now, ContactOperators &operators) const {
-  const std::vector<Facing> vertices = projection.vertices();
-  const auto count = static_cast<Index>(vertices.size());
-  Triplets entries;
-  operators.nodal_gap.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    const Facing &p = vertices[i];
-    const Point x = rest.slave.at(p.slave_edge, p.s), xi = rest.master.at(p.master_edge, p.t);
-    operators.nodal_gap[i] = p.normal[0] * (x[0] - xi[0]) + p.normal[1] * (x[1] - xi[1]);
-    add_difference(now, p, p.normal, -1, i, entries);
-  }
-  operators.nodal_b.resize(count, mesh_.columns);
-  operators.nodal_b.setFromTriplets(entries.begin(), entries.end());
-}
-
-void LargePairInterface::assemble(const FullMu &mu, const ContactState &state, const WantedNodes &,
-                                  ContactOperators &operators) {
-  const Curves rest = curves(mu, state, false), now = curves(mu, state, true);
-  const Projection projection(now.slave, now.master, mirrored());
-  const std::vector<Facing> points = projection.gauss_points();
-  Triplets entries;
-  operators.g = operators.weights = Vector::Zero(dual_.nodes());
-  for (const Facing &p : points) {
-    const Point x = rest.slave.at(p.slave_edge, p.s), xi = rest.master.at(p.master_edge, p.t);
-    const double gap = p.normal[0] * (x[0] - xi[0]) + p.normal[1] * (x[1] - xi[1]);
-    const double weight = p.weight * length(mu, p.slave_edge);
-    for (const auto &[row, value] : multipliers(p)) {
-      if (row < 0) continue;
-      operators.g[row] += weight * value * gap;
-      operators.weights[row] += weight * value;
-      add_difference(now, p, p.normal, -weight * value, row, entries);
+PairOperators LargePairInterface::operators_at(const FullMu &mu, const ContactState &state) const {
+  Partners now = partners(mu, state);
+  const Partners rest = curves(mu, state, false);
+  for (std::vector<PairPoint> *points : {&now.points, &now.vertices})
+    for (PairPoint &p : *points) {
+      const Point x = rest.slave.at(p.slave_edge, p.s), xi = rest.master.at(p.master_edge, p.t);
+      p.gap = p.normal[0] * (x[0] - xi[0]) + p.normal[1] * (x[1] - xi[1]);
     }
-  }
-  operators.b.resize(dual_.nodes(), mesh_.columns);
-  operators.b.setFromTriplets(entries.begin(), entries.end());
-  set_nodal(projection, rest, now, operators);
-  operators.uncovered.clear();
-  const Vector whole = whole_weights(mu);
-  for (Index row = 0; row < dual_.nodes(); ++row)
-    if (is_partial(operators.weights[row], whole[row])) operators.uncovered.push_back(row);
-  operators.segments = projection.segments();
+  PairOperators operators = pair_operators(now, space_, mesh_.dofs, mesh_.columns);
+  operators.segments = now.cuts.segments();
   operators.state = state;
+  return operators;
+}
+
+/// Of the multipliers on the slave curve.
+double LargePairInterface::pressure_at(const PairPoint &p, const Vector &lambda) const {
+  if (space_ == MultiplierSpace::macro_edges)
+    return lambda[macro_edge_of(p.slave_edge, mesh_.parts[0], mesh_.degree)];
+  return (1 - p.s) * lambda[p.slave_edge] + p.s * lambda[p.slave_edge + 1];
 }
 
 Curvature LargePairInterface::curvature(const FullMu &mu, const ContactState &state,
                                         const Vector &lambda) const {
-  const Curves now = curves(mu, state, true);
-  const Projection projection(now.slave, now.master, mirrored());
-  Triplets of_s, of_e;
-  Index row = 0;
-  for (const Facing &p : projection.gauss_points()) {
-    double pressure = 0;
-    for (const auto &[multiplier, value] : multipliers(p))
-      if (multiplier >= 0) pressure += value * lambda[multiplier];
+  const Partners now = partners(mu, state);
+  DifferenceRows along_tau(now, mesh_.dofs, mesh_.columns);
+  std::vector<double> rates;
+  std::vector<Eigen::Triplet<double>> of_partners;
+  for (std::size_t i = 0; i < now.points.size(); ++i) {
+    const PairPoint &p = now.points[i];
+    const auto [stretch, bend] = now.bends[i];
+    const double pressure = pressure_at(p, lambda);
     if (pressure == 0) continue;
-    const double weight = -p.weight * length(mu, p.slave_edge) * pressure;
-    const Point tau{p.normal[1], -p.normal[0], 0};
-    add_difference(now, p, tau, 1, row, of_s);
-    add_difference(now, p, tau, weight * p.curvature / 2, row, of_e);
-    const std::array<double, 3> slopes = now.master.slopes(p.t);
+    PairPoint tangential = p;
+    tangential.normal = {p.normal[1], -p.normal[0], 0};
+    along_tau.add(tangential, 1);
+    along_tau.end_row();
+    const double weight = p.weight * pressure;
+    const std::array<double, 3> slopes = edge_slopes(mesh_.degree, p.t);
     for (Index k = 0; k < now.master.per_edge(); ++k)
-      add(row, node_of(now.master, true, p.master_edge, k), p.normal,
-          weight * slopes[k] / p.stretch, of_e);
-    ++row;
+      for (Index c = 0; c < 2; ++c)
+        if (const int dof =
+                mesh_.dofs[2 * (mesh_.parts[0] + now.master.node(p.master_edge, k)) + c];
+            dof >= 0)
+          of_partners.emplace_back(std::ssize(rates), dof,
+                                   weight * slopes[k] / stretch * p.normal[c]);
+    rates.push_back(-weight * bend / 2);
   }
-  Curvature result{SparseMatrix(row, mesh_.columns), SparseMatrix(row, mesh_.columns)};
-  result.s.setFromTriplets(of_s.begin(), of_s.end());
-  result.e.setFromTriplets(of_e.begin(), of_e.end());
+  Curvature result{along_tau.matrix(), SparseMatrix(std::ssize(rates), mesh_.columns)};
+  result.e.setFromTriplets(of_partners.begin(), of_partners.end());
+  result.e += Eigen::Map<const Vector>(rates.data(), std::ssize(rates)).asDiagonal() * result.s;
   return result;
 }
 
 void LargePairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
                                  const Vector &lambda, double least, Outputs &outputs) const {
-  pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
-  const Curves now = curves(mu, operators.state, true);
-  const Projection projection(now.slave, now.master, mirrored());
+  TwoCurves::outputs(mu, operators, lambda, least, outputs);
   double vertical = 0;
-  for (const Facing &p : projection.gauss_points())
-    for (const auto &[row, value] : multipliers(p))
-      if (row >= 0)
-        vertical += p.weight * length(mu, p.slave_edge) * value * lambda[row] * p.normal[1];
+  for (const PairPoint &p : partners(mu, operators.state).points)
+    vertical += p.weight * pressure_at(p, lambda) * p.normal[1];
   outputs.reaction = scene_.mirror_images * vertical;
-  const MirroredEnds axis = mirrored(false);
-  outputs.ends_in_contact =
-      ends_in_contact(whole_weights(mu), operators.weights, lambda, least, {axis.first, axis.last});
-}
-
-Grid LargePairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
-  const ContactState state{at_columns(mesh_, u)};
-  const Curves now = curves(mu, state, true);
-  const Projection projection(now.slave, now.master, mirrored());
-  const std::vector<Facing> vertices = projection.vertices();
-  if (vertices.size() < 2) return {};
-  std::vector<Index> nodes;
-  const bool constant = pair_.multiplier == MultiplierSpace::macro_edges;
-  Vector gap(static_cast<Index>(vertices.size())), pressure(gap.size() - (constant ? 1 : 0));
-  for (std::size_t k = 0; k < vertices.size(); ++k) {
-    const Facing &p = vertices[k];
-    nodes.push_back(static_cast<Index>(std::lround(p.weight)));
-    const Point y = now.slave.at(p.slave_edge, p.s), xi = now.master.at(p.master_edge, p.t);
-    gap[static_cast<Index>(k)] = p.normal[0] * (y[0] - xi[0]) + p.normal[1] * (y[1] - xi[1]);
-  }
-  for (Index k = 0; k < pressure.size(); ++k) {
-    const Index node = nodes[k];
-    pressure[k] = lambda[constant ? macro_edge_of(node, mesh_.parts[0], mesh_.degree) : node];
-  }
-  Grid grid = polyline(scene_, mu, mesh_, nodes, u);
-  grid.of_nodes.push_back({"gap", gap, "m"});
-  add_pressure(pressure, grid);
-  return grid;
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "rbvi/contact/nitsche/nitsche.hpp"
 
+#include "rbvi/contact/curve.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"
 
@@ -67,58 +68,60 @@ double coulomb_bound(double p, double coefficient) {
   return coefficient * std::max(-p, 0.0);
 }
 
-NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, const FullMu &mu,
-                           const Cell &cell, int edge, const Lame &material, double s) {
-  const Simplex geometry = simplex(2, cell.mapped);
-  const auto [first, second] = simplex_edges[edge];
+NitschePoint nitsche_point(const Scene &scene, const Facing &facing, const FullMu &mu,
+                           const CurveCellAtMu &at, double s) {
+  const auto [first, second] = simplex_edges[at.edge];
   const auto begin = static_cast<std::size_t>(first), end = static_cast<std::size_t>(second);
-  const Point x{(1 - s) * cell.reference[begin][0] + s * cell.reference[end][0],
-                (1 - s) * cell.reference[begin][1] + s * cell.reference[end][1], 0};
-  NitschePoint point;
-  point.x = x;
-  point.facing = facing.at(mu, x, {});
-  point.weight = std::hypot(cell.mapped[end][0] - cell.mapped[begin][0],
-                            cell.mapped[end][1] - cell.mapped[begin][1]);
+  const auto &reference = at.cell.reference, &mapped = at.cell.mapped;
+  const Point x{(1 - s) * reference[begin][0] + s * reference[end][0],
+                (1 - s) * reference[begin][1] + s * reference[end][1], 0};
+  // Made in place: copies of what has just been written stall the processor.
+  NitschePoint point{.weight = edge_length(mapped[begin], mapped[end]),
+                     .place = place(scene, facing, mu, x),
+                     .facing = facing.at(mu, point.place, {}),
+                     .body_normal = facing.body_normal ? facing.body_normal(mu, x)
+                                                       : outward_normal(mapped, begin, end)};
   std::array<double, 3> barycentric{};
   barycentric[begin] = 1 - s;
   barycentric[end] = s;
   std::array<double, most_nodes> values{};
   std::array<std::array<double, 3>, most_nodes> gradients{};
   lagrange_values(2, scene.degree, barycentric, values);
-  lagrange_gradients(2, scene.degree, barycentric, geometry, gradients);
-  point.body_normal =
-      facing.body_normal ? facing.body_normal(mu, x) : outward_normal(cell.mapped, begin, end);
-  set_functionals(nodes_per_cell(2, scene.degree), values, gradients, material, point);
+  lagrange_gradients(2, scene.degree, barycentric, at.geometry, gradients);
+  set_functionals(nodes_per_cell(2, scene.degree), values, gradients, at.material, point);
   return point;
 }
 
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const NitscheFacing &facing,
-                                           const FullMu &mu, const Cell &cell, int edge,
-                                           const Lame &material) {
-  check_orientation(scene, mu, cell);
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Facing &facing,
+                                           const FullMu &mu, const CurveCellAtMu &at) {
+  check_orientation(scene, mu, at.cell);
   std::array<NitschePoint, 4> points;
   for (std::size_t q = 0; q < points.size(); ++q) {
-    points[q] = nitsche_point(scene, facing, mu, cell, edge, material, edge_quadrature[q].s);
+    points[q] = nitsche_point(scene, facing, mu, at, edge_quadrature[q].s);
     points[q].weight *= edge_quadrature[q].weight;
   }
   return points;
 }
 
-void turn_to(const NitscheFacing &facing, const FullMu &mu, const NitschePoint::Row &u,
+TurnedAxes turned_axes(const Facing &facing, const FullMu &mu, const PlacedPoint &point,
+                       const Point &n, double along_n, double along_tau) {
+  const Point displacement{along_n * n[0] - along_tau * n[1], along_n * n[1] + along_tau * n[0], 0};
+  const FacedPoint now = facing.at(mu, point, displacement);
+  return {now, dot(now.normal, n), slip_along(n, now.normal)};
+}
+
+void turn_to(const Facing &facing, const FullMu &mu, const NitschePoint::Row &u,
              NitschePoint &point) {
-  const Point n = point.facing.normal;
-  const double along_n = point.n.dot(u), along_tau = point.tau.dot(u);
-  point.facing = facing.at(
-      mu, point.x, {along_n * n[0] - along_tau * n[1], along_n * n[1] + along_tau * n[0], 0});
-  const Point &now = point.facing.normal;
-  const double c = now[0] * n[0] + now[1] * n[1], s = now[1] * n[0] - now[0] * n[1];
+  const auto [now, c, s] =
+      turned_axes(facing, mu, point.place, point.facing.normal, point.n.dot(u), point.tau.dot(u));
   for (const auto &[normal, tangential] :
        {std::pair{&point.sigma_n, &point.sigma_tau}, std::pair{&point.n, &point.tau}}) {
     const NitschePoint::Row before = *normal;
     *normal = c * before + s * *tangential;
     *tangential = c * *tangential - s * before;
   }
-  point.turning = std::min(point.sigma_n.dot(u), 0.0) * point.facing.curvature;
+  point.facing = now;
+  point.turning = std::min(point.sigma_n.dot(u), 0.0) * now.curvature;
 }
 
 } // namespace rbvi

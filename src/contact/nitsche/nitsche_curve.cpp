@@ -1,5 +1,6 @@
 #include "rbvi/contact/nitsche/nitsche_curve.hpp"
 
+#include "rbvi/contact/curve.hpp"
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
@@ -18,73 +19,64 @@ Row local(const std::array<int, 12> &dofs, const Vector &u) {
   return result;
 }
 
-/// Linear part of P_n and of P_tau in u.
-Row normal_row(const NitschePoint &point, double gamma) {
-  return point.sigma_n - gamma * point.n;
-}
-
-Row tangential_row(const NitschePoint &point, double gamma) {
-  return point.sigma_tau - gamma * point.tau;
-}
-
-/// Calls visit(face, point, number, bound) at every point; bound < 0 without friction.
+/// Calls visit(face, point, number) at every point.
 template <class Visit>
-void at_all_points(const std::vector<NitscheFace> &faces, const Vector &bounds,
-                   const Visit &visit) {
+void at_all_points(const std::vector<NitscheFace> &faces, const Visit &visit) {
   Index number = 0;
   for (const NitscheFace &face : faces)
-    for (const NitschePoint &point : face.points) {
-      visit(face, point, number, bounds.size() > 0 ? bounds[number] : -1);
-      ++number;
-    }
+    for (const NitschePoint &point : face.points)
+      visit(face, point, number++);
 }
 
 void add_square(FaceBlock &block, double factor, const Row &row) {
   if (factor != 0) block.noalias() += factor * row * row.transpose();
 }
 
-/// Of tau tau^T: what the normal of a point in contact turns by.
-double turning(const NitschePoint &point, double pressure) {
-  return pressure < 0 ? point.weight * point.turning : 0;
-}
-
-/// The terms tested with every dof of the layer: those at `pressures`, and what they change to
-/// first order with the pressures `moved`.
-Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Matrix &pressures,
-              const Matrix &moved, const Vector &bounds) {
-  Vector result = Vector::Zero(dofs);
-  at_all_points(faces, bounds,
-                [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
-                  const PointTerm contact = contact_term(pressures(i, 0), face.gamma);
-                  const PointTerm friction = friction_term(pressures(i, 1), bound, face.gamma);
-                  const double normal = contact.slope + contact.curvature * moved(i, 0);
-                  const double tangential = friction.slope + friction.curvature * moved(i, 1);
-                  if (normal == 0 && tangential == 0) return;
-                  Row row = normal * normal_row(point, face.gamma);
-                  if (tangential != 0) row += tangential * tangential_row(point, face.gamma);
-                  for (std::size_t k = 0; k < face.dofs.size(); ++k)
-                    if (face.dofs[k] >= 0)
-                      result[face.dofs[k]] += point.weight * row[static_cast<Index>(k)];
-                });
+/// What a change of u adds to the pressures.
+Matrix pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du) {
+  Matrix result(4 * static_cast<Index>(faces.size()), 2);
+  Index number = 0;
+  for (const NitscheFace &face : faces) {
+    const Row here = local(face.dofs, du);
+    for (const NitschePoint &point : face.points)
+      result.row(number++) << point.normal(face.gamma).dot(here),
+          point.tangential(face.gamma).dot(here);
+  }
   return result;
 }
 
-double edge_length(const std::array<Point, 4> &vertices, int edge) {
+/// Pressures with these factors, of P_n and then perhaps of P_tau, tested with every dof.
+Vector tested(const std::vector<NitscheFace> &faces, Index dofs, const Vector &factors) {
+  Vector result = Vector::Zero(dofs);
+  const Index points = 4 * static_cast<Index>(faces.size());
+  at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
+    const double tangential = factors.size() > points ? factors[points + i] : 0;
+    if (factors[i] == 0 && tangential == 0) return;
+    Row row = factors[i] * point.normal(face.gamma);
+    if (tangential != 0) row += tangential * point.tangential(face.gamma);
+    for (std::size_t k = 0; k < face.dofs.size(); ++k)
+      if (face.dofs[k] >= 0) result[face.dofs[k]] += row[static_cast<Index>(k)];
+  });
+  return result;
+}
+
+double length_of(const std::array<Point, 4> &vertices, int edge) {
   const auto [i, j] = simplex_edges[edge];
-  const Point &a = vertices[i], &b = vertices[j];
-  return std::hypot(b[0] - a[0], b[1] - a[1]);
+  return edge_length(vertices[i], vertices[j]);
 }
 
 } // namespace
 
 CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const CurveCell &beside) {
   const Scene &scene = layer.scene;
-  CurveCellAtMu result{beside.cell, scene.material(mu, reference_centre(beside.cell)), 0};
+  CurveCellAtMu result{
+      beside.cell, beside.edge, scene.material(mu, reference_centre(beside.cell)), {}};
   for (std::size_t v = 0; v < 3; ++v)
     result.cell.mapped[v] = scene.map(mu, beside.cell.reference[v]);
+  result.geometry = simplex(2, result.cell.mapped);
   result.gamma = layer.curve_of(beside).gamma0 *
                  (result.material.lambda + 2 * result.material.shear) /
-                 edge_length(beside.cell.reference, beside.edge);
+                 length_of(beside.cell.reference, beside.edge);
   return result;
 }
 
@@ -98,10 +90,9 @@ std::vector<NitscheFace> nitsche_faces(const NitscheLayer &layer, const FullMu &
   for (const CurveCell &beside : cells) {
     const CurveCellAtMu at = curve_cell_at(layer, mu, beside);
     const NitscheCurve &curve = layer.curve_of(beside);
-    faces.push_back(
-        {nitsche_points(layer.scene, curve.facing, mu, at.cell, beside.edge, at.material), at.gamma,
-         beside.dofs, beside.curve, laws[beside.curve],
-         curve.friction() || curve.facing.follows_state});
+    faces.push_back({nitsche_points(layer.scene, curve.facing, mu, at), at.gamma, beside.dofs,
+                     beside.curve, laws[beside.curve],
+                     curve.friction() || curve.facing.follows_state});
   }
   if (state.size() > 0) turn_to(layer, mu, state, faces);
   return faces;
@@ -110,7 +101,7 @@ std::vector<NitscheFace> nitsche_faces(const NitscheLayer &layer, const FullMu &
 void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
              std::vector<NitscheFace> &faces) {
   for (NitscheFace &face : faces) {
-    const NitscheFacing &facing = layer.curves[face.curve].facing;
+    const Facing &facing = layer.curves[face.curve].facing;
     if (!facing.follows_state) continue;
     const Row here = local(face.dofs, state);
     for (NitschePoint &point : face.points)
@@ -138,24 +129,11 @@ bool NitscheLayer::follows_state() const {
                              [](const NitscheCurve &curve) { return curve.facing.follows_state; });
 }
 
-Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du) {
-  Matrix result(4 * static_cast<Index>(faces.size()), 2);
-  Index number = 0;
-  for (const NitscheFace &face : faces) {
-    const Row here = local(face.dofs, du);
-    for (const NitschePoint &point : face.points)
-      result.row(number++) << normal_row(point, face.gamma).dot(here),
-          tangential_row(point, face.gamma).dot(here);
-  }
-  return result;
-}
-
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u) {
-  Matrix result = nitsche_pressure_changes(faces, u);
-  Index number = 0;
-  for (const NitscheFace &face : faces)
-    for (const NitschePoint &point : face.points)
-      result.row(number++) += face.gamma * Eigen::RowVector2d(point.facing.gap, -point.facing.slip);
+  Matrix result = pressure_changes(faces, u);
+  at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
+    result.row(i) += face.gamma * Eigen::RowVector2d(point.facing.gap, -point.facing.slip);
+  });
   return result;
 }
 
@@ -165,14 +143,50 @@ double nitsche_bound(const NitscheLaw &law, double p_n) {
   return law.only_in_contact && p_n >= 0 ? 0.0 : law.value;
 }
 
-Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures) {
-  if (std::ranges::all_of(
-          faces, [](const NitscheFace &face) { return face.law.law == FrictionLaw::none; }))
-    return {};
-  Vector bounds(pressures.rows());
+Vector NitscheTerms::bounds_at(const Matrix &pressures) const {
+  if (!friction) return {};
+  Vector bounds(weights.size());
   for (Index i = 0; i < bounds.size(); ++i)
-    bounds[i] = nitsche_bound(faces[static_cast<std::size_t>(i) / 4].law, pressures(i, 0));
+    bounds[i] = nitsche_bound(laws[i], pressures(i, 0));
   return bounds;
+}
+
+Vector NitscheTerms::weighted(double PointTerm::*part, const Matrix &pressures,
+                              const Vector &bounds) const {
+  const Index points = weights.size();
+  Vector result(points + bounds.size());
+  for (Index i = 0; i < points; ++i) {
+    result[i] = weights[i] * contact_term(pressures(i, 0), gamma[i]).*part;
+    if (bounds.size() > 0)
+      result[points + i] = weights[i] * friction_term(pressures(i, 1), bounds[i], gamma[i]).*part;
+  }
+  return result;
+}
+
+Vector NitscheTerms::linearised(const Matrix &pressures, const Matrix &change,
+                                const Vector &bounds) const {
+  const Vector rates = weighted(&PointTerm::curvature, pressures, bounds);
+  return weighted(&PointTerm::slope, pressures, bounds) +
+         rates.cwiseProduct(change.reshaped().head(rates.size()));
+}
+
+NitscheTerms terms_of(std::span<const NitscheFace> faces) {
+  const Index points = 4 * std::ssize(faces);
+  NitscheTerms terms{Vector(points), Vector(points), Vector(points), {}, false};
+  for (Index i = 0; i < points; ++i) {
+    const NitscheFace &face = faces[static_cast<std::size_t>(i) / 4];
+    const NitschePoint &point = face.points[static_cast<std::size_t>(i) % 4];
+    terms.weights[i] = point.weight;
+    terms.gamma[i] = face.gamma;
+    terms.turning[i] = point.weight * point.turning;
+    terms.laws.push_back(face.law);
+    terms.friction = terms.friction || face.law.law != FrictionLaw::none;
+  }
+  return terms;
+}
+
+Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures) {
+  return terms_of(faces).bounds_at(pressures);
 }
 
 bool bounds_move(const std::vector<NitscheFace> &faces) {
@@ -196,77 +210,57 @@ std::vector<FaceBlock> nitsche_consistency(const std::vector<NitscheFace> &faces
 
 double nitsche_energy(const std::vector<NitscheFace> &faces, const Vector &u,
                       const Vector &bounds) {
-  const Matrix pressures = nitsche_pressures(faces, u);
-  double energy = 0;
-  at_all_points(faces, bounds,
-                [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
-                  energy +=
-                      point.weight * (contact_term(pressures(i, 0), face.gamma).energy +
-                                      friction_term(pressures(i, 1), bound, face.gamma).energy);
-                });
-  return energy;
+  return terms_of(faces).weighted(&PointTerm::energy, nitsche_pressures(faces, u), bounds).sum();
 }
 
 Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u,
                           const Matrix &pressures, const Vector &bounds) {
-  return tested(faces, u.size(), pressures, nitsche_pressures(faces, u) - pressures, bounds);
+  const Matrix change = nitsche_pressures(faces, u) - pressures;
+  return tested(faces, u.size(), terms_of(faces).linearised(pressures, change, bounds));
 }
 
 Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
                         const Vector &bounds) {
-  const Matrix pressures = nitsche_pressures(faces, u);
-  return tested(faces, u.size(), pressures, Matrix::Zero(pressures.rows(), 2), bounds);
+  return tested(faces, u.size(),
+                terms_of(faces).weighted(&PointTerm::slope, nitsche_pressures(faces, u), bounds));
 }
 
 std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
                                        const Matrix &pressures, const Vector &bounds) {
   std::vector<FaceBlock> blocks(faces.size(), FaceBlock::Zero());
-  at_all_points(
-      faces, bounds,
-      [&](const NitscheFace &face, const NitschePoint &point, Index i, double bound) {
-        FaceBlock &block = blocks[static_cast<std::size_t>(i) / face.points.size()];
-        add_square(block, point.weight * contact_term(pressures(i, 0), face.gamma).curvature,
-                   normal_row(point, face.gamma));
-        add_square(block, turning(point, pressures(i, 0)), point.tau);
-        add_square(block,
-                   point.weight * friction_term(pressures(i, 1), bound, face.gamma).curvature,
-                   tangential_row(point, face.gamma));
-      });
+  const NitscheTerms terms = terms_of(faces);
+  const Vector rates = terms.weighted(&PointTerm::curvature, pressures, bounds),
+               turning = terms.turning_at(pressures);
+  at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
+    FaceBlock &block = blocks[static_cast<std::size_t>(i) / face.points.size()];
+    add_square(block, rates[i], point.normal(face.gamma));
+    add_square(block, turning[i], point.tau);
+    if (bounds.size() > 0)
+      add_square(block, rates[turning.size() + i], point.tangential(face.gamma));
+  });
   return blocks;
-}
-
-double nitsche_turning(const std::vector<NitscheFace> &faces, const Matrix &pressures,
-                       const Vector &d) {
-  double sum = 0;
-  at_all_points(faces, {},
-                [&](const NitscheFace &face, const NitschePoint &point, Index i, double) {
-                  const double factor = turning(point, pressures(i, 0));
-                  if (factor != 0) sum += factor * std::pow(point.tau.dot(local(face.dofs, d)), 2);
-                });
-  return sum;
 }
 
 NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,
                          const Vector &bounds) {
-  const auto points = 4 * static_cast<Index>(faces.size());
-  NitscheLine line{Vector(points), Vector(points), nitsche_pressures(faces, u),
-                   nitsche_pressure_changes(faces, d), bounds};
-  Index number = 0;
-  for (const NitscheFace &face : faces)
-    for (const NitschePoint &point : face.points) {
-      line.weights[number] = point.weight;
-      line.gamma[number++] = face.gamma;
-    }
+  NitscheLine line{terms_of(faces), nitsche_pressures(faces, u), pressure_changes(faces, d),
+                   bounds};
+  const Vector turning = line.terms.turning_at(line.start);
+  at_all_points(faces, [&](const NitscheFace &face, const NitschePoint &point, Index i) {
+    if (turning[i] != 0)
+      line.turning += turning[i] * std::pow(point.tau.dot(local(face.dofs, d)), 2);
+  });
   return line;
 }
 
 double NitscheLine::slope(double t) const {
-  double sum = 0;
-  for (Index i = 0; i < weights.size(); ++i) {
+  double sum = t * turning;
+  for (Index i = 0; i < start.rows(); ++i) {
     const Eigen::RowVector2d p = start.row(i) + t * change.row(i);
-    double density = contact_term(p[0], gamma[i]).slope * change(i, 0);
-    if (bounds.size() > 0) density += friction_term(p[1], bounds[i], gamma[i]).slope * change(i, 1);
-    sum += weights[i] * density;
+    double density = contact_term(p[0], terms.gamma[i]).slope * change(i, 0);
+    if (bounds.size() > 0)
+      density += friction_term(p[1], bounds[i], terms.gamma[i]).slope * change(i, 1);
+    sum += terms.weights[i] * density;
   }
   return sum;
 }
@@ -295,7 +289,7 @@ double line_minimum(double linear, double quadratic, const NitscheLine &line) {
 
 CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const FullMu &mu,
                            const Vector &u) {
-  const NitscheFacing &facing = layer.curves[number].facing;
+  const Facing &facing = layer.curves[number].facing;
   const std::span<const CurveCell> cells = layer.cells_of(number);
   const auto count = static_cast<Index>(cells.size()) + 1;
   CurveFields fields;
@@ -310,8 +304,7 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
     const bool forward = at.cell.reference[ends[0]][0] < at.cell.reference[ends[1]][0];
     const Row here = local(cells[k].dofs, u);
     for (const double s : {0.0, 1.0}) {
-      NitschePoint point =
-          nitsche_point(layer.scene, facing, mu, at.cell, cells[k].edge, at.material, s);
+      NitschePoint point = nitsche_point(layer.scene, facing, mu, at, s);
       if (facing.follows_state) turn_to(facing, mu, here, point);
       const Index vertex = static_cast<Index>(k) + ((s == 1) == forward ? 1 : 0);
       fields.sigma_n[vertex] += point.sigma_n.dot(here);
@@ -322,7 +315,7 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
       ++edges[vertex];
     }
     fields.arc_length[static_cast<Index>(k) + 1] =
-        fields.arc_length[static_cast<Index>(k)] + edge_length(at.cell.mapped, cells[k].edge);
+        fields.arc_length[static_cast<Index>(k)] + length_of(at.cell.mapped, cells[k].edge);
   }
   for (Vector *sum : {&fields.sigma_n, &fields.sigma_tau, &gamma})
     sum->array() /= edges.array();

@@ -22,15 +22,6 @@ Vector bounds_at(const CurveFields &fields, const NitscheLaw &law) {
   return fields.p_n.unaryExpr([&](double p) { return nitsche_bound(law, p); });
 }
 
-/// A component of a unit vector, from the functionals of the displacement along it: shape functions
-/// sum to one.
-double component(const NitschePoint::Row &row, Index c) {
-  double sum = 0;
-  for (Index i = c; i < row.size(); i += 2)
-    sum += row[i];
-  return sum;
-}
-
 Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, const Vector &bounds) {
   Sums sums;
   sums.edge_pressures.resize(static_cast<Index>(faces.size()));
@@ -40,14 +31,13 @@ Sums integrate(std::span<const NitscheFace> faces, const Matrix &pressures, cons
     for (const NitschePoint &point : face.points) {
       const double pressure = std::max(0.0, -pressures(number, 0)), shear = pressures(number, 1);
       const Point &n = point.facing.normal, &out = point.body_normal;
-      if (pressure > 0) check_pressed_side(n[0] * out[0] + n[1] * out[1], point.x);
+      if (pressure > 0) check_pressed_side(dot(n, out), point.place.x);
       const double bound = bounds.size() > 0 ? bounds[number] : 0;
       const double held = std::clamp(shear, -bound, bound);
       force += point.weight * pressure;
       sums.tangential += point.weight * std::abs(held);
-      for (Index c = 0; c < 2; ++c)
-        sums.force[c] +=
-            point.weight * (held * component(point.tau, c) - pressure * component(point.n, c));
+      sums.force[0] -= point.weight * (held * n[1] + pressure * n[0]);
+      sums.force[1] += point.weight * (held * n[0] - pressure * n[1]);
       if (pressure > 0) sums.contact += point.weight;
       if (pressure > 0 && std::abs(shear) < bound) sums.stick += point.weight;
       length += point.weight;

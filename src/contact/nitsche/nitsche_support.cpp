@@ -78,7 +78,8 @@ public:
   }
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
                                 const Point &displacement) const override {
-    const SupportPoint at = layer_.curves.front().facing.at(mu, x, displacement);
+    const Facing &facing = layer_.curves.front().facing;
+    const FacedPoint at = facing.at(mu, place(scene_, facing, mu, x), displacement);
     return {at.normal, at.gap};
   }
   /// They come from the pressures along the curve: nitsche_outputs.
@@ -92,23 +93,20 @@ private:
   NitscheLayer layer_;
 };
 
-/// `faced`: a Support or RigidSurface; `facing` makes of it what a curve faces.
-template <class Faced, class MakeFacing>
-ContactRecipe nitsche_contact(const std::string &name, Faced faced, double gamma0,
-                              MakeFacing facing) {
-  ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::cells_beside, {faced.boundary}};
-  recipe.formulation = Formulation::nitsche;
-  add_friction(faced.friction, recipe);
-  recipe.separable = false;
-  recipe.make = [faced, gamma0, facing](const Scene &scene, InterfaceMesh mesh) {
-    return std::make_unique<NitscheInterface>(
-        scene, std::move(mesh), NitscheCurve{faced.friction, facing(scene, faced), gamma0});
-  };
-  recipe.record = record_of(faced);
-  recipe.record.name = name;
-  recipe.record.numbers["gamma0"] = {gamma0};
-  return recipe;
+/// "rigid_support" -> "nitsche_support", ...
+std::string nitsche_name(const std::string &name) {
+  return "nitsche_" + name.substr(name.starts_with("rigid_") ? 6 : 0);
+}
+
+/// `name`, and of Nitsche's method: of what `thing` makes of a record.
+template <class Thing>
+void add_kinds(const std::string &name, int version, Thing (*thing)(const Stored &),
+               std::vector<ContactKind> &kinds) {
+  kinds.push_back(
+      {name, 1, [thing](const Stored &of) { return by_multipliers(rigid_contact(thing(of))); }});
+  kinds.push_back({nitsche_name(name), version, [thing](const Stored &of) {
+                     return by_nitsche(rigid_contact(thing(of)), number(of, "gamma0"));
+                   }});
 }
 
 } // namespace
@@ -131,63 +129,37 @@ NitscheLayer layer_of(const Contact &contact) {
   return all;
 }
 
-NitscheFacing facing_support(const Scene &scene, Support support) {
-  const Named<PointMap> body_normal = support.body_normal;
-  const std::array<bool, 2> closed_ends{support.closed_ends, support.closed_ends};
-  return {[&scene, support = std::move(support)](const FullMu &mu, const Point &x, const Point &) {
-            return support_point(scene, support, mu, x);
-          },
-          false, body_normal, closed_ends};
-}
-
-NitscheFacing facing_surface(const Scene &scene, RigidSurface surface) {
-  return {[&scene, surface = std::move(surface)](const FullMu &mu, const Point &x,
-                                                 const Point &displacement) {
-            return surface_point(scene, surface, mu, x, displacement);
-          },
-          true};
-}
-
-ContactRecipe nitsche_support(Support support, double gamma0) {
-  if (support.lumped)
+ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
+  if (rigid.facing.along_body)
+    throw bad_input("Nitsche's method takes the normal of the rigid surface: leave out the normal "
+                    "of the body");
+  if (rigid.lumped)
     throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
-  ContactRecipe recipe =
-      nitsche_contact("nitsche_support", std::move(support), gamma0, facing_support);
-  recipe.record.version = 2; // 1: the stress was on the normal of contact
-  return recipe;
-}
-
-ContactRecipe nitsche_half_plane(HalfPlane plane, double gamma0) {
-  ContactRecipe recipe = half_plane(std::move(plane), [gamma0](const Support &support) {
-    return nitsche_support(support, gamma0);
-  });
-  recipe.record.name = "nitsche_half_plane";
-  recipe.record.version = 2; // of nitsche_support
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::cells_beside, {rigid.boundary}};
+  recipe.formulation = Formulation::nitsche;
+  add_friction(rigid.friction, recipe);
+  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
+                             rigid.coefficients.end());
+  recipe.separable = false;
+  recipe.make = [rigid, gamma0](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<NitscheInterface>(scene, std::move(mesh),
+                                              NitscheCurve{rigid.friction, rigid.facing, gamma0});
+  };
+  recipe.record = rigid.record;
+  recipe.record.name = nitsche_name(rigid.record.name);
+  // 1: of a support the stress was on the normal of contact.
+  recipe.record.version = rigid.facing.follows_state ? 1 : 2;
   recipe.record.numbers["gamma0"] = {gamma0};
   return recipe;
 }
 
-ContactRecipe nitsche_surface(RigidSurface surface, double gamma0) {
-  if (surface.body_normal || surface.lumped)
-    throw bad_input("Nitsche's method takes the normal of the rigid surface, and Gauss points: "
-                    "leave out the normal of the body, and vertex quadrature");
-  return nitsche_contact("nitsche_surface", std::move(surface), gamma0, facing_surface);
-}
-
-ContactKind nitsche_support_kind() {
-  return {"nitsche_support", 2,
-          [](const Stored &of) { return nitsche_support(support_in(of), number(of, "gamma0")); }};
-}
-
-ContactKind nitsche_half_plane_kind() {
-  return {"nitsche_half_plane", 2, [](const Stored &of) {
-            return nitsche_half_plane(half_plane_in(of), number(of, "gamma0"));
-          }};
-}
-
-ContactKind nitsche_surface_kind() {
-  return {"nitsche_surface", 1,
-          [](const Stored &of) { return nitsche_surface(surface_in(of), number(of, "gamma0")); }};
+std::vector<ContactKind> rigid_kinds() {
+  std::vector<ContactKind> kinds;
+  add_kinds("rigid_support", 2, support_in, kinds);
+  add_kinds("half_plane", 2, half_plane_in, kinds);
+  add_kinds("rigid_surface", 1, surface_in, kinds);
+  return kinds;
 }
 
 std::vector<SceneOption> nitsche_options() {
@@ -206,22 +178,9 @@ bool asks_for_nitsche(const SceneOptions &options) {
   return options.at("formulation") == "nitsche";
 }
 
-ContactRecipe support_contact(Support support, const SceneOptions &options) {
-  const double gamma0 = number_in(options, "nitsche_gamma0");
-  return asks_for_nitsche(options) ? nitsche_support(std::move(support), gamma0)
-                                   : rigid_support(std::move(support));
-}
-
-ContactRecipe half_plane_contact(HalfPlane plane, const SceneOptions &options) {
-  const double gamma0 = number_in(options, "nitsche_gamma0");
-  return asks_for_nitsche(options) ? nitsche_half_plane(std::move(plane), gamma0)
-                                   : half_plane(std::move(plane));
-}
-
-ContactRecipe surface_contact(RigidSurface surface, const SceneOptions &options) {
-  const double gamma0 = number_in(options, "nitsche_gamma0");
-  return asks_for_nitsche(options) ? nitsche_surface(std::move(surface), gamma0)
-                                   : rigid_surface(std::move(surface));
+ContactRecipe contact_by(const SceneOptions &options, const RigidContact &rigid) {
+  return asks_for_nitsche(options) ? by_nitsche(rigid, number_in(options, "nitsche_gamma0"))
+                                   : by_multipliers(rigid);
 }
 
 } // namespace rbvi

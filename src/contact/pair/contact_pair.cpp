@@ -5,316 +5,232 @@
 #include "rbvi/element/lagrange.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 namespace rbvi {
 
 namespace {
 
-std::size_t checked_degree(int degree) {
-  check_degree(degree);
-  return static_cast<std::size_t>(degree);
-}
+constexpr double round_off = 1e-9; ///< of the weight of a multiplier
 
-/// The nodes of one curve.
-class Curve {
-public:
-  Curve(const std::vector<Point> &nodes, int degree, const std::string &name);
-
-  std::size_t nodes() const { return nodes_.size(); }
-  std::size_t edges() const { return edges_; }
-  std::size_t per_edge() const { return degree_ + 1; } ///< nodes
-  /// The nodes of an edge: its vertices, then its middle.
-  std::size_t node(std::size_t edge, std::size_t local) const {
-    return local < 2 ? edge + local : edges_ + 1 + edge;
-  }
-  double x(std::size_t vertex) const { return nodes_[vertex][0]; }
-  double y(std::size_t vertex) const { return nodes_[vertex][1]; }
-  /// The length of the straight edge.
-  double length(std::size_t edge) const {
-    const double dx = x(edge + 1) - x(edge), dy = y(edge + 1) - y(edge);
-    return std::sqrt(dx * dx + dy * dy);
-  }
-  /// 0 to 1 along the edge.
-  double coordinate(std::size_t edge, double at) const {
-    return (at - x(edge)) / (x(edge + 1) - x(edge));
-  }
-  double on_chord(std::size_t edge, double s) const { return (1 - s) * y(edge) + s * y(edge + 1); }
-  double height(std::size_t edge, double s) const {
-    return on_chord(edge, s) + (degree_ == 2 ? 4 * s * (1 - s) * bulge_[edge] : 0);
-  }
-
-private:
-  const std::vector<Point> &nodes_;
-  std::size_t degree_, edges_;
-  std::vector<double> bulge_; ///< degree 2: height of the parabola over the middle of the chord
-};
-
-Curve::Curve(const std::vector<Point> &nodes, int degree, const std::string &name)
-    : nodes_(nodes), degree_(checked_degree(degree)),
-      edges_(nodes.empty() ? 0 : (nodes.size() - 1) / degree_) {
-  if (edges_ == 0 || nodes.size() != edges_ * degree_ + 1)
-    throw bad_input("the " + name + " curve needs " +
-                    (degree == 1 ? "at least 2 nodes" : "an odd number of nodes, at least 3") +
-                    ", not " + std::to_string(nodes.size()));
-  const auto refuse = [&](std::size_t i, std::size_t before) {
-    throw bad_input("x must increase along the " + name + " curve, but node " + std::to_string(i) +
-                    " at x = " + short_number(x(i)) + " follows x = " + short_number(x(before)));
-  };
-  for (std::size_t i = 1; i <= edges_; ++i)
-    if (!(x(i - 1) < x(i))) refuse(i, i - 1);
-  for (std::size_t edge = 0; edge < edges_ && degree == 2; ++edge) {
-    const std::size_t middle = node(edge, 2);
-    if (!(x(edge) < x(middle))) refuse(middle, edge);
-    if (!(x(middle) < x(edge + 1))) refuse(edge + 1, middle);
-    const double s = coordinate(edge, x(middle));
-    bulge_.push_back((y(middle) - on_chord(edge, s)) / (4 * s * (1 - s)));
-  }
-}
-
-/// Abscissae of the 2-point Gauss rule on (0, 1), 1/2 -+ 1/sqrt(12).
-constexpr std::array<double, 2> gauss{0.21132486540518711775, 0.78867513459481288225};
-
-/// A quadrature point of the slave curve and its partner, by coordinates 0 to 1 along their edges.
-struct FacingPoint {
-  std::size_t slave_edge, master_edge;
-  double s, t;
-  double weight; ///< arc length of the slave curve
-};
-
-/// Successive edges [first, last) of a curve; their nodes are first, ..., last.
+/// Successive edges [first, last) of a curve.
 struct EdgeRange {
-  std::size_t first, last;
+  Index first, last;
 };
-
-/// The edge that contains x, searched from `edge` onwards; the last one if x lies beyond the end.
-std::size_t advance(const Curve &curve, std::size_t edge, double x) {
-  while (edge + 1 < curve.edges() && curve.x(edge + 1) <= x)
-    ++edge;
-  return edge;
-}
-
-/// Whether coordinate t of the master edge that advance() found is on the curve, up to round-off:
-/// else it is beyond an end.
-bool on_curve(double t) {
-  return t >= -1e-12 && t <= 1 + 1e-12;
-}
-
-/// Exact for integrands that are cubic in x on every overlap of a slave and a master edge.
-std::vector<FacingPoint> intersection_points(const Curve &slave, const Curve &master) {
-  std::vector<FacingPoint> points;
-  points.reserve(2 * (slave.edges() + master.edges()));
-  std::size_t first = 0;
-  for (std::size_t edge = 0; edge < slave.edges(); ++edge) {
-    const double begin = slave.x(edge), end = slave.x(edge + 1);
-    const double length = slave.length(edge);
-    first = advance(master, first, begin);
-    for (std::size_t m = first; m < master.edges() && master.x(m) < end; ++m) {
-      const double left = std::max(begin, master.x(m)), right = std::min(end, master.x(m + 1));
-      const double part = (right - left) / (end - begin);
-      if (part <= 1e-14) continue;
-      for (const double at : gauss) {
-        const double x = left + at * (right - left);
-        points.push_back(
-            {edge, m, slave.coordinate(edge, x), master.coordinate(m, x), 0.5 * part * length});
-      }
-    }
-  }
-  return points;
-}
-
-std::vector<FacingPoint> direct_points(const Curve &slave, const Curve &master) {
-  std::vector<FacingPoint> points;
-  points.reserve(2 * slave.edges());
-  std::size_t m = 0;
-  for (std::size_t edge = 0; edge < slave.edges(); ++edge)
-    for (const double s : gauss) {
-      const double x = (1 - s) * slave.x(edge) + s * slave.x(edge + 1);
-      m = advance(master, m, x);
-      const double t = master.coordinate(m, x);
-      if (on_curve(t)) points.push_back({edge, m, s, t, 0.5 * slave.length(edge)});
-    }
-  return points;
-}
 
 /// Edges of a macro-edge but perhaps the last.
 Index macro_size(int degree) {
   return degree == 1 ? 2 : 1;
 }
 
-std::size_t multipliers(const Curve &slave, MultiplierSpace space) {
-  return static_cast<std::size_t>(multiplier_count(static_cast<Index>(slave.nodes()), space,
-                                                   static_cast<int>(slave.per_edge()) - 1));
-}
-
 /// The edges on which a multiplier does not vanish.
-EdgeRange support(std::size_t multiplier, const Curve &slave, MultiplierSpace space) {
-  const std::size_t edges = slave.edges();
+EdgeRange support(Index multiplier, Index edges, MultiplierSpace space, int degree) {
   if (space == MultiplierSpace::nodes)
-    return {multiplier == 0 ? 0 : multiplier - 1, std::min(multiplier + 1, edges)};
-  const auto size = static_cast<std::size_t>(macro_size(static_cast<int>(slave.per_edge()) - 1));
-  const bool last = multiplier + 1 == multipliers(slave, space);
-  return {size * multiplier, last ? edges : size * (multiplier + 1)};
+    return {std::max<Index>(multiplier - 1, 0), std::min(multiplier + 1, edges)};
+  const Index size = macro_size(degree), count = std::max<Index>(1, edges / size);
+  return {size * multiplier, multiplier + 1 == count ? edges : size * (multiplier + 1)};
 }
 
-double multiplier_value(std::size_t multiplier, MultiplierSpace space, const FacingPoint &point) {
+double multiplier_value(Index multiplier, MultiplierSpace space, const PairPoint &point) {
   if (space == MultiplierSpace::macro_edges) return 1;
   return point.slave_edge == multiplier ? 1 - point.s : point.s;
 }
 
-/// What a row of b couples: the nodes of edges of both curves, by quadrature points [begin, end).
-struct Row {
-  EdgeRange slave, master;
-  std::size_t begin, end;
+/// A curve as a graph over x.
+class Graph {
+public:
+  /// `curve` must outlive it.
+  Graph(const NodalCurve &curve, const std::string &name);
+
+  Index edges() const { return curve_.edges(); }
+  double x(Index node) const { return curve_.point(node)[0]; }
+  double abscissa(Index edge, double s) const { return (1 - s) * x(edge) + s * x(edge + 1); }
+  /// 0 to 1 along the edge.
+  double coordinate(Index edge, double at) const {
+    return (at - x(edge)) / (x(edge + 1) - x(edge));
+  }
+  double height(Index edge, double s) const {
+    const double on_chord = (1 - s) * curve_.point(edge)[1] + s * curve_.point(edge + 1)[1];
+    return on_chord + (bulge_.empty() ? 0 : 4 * s * (1 - s) * bulge_[edge]);
+  }
+
+private:
+  const NodalCurve &curve_;
+  std::vector<double> bulge_; ///< degree 2: height of the parabola over the middle of the chord
 };
 
-std::size_t nodes_of(const EdgeRange &edges, const Curve &curve) {
-  return (edges.last - edges.first) * (curve.per_edge() - 1) + 1;
-}
-
-std::size_t entries(const Row &row, const Curve &slave, const Curve &master) {
-  return row.begin == row.end ? 0 : nodes_of(row.slave, slave) + nodes_of(row.master, master);
-}
-
-/// The nodes of successive edges, increasing: their vertices, then their middles.
-int *list_nodes(const EdgeRange &edges, const Curve &curve, std::size_t first_column,
-                int *columns) {
-  int *const middles = columns + (edges.last - edges.first + 1);
-  int *const end = columns + nodes_of(edges, curve);
-  std::iota(columns, middles, static_cast<int>(first_column + edges.first));
-  if (middles != end)
-    std::iota(middles, end, static_cast<int>(first_column + curve.node(edges.first, 2)));
-  return end;
-}
-
-/// Where in that list a node of an edge is.
-std::size_t listed(const EdgeRange &edges, std::size_t edge, std::size_t local) {
-  const std::size_t at = edge - edges.first;
-  return local < 2 ? at + local : edges.last - edges.first + 1 + at;
-}
-
-std::vector<Row> rows_of(const std::vector<FacingPoint> &points, const Curve &slave,
-                         MultiplierSpace space) {
-  std::vector<std::size_t> of_edge(slave.edges() + 1, 0); // first point of an edge
-  for (std::size_t edge = 0, q = 0; edge < slave.edges(); of_edge[++edge] = q)
-    while (q < points.size() && points[q].slave_edge == edge)
-      ++q;
-  std::vector<Row> rows(multipliers(slave, space));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const EdgeRange edges = support(i, slave, space);
-    rows[i] = {edges, {0, 0}, of_edge[edges.first], of_edge[edges.last]};
-    if (rows[i].begin != rows[i].end)
-      rows[i].master = {points[rows[i].begin].master_edge, points[rows[i].end - 1].master_edge + 1};
-  }
-  return rows;
-}
-
-/// Zero values in the pattern of the rows.
-SparseMatrix zeros(const std::vector<Row> &rows, const Curve &slave, const Curve &master) {
-  SparseMatrix b(static_cast<Index>(rows.size()),
-                 static_cast<Index>(slave.nodes() + master.nodes()));
-  int *outer = b.outerIndexPtr();
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    outer[i + 1] = outer[i] + static_cast<int>(entries(rows[i], slave, master));
-  b.resizeNonZeros(outer[rows.size()]);
-  std::fill_n(b.valuePtr(), b.nonZeros(), 0.0);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (entries(rows[i], slave, master) > 0)
-      list_nodes(rows[i].master, master, slave.nodes(),
-                 list_nodes(rows[i].slave, slave, 0, b.innerIndexPtr() + outer[i]));
-  return b;
-}
-
-using Values = std::array<double, 3>;
-
-/// The values of the displacement functions of an edge, at 0 <= s <= 1.
-Values displacements(const Curve &curve, double s) {
-  Values values{};
-  lagrange_values(1, static_cast<int>(curve.per_edge()) - 1, std::array{1 - s, s}, values);
-  return values;
-}
-
-/// The integral of a multiplier's function over all of its slave edges.
-double whole_weight(std::size_t multiplier, const Curve &slave, MultiplierSpace space) {
-  const EdgeRange edges = support(multiplier, slave, space);
-  double length = 0;
-  for (std::size_t edge = edges.first; edge < edges.last; ++edge)
-    length += slave.length(edge);
-  return space == MultiplierSpace::nodes ? length / 2 : length;
-}
-
-void integrate(const Curve &slave, const Curve &master, const PairDiscretisation &discretisation,
-               PairOperators &result) {
-  const std::vector<FacingPoint> points = discretisation.quadrature == PairQuadrature::intersection
-                                              ? intersection_points(slave, master)
-                                              : direct_points(slave, master);
-  const std::vector<Row> rows = rows_of(points, slave, discretisation.multiplier);
-  result.b = zeros(rows, slave, master);
-  result.g = Vector::Zero(result.b.rows());
-  result.weights = Vector::Zero(result.b.rows());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Row &row = rows[i];
-    double *const of_slave = result.b.valuePtr() + result.b.outerIndexPtr()[i];
-    double *const of_master = of_slave + nodes_of(row.slave, slave);
-    double gap = 0, length = 0;
-    for (std::size_t q = row.begin; q < row.end; ++q) {
-      const FacingPoint &p = points[q];
-      const double weight = p.weight * multiplier_value(i, discretisation.multiplier, p);
-      const Values at_slave = displacements(slave, p.s), at_master = displacements(master, p.t);
-      for (std::size_t k = 0; k < slave.per_edge(); ++k) {
-        of_slave[listed(row.slave, p.slave_edge, k)] -= weight * at_slave[k];
-        of_master[listed(row.master, p.master_edge, k)] += weight * at_master[k];
-      }
-      gap += weight * (slave.height(p.slave_edge, p.s) - master.height(p.master_edge, p.t));
-      length += weight;
-    }
-    result.g[static_cast<Index>(i)] = gap;
-    result.weights[static_cast<Index>(i)] = length;
-    if (!(length > (1 - 1e-9) * whole_weight(i, slave, discretisation.multiplier)))
-      result.uncovered.push_back(static_cast<Index>(i));
-  }
-}
-
-void collocate(const Curve &slave, const Curve &master, PairOperators &result) {
-  struct Partner {
-    std::size_t edge;
-    double t;
+Graph::Graph(const NodalCurve &curve, const std::string &name) : curve_(curve) {
+  const int degree = curve.degree();
+  check_degree(degree);
+  if (edges() < 1 || curve.nodes() != edges() * degree + 1)
+    throw bad_input("the " + name + " curve needs " +
+                    (degree == 1 ? "at least 2 nodes" : "an odd number of nodes, at least 3") +
+                    ", not " + std::to_string(curve.nodes()));
+  const auto check = [&](Index before, Index i) {
+    if (!(x(before) < x(i)))
+      throw bad_input("x must increase along the " + name + " curve, but node " +
+                      std::to_string(i) + " at x = " + short_number(x(i)) +
+                      " follows x = " + short_number(x(before)));
   };
-  std::vector<Partner> partners;
-  partners.reserve(slave.edges() + 1);
-  result.paired.reserve(slave.edges() + 1);
-  for (std::size_t vertex = 0, edge = 0; vertex <= slave.edges(); ++vertex) {
-    edge = advance(master, edge, slave.x(vertex));
-    const double t = master.coordinate(edge, slave.x(vertex));
-    if (!on_curve(t)) continue;
-    partners.push_back({edge, t});
-    result.paired.push_back(static_cast<Index>(vertex));
+  for (Index e = 0; e < edges(); ++e)
+    check(e, e + 1);
+  std::vector<double> bulge;
+  bulge.reserve(edges());
+  for (Index e = 0; e < edges() && degree == 2; ++e) {
+    const Index middle = curve.node(e, 2);
+    check(e, middle);
+    check(middle, e + 1);
+    const double s = coordinate(e, x(middle));
+    bulge.push_back((curve.point(middle)[1] - height(e, s)) / (4 * s * (1 - s)));
   }
-  const auto count = static_cast<Index>(partners.size());
-  const std::size_t entries = 1 + master.per_edge();
-  SparseMatrix b(count, static_cast<Index>(slave.nodes() + master.nodes()));
-  b.resizeNonZeros(static_cast<Index>(entries) * count);
-  result.nodal_gap.resize(count);
-  for (std::size_t i = 0; i < partners.size(); ++i) {
-    const auto [edge, t] = partners[i];
-    const auto vertex = static_cast<std::size_t>(result.paired[i]);
-    const Values at_master = displacements(master, t);
-    int *const columns = b.innerIndexPtr() + entries * i;
-    double *const values = b.valuePtr() + entries * i;
-    columns[0] = static_cast<int>(vertex);
-    values[0] = -1;
-    for (std::size_t k = 0; k < master.per_edge(); ++k) {
-      columns[1 + k] = static_cast<int>(slave.nodes() + master.node(edge, k));
-      values[1 + k] = at_master[k];
-    }
-    b.outerIndexPtr()[i + 1] = static_cast<int>(entries * (i + 1));
-    result.nodal_gap[static_cast<Index>(i)] = slave.y(vertex) - master.height(edge, t);
-  }
-  result.nodal_b = std::move(b);
+  bulge_ = std::move(bulge);
 }
+
+/// The vertices of the master curve by their abscissae.
+Cuts vertical_cuts(const Graph &slave, const Graph &master) {
+  constexpr double at_end = 1e-12; // of an edge
+  const auto edges = static_cast<int>(slave.edges());
+  Cuts cuts{{}, edges};
+  int edge = 0;
+  for (Index v = 0; v <= master.edges(); ++v) {
+    const double x = master.x(v);
+    while (edge + 1 < edges && slave.x(edge + 1) <= x)
+      ++edge;
+    const double s = slave.coordinate(edge, x);
+    const int beyond = s < -at_end ? -1 : edges + 1;
+    cuts.places.push_back(s < -at_end || s > 1 + at_end ? CurvePlace{beyond} : CurvePlace{edge, s});
+  }
+  return cuts;
+}
+
+/// Gauss of two points on (0, 1): exact for integrands that are cubic in x on every piece.
+constexpr std::array<EdgePoint, 2> two_points{
+    {{0.21132486540518711775, 0.5}, {0.78867513459481288225, 0.5}}};
 
 } // namespace
+
+DifferenceRows::DifferenceRows(const Partners &of, const std::vector<int> &dofs, Index columns)
+    : dofs_(dofs), size_(columns),
+      components_(std::ssize(dofs) / (of.slave.nodes() + of.master.nodes())), slave_{of.slave, 0},
+      master_{of.master, of.slave.nodes()}, row_(dofs.size(), 0.0) {
+  columns_.reserve(4 * dofs.size());
+  values_.reserve(4 * dofs.size());
+}
+
+void DifferenceRows::add(const PairPoint &point, double factor) {
+  const Point &n = point.normal;
+  add(slave_, point.slave_edge, point.s, {-factor * n[0], -factor * n[1], 0});
+  add(master_, point.master_edge, point.t, {factor * n[0], factor * n[1], 0});
+}
+
+void DifferenceRows::add(Side &side, Index edge, double s, const Point &vector) {
+  const bool first = side.last < side.first;
+  side.first = first ? edge : std::min(side.first, edge);
+  side.last = first ? edge : std::max(side.last, edge);
+  const std::array<double, 3> functions = edge_functions(side.curve.degree(), s);
+  for (Index k = 0; k < side.curve.per_edge(); ++k) {
+    double *const node = row_.data() + components_ * (side.first_node + side.curve.node(edge, k));
+    if (components_ == 2) node[0] += functions[k] * vector[0];
+    node[components_ - 1] += functions[k] * vector[1];
+  }
+}
+
+void DifferenceRows::end_nodes(Index begin, Index end) {
+  for (Index i = components_ * begin; i < components_ * end; ++i) {
+    if (row_[i] != 0 && dofs_[i] >= 0) {
+      if (std::ssize(columns_) > begins_.back() && columns_.back() > dofs_[i]) sorted_ = false;
+      columns_.push_back(dofs_[i]);
+      values_.push_back(row_[i]);
+    }
+    row_[i] = 0;
+  }
+}
+
+void DifferenceRows::end_row() {
+  for (Side *side : {&slave_, &master_}) {
+    if (side->last < side->first) continue;
+    const Index vertex = side->first_node + side->first, count = side->last - side->first + 1;
+    end_nodes(vertex, vertex + count + 1);
+    const Index middle = vertex + side->curve.edges() + 1;
+    if (side->curve.degree() == 2) end_nodes(middle, middle + count);
+    side->last = side->first - 1;
+  }
+  begins_.push_back(static_cast<int>(columns_.size()));
+}
+
+SparseMatrix DifferenceRows::matrix() const {
+  SparseMatrix rows(std::ssize(begins_) - 1, size_);
+  rows.resizeNonZeros(std::ssize(values_));
+  std::ranges::copy(begins_, rows.outerIndexPtr());
+  std::ranges::copy(columns_, rows.innerIndexPtr());
+  std::ranges::copy(values_, rows.valuePtr());
+  if (sorted_) return rows;
+  return Eigen::SparseMatrix<double, Eigen::ColMajor>(rows); // sorts each row
+}
+
+PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
+                             const std::vector<int> &dofs, Index columns) {
+  const NodalCurve &slave = partners.slave;
+  const Index count = multiplier_count(slave.nodes(), space, slave.degree());
+  PairOperators result;
+  result.g = result.weights = Vector::Zero(count);
+  const Vector whole = whole_weights(partners.lengths, space, slave.degree());
+  std::vector<const PairPoint *> of_edge{partners.points.data()}; // from its first point on
+  const PairPoint *const end = of_edge[0] + partners.points.size();
+  for (Index edge = 0; edge < slave.edges(); ++edge)
+    of_edge.push_back(
+        std::find_if(of_edge.back(), end, [&](const PairPoint &p) { return p.slave_edge > edge; }));
+  DifferenceRows weak(partners, dofs, columns), nodal(partners, dofs, columns);
+  for (Index i = 0; i < count; ++i) {
+    const EdgeRange edges = support(i, slave.edges(), space, slave.degree());
+    for (const PairPoint *p = of_edge[edges.first]; p != of_edge[edges.last]; ++p) {
+      const double weight = p->weight * multiplier_value(i, space, *p);
+      weak.add(*p, weight);
+      result.g[i] += weight * p->gap;
+      result.weights[i] += weight;
+    }
+    weak.end_row();
+    if (is_partial(result.weights[i], whole[i])) result.uncovered.push_back(i);
+  }
+  result.b = weak.matrix();
+  result.nodal_gap.resize(std::ssize(partners.vertices));
+  for (const PairPoint &p : partners.vertices) {
+    nodal.add(p, 1);
+    nodal.end_row();
+    result.nodal_gap[std::ssize(result.paired)] = p.gap;
+    result.paired.push_back(p.slave_edge + (p.s > 0.5 ? 1 : 0));
+  }
+  result.nodal_b = nodal.matrix();
+  return result;
+}
+
+Partners vertical_partners(std::vector<Point> slave_nodes, std::vector<Point> master_nodes,
+                           PairQuadrature quadrature, int degree) {
+  Partners result{{std::move(slave_nodes), degree}, {std::move(master_nodes), degree}};
+  const Graph slave(result.slave, "slave"), master(result.master, "master");
+  result.lengths = result.slave.lengths();
+  result.cuts = vertical_cuts(slave, master);
+  const Cuts &cuts = result.cuts;
+  result.vertices = cuts.at_vertices();
+  if (quadrature == PairQuadrature::intersection) {
+    result.points = cuts.on_pieces(two_points);
+  } else {
+    std::vector<CurvePlace> places;
+    for (int e = 0; e < cuts.slave_edges; ++e)
+      for (const EdgePoint &at : two_points)
+        places.push_back({e, at.s});
+    result.points = cuts.at(places);
+    for (PairPoint &p : result.points)
+      p.weight = 0.5;
+  }
+  for (std::vector<PairPoint> *points : {&result.points, &result.vertices})
+    for (PairPoint &p : *points) {
+      p.t = master.coordinate(p.master_edge, slave.abscissa(p.slave_edge, p.s));
+      p.weight *= result.lengths[p.slave_edge];
+      p.normal = {0, 1, 0};
+      p.gap = slave.height(p.slave_edge, p.s) - master.height(p.master_edge, p.t);
+    }
+  return result;
+}
 
 Index vertex_count(Index nodes, int degree) {
   return (nodes - 1) / degree + 1;
@@ -331,48 +247,69 @@ Index macro_edge_of(Index edge, Index slave_nodes, int degree) {
                   multiplier_count(slave_nodes, MultiplierSpace::macro_edges, degree) - 1);
 }
 
-PairOperators couple(const std::vector<Point> &slave_nodes, const std::vector<Point> &master_nodes,
-                     const PairDiscretisation &discretisation, int degree) {
-  const Curve slave(slave_nodes, degree, "slave"), master(master_nodes, degree, "master");
-  PairOperators result;
-  integrate(slave, master, discretisation, result);
-  collocate(slave, master, result);
-  return result;
+Vector whole_weights(const std::vector<double> &lengths, MultiplierSpace space, int degree) {
+  const Index edges = std::ssize(lengths);
+  Vector whole = Vector::Zero(multiplier_count(degree * edges + 1, space, degree));
+  for (Index i = 0; i < whole.size(); ++i) {
+    const EdgeRange own = support(i, edges, space, degree);
+    for (Index e = own.first; e < own.last; ++e)
+      whole[i] += space == MultiplierSpace::nodes ? lengths[e] / 2 : lengths[e];
+  }
+  return whole;
 }
 
-SparseMatrix multiplier_product(const std::vector<Point> &slave_nodes, MultiplierSpace space,
+bool is_partial(double weight, double whole) {
+  return !(weight > (1 - round_off) * whole);
+}
+
+double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
+                       double least, std::array<bool, 2> closed) {
+  const Index count = whole.size();
+  const auto carries_from = [&](Index first, Index step) {
+    Index row = first;
+    while (row >= 0 && row < count && !(weights[row] > round_off * whole[row]))
+      row += step;
+    if ((row == first && closed[step > 0 ? 0 : 1]) || row < 0 || row >= count) return false;
+    do {
+      if (lambda[row] > least) return true;
+      row += step;
+    } while (row >= 0 && row < count && is_partial(weights[row], whole[row]));
+    return false;
+  };
+  return (carries_from(0, 1) ? 1.0 : 0.0) + (carries_from(count - 1, -1) ? 1.0 : 0.0);
+}
+
+SparseMatrix multiplier_product(const std::vector<Point> &nodes, MultiplierSpace space,
                                 int degree) {
-  const Curve slave(slave_nodes, degree, "slave");
-  const auto count = static_cast<Index>(multipliers(slave, space));
-  SparseMatrix product(count, count);
-  product.reserve(Eigen::VectorXi::Constant(count, 3));
-  for (Index i = 0; i < count; ++i) {
-    const EdgeRange edges = support(i, slave, space);
-    const double weight = whole_weight(i, slave, space);
-    const bool linear = space == MultiplierSpace::nodes;
-    if (i > 0) product.insert(i, i - 1) = linear ? slave.length(edges.first) / 6 : 0;
-    product.insert(i, i) = linear ? weight * 2 / 3 : weight;
-    if (i + 1 < count) product.insert(i, i + 1) = linear ? slave.length(edges.last - 1) / 6 : 0;
-  }
+  const NodalCurve curve(nodes, degree);
+  const Graph slave(curve, "slave");
+  if (space == MultiplierSpace::nodes)
+    return linear_gram({nodes.begin(), nodes.begin() + slave.edges() + 1}, 1);
+  const Vector whole = whole_weights(curve.lengths(), space, degree);
+  SparseMatrix product(whole.size(), whole.size());
+  product.reserve(Eigen::VectorXi::Constant(whole.size(), 3));
+  for (Index i = 0; i < whole.size(); ++i)
+    for (Index j = std::max<Index>(i - 1, 0); j < std::min(i + 2, whole.size()); ++j)
+      product.insert(i, j) = i == j ? whole[i] : 0;
   product.makeCompressed();
   return product;
 }
 
-std::vector<Point> multiplier_points(const std::vector<Point> &slave_nodes, MultiplierSpace space,
+std::vector<Point> multiplier_points(const std::vector<Point> &nodes, MultiplierSpace space,
                                      int degree) {
-  const Curve slave(slave_nodes, degree, "slave");
-  if (space == MultiplierSpace::nodes)
-    return {slave_nodes.begin(), slave_nodes.begin() + static_cast<Index>(slave.edges()) + 1};
+  const NodalCurve curve(nodes, degree);
+  const Graph slave(curve, "slave");
+  if (space == MultiplierSpace::nodes) return {nodes.begin(), nodes.begin() + slave.edges() + 1};
+  const std::vector<double> lengths = curve.lengths();
+  const Vector whole = whole_weights(lengths, space, degree);
   std::vector<Point> points;
-  for (std::size_t i = 0; i < multipliers(slave, space); ++i) {
-    auto [edge, last] = support(i, slave, space);
-    double rest = 0; // to the middle, along the curve
-    for (std::size_t e = edge; e < last; ++e)
-      rest += slave.length(e) / 2;
-    for (; edge + 1 < last && rest > slave.length(edge); ++edge)
-      rest -= slave.length(edge);
-    const double s = rest / slave.length(edge);
-    points.push_back({(1 - s) * slave.x(edge) + s * slave.x(edge + 1), slave.height(edge, s), 0});
+  for (Index i = 0; i < whole.size(); ++i) {
+    auto [edge, last] = support(i, slave.edges(), space, degree);
+    double rest = whole[i] / 2; // to the middle, along the curve
+    for (; edge + 1 < last && rest > lengths[edge]; ++edge)
+      rest -= lengths[edge];
+    const double s = rest / lengths[edge];
+    points.push_back({slave.abscissa(edge, s), slave.height(edge, s), 0});
   }
   return points;
 }

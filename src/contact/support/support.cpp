@@ -1,64 +1,62 @@
 #include "rbvi/contact/support/support.hpp"
 
 #include "rbvi/contact/curve.hpp"
-#include "rbvi/contact/support/curve_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+
+#include <cmath>
 
 namespace rbvi {
 
 namespace {
 
-class SupportInterface : public CurveSupport {
-public:
-  SupportInterface(const Scene &scene, InterfaceMesh interface_mesh, Support support)
-      : CurveSupport(scene, std::move(interface_mesh), support.friction, support.lumped),
-        support_(std::move(support)) {
-    find_side();
-  }
+Point normal_of(const HalfPlane &plane, const FullMu &mu) {
+  const double angle = plane.tilt ? plane.tilt(mu) : 0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * plane.normal[0] - s * plane.normal[1], s * plane.normal[0] + c * plane.normal[1], 0};
+}
 
-  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
-                                const Point &) const override {
-    const SupportPoint at = support_point(scene_, support_, mu, x);
-    return {at.normal, at.gap};
-  }
-
-protected:
-  SupportPoint support_at(const FullMu &mu, const Cell &, const TracePoint &,
-                          const Point &x) const override {
-    return support_point(scene_, support_, mu, x);
-  }
-  Point normal_at(const FullMu &mu, const Cell &, const TracePoint &,
-                  const Point &x) const override {
-    return support_.normal(mu, x);
-  }
-  bool counts_ends() const override { return !support_.closed_ends; }
-
-private:
-  Support support_;
-};
+Record record_of(const HalfPlane &plane) {
+  const auto coordinates = [](const Point &x) { return std::vector<double>(x.begin(), x.end()); };
+  Record record{"half_plane",
+                1,
+                {{"normal", coordinates(plane.normal)},
+                 {"pivot", coordinates(plane.pivot)},
+                 {"lumped", {plane.lumped ? 1.0 : 0.0}}},
+                {{"boundary", plane.boundary}},
+                {{"position", plane.position.record}}};
+  if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
+  if (plane.surface) record.parts["surface"] = plane.surface.record;
+  if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
+  add_friction(plane.friction, record);
+  return record;
+}
 
 } // namespace
 
-SupportPoint support_point(const Scene &scene, const Support &support, const FullMu &mu,
-                           const Point &x) {
-  const Point n = support.normal(mu, x);
-  SupportPoint point{n, support.gap(mu, x), 0};
-  if (scene.motion) {
-    const Point motion = scene.motion(mu, x);
-    point.gap -= motion[0] * n[0] + motion[1] * n[1];
-    point.slip = motion[1] * n[0] - motion[0] * n[1];
-  }
-  return point;
-}
-
-void check_pressed_side(double cosine, const Point &x) {
-  if (!(cosine > 0))
-    throw failure(
-        "contact through the body: it is pressed at (" + short_number(x[0]) + ", " +
-        short_number(x[1]) +
-        ") of its boundary from inside, as what it faces there lies behind it; move less, "
-        "or pose contact on a shorter boundary");
+RigidContact rigid_contact(const Support &support) {
+  RigidContact rigid{support.boundary,
+                     {},
+                     support.friction,
+                     support.lumped,
+                     {"rigid_support",
+                      1,
+                      {{"lumped", {support.lumped ? 1.0 : 0.0}}},
+                      {{"boundary", support.boundary}},
+                      {{"normal", support.normal.record}, {"gap", support.gap.record}}}};
+  rigid.facing.at = [normal = support.normal,
+                     gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal(mu, point.x);
+    return FacedPoint{n, gap(mu, point.x) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
+  rigid.facing.normal = support.normal;
+  rigid.facing.asks_place = false;
+  rigid.facing.body_normal = support.body_normal;
+  rigid.facing.closed_ends = {support.closed_ends, support.closed_ends};
+  if (support.closed_ends) rigid.record.numbers["closed_ends"] = {1};
+  if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
+  add_friction(support.friction, rigid.record);
+  return rigid;
 }
 
 Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
@@ -81,35 +79,6 @@ Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface
   return grid;
 }
 
-ContactRecipe rigid_support(Support support) {
-  ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {support.boundary}};
-  add_friction(support.friction, recipe);
-  recipe.nodal = support.lumped;
-  recipe.keeps_nodes = true;
-  recipe.make = [support](const Scene &scene, InterfaceMesh mesh) {
-    return std::make_unique<SupportInterface>(scene, std::move(mesh), support);
-  };
-  recipe.record = record_of(support);
-  return recipe;
-}
-
-ContactKind rigid_support_kind() {
-  return {"rigid_support", 1, [](const Stored &of) { return rigid_support(support_in(of)); }};
-}
-
-Record record_of(const Support &support) {
-  Record record{"rigid_support",
-                1,
-                {{"lumped", {support.lumped ? 1.0 : 0.0}}},
-                {{"boundary", support.boundary}},
-                {{"normal", support.normal.record}, {"gap", support.gap.record}}};
-  if (support.closed_ends) record.numbers["closed_ends"] = {1};
-  if (support.body_normal) record.parts["body_normal"] = support.body_normal.record;
-  add_friction(support.friction, record);
-  return record;
-}
-
 Support support_in(const Stored &of) {
   Support support{text(of, "boundary"),
                   made<PointMap>(part(of, "normal")),
@@ -120,6 +89,83 @@ Support support_in(const Stored &of) {
   if (of.record.parts.contains("body_normal"))
     support.body_normal = made<PointMap>(part(of, "body_normal"));
   return support;
+}
+
+HalfPlane half_plane_in(const Stored &of) {
+  const auto point = [&](const std::string &name) -> Point {
+    const std::vector<double> &x = numbers(of, name);
+    if (x.size() != 3) throw bad_input("'" + name + "' of a half-plane is not three numbers");
+    return {x[0], x[1], x[2]};
+  };
+  HalfPlane plane{text(of, "boundary"), point("normal"), point("pivot"),
+                  made<Coefficient>(part(of, "position"))};
+  if (of.record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(of, "tilt"));
+  if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
+  plane.friction = friction_in(of);
+  plane.lumped = number(of, "lumped") != 0;
+  if (of.record.parts.contains("body_normal"))
+    plane.body_normal = made<PointMap>(part(of, "body_normal"));
+  return plane;
+}
+
+RigidContact rigid_contact(const HalfPlane &plane) {
+  const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
+  if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
+    throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
+                    short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
+                    short_number(plane.normal[2]) +
+                    "): give one of length 1 in the plane of x and y");
+  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped, record_of(plane)};
+  rigid.facing.at = [plane](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal_of(plane, mu);
+    const double gap = plane.position(mu) - (point.y[0] - plane.pivot[0]) * n[0] -
+                       (point.y[1] - plane.pivot[1]) * n[1];
+    return FacedPoint{n, gap, slip_along(n, point.motion)};
+  };
+  rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
+  rigid.facing.at_rest = plane.surface;
+  rigid.facing.body_normal = plane.body_normal;
+  rigid.coefficients.push_back({"position of the half-plane", plane.position});
+  if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
+  return rigid;
+}
+
+RigidContact rigid_contact(const RigidSurface &surface) {
+  RigidContact rigid{surface.boundary,
+                     {},
+                     surface.friction,
+                     surface.lumped,
+                     {"rigid_surface",
+                      1,
+                      {{"lumped", {surface.lumped ? 1.0 : 0.0}}},
+                      {{"boundary", surface.boundary}},
+                      {{"surface", surface.surface.record}}}};
+  rigid.facing.at = [faced = surface.surface](const FullMu &mu, const PlacedPoint &point,
+                                              const Point &displacement) {
+    const SurfacePoint below =
+        faced(mu, {point.y[0] + displacement[0], point.y[1] + displacement[1], point.y[2]});
+    const Point n{-below.normal[0], -below.normal[1], 0};
+    return FacedPoint{n, below.distance + dot(n, displacement), slip_along(n, point.motion),
+                      below.curvature};
+  };
+  rigid.facing.at_rest = surface.at_rest;
+  rigid.facing.follows_state = true;
+  rigid.facing.body_normal = surface.body_normal;
+  rigid.facing.along_body = bool(surface.body_normal);
+  if (surface.at_rest) rigid.record.parts["at_rest"] = surface.at_rest.record;
+  if (surface.body_normal) rigid.record.parts["body_normal"] = surface.body_normal.record;
+  add_friction(surface.friction, rigid.record);
+  return rigid;
+}
+
+RigidSurface surface_in(const Stored &of) {
+  RigidSurface surface{text(of, "boundary"), made<Surface>(part(of, "surface"))};
+  if (of.record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(of, "at_rest"));
+  if (of.record.parts.contains("body_normal"))
+    surface.body_normal = made<PointMap>(part(of, "body_normal"));
+  surface.friction = friction_in(of);
+  surface.lumped = number(of, "lumped") != 0;
+  return surface;
 }
 
 } // namespace rbvi

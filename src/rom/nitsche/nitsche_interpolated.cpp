@@ -29,73 +29,54 @@ std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<Curv
   return selected(all, numbers);
 }
 
-void add_matrix(const LayerTerms &terms, const Vector &theta, Matrix &a) {
-  if (terms.size() == 0) return;
-  a += unpacked(terms.reduced * theta, a.rows());
-}
-
 } // namespace
 
 ReducedNitsche::Interpolated::Interpolated(const ReducedModel &of, const NitscheLayer &whole)
-    : model(*of.nitsche), trace(of.contact_trace), layer(whole), cells(touched(model, whole.cells)),
-      contact_matrix(model.contact_matrix, cells), contact_vector(model.contact_vector, cells),
-      friction_matrix(model.friction_matrix, cells), friction_vector(model.friction_vector, cells) {
-}
+    : trace(of.contact_trace), layer(whole),
+      cells(touched(*of.nitsche, whole.cells)), parts{part(of.nitsche->contact_matrix,
+                                                           of.nitsche->contact_vector),
+                                                      part(of.nitsche->friction_matrix,
+                                                           of.nitsche->friction_vector)} {}
 
 ReducedNitsche::Interpolated::Terms
 ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const System &system,
                                     const Vector &u) const {
   const Vector on_layer = trace * u;
-  const Matrix pressures = nitsche_pressures(faces, on_layer);
-  const Vector contact = nitsche_residual(faces, on_layer, {});
+  std::array<Vector, 2> on_dofs{nitsche_residual(faces, on_layer, {}), {}};
+  const Vector bounds = nitsche_bounds(faces, nitsche_pressures(faces, on_layer));
+  if (bounds.size() > 0) on_dofs[1] = nitsche_residual(faces, on_layer, bounds) - on_dofs[0];
   Vector sum = Vector::Zero(u.size());
-  if (model.contact_vector.size() > 0)
-    sum += model.contact_vector.reduced * contact_vector.of_vector(contact);
-  if (model.friction_vector.size() > 0) {
-    const Vector both = nitsche_residual(faces, on_layer, nitsche_bounds(faces, pressures));
-    sum += model.friction_vector.reduced * friction_vector.of_vector(both - contact);
-  }
+  for (std::size_t k = 0; k < 2; ++k)
+    if (parts[k].vector.size() > 0)
+      sum += parts[k].vector.reduced * parts[k].at_vector.of_vector(on_dofs[k]);
   const Vector au = system.quadratic.a_gamma * u;
   return {au + sum - system.quadratic.f, au.norm() + sum.norm() + system.quadratic.f.norm()};
 }
 
-Matrix ReducedNitsche::Interpolated::tangent(const std::vector<NitscheFace> &faces,
-                                             const System &system, const Vector &u) const {
+/// The interpolated matrix, as printed, or the derivative of the interpolated vectors, but for
+/// bounds that move.
+Matrix ReducedNitsche::Interpolated::slope(const std::vector<NitscheFace> &faces,
+                                           const System &system, const Vector &u,
+                                           bool printed) const {
   const Matrix pressures = nitsche_pressures(faces, trace * u);
-  const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
+  const Vector bounds = nitsche_bounds(faces, pressures);
+  std::array<std::vector<FaceBlock>, 2> blocks{nitsche_tangent(faces, pressures, {}), {}};
+  if (bounds.size() > 0) blocks[1] = nitsche_tangent(faces, pressures, bounds);
+  for (std::size_t k = 0; k < blocks[1].size(); ++k)
+    blocks[1][k] -= blocks[0][k];
   Matrix result = system.quadratic.a_gamma;
-  add_matrix(model.contact_matrix,
-             contact_matrix.of_blocks(selected(contact, contact_matrix.cells())), result);
-  if (model.friction_matrix.size() > 0) {
-    std::vector<FaceBlock> friction =
-        nitsche_tangent(faces, pressures, nitsche_bounds(faces, pressures));
-    for (std::size_t k = 0; k < friction.size(); ++k)
-      friction[k] -= contact[k];
-    add_matrix(model.friction_matrix,
-               friction_matrix.of_blocks(selected(friction, friction_matrix.cells())), result);
-  }
-  return result;
-}
-
-/// But for bounds that move.
-Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &faces,
-                                                const System &system, const Vector &u) const {
-  const Matrix pressures = nitsche_pressures(faces, trace * u);
-  const std::vector<FaceBlock> contact = nitsche_tangent(faces, pressures, {});
-  Matrix result = system.quadratic.a_gamma;
-  const auto add = [&](const LayerTerms &terms, const SampledLayer &sampled,
-                       const Matrix &on_layer) {
-    Matrix theta(terms.size(), u.size());
-    for (Index j = 0; j < u.size(); ++j)
-      theta.col(j) = sampled.of_vector(on_layer.col(j));
-    result += terms.reduced * theta;
-  };
-  const Matrix of_contact = times_trace(contact);
-  if (model.contact_vector.size() > 0) add(model.contact_vector, contact_vector, of_contact);
-  if (model.friction_vector.size() > 0) {
-    const Vector bounds = nitsche_bounds(faces, pressures);
-    add(model.friction_vector, friction_vector,
-        times_trace(nitsche_tangent(faces, pressures, bounds)) - of_contact);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Part &one = parts[k];
+    if (printed && one.matrix.size() > 0) {
+      const std::vector<FaceBlock> sampled = selected(blocks[k], one.at_matrix.cells());
+      result += unpacked(one.matrix.reduced * one.at_matrix.of_blocks(sampled), u.size());
+    } else if (!printed && one.vector.size() > 0) {
+      const Matrix on_dofs = times_trace(blocks[k]);
+      Matrix theta(one.vector.size(), u.size());
+      for (Index j = 0; j < u.size(); ++j)
+        theta.col(j) = one.at_vector.of_vector(on_dofs.col(j));
+      result += one.vector.reduced * theta;
+    }
   }
   return result;
 }
@@ -104,12 +85,9 @@ Matrix ReducedNitsche::Interpolated::derivative(const std::vector<NitscheFace> &
 Matrix ReducedNitsche::Interpolated::times_trace(const std::vector<FaceBlock> &blocks) const {
   Matrix result = Matrix::Zero(trace.rows(), trace.cols());
   for (std::size_t k = 0; k < blocks.size(); ++k) {
-    const std::array<int, 12> &dofs = cells[k].dofs;
-    for (std::size_t i = 0; i < 12; ++i)
-      for (std::size_t j = 0; j < 12; ++j)
-        if (dofs[i] >= 0 && dofs[j] >= 0)
-          result.row(dofs[i]) +=
-              blocks[k](static_cast<Index>(i), static_cast<Index>(j)) * trace.row(dofs[j]);
+    const Matrix rows = blocks[k] * basis_on(cells[k], trace);
+    for (Index i = 0; i < 12; ++i)
+      if (cells[k].dofs[i] >= 0) result.row(cells[k].dofs[i]) += rows.row(i);
   }
   return result;
 }
@@ -124,9 +102,7 @@ int ReducedNitsche::Interpolated::solve(const FullMu &all_parameters, const Vect
     const int most_steps = printed ? most_printed_steps : most_halved_steps;
     for (int step = 1; step <= most_steps; ++step) {
       ++steps;
-      const Matrix slope =
-          printed ? tangent(faces, system, system.u) : derivative(faces, system, system.u);
-      const Vector d = -lu_solve(slope, here.residual);
+      const Vector d = -lu_solve(slope(faces, system, system.u, printed), here.residual);
       if (!d.allFinite()) break;
       double t = 1;
       Terms next = terms(faces, system, system.u + d);

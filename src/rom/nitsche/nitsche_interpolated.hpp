@@ -7,11 +7,15 @@
 namespace rbvi {
 
 struct ReducedNitsche::Interpolated {
-  const NitscheModel &model;
+  /// The interpolated terms of contact or of friction.
+  struct Part {
+    const LayerTerms &matrix, &vector;
+    SampledLayer at_matrix, at_vector;
+  };
   const Matrix &trace; ///< contact dofs x n: the primal basis
   const NitscheLayer &layer;
   std::vector<CurveCell> cells; ///< that some sampled entry touches
-  SampledLayer contact_matrix, contact_vector, friction_matrix, friction_vector;
+  std::array<Part, 2> parts;    ///< of contact, of friction
 
   Interpolated(const ReducedModel &of, const NitscheLayer &whole);
   /// From the coefficients `near`, by (4.79); where that does not converge (its matrix is not the
@@ -26,10 +30,11 @@ private:
     double scale;
   };
   Terms terms(const std::vector<NitscheFace> &faces, const System &system, const Vector &u) const;
-  Matrix tangent(const std::vector<NitscheFace> &faces, const System &system,
-                 const Vector &u) const;
-  Matrix derivative(const std::vector<NitscheFace> &faces, const System &system,
-                    const Vector &u) const;
+  Part part(const LayerTerms &matrix, const LayerTerms &vector) const {
+    return {matrix, vector, {matrix, cells}, {vector, cells}};
+  }
+  Matrix slope(const std::vector<NitscheFace> &faces, const System &system, const Vector &u,
+               bool printed) const;
   Matrix times_trace(const std::vector<FaceBlock> &blocks) const;
 };
 

@@ -93,7 +93,7 @@ ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
 
 Matrix ReducedNitsche::point_residuals() const {
   const System &system = *system_;
-  const Vector slopes = system.weighted(&PointTerm::slope, system.pressures);
+  const Vector slopes = system.terms.weighted(&PointTerm::slope, system.pressures, system.bounds);
   Matrix result =
       system.functionals.leftCols(system.points) * slopes.head(system.points).asDiagonal();
   if (system.bounds.size() > 0)
@@ -117,7 +117,7 @@ Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vect
   whole_->quadratic = quadratic_at(all_parameters);
   whole_->set_points(layer_, all_parameters);
   whole_->set(u);
-  whole_->bounds = whole_->bounds_at(whole_->pressures);
+  whole_->set_bounds();
   (void)whole_->residual();
   outputs.quadrature_residual = whole_->relative;
   (void)whole_->settle();

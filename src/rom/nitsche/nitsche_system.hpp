@@ -12,6 +12,9 @@ constexpr const char *tangent_not_definite = "the reduced tangent is not positiv
                                              "-nitsche_gamma0, or reduce again with more "
                                              "training parameters";
 
+/// The rows of the trace for the dofs of a cell, 12 x n.
+Matrix basis_on(const CurveCell &cell, const Matrix &trace);
+
 struct ReducedNitsche::System {
   /// A cell with some of its points.
   struct Part {
@@ -22,27 +25,25 @@ struct ReducedNitsche::System {
   std::vector<Part> parts;
   Index points = 0;
 
-  /// Of contact that follows the displacement: the points at rest.
+  /// A point of contact that follows the displacement, at rest.
   struct AtRest {
-    std::vector<const NitscheFacing *> facing; ///< empty: contact at rest
-    FullMu mu;
-    std::vector<Point> x, normal;
-    Matrix functionals; ///< n x 4 points: of P_n and P_tau without the gap, of u_n, of u_tau
+    const Facing *facing;
+    PlacedPoint place;
+    Point normal;
   };
 
   // At mu.
+  FullMu mu;
   Quadratic quadratic;
-  std::vector<NitscheLaw> laws; ///< of the points
-  bool friction = false;        ///< of some of them
-  Matrix functionals;           ///< n x 2 points: of P_n, then (with friction) of P_tau
-  Vector offsets;               ///< 2 points
-  Vector weights, gamma;
-  AtRest at_rest;
+  NitscheTerms terms;          ///< of the points
+  Matrix functionals;          ///< n x 2 points: of P_n, then (with friction) of P_tau
+  Vector offsets;              ///< 2 points
+  std::vector<AtRest> at_rest; ///< empty: contact at rest
+  Matrix axes_at_rest;         ///< n x 4 points: of P_n and P_tau without the gap, of u_n, of u_tau
 
-  // The last iterate. Where contact follows it, functionals and offsets are of its axes.
+  // The last iterate. Where contact follows it, functionals, offsets and turning are of its axes.
   Vector u;
   Matrix along_tau; ///< n x points: of u_tau
-  Vector turning;   ///< NitschePoint::turning with the weights
   Matrix pressures; ///< points x 2
   Vector bounds;
   double relative = 0; ///< residual
@@ -52,16 +53,12 @@ struct ReducedNitsche::System {
   System(const ReducedModel &model, const std::vector<CurveCell> &cells,
          const ChosenPoints &chosen);
   void set_points(const NitscheLayer &layer, const FullMu &all_parameters);
-  void set_at_rest(const NitscheLayer &layer, const FullMu &all_parameters);
+  void set_offsets(Index point, const FacedPoint &facing);
   void set(const Vector &coefficients);
+  void set_bounds() { bounds = terms.bounds_at(pressures); }
   void turn_to(const Vector &coefficients);
-  /// A derivative of the terms at these pressures, with the weights: of contact, then of friction.
-  Vector weighted(double PointTerm::*part, const Matrix &at) const;
-  /// Of friction, at these pressures; empty without.
-  Vector bounds_at(const Matrix &at) const;
   Vector residual();
   Matrix tangent_at(const Matrix &at) const;
-  Vector turning_at(const Matrix &at) const;
   void predict(const Vector &start, const Vector &state);
   int minimise();
   std::optional<int> follow_bound();

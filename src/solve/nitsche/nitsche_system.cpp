@@ -214,8 +214,7 @@ void NitscheSystem::search(SNESLineSearch line) {
   RBVI_CALL(VecAXPY(au.get(), -1, f.get()));
   RBVI_CALL(MatMult(a_gamma.get(), y, ay.get()));
   const NitscheLine along = nitsche_line(faces, on_layer(u), -on_layer(y), bounds);
-  const double linear = -dot(au.get(), y),
-               quadratic = dot(ay.get(), y) + nitsche_turning(faces, along.start, on_layer(y));
+  const double linear = -dot(au.get(), y), quadratic = dot(ay.get(), y);
   const bool descends = linear + along.slope(0) < 0;
   const bool searches = descends && !options.full_steps;
   const double t = searches ? line_minimum(linear, quadratic, along) : 1;

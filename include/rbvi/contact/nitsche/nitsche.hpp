@@ -9,11 +9,11 @@
 // models use the same functions. gamma is a pressure over a length.
 #pragma once
 
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/facing.hpp"
 #include "rbvi/core/dense.hpp"
+#include "rbvi/element/geometry.hpp"
 
 #include <array>
-#include <functional>
 
 namespace rbvi {
 
@@ -35,45 +35,55 @@ PointTerm friction_term(double p, double bound, double gamma);
 /// Coulomb's bound, `coefficient` |[p]_-| (4.51).
 double coulomb_bound(double p, double coefficient);
 
-/// What the points of a curve face. A support at rest ignores the displacement there; where it
-/// counts (large deformations), normal, gap and slip are those of the state. The stress is that on
-/// the body at rest, sigma n_0, in the axes of what is faced.
-struct NitscheFacing {
-  std::function<SupportPoint(const FullMu &mu, const Point &x, const Point &displacement)> at;
-  bool follows_state = false;
-  /// n_0: Support::body_normal; empty: the normal of the mapped edge.
-  Named<PointMap> body_normal{};
-  /// Whether the body ends, or is mirrored, at the curve's first and last end.
-  std::array<bool, 2> closed_ends{};
-};
-
 /// What a point of the curve sees of the displacement of the cell beside it: functionals of its
 /// dofs, node * 2 + component, the first 2 * nodes_per_cell entries.
 struct NitschePoint {
   using Row = Eigen::Matrix<double, 12, 1>;
-  double weight = 0;              ///< of the integral over the mapped edge
-  Row sigma_n, sigma_tau, n, tau; ///< stress and displacement
-  Point x{};                      ///< reference
-  SupportPoint facing{};          ///< at the state
-  Point body_normal{};            ///< at rest
-  double turning = 0;             ///< sigma_n < 0 times the curvature of what is faced, there
+  double weight = 0;                      ///< of the integral over the mapped edge
+  Row sigma_n{}, sigma_tau{}, n{}, tau{}; ///< stress and displacement
+  PlacedPoint place{};
+  FacedPoint facing{}; ///< at the state
+  Point body_normal{}; ///< at rest: Facing's, or that of the mapped edge
+  double turning = 0;  ///< sigma_n < 0 times the curvature of what is faced, there
+
+  /// Linear parts of P_n and of P_tau in u.
+  Row normal(double gamma) const { return sigma_n - gamma * n; }
+  Row tangential(double gamma) const { return sigma_tau - gamma * tau; }
 };
 
-/// What point s of [0, 1] on edge `edge` (Lagrange order) of a triangle sees, of degree
-/// scene.degree, at rest; weight: the length of the mapped edge. The axes are those faced at the
-/// reference point; edges are straight.
-NitschePoint nitsche_point(const Scene &scene, const NitscheFacing &facing, const FullMu &mu,
-                           const Cell &cell, int edge, const Lame &material, double s);
+/// A triangle beside a curve at one mu.
+struct CurveCellAtMu {
+  Cell cell;
+  int edge; ///< on the curve (Lagrange order)
+  Lame material;
+  Simplex geometry; ///< mapped
+  double gamma = 0;
+};
+
+/// What point s of [0, 1] on the edge of a cell sees, of degree scene.degree, at rest; weight: the
+/// length of the mapped edge. The axes are those faced at the reference point; edges are straight.
+/// The stress is that on the body at rest, sigma n_0.
+NitschePoint nitsche_point(const Scene &scene, const Facing &facing, const FullMu &mu,
+                           const CurveCellAtMu &at, double s);
 
 /// The Gauss points of the edge, with their weights. Throws failure, naming mu, for an inverted
 /// cell.
-std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const NitscheFacing &facing,
-                                           const FullMu &mu, const Cell &cell, int edge,
-                                           const Lame &material);
+std::array<NitschePoint, 4> nitsche_points(const Scene &scene, const Facing &facing,
+                                           const FullMu &mu, const CurveCellAtMu &at);
+
+/// What a point faces at a displacement, and how far its axes turn to that from the normal n: n
+/// becomes c n + s tau, and tau c tau - s n.
+struct TurnedAxes {
+  FacedPoint facing;
+  double c, s;
+};
+/// `along_n`, `along_tau`: the displacement in the axes of n.
+TurnedAxes turned_axes(const Facing &facing, const FullMu &mu, const PlacedPoint &point,
+                       const Point &n, double along_n, double along_tau);
 
 /// Turns the axes of a point to those of a displacement of the cell's dofs, for a facing that
 /// follows it.
-void turn_to(const NitscheFacing &facing, const FullMu &mu, const NitschePoint::Row &u,
+void turn_to(const Facing &facing, const FullMu &mu, const NitschePoint::Row &u,
              NitschePoint &point);
 
 } // namespace rbvi

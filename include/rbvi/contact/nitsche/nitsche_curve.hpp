@@ -43,7 +43,7 @@ struct NitscheLaw {
 /// the reference domain.
 struct NitscheCurve {
   Friction law;
-  NitscheFacing facing;
+  Facing facing;
   double gamma0;
   bool friction() const { return law.law != FrictionLaw::none; }
   /// Throws failure, naming the value, for a negative one.
@@ -78,12 +78,6 @@ struct NitscheFace {
 
 using FaceBlock = Eigen::Matrix<double, 12, 12>;
 
-/// A cell at mu: mapped, with its material and its gamma.
-struct CurveCellAtMu {
-  Cell cell;
-  Lame material;
-  double gamma;
-};
 CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const CurveCell &cell);
 
 /// The faces of some cells of the layer, in their order. `state`: u of the layer, where contact
@@ -99,14 +93,34 @@ void turn_to(const NitscheLayer &layer, const FullMu &mu, const Vector &state,
 /// P_n (4.19a) and P_tau (4.35) at every point, face by face: 4 * faces rows, 2 columns.
 Matrix nitsche_pressures(const std::vector<NitscheFace> &faces, const Vector &u);
 
-/// What a change of u adds to them.
-Matrix nitsche_pressure_changes(const std::vector<NitscheFace> &faces, const Vector &du);
-
 /// The bound of friction that the pressure P_n at a point of this law tells: s (4.33), or s^c
 /// (4.51); -1 without friction.
 double nitsche_bound(const NitscheLaw &law, double p_n);
 
-/// That of every point; empty where no face has friction.
+/// The terms at P points as functions of their pressures, P x 2, whatever unknowns these are
+/// functions of. `bounds` of friction: P of them, or none.
+struct NitscheTerms {
+  Vector weights, gamma;
+  Vector turning; ///< NitschePoint::turning with the weights
+  std::vector<NitscheLaw> laws;
+  bool friction = false; ///< of some law
+
+  Vector bounds_at(const Matrix &pressures) const;
+  /// One of energy, slope and curvature of every term with its weight: of contact, then with bounds
+  /// of friction.
+  Vector weighted(double PointTerm::*part, const Matrix &pressures, const Vector &bounds) const;
+  /// The slopes to first order, where the pressures at which they are taken change.
+  Vector linearised(const Matrix &pressures, const Matrix &change, const Vector &bounds) const;
+  /// Of tau tau^T: what the normals of the points in contact turn by.
+  Vector turning_at(const Matrix &pressures) const {
+    return (pressures.col(0).array() < 0).select(turning, 0.0);
+  }
+};
+
+/// At the points of the faces, face by face.
+NitscheTerms terms_of(std::span<const NitscheFace> faces);
+
+/// The bounds at every point; empty where no face has friction.
 Vector nitsche_bounds(std::span<const NitscheFace> faces, const Matrix &pressures);
 
 /// Whether the bounds of some face depend on u.
@@ -128,10 +142,6 @@ Vector nitsche_residual(const std::vector<NitscheFace> &faces, const Vector &u,
 std::vector<FaceBlock> nitsche_tangent(const std::vector<NitscheFace> &faces,
                                        const Matrix &pressures, const Vector &bounds);
 
-/// d^T (what the axes turn by in that Hessian) d.
-double nitsche_turning(const std::vector<NitscheFace> &faces, const Matrix &pressures,
-                       const Vector &d);
-
 /// The gradient at u of the terms linearised about given pressures: those who are in contact, and
 /// who stick, there.
 Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u,
@@ -139,9 +149,10 @@ Vector nitsche_linearised(const std::vector<NitscheFace> &faces, const Vector &u
 
 /// The integrals along u + t d, which are piecewise quadratic in t.
 struct NitscheLine {
-  Vector weights, gamma;
+  NitscheTerms terms;
   Matrix start, change;         ///< pressures at t = 0, and what t = 1 adds
   Vector bounds;                ///< of friction; empty without
+  double turning = 0;           ///< d^T (what the axes turn by in the Hessian at u) d
   double slope(double t) const; ///< of their sum
 };
 NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u, const Vector &d,

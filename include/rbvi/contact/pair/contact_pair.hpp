@@ -1,6 +1,6 @@
-// Contact of two bodies along two curves in 2D, with vertical pairing: the partner of a point x of
-// the slave (upper) curve is the point phi(x) of the master (lower) curve with the same abscissa.
-// The displacements of both satisfy
+// The operators of two curves in 2D that are in contact, from points of the slave (upper) curve and
+// their partners on the master (lower) one; and vertical pairing, where the partner of a point x is
+// the point phi(x) of the master curve with the same abscissa. The displacements of both satisfy
 //
 //   (u_master o phi - u_slave) . e_y <= gap = (x - phi(x)) . e_y,
 //
@@ -9,14 +9,12 @@
 // By degree 1 the gap is that of the polygons. By degree 2 it is that of the parabolas through the
 // three points of each edge, so that bodies with straight edges meet along their true curves if
 // these points are on them; displacements are quadratic in the abscissa, with their third node in
-// the middle of the straight edge. In every function of this file a curve of too few nodes, or of
-// another order, throws bad_input, naming the curve and the node.
+// the middle of the straight edge. A curve of too few nodes, or of another order, is bad_input that
+// names the curve and the node.
 #pragma once
 
-#include "rbvi/core/dense.hpp"
-#include "rbvi/core/scene.hpp"
-
-#include <array>
+#include "rbvi/contact/interface.hpp"
+#include "rbvi/contact/pair/partners.hpp"
 
 namespace rbvi {
 
@@ -38,19 +36,52 @@ struct PairDiscretisation {
   PairQuadrature quadrature = PairQuadrature::intersection;
 };
 
-/// The constraint, weak and at vertices. Columns are the vertical displacements of the slave nodes,
-/// then of the master nodes, each in the order of their curve; eta are the basis functions of the
-/// multipliers. A slave point beyond the ends of the master curve has no partner and contributes
-/// nothing.
-struct PairOperators {
-  SparseMatrix b; ///< multipliers x nodes: int (v_master o phi - v_slave) eta ds (2.51)
-  Vector g;       ///< multipliers: int gap eta ds (2.52)
-  Vector weights; ///< multipliers: int eta ds over the slave points that have a partner
-  std::vector<Index> uncovered; ///< multipliers with a slave point that has none
-  std::vector<Index> paired;    ///< slave vertices that have a partner, increasing
-  SparseMatrix nodal_b;         ///< paired x nodes: the constraint at these vertices
-  Vector nodal_gap;             ///< paired
+/// The constraint, weak (2.51), (2.52) and at slave vertices. eta are the basis functions of the
+/// multipliers, `weights` their integrals over the slave points that have a partner. A slave point
+/// beyond the ends of the master curve has none and contributes nothing.
+struct PairOperators : ContactOperators {
+  std::vector<Index> paired{}; ///< slave vertices that have a partner, increasing: rows of nodal_b
 };
+
+/// Rows of differences over both curves, one after the other. The points of a row are on few edges
+/// of each.
+class DifferenceRows {
+public:
+  /// `dofs`: of each node of the slave and then of the master curve the columns of its components,
+  /// both or the vertical one alone; -1: none.
+  DifferenceRows(const Partners &of, const std::vector<int> &dofs, Index columns);
+  /// Adds factor * normal . (v(partner) - v(point)) to the row.
+  void add(const PairPoint &point, double factor);
+  void end_row();
+  /// Of all rows; zeros are left out.
+  SparseMatrix matrix() const;
+
+private:
+  /// Of the row: the edges that it has of a curve.
+  struct Side {
+    const NodalCurve &curve;
+    Index first_node; ///< of the curve, among those of both
+    Index first = 0, last = -1;
+  };
+  void add(Side &side, Index edge, double s, const Point &vector);
+  void end_nodes(Index begin, Index end);
+
+  const std::vector<int> &dofs_;
+  Index size_; ///< columns
+  Index components_;
+  Side slave_, master_;
+  std::vector<double> row_; ///< by node * components + component
+  std::vector<int> columns_, begins_{0};
+  std::vector<double> values_;
+  bool sorted_ = true; ///< the columns of each row
+};
+
+PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
+                             const std::vector<int> &dofs, Index columns);
+
+/// Vertical pairing.
+Partners vertical_partners(std::vector<Point> slave, std::vector<Point> master,
+                           PairQuadrature quadrature, int degree);
 
 /// Vertices of a curve by its number of nodes.
 Index vertex_count(Index nodes, int degree);
@@ -62,9 +93,8 @@ Index multiplier_count(Index slave_nodes, MultiplierSpace space, int degree = 1)
 /// The macro-edge that holds a slave edge.
 Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
 
-/// Integrals are in arc length of the straight slave edges. O(slave + master nodes).
-PairOperators couple(const std::vector<Point> &slave, const std::vector<Point> &master,
-                     const PairDiscretisation &discretisation, int degree = 1);
+/// The integral of each multiplier's function over the whole slave curve.
+Vector whole_weights(const std::vector<double> &lengths, MultiplierSpace space, int degree);
 
 /// Whether a multiplier has no partner somewhere: its weight, and `whole`, which it would have with
 /// one everywhere.

@@ -1,0 +1,81 @@
+// What the points of a boundary face: a rigid support where the body is at rest, or a rigid surface
+// where it now is (large deformations). Contact by multipliers (contact/support) and by Nitsche's
+// method (contact/nitsche) ask nothing else of what is faced.
+#pragma once
+
+#include "rbvi/contact/friction.hpp"
+#include "rbvi/core/scene.hpp"
+
+#include <array>
+
+namespace rbvi {
+
+/// A point of the reference boundary at one mu.
+struct PlacedPoint {
+  Point x;
+  Point motion; ///< of the scene
+  Point y{};    ///< where the body is at rest, with the motion: if the facing asks for it
+};
+
+/// normal . w <= gap for the displacement w of a point, and the slip tau . (motion + w),
+/// tau = (-n_y, n_x).
+struct FacedPoint {
+  Point normal;         ///< of length 1, out of the body
+  double gap;           ///< less the motion's share
+  double slip;          ///< of the motion
+  double curvature = 0; ///< of what is faced: SurfacePoint
+};
+
+struct Facing {
+  /// `displacement`: the state there, which the condition is linearised about; at rest ignored.
+  std::function<FacedPoint(const FullMu &mu, const PlacedPoint &point, const Point &displacement)>
+      at;
+  /// The normal alone, for less work, where it does not depend on where the body is.
+  Named<PointMap> normal{};
+  bool asks_place = true; ///< whether `at` asks for PlacedPoint::y
+  /// Where a point of the reference boundary is at rest; empty: where the map takes it.
+  Named<PointMap> at_rest{};
+  bool follows_state = false;
+  /// The unit normal of the body's exact boundary at a point of the reference boundary, out of the
+  /// mapped body.
+  Named<PointMap> body_normal{};
+  /// The condition is one along that normal, of the deformed body. Only where it follows the state.
+  bool along_body = false;
+  /// Whether the body ends, or is mirrored, at the curve's first and last end.
+  std::array<bool, 2> closed_ends{};
+};
+
+inline PlacedPoint place(const Scene &scene, const Facing &facing, const FullMu &mu,
+                         const Point &x) {
+  PlacedPoint point{x, scene.motion ? scene.motion(mu, x) : Point{}};
+  if (!facing.asks_place) return point;
+  point.y = facing.at_rest ? facing.at_rest(mu, x) : scene.map(mu, x);
+  for (std::size_t c = 0; c < 2; ++c)
+    point.y[c] += point.motion[c];
+  return point;
+}
+
+inline double dot(const Point &a, const Point &b) {
+  return a[0] * b[0] + a[1] * b[1];
+}
+
+/// motion . tau.
+inline double slip_along(const Point &n, const Point &motion) {
+  return motion[1] * n[0] - motion[0] * n[1];
+}
+
+/// Throws failure where a body is pressed at x (reference) along a normal that points into it, so
+/// that it would have to be behind what it touches. `cosine`: between that normal and the body's.
+void check_pressed_side(double cosine, const Point &x);
+
+/// Contact of a boundary with something rigid, before it is by multipliers or by Nitsche's method.
+struct RigidContact {
+  std::string boundary;
+  Facing facing;
+  Friction friction;
+  bool lumped;                                    ///< vertex quadrature
+  Record record;                                  ///< by multipliers
+  std::vector<ContactCoefficient> coefficients{}; ///< beside that of friction
+};
+
+} // namespace rbvi
