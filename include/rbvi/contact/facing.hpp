@@ -55,10 +55,6 @@ inline PlacedPoint place(const Scene &scene, const Facing &facing, const FullMu 
   return point;
 }
 
-inline double dot(const Point &a, const Point &b) {
-  return a[0] * b[0] + a[1] * b[1];
-}
-
 /// motion . tau.
 inline double slip_along(const Point &n, const Point &motion) {
   return motion[1] * n[0] - motion[0] * n[1];
