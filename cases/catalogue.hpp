@@ -1,7 +1,7 @@
 // The scenes of these folders, as the programs of src/bin know them.
 #pragma once
 
-#include "rbvi/contact/catalogue/registry.hpp"
+#include "rbvi/contact/registry.hpp"
 
 namespace rbvi {
 

@@ -8,13 +8,13 @@
 //   mpirun -n 2 build/bin/example run/example       # exit status 0: the reduced answer is right
 #include "catalogue.hpp"
 
-#include "rbvi/check/errors.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/mor/stages.hpp"
 #include "rbvi/par/session.hpp"
 #include "rbvi/par/turns.hpp"
+#include "rbvi/study/errors.hpp"
 #include "rbvi/tool/finish.hpp"
 
 #include <algorithm>

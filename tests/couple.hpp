@@ -1,7 +1,7 @@
 // The operators of vertical pairing in the displacements of the nodes.
 #pragma once
 
-#include "rbvi/contact/pair/contact_pair.hpp"
+#include "rbvi/contact/contact_pair.hpp"
 
 #include <numeric>
 

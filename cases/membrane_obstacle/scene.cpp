@@ -7,7 +7,7 @@
 // gives the contact of the published basis sizes.
 #include "scene.hpp"
 
-#include "rbvi/contact/obstacle/obstacle.hpp"
+#include "rbvi/contact/obstacle.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"

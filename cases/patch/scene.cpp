@@ -10,8 +10,8 @@
 // <= nu_F p, so that the foot sticks; else nu_F p / G, and the foot slips as a whole.
 #include "scene.hpp"
 
-#include "rbvi/contact/elastic_pair/elastic_pair.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/elastic_pair.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"

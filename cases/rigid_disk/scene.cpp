@@ -15,7 +15,7 @@
 // undeformed body can be posed on that arc, too.
 #include "scene.hpp"
 
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"

@@ -9,7 +9,7 @@
 // turns with its tilt.
 #include "scene.hpp"
 
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 #include "rbvi/element/elastic_forms.hpp"

@@ -11,7 +11,7 @@
 // plane stiffness as it is, so that a does not depend on mu.
 #include "scene.hpp"
 
-#include "rbvi/contact/elastic_pair/elastic_pair.hpp"
+#include "rbvi/contact/elastic_pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/places.hpp"
 

@@ -1,6 +1,6 @@
 // rbvi-online with the scenes of cases.
 #include "cases/catalogue.hpp"
-#include "rbvi/rom/online_tool.hpp"
+#include "rbvi/model/online_tool.hpp"
 
 int main(int argc, char **argv) {
   return rbvi::rbvi_online_main(argc, argv, rbvi::catalogue());

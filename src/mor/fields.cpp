@@ -2,9 +2,9 @@
 
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/io/checksum.hpp"
+#include "rbvi/model/fields_file.hpp"
 #include "rbvi/par/columns.hpp"
 #include "rbvi/par/gather.hpp"
-#include "rbvi/rom/model/fields_file.hpp"
 
 #include <algorithm>
 #include <memory>

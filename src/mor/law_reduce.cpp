@@ -2,11 +2,11 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/imposed.hpp"
-#include "rbvi/mor/bases/near_contact.hpp"
-#include "rbvi/mor/bases/nodal_dual_basis.hpp"
-#include "rbvi/mor/separation/answered_responses.hpp"
-#include "rbvi/rom/law/collocated_law.hpp"
-#include "rbvi/rom/model/affine_coefficients.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/collocated_law.hpp"
+#include "rbvi/mor/answered_responses.hpp"
+#include "rbvi/mor/near_contact.hpp"
+#include "rbvi/mor/nodal_dual_basis.hpp"
 
 namespace rbvi {
 

@@ -1,15 +1,15 @@
 #include "rbvi/mor/reduce.hpp"
 
-#include "bases/cone_tools.hpp"
-#include "rbvi/mor/bases/nodal_dual_basis.hpp"
+#include "cone_tools.hpp"
+#include "eim_terms.hpp"
+#include "rbvi/model/packed.hpp"
+#include "rbvi/model/scene_text.hpp"
+#include "rbvi/model/training_samples.hpp"
 #include "rbvi/mor/fields.hpp"
-#include "rbvi/mor/separation/operator_entries.hpp"
-#include "rbvi/mor/separation/stiffness_change.hpp"
+#include "rbvi/mor/nodal_dual_basis.hpp"
+#include "rbvi/mor/operator_entries.hpp"
+#include "rbvi/mor/stiffness_change.hpp"
 #include "rbvi/par/columns.hpp"
-#include "rbvi/rom/model/packed.hpp"
-#include "rbvi/rom/model/scene_text.hpp"
-#include "rbvi/rom/model/training_samples.hpp"
-#include "separation/eim_terms.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
-#include "rbvi/law/friction/several_answers.hpp"
-#include "rbvi/law/lcp.hpp"
+#include "rbvi/method/lcp.hpp"
+#include "rbvi/method/several_answers.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {

@@ -2,8 +2,8 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/linear/complement.hpp"
-#include "rbvi/solve/linear/scaled_part.hpp"
+#include "rbvi/solve/complement.hpp"
+#include "rbvi/solve/scaled_part.hpp"
 
 #include <cmath>
 

@@ -1,13 +1,13 @@
 #include "rbvi/solve/eliminated.hpp"
 
-#include "linear/elimination.hpp"
-#include "linear/reduced_system.hpp"
-#include "linear/saddle_system.hpp"
+#include "elimination.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/linear/vectors.hpp"
+#include "rbvi/solve/vectors.hpp"
+#include "reduced_system.hpp"
+#include "saddle_system.hpp"
 
 #include <array>
 #include <optional>

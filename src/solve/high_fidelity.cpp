@@ -4,13 +4,13 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
-#include "rbvi/law/friction/several_answers.hpp"
+#include "rbvi/method/several_answers.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/eliminated.hpp"
-#include "rbvi/solve/linear/scaled_part.hpp"
-#include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/scaled_part.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <algorithm>
 #include <array>

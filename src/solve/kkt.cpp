@@ -1,7 +1,7 @@
 #include "rbvi/core/largest.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "rbvi/core/error.hpp"
-#include "rbvi/solve/linear/vectors.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <cmath>
 

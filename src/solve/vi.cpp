@@ -1,9 +1,9 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/mat_entries.hpp"
-#include "rbvi/solve/linear/local_frames.hpp"
-#include "rbvi/solve/linear/vectors.hpp"
+#include "rbvi/solve/local_frames.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <array>
 #include <cmath>

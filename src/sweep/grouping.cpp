@@ -2,7 +2,7 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/linear/response_solver.hpp"
+#include "rbvi/solve/response_solver.hpp"
 
 #include <algorithm>
 #include <cmath>

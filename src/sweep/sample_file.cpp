@@ -1,10 +1,10 @@
-// samples/HASH.h5: its data sets are listed in src/rom/model/LAYOUT.md.
+// samples/HASH.h5: its data sets are listed in src/model/LAYOUT.md.
 #include "sample_file.hpp"
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/fields.hpp"
+#include "rbvi/model/scene_text.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/rom/model/scene_text.hpp"
 
 #include <limits>
 

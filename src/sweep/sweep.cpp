@@ -5,11 +5,11 @@
 #include "rbvi/io/h5.hpp"
 #include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/scene_text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/progress.hpp"
 #include "rbvi/par/queue.hpp"
-#include "rbvi/rom/model/scene_text.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "sample_file.hpp"
 

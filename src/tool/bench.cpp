@@ -1,18 +1,18 @@
 // rbvi bench: run time against error, on one rank, over the validation set.
-#include "rbvi/check/bench.hpp"
+#include "rbvi/study/bench.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
+#include "rbvi/fem/check_scene.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/print.hpp"
+#include "rbvi/model/training_samples.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/problem/check_scene.hpp"
-#include "rbvi/rom/model/training_samples.hpp"
-#include "rbvi/rom/print.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/failures.hpp"
 #include "rbvi/tool/model_case.hpp"
-#include "rbvi/tool/options/run_directory.hpp"
+#include "rbvi/tool/run_directory.hpp"
 #include "rbvi/tool/tables.hpp"
 
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/system_error.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 #include <unistd.h>
 

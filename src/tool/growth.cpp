@@ -4,11 +4,11 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/print.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/rom/print.hpp"
+#include "rbvi/tool/case_file.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/offline_run.hpp"
-#include "rbvi/tool/options/case_file.hpp"
 
 #include <malloc.h>
 

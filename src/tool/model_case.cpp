@@ -4,9 +4,9 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/model/scene_text.hpp"
+#include "rbvi/model/training_samples.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/rom/model/scene_text.hpp"
-#include "rbvi/rom/model/training_samples.hpp"
 
 #include <algorithm>
 #include <cstdio>

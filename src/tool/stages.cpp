@@ -2,7 +2,7 @@
 
 #include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/linear/scaled_part.hpp"
+#include "rbvi/solve/scaled_part.hpp"
 
 #include <cstdio>
 

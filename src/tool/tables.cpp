@@ -1,10 +1,10 @@
 #include "rbvi/tool/tables.hpp"
 
-#include "rbvi/check/bench.hpp"
 #include "rbvi/core/locking.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/io/output_table.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/study/bench.hpp"
 
 #include <algorithm>
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "rbvi/tool/workspace.hpp"
 
+#include "rbvi/fem/check_scene.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/problem/check_scene.hpp"
 
 namespace rbvi {
 

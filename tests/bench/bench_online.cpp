@@ -1,9 +1,9 @@
 // Seconds per reduced answer, without reconstruction, for the published sizes of membrane_obstacle
 // and random operators of about half active constraints.
-#include "../rom/synthetic.hpp"
+#include "../model/synthetic.hpp"
 
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/rom/online.hpp"
+#include "rbvi/model/online.hpp"
 
 #include <algorithm>
 #include <chrono>

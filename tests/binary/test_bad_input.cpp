@@ -1,6 +1,6 @@
 // Bad input: one line of ours, the documented status, nothing written, on 1 and 2 ranks.
 #include "rbvi/io/h5.hpp"
-#include "rbvi/rom/model/model.hpp"
+#include "rbvi/model/model.hpp"
 #include "run.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Whole runs: what the tools print, the same model from any ranks, resume after a kill.
 #include "cases/catalogue.hpp"
 #include "rbvi/core/parameters.hpp"
-#include "rbvi/rom/model/model.hpp"
+#include "rbvi/model/model.hpp"
 #include "run.hpp"
 
 #include <signal.h>

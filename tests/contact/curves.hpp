@@ -1,7 +1,7 @@
 // Polygonal curves for tests of contact operators.
 #pragma once
 
-#include "../law/random_matrix.hpp"
+#include "../method/random_matrix.hpp"
 #include "rbvi/contact/interface.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../element/cells.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "support_scenes.hpp"
 
 namespace rbvi {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "curves.hpp"
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/support.hpp"
 
 #include <functional>
 

@@ -2,8 +2,8 @@
 // and maxima, and what only a single interface may have.
 #include "../core/refuses.hpp"
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
-#include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
+#include "rbvi/contact/pair.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The area in contact of a nodal pressure.
-#include "rbvi/contact/obstacle/contact_area.hpp"
+#include "rbvi/contact/contact_area.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Interfaces that are sums over their entities: against dense sums, with dofs that are not seen,
 // and an obstacle against closed forms.
 #include "../core/refuses.hpp"
-#include "rbvi/contact/obstacle/obstacle.hpp"
+#include "rbvi/contact/obstacle.hpp"
 #include "support_scenes.hpp"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // single nodes, friction, what files store, and planes that cannot be.
 #include "../core/refuses.hpp"
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/catalogue/registry.hpp"
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/registry.hpp"
+#include "rbvi/contact/support.hpp"
 #include "rbvi/core/validity.hpp"
 #include "support_scenes.hpp"
 

@@ -1,8 +1,8 @@
 // Two deformed bodies as an interface: on flat curves that of undeformed bodies, wherever they are
 // moved and turned together; between circles the distance; its curvature is a derivative.
 #include "curves.hpp"
-#include "rbvi/contact/large_pair/large_pair.hpp"
-#include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/contact/large_pair.hpp"
+#include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 

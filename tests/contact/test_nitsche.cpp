@@ -1,7 +1,7 @@
 // Nitsche's terms at a point against differences of their energies and the laws they stand for, and
 // what a point sees of a displacement against fields whose stress is known.
 #include "../element/cells.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "support_scenes.hpp"

@@ -1,7 +1,7 @@
 // The outputs of Nitsche's method for pressures that are prescribed along a straight curve and
 // along an arc.
 #include "curves.hpp"
-#include "rbvi/contact/nitsche/nitsche_curve.hpp"
+#include "rbvi/contact/nitsche_curve.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Nitsche's terms on a rigid surface where the body now is: what turns with the displacement, and
 // what does not.
 #include "../element/cells.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "support_scenes.hpp"

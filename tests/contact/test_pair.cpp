@@ -3,7 +3,7 @@
 #include "../core/refuses.hpp"
 #include "../couple.hpp"
 #include "curves.hpp"
-#include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/contact/pair.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Contact with a rigid surface at the current position: B and the curvature are derivatives, a
 // plane has no curvature, and the slip is that of the angles.
-#include "rbvi/contact/catalogue/registry.hpp"
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/registry.hpp"
+#include "rbvi/contact/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "support_scenes.hpp"
 

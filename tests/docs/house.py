@@ -2,8 +2,8 @@
 """house.py ROOT: measures the code: its lines, rooms, arrows, functions and types, and the places
 that ask which mathematics runs. Nothing fails here; the table is for comparing two states of the code.
 
-A room is one folder of src with that of include/rbvi, without its subfolders; an arrow is a room that
-includes a header of another one. A place is a line outside of the layer contact that matches QUESTION.
+A room is one folder of src with that of include/rbvi; an arrow is a room that includes a header of
+another one. A place is a line outside of the layer contact that matches QUESTION.
 The members of a type are its data, those of its bases not counted.
 """
 

@@ -1,23 +1,20 @@
 #!/usr/bin/env python3
-"""layers.py ROOT: the code keeps to the layers and rooms of src/README.md, and to its sizes.
+"""layers.py ROOT: the code keeps to the layers of src/README.md, and to its sizes.
 
-A layer is src/NAME with include/rbvi/NAME; a room is one folder of a layer without its subfolders.
+A layer is a room, src/NAME with include/rbvi/NAME, without folders in it.
 - A layer includes itself and layers above it in the table "Layers" alone; the scenes of cases
   include layers of the online program alone, and of all files the two mains alone include cases.
-- Rooms do not include each other in a circle.
 - No layer asks which kind of contact it has: outside of the layer contact and of the scenes, no file
-  includes a folder of it or casts to one of its classes. Nitsche's method has files and rooms of
-  that name; elsewhere no line asks for it, but for what contact has (has_multipliers, ...).
-- A room of src has fewer than 2000 lines, a file of code at most 400, a function at most 60 unless
-  it is a table of data. Functions are found by the indentation that clang-format gives them.
+  includes the header of one or casts to one of its classes. Nitsche's method has files of that
+  name; elsewhere no line asks for it, but for what contact has (has_multipliers, ...).
+- A file of code has at most 400 lines, a function at most 60 unless it is a table of data. Functions are found by the indentation that clang-format gives them.
 """
 
 import re
 import sys
-from collections import defaultdict
 from pathlib import Path
 
-MOST_OF_ROOM, MOST_OF_FILE, MOST_OF_FUNCTION = 2000, 400, 60
+MOST_OF_FILE, MOST_OF_FUNCTION = 400, 60
 # A line that asks whether contact is by Nitsche's method; options of that method are data.
 NITSCHE_LINE = re.compile(r"(?<!options)(?<!hf)[.>]nitsche\b|([=!]=|case) *Formulation::")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
@@ -30,9 +27,9 @@ def layers_of(root):
     page = (root / "src/README.md").read_text(encoding="utf-8")
     section = page.split("\n## Layers\n")[1].split("\n## ")[0]
     names = re.findall(r"^\| \[`(\w+)`\]", section, re.MULTILINE)
-    if "rom" not in names or len(names) < 10:
+    if "model" not in names or len(names) < 10:
         sys.exit("src/README.md: no table of layers")
-    return names, names.index("rom") + 1
+    return names, names.index("model") + 1
 
 
 def room_of(path, root):
@@ -55,10 +52,9 @@ def included(path, root):
 
 def check_includes(root):
     names, online = layers_of(root)
-    wrong, edges = [], defaultdict(dict)
+    wrong = []
     for path in sources(root, ["src", "include/rbvi"]):
-        here = room_of(path, root)
-        layer = here.split("/")[0]
+        layer = room_of(path, root)
         if layer not in names:
             wrong.append(f"{path.relative_to(root)}: src/README.md has no layer {layer}")
             continue
@@ -68,38 +64,36 @@ def check_includes(root):
             if target is None:
                 wrong.append(f"{path.relative_to(root)} includes {name}, which is nowhere")
                 continue
-            there = room_of(target, root)
-            if there.split("/")[0] not in names[:names.index(layer) + 1]:
+            if room_of(target, root) not in names[:names.index(layer) + 1]:
                 wrong.append(f"{path.relative_to(root)} includes {name}: {layer} is above it")
-            if here != there:
-                edges[here].setdefault(there, f"{path.relative_to(root)} includes {name}")
     for path in sources(root, [p for p in (root / "cases").iterdir() if p.is_dir()]):
         for name, target in included(path, root):
             if name.startswith("rbvi/") and name.split("/")[1] not in names[:online]:
                 wrong.append(f"{path.relative_to(root)} includes {name}, which the online program "
                              "does not have")
-    return wrong + circles(edges)
+    return wrong
 
 
 def check_kinds(root):
-    """Branches on the kind of contact outside of its folder and the catalogue."""
-    kinds = sorted(path.name for path in (root / "src/contact").iterdir()
-                   if path.is_dir() and path.name != "catalogue")
+    """Branches on the kind of contact outside of its layer: its header makes a recipe, or has a class
+    of interfaces."""
+    kind = re.compile(r"\bContactRecipe \w+\(|: public (ContactInterface|EntitySum)\b")
+    kinds = {path for path in sources(root, ["include/rbvi/contact"])
+             if path.stem not in ("entity_sum", "registry") and kind.search(path.read_text(encoding="utf-8"))}
     if len(kinds) < 4:
         return ["src/contact has no kinds"]
-    includes = re.compile(rf'#include "rbvi/contact/({"|".join(kinds)})/')
     casts = re.compile(r"dynamic_(pointer_)?cast<[^>]*(Interface|EntitySum|NitscheCurve)")
     wrong = []
     for path in sources(root, ["src", "include/rbvi"]):
-        if room_of(path, root).split("/")[0] == "contact":
+        if room_of(path, root) == "contact":
             continue
-        text = path.read_text(encoding="utf-8")
-        own = "nitsche" in path.name or "nitsche" in room_of(path, root)
-        for found in includes.finditer(text):
-            if not (own and found.group(1) == "nitsche"):
-                wrong.append(f"{path.relative_to(root)} includes the kind {found.group(1)}")
+        own = "nitsche" in path.name
+        wrong += [f"{path.relative_to(root)} includes the kind {target.stem}"
+                  for _, target in included(path, root)
+                  if target and (target in kinds or target.stem.startswith("nitsche"))
+                  and room_of(target, root) == "contact" and not own]
         wrong += [f"{path.relative_to(root)} casts to a kind: {found.group()}"
-                  for found in casts.finditer(text)]
+                  for found in casts.finditer(path.read_text(encoding="utf-8"))]
     return wrong
 
 
@@ -108,7 +102,7 @@ def check_nitsche(root):
     wrong = []
     for path in sources(root, ["src", "include/rbvi"]):
         name = str(path.relative_to(root))
-        if ("nitsche" in name or room_of(path, root).split("/")[0] == "contact"
+        if ("nitsche" in name or room_of(path, root) == "contact"
                 or name == "src/core/scene.cpp"):  # which says what contact has
             continue
         code = [line.split("//")[0] for line in path.read_text(encoding="utf-8").splitlines()]
@@ -116,22 +110,6 @@ def check_nitsche(root):
                   "has (has_multipliers, follows_state, ...), or do it in a file of that name"
                   for number, line in enumerate(code, 1) if NITSCHE_LINE.search(line)]
     return wrong
-
-
-def reachable(edges, start):
-    seen, todo = set(), [start]
-    while todo:
-        for room in edges.get(todo.pop(), {}):
-            if room not in seen:
-                seen.add(room)
-                todo.append(room)
-    return seen
-
-
-def circles(edges):
-    return [f"{why}: {there} includes {here}, too, if by others"
-            for here, targets in sorted(edges.items()) for there, why in sorted(targets.items())
-            if here in reachable(edges, there)]
 
 
 def blocks(lines, first, last, indent):
@@ -180,12 +158,10 @@ def is_table(body):
 
 
 def check_sizes(root):
-    wrong, rooms = [], defaultdict(int)
+    wrong = []
     for path in sources(root, ["src", "include", "cases"], (".cpp", ".hpp", ".py")):
         lines = path.read_text(encoding="utf-8").splitlines()
         name = path.relative_to(root)
-        if name.parts[0] == "src":
-            rooms[str(name.parent)] += len(lines)
         if len(lines) > MOST_OF_FILE:
             wrong.append(f"{name} has {len(lines)} lines, more than {MOST_OF_FILE}")
         if path.suffix == ".py":
@@ -194,8 +170,7 @@ def check_sizes(root):
             if length > MOST_OF_FUNCTION and not is_table(body):
                 wrong.append(f"{name}: a function of {length} lines, more than {MOST_OF_FUNCTION}: "
                              f"{heading[:60]}")
-    return wrong + [f"{room} has {count} lines: make a room of a part of it"
-                    for room, count in sorted(rooms.items()) if count >= MOST_OF_ROOM]
+    return wrong
 
 
 def main(root):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""layout.py OUT ROOT: the data sets of files against src/rom/model/LAYOUT.md.
+"""layout.py OUT ROOT: the data sets of files against src/model/LAYOUT.md.
 
 OUT has the runs of small_runs.py. Every data set of every model and sample is in the tables, with
 its type and shape, and every one that they list is in some file.
@@ -106,7 +106,7 @@ def check_shapes(file, table, known, where):
 
 
 def main(out, root):
-    tables = tables_of((root / "src/rom/model/LAYOUT.md").read_text(encoding="utf-8"))
+    tables = tables_of((root / "src/model/LAYOUT.md").read_text(encoding="utf-8"))
     seen, wrong, files = {kind: set() for kind in tables}, [], 0
     for run in RUNS:
         with h5py.File(out / run / KINDS[0], "r") as file:

@@ -1,7 +1,7 @@
 // Random simplices of degree 1 or 2 and the element matrices of forms, for tests.
 #pragma once
 
-#include "../law/random_matrix.hpp"
+#include "../method/random_matrix.hpp"
 #include "rbvi/element/lagrange.hpp"
 
 #include <functional>

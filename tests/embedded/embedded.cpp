@@ -1,8 +1,8 @@
 // A program of others, on the serial library alone and without its flags: with the address
 // sanitizer, which sees what is freed. embedded MODEL...: answers the middle of the box of each.
 #include "cases/catalogue.hpp"
-#include "rbvi/rom/model/model.hpp"
-#include "rbvi/rom/online.hpp"
+#include "rbvi/model/model.hpp"
+#include "rbvi/model/online.hpp"
 
 #include <cmath>
 #include <cstdio>

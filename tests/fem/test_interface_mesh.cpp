@@ -4,7 +4,7 @@
 #include "../core/refuses.hpp"
 #include "cases/catalogue.hpp"
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/support.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
 
 #include <gtest/gtest.h>

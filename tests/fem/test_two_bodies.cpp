@@ -1,7 +1,7 @@
 // Dirichlet conditions by component and the two contact curves: against the geometry of the quarter
 // discs, at any number of ranks.
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
 #include "rbvi/par/gather.hpp"

@@ -2,7 +2,7 @@
 // are refused by the name of the part that is wrong.
 #include "cases/catalogue.hpp"
 #include "gmsh_writer.hpp"
-#include "rbvi/contact/pair/pair.hpp"
+#include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "temporary_file.hpp"
 #include "triangles.hpp"

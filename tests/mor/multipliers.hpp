@@ -2,7 +2,7 @@
 // them.
 #pragma once
 
-#include "rbvi/mor/bases/cones.hpp"
+#include "rbvi/mor/cones.hpp"
 
 #include <algorithm>
 #include <cmath>

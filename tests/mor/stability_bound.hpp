@@ -1,7 +1,7 @@
 // What V_N + S guarantees at one mu, from the part of the supremizers that it leaves out.
 #pragma once
 
-#include "rbvi/mor/stability/stability.hpp"
+#include "rbvi/mor/stability.hpp"
 #include "rbvi/par/small_svd.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The separated operators: B^n and B^tau of contact with a rigid support apart.
 #include "cases/catalogue.hpp"
-#include "rbvi/mor/separation/affine.hpp"
+#include "rbvi/mor/affine.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include "../linear_algebra.hpp"
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/bases/nodal_dual_basis.hpp"
-#include "rbvi/mor/separation/condensed.hpp"
+#include "rbvi/mor/condensed.hpp"
+#include "rbvi/mor/nodal_dual_basis.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "rbvi/mor/bases/cones.hpp"
+#include "rbvi/mor/cones.hpp"
 
 #include "multipliers.hpp"
 

@@ -1,6 +1,6 @@
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/bases/cones.hpp"
+#include "rbvi/mor/cones.hpp"
 
 #include "multipliers.hpp"
 

@@ -1,7 +1,7 @@
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/law/qp/nonnegative_qp.hpp"
-#include "rbvi/mor/bases/cones.hpp"
+#include "rbvi/method/nonnegative_qp.hpp"
+#include "rbvi/mor/cones.hpp"
 
 #include "multipliers.hpp"
 

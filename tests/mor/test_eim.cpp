@@ -1,4 +1,4 @@
-#include "rbvi/mor/separation/eim.hpp"
+#include "rbvi/mor/eim.hpp"
 
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"

@@ -1,10 +1,10 @@
 // Sums of exact and of interpolated terms: the coefficients of a query reproduce the operators.
 #include "cases/catalogue.hpp"
 #include "rbvi/element/facet_forms.hpp"
-#include "rbvi/mor/separation/affine.hpp"
-#include "rbvi/mor/separation/operator_entries.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/mor/affine.hpp"
+#include "rbvi/mor/operator_entries.hpp"
 #include "rbvi/par/columns.hpp"
-#include "rbvi/rom/model/affine_coefficients.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "../law/columns.hpp"
-#include "../law/half_plane.hpp"
 #include "../linear_algebra.hpp"
+#include "../method/columns.hpp"
+#include "../method/half_plane.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/bases/gcns.hpp"
+#include "rbvi/mor/gcns.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Multipliers that hold a part of the contact region, against what the body does under them.
-#include "../law/random_matrix.hpp"
+#include "../method/random_matrix.hpp"
 #include "cases/catalogue.hpp"
-#include "rbvi/mor/bases/held_multipliers.hpp"
-#include "rbvi/solve/linear/response_solver.hpp"
+#include "rbvi/mor/held_multipliers.hpp"
+#include "rbvi/solve/response_solver.hpp"
 
 #include <gtest/gtest.h>
 

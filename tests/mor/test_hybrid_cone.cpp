@@ -1,7 +1,7 @@
 // The hybrid dual basis against what complementarity says of it.
 #include "../linear_algebra.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/mor/bases/cones.hpp"
+#include "rbvi/mor/cones.hpp"
 
 #include "multipliers.hpp"
 

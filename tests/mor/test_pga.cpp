@@ -1,4 +1,4 @@
-#include "rbvi/mor/stability/stability.hpp"
+#include "rbvi/mor/stability.hpp"
 
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"

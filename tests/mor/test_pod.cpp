@@ -1,5 +1,5 @@
 #include "../linear_algebra.hpp"
-#include "rbvi/mor/bases/pod.hpp"
+#include "rbvi/mor/pod.hpp"
 
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"

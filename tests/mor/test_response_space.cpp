@@ -3,9 +3,9 @@
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
-#include "rbvi/mor/separation/condensed.hpp"
-#include "rbvi/mor/separation/response_space.hpp"
-#include "rbvi/solve/linear/response_solver.hpp"
+#include "rbvi/mor/condensed.hpp"
+#include "rbvi/mor/response_space.hpp"
+#include "rbvi/solve/response_solver.hpp"
 
 #include <gtest/gtest.h>
 

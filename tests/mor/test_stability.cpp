@@ -1,6 +1,6 @@
 #include "../linear_algebra.hpp"
-#include "rbvi/mor/stability/high_fidelity_constant.hpp"
-#include "rbvi/mor/stability/stability.hpp"
+#include "rbvi/mor/high_fidelity_constant.hpp"
+#include "rbvi/mor/stability.hpp"
 
 #include "grid.hpp"
 #include "rbvi/core/error.hpp"

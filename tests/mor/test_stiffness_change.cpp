@@ -1,9 +1,9 @@
 // Terms of the stiffness that differ on few functions, against the projection of every term.
 #include "cases/catalogue.hpp"
-#include "rbvi/mor/separation/affine.hpp"
-#include "rbvi/mor/separation/stiffness_change.hpp"
+#include "rbvi/model/packed.hpp"
+#include "rbvi/mor/affine.hpp"
+#include "rbvi/mor/stiffness_change.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/rom/model/packed.hpp"
 
 #include <gtest/gtest.h>
 

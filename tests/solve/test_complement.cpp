@@ -3,8 +3,8 @@
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/solve/complement.hpp"
 #include "rbvi/solve/contact_cost.hpp"
-#include "rbvi/solve/linear/complement.hpp"
 #include "rbvi/solve/methods.hpp"
 
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // Constraints over the ranks that give up displacement dofs, against dense linear algebra.
-#include "../../src/solve/linear/elimination.hpp"
+#include "../../src/solve/elimination.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
-#include "rbvi/solve/linear/vectors.hpp"
+#include "rbvi/solve/vectors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include "../mesh/temporary_file.hpp"
 #include "block_on_support.hpp"
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/obstacle/obstacle.hpp"
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/obstacle.hpp"
+#include "rbvi/contact/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facet_forms.hpp"
 

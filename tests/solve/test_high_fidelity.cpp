@@ -22,7 +22,7 @@ double relative(double value, double exact) {
   return std::abs(value / exact - 1);
 }
 
-// Exact energy, force and area: 1D Newton on the radial solution (tests/check) and, for the shifted
+// Exact energy, force and area: 1D Newton on the radial solution (tests/study) and, for the shifted
 // disc, a solution without a mesh (errors <= 1e-11).
 struct Exact {
   Mu mu;

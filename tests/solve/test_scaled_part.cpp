@@ -3,8 +3,8 @@
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
-#include "rbvi/solve/linear/scaled_part.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "rbvi/solve/scaled_part.hpp"
 
 #include <gtest/gtest.h>
 

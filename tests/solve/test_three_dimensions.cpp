@@ -2,7 +2,7 @@
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/obstacle/obstacle.hpp"
+#include "rbvi/contact/obstacle.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 

@@ -1,7 +1,7 @@
 // A problem of two contact interfaces: two blocks that do not meet, each on a support of its own.
 // Together they answer as each of them does by itself.
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/nitsche/nitsche_support.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // The two dense solvers against each other on random problems of all conditions, with ties and
 // warm starts; and reduced models of random size against their optimality system.
-#include "../rom/synthetic.hpp"
+#include "../model/synthetic.hpp"
 
 #include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/law/lcp.hpp"
-#include "rbvi/law/qp/nonnegative_qp.hpp"
+#include "rbvi/method/lcp.hpp"
+#include "rbvi/method/nonnegative_qp.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "cases/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
-#include "rbvi/rom/online.hpp"
+#include "rbvi/model/online.hpp"
 
 #include <cstdio>
 #include <exception>

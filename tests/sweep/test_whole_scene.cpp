@@ -2,10 +2,10 @@
 #include "sweep_test.hpp"
 
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/obstacle/obstacle.hpp"
+#include "rbvi/contact/obstacle.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
-#include "rbvi/rom/model/scene_text.hpp"
+#include "rbvi/model/scene_text.hpp"
 
 namespace rbvi::whole_scene_test {
 namespace {

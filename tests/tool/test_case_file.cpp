@@ -1,6 +1,6 @@
 // Case files: what is read, and what is said of files that are none.
 #include "rbvi/core/error.hpp"
-#include "rbvi/tool/options/case_file.hpp"
+#include "rbvi/tool/case_file.hpp"
 
 #include <gtest/gtest.h>
 

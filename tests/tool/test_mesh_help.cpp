@@ -2,7 +2,7 @@
 #include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/tool/finish.hpp"
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // training parameters are concerned, and counted by the self-check where only queries are.
 #include "../core/refuses.hpp"
 #include "cases/catalogue.hpp"
-#include "rbvi/contact/support/support.hpp"
+#include "rbvi/contact/support.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/par/collective.hpp"

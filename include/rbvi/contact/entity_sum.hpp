@@ -1,5 +1,5 @@
 // Interfaces whose B and g are sums over their entities, of a pattern that does not depend on mu. A
-// kind gives what one entity adds; the rest is here: assembly, and (mor/separation, rom) empirical
+// kind gives what one entity adds; the rest is here: assembly, and (mor, model) empirical
 // interpolation from a few entities.
 #pragma once
 

@@ -1,9 +1,9 @@
-// Contact that follows the displacement, in front of any body: the problem of law/nonlinear, its
+// Contact that follows the displacement, in front of any body: the problem of method/nonlinear.hpp, its
 // condition evaluated on the interfaces at the states of the iteration.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"
-#include "rbvi/law/nonlinear/nonlinear.hpp"
+#include "rbvi/method/nonlinear.hpp"
 
 namespace rbvi {
 

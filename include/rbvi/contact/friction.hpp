@@ -3,7 +3,7 @@
 
 #include "rbvi/core/contact_recipe.hpp"
 #include "rbvi/core/functions.hpp"
-#include "rbvi/law/node_laws.hpp"
+#include "rbvi/method/node_laws.hpp"
 
 namespace rbvi {
 

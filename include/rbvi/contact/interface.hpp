@@ -13,8 +13,8 @@
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
 #include "rbvi/io/vtu.hpp"
-#include "rbvi/law/node_laws.hpp"
-#include "rbvi/law/nonlinear/nodal.hpp"
+#include "rbvi/method/nodal.hpp"
+#include "rbvi/method/node_laws.hpp"
 
 #include <array>
 #include <memory>
@@ -136,7 +136,7 @@ public:
   /// Of multipliers at a state. Throws failure where there is none.
   virtual Curvature curvature(const FullMu &mu, const ContactState &state,
                               const Vector &lambda) const;
-  /// Whether it has one normal at each point of a curve: what law/nonlinear/nodal.hpp needs.
+  /// Whether it has one normal at each point of a curve: what method/nodal.hpp needs.
   virtual bool is_nodal() const { return false; }
   /// That header's A; and the condition at a mu, without B. Only where it is nodal. The interface
   /// must outlive what is returned.

@@ -124,7 +124,7 @@ struct SceneEntry {
   FunctionLibrary functions{}; ///< those of its own that files know by name
 };
 
-/// What a program knows by name, and finds in model files (contact/catalogue/registry.hpp).
+/// What a program knows by name, and finds in model files (contact/registry.hpp).
 struct Registry {
   std::vector<SceneEntry> scenes;
   std::vector<ContactKind> kinds;

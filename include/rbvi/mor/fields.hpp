@@ -3,9 +3,9 @@
 // basis, so that no rank holds all of it: it goes to its file by blocks of rows.
 #pragma once
 
-#include "rbvi/mor/bases/pod.hpp"
-#include "rbvi/problem/problem.hpp"
-#include "rbvi/rom/model/model.hpp"
+#include "rbvi/fem/problem.hpp"
+#include "rbvi/model/model.hpp"
+#include "rbvi/mor/pod.hpp"
 
 #include <filesystem>
 

@@ -1,14 +1,14 @@
 // From snapshots to a reduced model: POD, cone, supremizers, separation, projection.
 #pragma once
 
-#include "rbvi/mor/bases/cones.hpp"
-#include "rbvi/mor/bases/gcns.hpp"
-#include "rbvi/mor/bases/multiplier_basis.hpp"
-#include "rbvi/mor/bases/pod.hpp"
-#include "rbvi/mor/nitsche/curve_quadrature.hpp"
-#include "rbvi/mor/separation/affine.hpp"
-#include "rbvi/mor/separation/condensed.hpp"
-#include "rbvi/mor/stability/stability.hpp"
+#include "rbvi/mor/affine.hpp"
+#include "rbvi/mor/condensed.hpp"
+#include "rbvi/mor/cones.hpp"
+#include "rbvi/mor/gcns.hpp"
+#include "rbvi/mor/multiplier_basis.hpp"
+#include "rbvi/mor/nitsche_quadrature.hpp"
+#include "rbvi/mor/pod.hpp"
+#include "rbvi/mor/stability.hpp"
 #include "rbvi/par/stage.hpp"
 #include "rbvi/sweep/sweep.hpp"
 

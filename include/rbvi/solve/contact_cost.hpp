@@ -18,7 +18,7 @@ struct ContactCost {
 ContactCost contact_cost(const Problem &problem, int samples);
 
 /// Whether the columns of a compliance that is kept, so many of them, are made by A's Schur
-/// complement (solve/linear/complement.hpp): by sizes, and where options leave A a direct solver.
+/// complement (solve/complement.hpp): by sizes, and where options leave A a direct solver.
 bool takes_complement(const Problem &problem, double columns);
 
 /// What HighFidelity does with these options: by the estimate unless they say. Where contact

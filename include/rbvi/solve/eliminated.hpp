@@ -14,11 +14,11 @@
 // their multipliers and are solved by a sparse LU factorisation each.
 //
 // A rank has the multipliers, and the rows of B, of its dual nodes
-// (problem/distributed_contact.hpp).
+// (fem/distributed_contact.hpp).
 #pragma once
 
 #include "rbvi/contact/pivots.hpp"
-#include "rbvi/law/friction/active_sets.hpp"
+#include "rbvi/method/active_sets.hpp"
 #include "rbvi/solve/methods.hpp"
 
 namespace rbvi {

@@ -1,5 +1,5 @@
 // High-fidelity solvers at one mu. One result type. Scenes with Nitsche's method:
-// solve/nitsche/nitsche.hpp; the multipliers are then minus the stress at the vertices of the
+// solve/nitsche.hpp; the multipliers are then minus the stress at the vertices of the
 // curve. The mixed problem: three methods that agree,
 //
 //   active_set  semismooth Newton on the condensed problem, B A^-1 B^T asked for column by column,
@@ -11,18 +11,18 @@
 //               the nodes of both)
 //
 // Where contact follows the displacement (large deformations), active_set solves each linearised
-// problem of Kacanov's or Newton's iteration (law/nonlinear), which share the columns of A^-1.
+// problem of Kacanov's or Newton's iteration (method/nonlinear.hpp), which share the columns of A^-1.
 //
 // B, G and the multipliers of uzawa, vi and of active sets by elimination are distributed over the
 // ranks; the condensed problem, and with it what reductions need, has them on every rank.
 #pragma once
 
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/law/answer.hpp"
-#include "rbvi/law/nonlinear/nonlinear.hpp"
+#include "rbvi/fem/problem.hpp"
+#include "rbvi/method/answer.hpp"
+#include "rbvi/method/nonlinear.hpp"
 #include "rbvi/par/groups.hpp"
-#include "rbvi/problem/problem.hpp"
-#include "rbvi/solve/nitsche/nitsche.hpp"
+#include "rbvi/solve/nitsche.hpp"
 
 #include <memory>
 #include <optional>

@@ -1,10 +1,10 @@
 // The methods behind HighFidelity, each on one assembled problem.
 #pragma once
 
-#include "rbvi/law/nonlinear/nonlinear.hpp"
+#include "rbvi/method/nonlinear.hpp"
+#include "rbvi/solve/full_body.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
-#include "rbvi/solve/linear/full_body.hpp"
-#include "rbvi/solve/linear/linear.hpp"
+#include "rbvi/solve/linear.hpp"
 
 namespace rbvi {
 

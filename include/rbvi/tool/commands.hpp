@@ -1,7 +1,7 @@
 // The commands of the rbvi tool.
 #pragma once
 
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 namespace rbvi {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "rbvi/sweep/sweep.hpp"
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 namespace rbvi {
 

@@ -1,7 +1,7 @@
 // A finished model in place of a case: verify and bench measure the model that there is.
 #pragma once
 
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 namespace rbvi {
 

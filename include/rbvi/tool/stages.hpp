@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rbvi/mor/stages.hpp"
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 namespace rbvi {
 

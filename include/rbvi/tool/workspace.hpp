@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rbvi/par/groups.hpp"
-#include "rbvi/tool/options/options.hpp"
+#include "rbvi/tool/options.hpp"
 
 #include <memory>
 

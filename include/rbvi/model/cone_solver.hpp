@@ -1,0 +1,77 @@
+// A query on the pair of spaces. With A_N = R R^T, Y = R^-1 B^T and c = R^-1 f the multipliers
+// solve
+//
+//   min over x >= 0 of  1/2 |Y x - c|^2 + g . x,    then  u = R^-T (c - Y x)
+//
+// What does not depend on mu is done once: Y where A and B have one term each. B and G that do not
+// separate are evaluated anew, on the interfaces alone. Free modes have equations in place of
+// inequalities. An online-enriched model is first reduced to V_N + S_R(mu) (2.17).
+#pragma once
+
+#include "rbvi/method/mixed_qp.hpp"
+#include "rbvi/model/answer.hpp"
+#include "rbvi/model/reduced_body.hpp"
+#include "rbvi/model/sample_starts.hpp"
+
+namespace rbvi {
+
+class ConeSolver : public QueryMethod {
+public:
+  /// `model`, `scene` and `contact` must outlive it.
+  ConeSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+             const QueryOptions &options);
+  /// Throws failure, saying what to try, if the reduced constraints contradict each other, if A_N
+  /// is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the dual basis
+  /// takes to be in contact is pulled at by more than 1 % of the peak pressure.
+  ReducedAnswer solve(const FullMu &mu) override;
+
+private:
+  /// Sets qp_ to where a query starts.
+  void start(const FullMu &mu);
+  void solve_from_start(ReducedAnswer &answer);
+  /// The pair at mu; contact, where it follows the displacement, at a state.
+  void solve_pair(const Vector &state, ReducedAnswer &answer);
+  /// Kacanov's iteration with the pair, accelerated.
+  void solve_following(ReducedAnswer &answer);
+  void evaluate_contact(const Vector &state, ReducedAnswer &answer);
+  void set_b(const Vector &theta_b);
+  void set_y();
+  void solve_dual(ReducedAnswer &answer);
+  /// Sets the energy and the residual of an answer. Throws failure where it is none.
+  void finish(ReducedAnswer &answer);
+  void check_pull(const ReducedAnswer &answer) const;
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  const Contact &contact_;
+  const QueryOptions options_;
+  const ReducedBody body_;
+  bool positive_; ///< every pressure is: no free modes, no negative entry of a generator
+  Index first_dual_ = 0, dual_rows_; ///< the rows of the dual basis that are not zero are these
+
+  // What a query changes.
+  struct Start {
+    std::vector<Index> active;
+    std::optional<MixedQp> qp; ///< with its factorisation, of Y number y_number
+    int y_number = 0;
+  };
+  SampleStarts<Start> starts_;
+  BodyAtMu at_mu_;
+  MixedQp qp_;
+  int y_number_ = 0; ///< Y so far
+  int root_of_y_ = 0;
+  // B is b_scale_ b_, Y is sqrt of at_mu_.scale() times b_scale_ times what it is with `y_`.
+  Vector theta_b_; ///< of b_
+  Matrix b_, turned_b_, y_;
+  double b_scale_ = 1;
+  Vector f_, g_;
+};
+
+/// Relative residual of A u + B^T x = f, B u <= g, x . (B u - g) = 0 for x >= 0: the largest of
+/// |A u + B^T x - f| / (|f| + |B^T x|), max (B u - g)_+ / s and |x . (B u - g)| / (s sum |x|), with
+/// s = max(|g|, |B u|, 1e-4 terms) in the maximum norm. au = A u, bu = B u, btx = B^T x; `terms`:
+/// |B| |u|, what cancels in B u. The last `free` rows are equations: B u = g.
+double kkt_residual(const Vector &au, const Vector &btx, const Vector &f, const Vector &bu,
+                    const Vector &g, const Vector &x, Index free = 0, double terms = 0);
+
+} // namespace rbvi

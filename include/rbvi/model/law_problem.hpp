@@ -1,0 +1,72 @@
+// The law of contact and friction in front of a reduced body, at the nodes of its dual basis: find
+// x by the laws with w = H x + q, H the condensed operator, q the gap, and the slip, of no
+// multipliers.
+#pragma once
+
+#include "rbvi/method/several_answers.hpp"
+#include "rbvi/model/column_laws.hpp"
+#include "rbvi/model/reduced_contact.hpp"
+
+namespace rbvi {
+
+/// At one mu; m multipliers.
+struct LawAtMu {
+  Vector q;    ///< m
+  Matrix b;    ///< m x n; where the law is one on fewer functions, or with a load
+  Vector load; ///< half response to the load; empty without one
+  NodeLaws laws;
+};
+
+/// What multipliers x leave at all nodes.
+struct AtAllNodes {
+  Vector w, diagonal; ///< H x + q, H_jj
+  Vector start;       ///< x - w / H_jj (FrictionResult::start)
+};
+
+class LawProblem {
+public:
+  /// All must outlive it. Throws bad_input for a model without a law at nodes.
+  LawProblem(const ReducedModel &model, const Scene &scene, const Contact &contact);
+  LawProblem(const LawProblem &) = delete;
+
+  /// At mu, contact at a state where it follows one; valid until the next call. Sets mu, theta_b or
+  /// contact of the answer.
+  LawAtMu at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {});
+  ReducedContact &contact() { return *contact_; } ///< of the last at()
+  const BodyAtMu &body() const { return at_mu_; }
+  AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);
+  /// Sets the displacement of answer.lambda. Throws failure where contact leaves the nodes that the
+  /// model has multipliers at.
+  void finish(const LawAtMu &law, ReducedAnswer &answer) const;
+
+private:
+  const ReducedModel &model_;
+  const Contact &interfaces_;
+  const ColumnLaws columns_;      ///< of the dual basis
+  const std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
+  const ReducedBody body_;
+  BodyAtMu at_mu_;
+  const std::unique_ptr<ReducedContact> contact_;
+};
+
+/// Where queries start: from what the training samples around mu predict (core/local_fit.hpp), or
+/// the last answer where that is asked for.
+class LawStarts {
+public:
+  /// Both must outlive it.
+  LawStarts(const ReducedModel &model, const Scene &scene, bool warm);
+  /// FrictionResult::start; empty: from rest.
+  Vector at(const FullMu &mu) const;
+  /// A row of values for each sample, predicted at mu.
+  Vector predicted(const Matrix &of_samples, const FullMu &mu) const;
+  void keep(const Vector &start);
+
+private:
+  const ReducedModel &model_;
+  const Scene &scene_;
+  const bool warm_;
+  const Matrix samples_; ///< where the starts are, as parts of the box
+  Vector last_;
+};
+
+} // namespace rbvi

@@ -1,0 +1,268 @@
+// The reduced model: immutable data that answers a new parameter on one core.
+//
+//   sum_q theta^a_q(mu) A_q u + sum_q theta^b_q(mu) B_q^T x = sum_q theta^f_q(mu) F_q
+//   sum_q theta^b_q(mu) B_q u <= sum_q theta^g_q(mu) G_q,    x >= 0,  complementary
+//
+// u: n coefficients of the primal basis (N POD modes, then S supremizers or responses), x: R
+// coefficients of the generators of the dual cone. theta is a known function of the scene, or comes
+// from empirical interpolation (B.36): a few entries of the full operator are re-assembled on their
+// few cells. Where B and G do not separate, they are evaluated for each mu on the contact
+// interfaces alone, exactly, from the trace of the basis. Other full-order data are there for
+// outputs and for reconstruction alone. All fields are numbered by the undistributed mesh. Where
+// the scene has a motion, u is what is left beside it; where boundaries impose values l(mu), which
+// are in F and G, u is zero there, and reconstruction adds l.
+#pragma once
+
+#include "rbvi/contact/contact.hpp"
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/scene.hpp"
+#include "rbvi/model/chebyshev.hpp"
+#include "rbvi/model/nitsche_model.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rbvi {
+
+/// Entries of a full operator sampled on the cells that touch them. Entry k is the sum over its
+/// contributions of kernel value `local` of cell `cell`.
+struct SampleMesh {
+  struct Contribution {
+    int entry, cell, local;
+  };
+  Matrix vertices;                         ///< (cells * corners) x dim reference coordinates
+  int corners = 3;                         ///< vertices of each cell or edge
+  std::vector<Contribution> contributions; ///< ordered by entry
+  /// Of a and f: the term of the scene that each cell is a cell of, or (facet_cell) has a facet of.
+  std::vector<int> terms{};
+  /// Of f, g and the imposed energy: Cell::imposed_by of each cell, as many numbers for each (-1
+  /// behind those of a facet); empty where nothing is imposed on any.
+  std::vector<int> imposed_by{};
+};
+
+/// One operator as sum_q theta_q(mu) (reduced term q): first the exact terms, whose theta are known
+/// functions of the scene, then those of empirical interpolation, J of them.
+struct AffineTerms {
+  Matrix reduced;                  ///< (entries of the reduced operator) x size(), see ReducedModel
+  Matrix interpolation;            ///< J x J, lower triangular with unit diagonal (B.34)
+  std::vector<SampleMesh> samples; ///< J entries: on the domain (a, f), on each interface (b, g)
+  double error = 0;                ///< e_EIM reached (B.32)
+  int exact = 0;                   ///< exact terms
+  int size() const { return exact + static_cast<int>(interpolation.rows()); }
+};
+
+/// Terms of A that differ on few functions, where what changes with mu lies apart from contact:
+/// term q is scales_q A_1 + Q C_q Q^T.
+struct StiffnessChange {
+  Vector scales; ///< terms
+  Matrix range;  ///< Q: n x r; empty: ReducedModel::a has a column for every term
+  Matrix cores;  ///< lower triangles of the r x r matrices C_q, column by column: r(r+1)/2 x terms
+  Index rank() const { return range.cols(); }
+};
+
+/// Error of one output over the validation set.
+struct OutputError {
+  std::string name;                           ///< OutputColumn::name
+  double mean = 0, max = 0;                   ///< absolute
+  double mean_of_range = 0, max_of_range = 0; ///< over the range of the high-fidelity values
+  double mean_of_value = 0, max_of_value = 0; ///< over each value
+};
+
+/// Errors measured by `rbvi verify`, relative, over the validation set and the corners and faces of
+/// the box (corners_and_faces); negative: not measured.
+struct ValidationErrors {
+  int count = 0; ///< parameters, those without an answer of the model apart
+  double u_mean = -1, u_max = -1, lambda_mean = -1, lambda_max = -1;
+  double tangential_mean = -1, tangential_max = -1; ///< with friction; lambda is the normal part
+  std::vector<OutputError> outputs{};               ///< in the order of output_columns()
+  int unanswered = 0;
+};
+
+/// The largest value of a quantity over some queries, and where.
+struct Worst {
+  double value = 0;
+  Mu at{}; ///< free parameters; empty where there was no query
+};
+
+/// Queries that `rbvi offline` asked of the model that it had just made, random in its box and at
+/// the corners and faces of that.
+struct SelfCheck {
+  int queries = 0; ///< all; 0: none were asked
+  int unanswered = 0;
+  Mu unanswered_at{};      ///< the first one without an answer; empty where there is none
+  std::string reason = ""; ///< why there was none
+  /// kkt_residual, max_penetration, and friction_violation over the peak pressure of all queries.
+  Worst residual{}, penetration{}, friction{};
+  int at_boundary = 0; ///< of the queries, at corners and faces
+  double scale = 0;    ///< the largest component of the displacement of the contact region
+  /// All were answered, with residuals of round-off.
+  bool answered() const { return unanswered == 0 && residual.value <= 1e-10; }
+  /// Bodies do not penetrate, and friction is bounded, but for what a law on weighted gaps and
+  /// tractions leaves between nodes: a few parts in a thousand of these scales.
+  bool admissible() const { return penetration.value <= 2e-2 * scale && friction.value <= 2e-2; }
+  bool clean() const { return answered() && admissible(); }
+};
+
+/// H = B A^-1 B^T on the columns of the dual basis (m of them), term by term:
+/// H(mu) = sum over t of coefficient_t(mu) terms_t. The terms come in blocks, one for each pair of
+/// terms p <= q of b, of J terms each: coefficient = theta_p theta_q (shape w)_j, w the weights of
+/// the grid at mu. Where b does not separate, the terms are those of E^T A^-1 E on the contact dofs
+/// that the dual basis meets (m of them), in one block, and H = B (sum of terms) B^T.
+struct CondensedOperator {
+  std::vector<ChebyshevAxis> axes; ///< of the free parameters that a depends on
+  Matrix shape;                    ///< J x grid points
+  Matrix terms;                    ///< m^2 x (blocks * J): symmetric matrices, column by column
+  std::vector<int> dofs;           ///< where b does not separate: these contact dofs, rising
+  double error = 0;                ///< of the interpolation over the grid, relative, estimated
+};
+
+/// What the multipliers are combined from.
+enum class MultiplierReduction {
+  automatic, ///< condensed where every interface keeps its nodes (ContactRecipe), else cone
+  cone,      ///< a cone, stable with supremizers; without friction
+  condensed, ///< every node: the law of contact and friction is exact, the body is reduced
+  collocated ///< a cone for lambda_n, modes for lambda_tau, the bound at collocation nodes (3.54)
+};
+
+/// "auto", "cone", "condensed", "collocated".
+const std::vector<std::string> &multiplier_reduction_names();
+
+/// The functions of MultiplierReduction::collocated by their coefficients in the nodal dual basis:
+/// k nodes, t of them of interfaces with friction.
+struct MultiplierBasis {
+  Matrix normal;          ///< k x R, a cone
+  Matrix tangential;      ///< t x S, modes
+  std::vector<int> nodes; ///< the collocation nodes
+};
+
+/// Where B^n and B^tau, the rows of lambda_n and those of lambda_tau, are interpolated apart.
+struct TermsApart {
+  int normal =
+      0; ///< the first so many terms of b are B^n's, the others B^tau's; 0: all are of both
+  double normal_error = 0, tangential_error = 0; ///< e_EIM reached of each (3.61)
+};
+
+/// The law of contact and friction at every node, or on functions of the nodes. The dual basis of
+/// the model is nodal: a column for every node of the interfaces, or pair of mirror images; with
+/// MultiplierReduction::condensed of those near contact alone.
+struct NodalLaw {
+  int normal = 0; ///< columns of the dual basis for lambda_n; the rest are for lambda_tau
+  MultiplierReduction reduction = MultiplierReduction::condensed; ///< neither of the first two
+  MultiplierBasis basis;       ///< empty where reduction is condensed
+  CondensedOperator condensed; ///< without terms: collocated, and no check at all nodes
+  bool mended = true; ///< answers of a reduced law that fail at some node are mended by exact steps
+  TermsApart apart;
+  Matrix starts;    ///< m x P: FrictionResult::start of the training samples (without the condensed
+                    ///< operator their multipliers), where a query starts from
+  Matrix starts_mu; ///< free parameters x P: where they are
+  Matrix states;    ///< contact dofs x P: their displacements, where contact follows them; or empty
+};
+
+/// A contact interface of the model.
+struct InterfaceModel {
+  InterfaceMesh mesh;
+  std::vector<int> nodes; ///< numbers of its nodes in the whole mesh
+};
+
+struct ReducedModel {
+  /// Read from a file, what its record holds (scene_record.hpp), or by the scene's code where a
+  /// function has no name. Its parameters are those of the model, free and fixed.
+  Scene scene;
+  std::map<std::string, std::string> settings; ///< tolerances and options that made it
+  std::string mesh_fingerprint;
+
+  int modes = 0;       ///< N
+  int supremizers = 0; ///< S, or (condensed) the responses that join the modes
+  int generators = 0;  ///< R
+  int free_modes = 0;  ///< the last of the R: their coefficients take either sign
+  /// V_N + S_R(mu) is made for each mu (2.17); the supremizers span S_R(mu) for every mu.
+  bool online_enriched = false;
+  int primal_size() const { return modes + supremizers; }
+
+  /// reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x terms; of A_1 alone
+  /// where the terms are in a_change.
+  AffineTerms a;
+  StiffnessChange a_change;
+  AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
+  AffineTerms f; ///< n x terms; none: no load
+  AffineTerms g; ///< R x J
+  AffineTerms imposed_energy; ///< 1 x terms, of imposed displacements; none: there are none
+
+  std::vector<InterfaceModel> interfaces;
+  Matrix dual_basis; ///< dual dofs x R; entries >= 0 but for hybrid cones
+  /// The primal basis at the contact dofs, k x n. In a large pair of spaces at `trace_dofs` alone,
+  /// those of the nodes over which contact moves and of two layers around them: elsewhere gaps are
+  /// not known.
+  Matrix contact_trace;
+  std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
+  Index contact_dofs() const { return interfaces.front().mesh.columns; } ///< k
+  /// B and G do not separate: they are evaluated for each mu on the interfaces.
+  bool evaluates_contact() const { return b.size() == 0 && has_multipliers(); }
+  std::optional<NodalLaw> law;
+  std::optional<NitscheModel> nitsche;
+  /// Without: R = 0, and b and g have no terms.
+  bool has_multipliers() const { return !nitsche; }
+
+  // Full order, for reconstruction; may stay in a file of their own, which may be large.
+  std::string fields_key;      ///< of that file, where they are not here
+  Matrix primal_basis;         ///< dofs x n, fixed dofs included
+  Matrix mesh_points;          ///< nodes x dim, reference coordinates
+  std::vector<int> mesh_cells; ///< node numbers of each cell, nodes_per_cell of them
+  std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty where nothing is imposed
+
+  ValidationErrors validation_enriched, validation_decorrelated;
+  Matrix validated_mu; ///< free parameters x P, where these were measured
+  SelfCheck self_check;
+  Matrix trained_mu; ///< free parameters x samples
+  Matrix failed_mu;  ///< free parameters x samples that have no high-fidelity answer
+  std::map<std::string, std::vector<double>> histories; ///< "pod/error", "cone/e_orth", ...
+  std::map<std::string, double> stage_seconds;
+};
+
+inline constexpr int model_schema = 17;
+
+/// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
+/// not finite (members that reconstruction alone needs may all be empty).
+void check_model(const ReducedModel &model);
+
+/// What reconstruction alone needs, primal_basis, mesh_points, mesh_cells and imposed_by, is in a
+/// file of its own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the
+/// model is not.
+std::filesystem::path fields_file(const std::filesystem::path &model);
+
+/// Writes both files; that of the fields first, and only where it holds others or is not there, and
+/// not for a model without fields. Throws failure (check_model, H5Writer::commit).
+void write_model(const ReducedModel &model, const std::filesystem::path &path);
+
+/// Throws bad_input (see H5Reader), also for functions or a scene that the registry does not have,
+/// or parameters that are not those of the scene, and where the fields are asked for and are not
+/// there or another model's. `with_fields` false leaves them out.
+ReducedModel read_model(const std::filesystem::path &path, const Registry &registry,
+                        bool with_fields = true);
+
+/// The model with the first n primal columns alone (n = modes: the decorrelated basis) and
+/// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
+/// that the model does not have.
+ReducedModel leading(const ReducedModel &model, int n, int r);
+
+/// The errors measured for this model: with supremizers if it has any. `count` 0: nobody measured
+/// them.
+const ValidationErrors &expected_errors(const ReducedModel &model);
+
+/// The largest absolute error that was measured of each of its outputs; residuals and the like have
+/// none.
+ErrorOfOutput errors_of_outputs(const ReducedModel &model);
+
+/// Row `i` of mesh_points as a point.
+Point point_of(const Matrix &points, Index i);
+
+/// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.
+Contact contact_of(const ReducedModel &model, const Scene &scene);
+
+/// The whole scene of this name, these options and parameters, by its code; ranges of validity are
+/// those of the code. Throws bad_input for what the registry does not have.
+Scene scene_by_code(const Scene &stored, const Registry &registry);
+
+} // namespace rbvi

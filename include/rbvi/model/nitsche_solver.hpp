@@ -1,0 +1,70 @@
+// The online stage of Nitsche's method: Newton's method in the n coefficients of the reduced basis,
+//
+//   A_gamma u + (contact and friction at points of the curve) = f,
+//
+// A_gamma = A + the terms that keep the method consistent, both separated. The points are all
+// Gauss points of the curve or a few with weights of their own: a minimisation either way, convex
+// where A_gamma is positive definite, with exact line search. Coulomb's bound moves with u: Newton
+// steps, halved until the residual falls, and where they do not settle, bounds frozen in an outer
+// loop (4.63). With empirical interpolation over (mu, Newton step) there is no energy: (4.79) as
+// printed, from neighbouring samples; where it does not converge, the derivative of its vectors,
+// with halved steps. Where contact follows the displacement (large deformations) the axes of the
+// points turn to those of every iterate.
+#pragma once
+
+#include "rbvi/model/answer.hpp"
+#include "rbvi/model/nitsche_layer_terms.hpp"
+#include "rbvi/model/reduced_body.hpp"
+
+#include <memory>
+
+namespace rbvi {
+
+class ReducedNitsche : public QueryMethod {
+public:
+  /// `model`, and the scene of the layer, must outlive it.
+  ReducedNitsche(const ReducedModel &model, NitscheLayer layer);
+  ~ReducedNitsche() override;
+  /// Starts from what the training samples predict; where there are none, from u = 0. Throws
+  /// failure, saying what to try, where Newton's method does not converge or the tangent is not
+  /// positive definite.
+  ReducedAnswer solve(const FullMu &all_parameters) override;
+
+  /// What each point adds to the residual of the last answer, n x points, ...
+  Matrix point_residuals() const;
+  /// ... and the tangent, n x n.
+  Matrix tangent() const;
+
+  /// nitsche_multiplier of the whole curve.
+  Vector multiplier(const FullMu &all_parameters, const Vector &u) const;
+  /// All that is measured but the energy. Pressures need u to a part in gamma, which few points do
+  /// not give between them: from u, Newton's method goes on over the whole curve, one or two steps,
+  /// and forces, widths and pressures are those of its answer. Throws failure where it does not
+  /// converge.
+  void outputs(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
+
+private:
+  struct System;
+  struct Interpolated;
+
+  /// a(u, u) / 2 - f(u), and a_gamma.
+  struct Quadratic {
+    Matrix a, a_gamma; ///< n x n
+    Vector f;
+  };
+  Quadratic quadratic_at(const FullMu &all_parameters) const;
+  /// `of_samples`: NitscheModel::starts or states.
+  Vector predicted(const Matrix &of_samples, const FullMu &all_parameters) const;
+  /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
+  Vector over_whole_curve(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
+
+  const ReducedModel &model_;
+  const NitscheLayer layer_;
+  const ReducedBody body_;
+  SampledLayer consistency_;
+  std::unique_ptr<System> system_;
+  std::unique_ptr<Interpolated> interpolated_;
+  mutable std::unique_ptr<System> whole_; ///< made by the first outputs of a model with few points
+};
+
+} // namespace rbvi

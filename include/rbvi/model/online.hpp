@@ -1,0 +1,62 @@
+// The online stage: one parameter in, one checked answer out. Serial and dense. By a method for
+// each kind of model: the pair of spaces (model/cone_solver.hpp), the law at the nodes
+// (model/law_solver.hpp), Nitsche's method (model/nitsche_solver.hpp).
+#pragma once
+
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/model/cone_solver.hpp"
+#include "rbvi/model/law_solver.hpp"
+#include "rbvi/model/model.hpp"
+#include "rbvi/model/nitsche_solver.hpp"
+#include "rbvi/model/nodal_trace.hpp"
+
+#include <memory>
+
+namespace rbvi {
+
+static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64 && alignof(Eigen::Matrix<double, 8, 1>) == 64,
+              "include headers of rbvi before those of Eigen, or define EIGEN_MAX_ALIGN_BYTES and "
+              "EIGEN_MAX_STATIC_ALIGN_BYTES as 64 in the whole program: both share memory");
+
+/// Answers queries on a model that it does not own. An answer depends on its mu and the model, to
+/// round-off, not on the queries before (but QueryOptions::warm).
+class OnlineSolver {
+public:
+  explicit OnlineSolver(const ReducedModel &model, const QueryOptions &options = {});
+  OnlineSolver(const OnlineSolver &) = delete;
+  /// With the forms, map and obstacle of `scene` instead of those of the model.
+  OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options = {});
+  /// `mu`: the free parameters; throws bad_input outside the box unless `extrapolate`, and failure,
+  /// saying what to try, where the method has no answer.
+  ReducedAnswer solve(const Mu &mu, bool extrapolate = false);
+  /// Energy, forces and contact measures of an answer, at a cost that depends on the contact region
+  /// alone (min_u is left unset: it needs the full field). Expected errors are set inside the box.
+  /// Throws failure (check_finite).
+  Outputs outputs(const Mu &mu, const ReducedAnswer &solution) const;
+  /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
+  Vector multiplier(const ReducedAnswer &solution) const;
+  /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap); infinite where
+  /// the model has no displacement (ReducedModel::trace_dofs).
+  Vector contact_gap(const ReducedAnswer &solution) const;
+  /// At all dofs, without the motion of the scene, with the values that boundaries impose. Throws
+  /// failure if the model was read without its fields.
+  Vector field(const ReducedAnswer &solution) const;
+  const ReducedModel &model() const { return model_; }
+  const Scene &scene() const { return scene_; }
+  const Contact &contact() const { return contact_; }
+
+private:
+  /// weights, nodal_b and nodal_gap.
+  ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
+
+  const ReducedModel &model_;
+  const Scene scene_; ///< with_imposed_loads
+  const Sum imposed_energy_;
+  Contact contact_;
+  std::unique_ptr<QueryMethod> method_;
+  const ReducedNitsche *nitsche_ = nullptr; ///< it, by Nitsche's method
+  std::optional<NodalTrace> trace_;         ///< else
+  SparseMatrix dual_basis_;
+};
+
+} // namespace rbvi

@@ -1,0 +1,26 @@
+// What a new model does not answer, before a user finds out.
+#pragma once
+
+#include "rbvi/model/online.hpp"
+
+namespace rbvi {
+
+/// Random ones: 200, fewer (at least 20) of a model of more than 500 functions, whose queries take
+/// long.
+int queries_of_check(const ReducedModel &model);
+
+/// Asks `model` at so many random parameters of its box, the same on every machine, and at its
+/// corners and faces (corners_and_faces), and collects what SelfCheck holds. Costs so many queries
+/// with outputs. Throws bad_input where model and scene do not fit.
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries);
+
+/// Asks a model with friction whether its law has other answers (QueryOptions::looks_for_others) at
+/// the parameters of `set`; empty: at those of the self-check. Where it has, the model knows
+/// (has_several_answers). Costs a few times as many queries. Throws likewise.
+void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set = {});
+
+/// "200 random queries and 14 at corners and faces, all answered; largest residual 3e-14
+/// (radius=0.8), ...": lines for people; says what to do where it is not clean.
+void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space);
+
+} // namespace rbvi

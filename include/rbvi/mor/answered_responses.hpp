@@ -1,0 +1,50 @@
+// Responses to what the law answers, in place of those to the loads of all multipliers: where A
+// does not change with mu, the law at the nodes needs no displacements, and its answers at many mu
+// say which of them there are. Their number depends on how far contact moves, not on the mesh.
+#pragma once
+
+#include "rbvi/mor/condensed.hpp"
+#include "rbvi/mor/orthonormal.hpp"
+
+namespace rbvi {
+
+/// Of append_answered_responses in reduce(). Multipliers do not depend on it, and u is then known
+/// to 1e-5 (cases/two_disks/README.md): a mesh so large that it matters is not finer than that.
+inline constexpr double answered_tolerance = 1e-5;
+
+/// Whether only the responses to answers join the modes: where the fields of all, one by one, have
+/// more than options.large_fields numbers. `loads`: of condensed_loads.
+bool awaits_answers(const Problem &problem, const CondensedLoads &loads,
+                    const CondensedOptions &options);
+
+/// Combinations of loads whose responses come closest in the energy to those of some answers of the
+/// law.
+class ResponseDirections {
+public:
+  /// `compliance`: loads^T A^-1 loads. Throws failure where it is not positive definite.
+  explicit ResponseDirections(const Matrix &compliance);
+  /// Adds directions until every one of these answers (loads x any number) is at most `tolerance`
+  /// away from them, relative to the largest answer so far.
+  void add(const Matrix &answers, double tolerance);
+  /// The largest distance of one of `answers` to the directions taken so far, relative to the
+  /// largest answer that was added; both in the energy.
+  double left(const Matrix &answers) const;
+  /// Coefficients, loads x r, orthonormal in the energy: as few directions as are at most
+  /// `tolerance` away from every answer that was added, the parts that add() left out not counted.
+  Matrix coefficients(double tolerance) const;
+
+private:
+  Matrix root_;              ///< R with H = R^T R: the energy of loads c is |R c|^2
+  OrthonormalColumns space_; ///< R times what was taken
+  Matrix parts_;             ///< of the answers in it
+  double largest_ = 0;
+};
+
+/// Appends responses to the modes, for what `model` answers at the training parameters and at
+/// random ones: a hundred at a time, until another hundred are there to the tolerance. `model`:
+/// with the condensed operator of `loads` and any modes. Returns how many. Collective. Throws
+/// failure where the law has no answer at any mu, or always new ones.
+int append_answered_responses(Problem &problem, const CondensedLoads &loads,
+                              const ReducedModel &model, double tolerance, LinearBasis &modes);
+
+} // namespace rbvi

@@ -1,0 +1,48 @@
+// What a reduced model of Nitsche's method takes of the contact curve: the cells beside it, the
+// terms that keep the method consistent, and how contact and friction are integrated.
+#pragma once
+
+#include "rbvi/fem/problem.hpp"
+#include "rbvi/model/model.hpp"
+#include "rbvi/mor/pod.hpp"
+#include "rbvi/sweep/sweep.hpp"
+
+#include <array>
+#include <vector>
+
+namespace rbvi {
+
+struct CurveOptions {
+  CurveRule rule = CurveRule::empirical;
+  /// empirical: largest error of u, relative, that the points add at a training parameter; 0:
+  /// what the modes leave.
+  double tolerance = 0;
+  double eim_tolerance = 1e-6; ///< interpolated: of the matrices and vectors (B.32)
+  /// interpolated: the errors over the Newton steps at these are reported, too.
+  std::vector<Mu> eim_validation;
+};
+
+/// e_EIM along the terms (B.32): over the training pairs (mu, Newton step), over those of other mu
+/// (4.85), and over their last steps alone (4.87).
+struct EimErrors {
+  std::vector<double> training, validation, converged;
+};
+
+struct CurveReport {
+  // Empirical: after each pass, with the largest relative error of u that it adds at a training
+  // parameter; the last is what the model has.
+  std::vector<int> points;
+  std::vector<double> error;
+  // Interpolated.
+  std::array<EimErrors, 4> eim_errors; ///< of B^n, Theta^n, B^tau, Theta^tau
+  int states = 0;                      ///< pairs (mu, Newton step)
+};
+
+/// Fills model.nitsche; the rest of the model is there. `coefficients`: of the samples in the
+/// modes, n x P (interpolated alone asks for them). `u_left`: relative error that the modes leave
+/// in u. Collective. Throws failure where a reduced problem has no answer at a training parameter.
+CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
+                         const Matrix &coefficients, double u_left, const CurveOptions &options,
+                         ReducedModel &model);
+
+} // namespace rbvi

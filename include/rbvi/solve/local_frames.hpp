@@ -1,0 +1,41 @@
+// Displacements of the nodes of a contact curve by their components along the normal and the
+// tangent, u = Q v, so that a bound on the normal displacement is a bound on a single unknown. Two
+// dimensions.
+#pragma once
+
+#include "rbvi/fem/problem.hpp"
+
+namespace rbvi {
+
+/// normal . u <= gap at one node.
+struct NodalBound {
+  Index contact_dof; ///< of its first component; the second follows
+  Point normal;      ///< of length 1
+  double gap;
+};
+
+/// At all nodes, middles too, of the boundaries of interfaces of cells beside them, but for those
+/// that are fixed in some direction. Throws bad_input for a node of two boundaries.
+std::vector<NodalBound> bounds_along(const Contact &contact, const FullMu &mu);
+
+class LocalFrames {
+public:
+  /// Collective. `problem` must outlive it.
+  explicit LocalFrames(const Problem &problem);
+  /// The bounds of what follows, always at the same nodes. Collective.
+  void set(std::vector<NodalBound> bounds);
+  Handle<Mat> turned(Mat a) const;      ///< Q^T A Q
+  Handle<Vec> turned(Vec f) const;      ///< Q^T f
+  Handle<Vec> turned_back(Vec v) const; ///< Q v
+  const std::vector<NodalBound> &bounds() const { return bounds_; }
+  /// v <= upper: the gap for normal components, else infinity.
+  Handle<Vec> upper() const;
+
+private:
+  const Problem &problem_;
+  std::vector<NodalBound> bounds_;
+  std::vector<PetscInt> row_of_; ///< contact dofs: row if it is this rank's, else -1
+  Handle<Mat> q_;
+};
+
+} // namespace rbvi

@@ -1,0 +1,399 @@
+// Contact of a curve with something rigid by multipliers: integrals over its edges, which ask at
+// each of their points what it faces, and the outputs.
+#include "rbvi/contact/curve.hpp"
+#include "rbvi/contact/entity_sum.hpp"
+#include "rbvi/contact/support.hpp"
+#include "rbvi/contact/support_outputs.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/quadrature.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+/// A quadrature point of every edge; the weights sum to 1.
+struct TracePoint {
+  double s; ///< along the edge, 0 ... 1
+  double weight;
+  std::array<double, 2> eta; ///< of both multipliers: 1 - s and s
+  std::array<double, 3> phi; ///< of the displacements: vertices, middle
+};
+
+TracePoint trace_point(int degree, const EdgePoint &at) {
+  return {at.s, at.weight, {1 - at.s, at.s}, edge_functions(degree, at.s)};
+}
+
+/// Four Gauss points, or the two vertices: there only the vertex itself moves, a middle is free.
+std::vector<TracePoint> trace_points(int degree, bool lumped) {
+  if (lumped) return {trace_point(degree, {0, 0.5}), trace_point(degree, {1, 0.5})};
+  std::vector<TracePoint> points;
+  for (const EdgePoint &at : edge_quadrature)
+    points.push_back(trace_point(degree, at));
+  return points;
+}
+
+/// The point of an edge, reference coordinates.
+Point point_on(const Cell &edge, const TracePoint &at) {
+  const Point &begin = edge.reference[0], &end = edge.reference[1];
+  return {at.eta[0] * begin[0] + at.eta[1] * end[0], at.eta[0] * begin[1] + at.eta[1] * end[1], 0};
+}
+
+double length_of(const Cell &edge) {
+  return edge_length(edge.mapped[0], edge.mapped[1]);
+}
+
+/// n . the normal of the mapped edge that points down where the edge goes to the right.
+double downwards(const Cell &edge, const Point &n) {
+  const Point &begin = edge.mapped[0], &end = edge.mapped[1];
+  return n[0] * (end[1] - begin[1]) - n[1] * (end[0] - begin[0]);
+}
+
+class CurveSupport : public EntitySum {
+public:
+  /// Throws bad_input unless the mesh is a curve with displacements of two components.
+  CurveSupport(const Scene &scene, InterfaceMesh mesh, const RigidContact &rigid);
+
+  void integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const override;
+  void weigh(const FullMu &, const Cell &edge, EntityValues &values) const override {
+    values.weights.setConstant(length_of(edge) / 2);
+  }
+  FrictionBound bound(const FullMu &mu) const override { return friction_bound(friction_, mu); }
+  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
+                                const Point &displacement) const override;
+  void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
+               double least, Outputs &outputs) const override;
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
+    return support_fields(scene_, mu, *this, u, lambda);
+  }
+
+  const EntitySum *entity_sum() const override { return follows_state() ? nullptr : this; }
+  bool follows_state() const override { return facing_.follows_state; }
+  bool has_curvature() const override { return follows_state() && !facing_.along_body; }
+  Curvature curvature(const FullMu &mu, const ContactState &state,
+                      const Vector &lambda) const override;
+  bool is_nodal() const override { return has_curvature() && mesh_.imposed_by.empty(); }
+  SparseMatrix averages() const override;
+  NodalEvaluation nodal_at(const FullMu &mu) const override;
+
+private:
+  struct Lift {
+    Vector horizontal, vertical; ///< B e_x and B e_y
+  };
+  struct AtRest {
+    double length = 0;               ///< of the edge, mapped
+    std::vector<PlacedPoint> points; ///< of quadrature
+  };
+  void find_side();
+  Cell mapped_edge(const FullMu &mu, Index edge) const;
+  Point sum(const Cell &edge, const std::array<double, 3> &coefficients) const;
+  Point deformed_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
+                        const Point &x) const;
+  FacedPoint faced_at(const FullMu &mu, const Cell &edge, const TracePoint &at) const;
+  Lift lift(const FullMu &mu, const ContactState &state, const Matrix &mapped,
+            const Vector &lambda) const;
+  void add_edge(const FullMu &mu, Index edge, const AtRest &rest, const Vector &state,
+                const Vector &x, NodalCondition &condition) const;
+
+  Facing facing_;
+  Friction friction_;
+  std::vector<TracePoint> points_;
+  double side_ = 0; ///< 1: the body is above the curve, -1: below, 0: not known
+};
+
+CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
+                           const RigidContact &rigid)
+    : EntitySum(scene, std::move(interface_mesh), 1), facing_(rigid.facing),
+      friction_(rigid.friction), points_(trace_points(mesh_.degree, rigid.lumped)) {
+  const Index vertices = check_curve(mesh_, 0, "support's boundary");
+  if (mesh_.components != 2)
+    throw bad_input("scene " + scene.name +
+                    ": a rigid support is for displacements of two components");
+  const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
+  set_dual(vertices, copies, rigid.lumped,
+           linear_gram({mesh_.points.begin(), mesh_.points.begin() + vertices}, copies));
+  find_side();
+}
+
+/// On which side of the curve the body ends, as the normal of the edge that is nearest to what it
+/// faces at the values of the scene's parameters says.
+void CurveSupport::find_side() {
+  FullMu mu;
+  for (const Parameter &parameter : scene_.parameters.all)
+    mu.push_back(parameter.value);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    try {
+      const Cell edge = mapped_edge(mu, e);
+      const FacedPoint here = faced_at(mu, edge, points_.front());
+      if (!(std::abs(here.gap) < nearest)) continue;
+      nearest = std::abs(here.gap);
+      side_ = std::copysign(1, downwards(edge, here.normal));
+    } catch (const std::exception &) { // it faces nothing at these values
+    }
+  }
+}
+
+Cell CurveSupport::mapped_edge(const FullMu &mu, Index e) const {
+  Cell edge = reference_entity(e);
+  for (std::size_t i = 0; i < 2; ++i)
+    edge.mapped[i] = scene_.map(mu, edge.reference[i]);
+  return edge;
+}
+
+/// Of the displacement at its nodes.
+Point CurveSupport::sum(const Cell &edge, const std::array<double, 3> &coefficients) const {
+  Point result{};
+  for (int k = 0; edge.displacement != nullptr && k < 2 * mesh_.per_entity; ++k)
+    result[k % 2] += coefficients[k / 2] * edge.displacement[k];
+  return result;
+}
+
+/// The tangent at rest is as long as the edge; the slope of the displacement is added to it.
+Point CurveSupport::deformed_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
+                                    const Point &x) const {
+  const Point rest = facing_.body_normal(mu, x), slope = sum(edge, edge_slopes(mesh_.degree, at.s));
+  const double whole = length_of(edge);
+  const Point tangent{slope[0] - whole * rest[1], slope[1] + whole * rest[0], 0};
+  const double norm = std::hypot(tangent[0], tangent[1]);
+  if (!(norm > 1e-3 * whole)) throw failure("an edge of the contact curve has lost its length");
+  return {tangent[1] / norm, -tangent[0] / norm, 0};
+}
+
+/// At a quadrature point of an edge, which has its displacement.
+FacedPoint CurveSupport::faced_at(const FullMu &mu, const Cell &edge, const TracePoint &at) const {
+  const PlacedPoint point = place(scene_, facing_, mu, point_on(edge, at));
+  const Point displacement = sum(edge, at.phi);
+  if (!facing_.along_body) return facing_.at(mu, point, displacement);
+  const FacedPoint here = facing_.at(mu, point, displacement);
+  const Point n = deformed_normal(mu, edge, at, point.x);
+  const double distance = here.gap - dot(here.normal, displacement);
+  return {n, dot(n, here.normal) * distance + dot(n, displacement), slip_along(n, point.motion)};
+}
+
+PointConstraint CurveSupport::constraint_at(const FullMu &mu, const Point &x, const Point &,
+                                            const Point &displacement) const {
+  const FacedPoint at = facing_.at(mu, place(scene_, facing_, mu, x), displacement);
+  return {at.normal, at.gap};
+}
+
+void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const {
+  const double whole = length_of(edge);
+  const Index columns = values.b.cols(), nodes = columns / 2;
+  const bool friction = values.b.rows() > 2;
+  values.b.setZero();
+  values.g.setZero();
+  for (const TracePoint &at : points_) {
+    const double weight = at.weight * whole;
+    const FacedPoint here = faced_at(mu, edge, at);
+    for (Index a = 0; a < 2; ++a) {
+      const double eta = weight * at.eta[a];
+      for (Index node = 0; node < nodes; ++node)
+        for (Index c = 0; c < 2; ++c)
+          values.b(a, 2 * node + c) += eta * at.phi[node] * here.normal[c];
+      values.g[a] += here.gap * eta;
+      if (friction) values.g[2 + a] -= here.slip * eta;
+    }
+  }
+  for (Index a = 0; a < 2 && friction; ++a) // v . tau is v . n with v turned: (v_y, -v_x) . n
+    for (Index k = 0; k < columns; k += 2) {
+      values.b(2 + a, k) = -values.b(a, k + 1);
+      values.b(2 + a, k + 1) = values.b(a, k);
+    }
+}
+
+/// The work of multipliers on a unit displacement, B e_x and B e_y, where `lambda` is not zero.
+/// `mapped`: the vertices.
+CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &state,
+                                      const Matrix &mapped, const Vector &lambda) const {
+  Lift result{Vector::Zero(dual_.size()), Vector::Zero(dual_.size())};
+  std::vector<double> displacement;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::span<const int> rows = rows_of(e);
+    if (std::ranges::none_of(rows, [&](Index row) { return row >= 0 && lambda[row] != 0; }))
+      continue;
+    Cell edge = reference_entity(e);
+    if (follows_state()) set_displacement(mu, e, state, edge, displacement);
+    for (Index i = 0; i < 2; ++i)
+      edge.mapped[i] = {mapped(e + i, 0), mapped(e + i, 1), 0};
+    const double whole = length_of(edge);
+    const auto pressure = [&](std::size_t a) { return rows[a] < 0 ? 0 : lambda[rows[a]]; };
+    for (const TracePoint &at : points_) {
+      const Point n =
+          facing_.normal ? facing_.normal(mu, point_on(edge, at)) : faced_at(mu, edge, at).normal;
+      // Tresca's traction acts without pressure, too.
+      const bool pressed = at.eta[0] * pressure(0) + at.eta[1] * pressure(1) > 0;
+      if (pressed && side_ != 0) check_pressed_side(side_ * downwards(edge, n), point_on(edge, at));
+      for (std::size_t a = 0; a < 2; ++a) {
+        if (rows[a] < 0) continue;
+        const double eta = at.weight * whole * at.eta[a];
+        result.horizontal[rows[a]] += eta * n[0];
+        result.vertical[rows[a]] += eta * n[1];
+        if (dual_.components == 1) continue;
+        result.horizontal[rows[2 + a]] -= eta * n[1];
+        result.vertical[rows[2 + a]] += eta * n[0];
+      }
+    }
+  }
+  return result;
+}
+
+void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
+                           const Vector &lambda, double, Outputs &outputs) const {
+  const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + mesh_.count() + 1);
+  const Matrix mapped = mapped_points(scene_, mu, vertices);
+  const Lift unit = lift(mu, operators.state, mapped, lambda);
+  support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
+                   mapped(dual_.vertices, Eigen::all)},
+                  outputs);
+  if (facing_.closed_ends[0]) return;
+  const std::vector<Index> on_axis = partly_fixed(); // of symmetry: there contact has no end
+  const auto carries = [&](Index node) {
+    return lambda[node] > 0 && std::ranges::find(on_axis, node) == on_axis.end() ? 1.0 : 0.0;
+  };
+  outputs.ends_in_contact = carries(0) + carries(dual_.nodes() - 1);
+}
+
+Curvature CurveSupport::curvature(const FullMu &mu, const ContactState &state,
+                                  const Vector &lambda) const {
+  std::vector<Eigen::Triplet<double>> along_tau;
+  std::vector<double> weights, displacement;
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::span<const int> dual = rows_of(e);
+    const auto pressure = [&](std::size_t a) { return dual[a] < 0 ? 0 : lambda[dual[a]]; };
+    if (pressure(0) == 0 && pressure(1) == 0) continue;
+    Cell edge = mapped_edge(mu, e);
+    set_displacement(mu, e, state, edge, displacement);
+    const std::vector<Index> columns = columns_of(e);
+    for (const TracePoint &at : points_) {
+      const FacedPoint here = faced_at(mu, edge, at);
+      const Point tau{-here.normal[1], here.normal[0], 0};
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        if (columns[k] >= 0)
+          along_tau.emplace_back(std::ssize(weights), columns[k], at.phi[k / 2] * tau[k % 2]);
+      weights.push_back(at.weight * length_of(edge) * here.curvature *
+                        (at.eta[0] * pressure(0) + at.eta[1] * pressure(1)) / 2);
+    }
+  }
+  Curvature result{SparseMatrix(std::ssize(weights), mesh_.columns), {}};
+  result.s.setFromTriplets(along_tau.begin(), along_tau.end());
+  result.e = Eigen::Map<const Vector>(weights.data(), result.s.rows()).asDiagonal() * result.s;
+  return result;
+}
+
+/// On the reference curve.
+SparseMatrix CurveSupport::averages() const {
+  std::vector<Eigen::Triplet<double>> entries;
+  Vector weights = Vector::Zero(dual_.nodes());
+  for (Index e = 0; e < mesh_.count(); ++e) {
+    const std::vector<Index> columns = columns_of(e);
+    const std::span<const int> rows = rows_of(e);
+    Cell edge = reference_entity(e);
+    edge.mapped = edge.reference;
+    for (const TracePoint &at : points_)
+      for (std::size_t a = 0; a < 2; ++a) {
+        if (rows[a] < 0) continue;
+        const double eta = at.weight * length_of(edge) * at.eta[a];
+        weights[rows[a]] += eta;
+        for (std::size_t k = 0; k < columns.size(); ++k)
+          if (columns[k] >= 0)
+            entries.emplace_back(2 * rows[a] + static_cast<Index>(k % 2), columns[k],
+                                 eta * at.phi[k / 2]);
+      }
+  }
+  SparseMatrix result(2 * dual_.nodes(), mesh_.columns);
+  result.setFromTriplets(entries.begin(), entries.end());
+  for (Index row = 0; row < result.rows(); ++row)
+    result.row(row) /= weights[row / 2];
+  return result;
+}
+
+void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const Vector &state,
+                            const Vector &x, NodalCondition &condition) const {
+  const std::span<const int> dual = rows_of(e);
+  const int *nodes = mesh_.nodes_of(e);
+  const bool friction = dual_.components == 2;
+  Eigen::Matrix<double, 2, 3> u = Eigen::Matrix<double, 2, 3>::Zero();
+  std::array<double, 6> load{};
+  const auto dof = [&](int k) { return mesh_.dofs[2 * nodes[k / 2] + k % 2]; };
+  const int dofs = 2 * mesh_.per_entity;
+  for (int k = 0; k < dofs; ++k)
+    if (const int column = dof(k); column >= 0) u(k % 2, k / 2) = state[column];
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const TracePoint &at = points_[i];
+    const Eigen::Vector2d moved = u * Eigen::Vector3d::Map(at.phi.data());
+    const Point displacement{moved[0], moved[1], 0};
+    const FacedPoint here = facing_.at(mu, rest.points[i], displacement);
+    const Point &n = here.normal;
+    const double distance = here.gap - dot(n, displacement),
+                 slip = here.slip + slip_along(n, displacement);
+    double pressure = 0, shear = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+      const double eta = at.weight * rest.length * at.eta[a];
+      condition.w[dual[a]] += eta * distance;
+      condition.normal(0, dual[a]) += eta * n[0];
+      condition.normal(1, dual[a]) += eta * n[1];
+      pressure += at.eta[a] * x[dual[a]];
+      if (!friction) continue;
+      condition.w[dual[2 + a]] -= eta * slip;
+      shear += at.eta[a] * x[dual[2 + a]];
+    }
+    if (pressure == 0 && shear == 0) continue;
+    const double weight = at.weight * rest.length;
+    for (std::size_t a = 0; a < 2; ++a)
+      condition.rotation[dual[a]] += weight * at.eta[a] * pressure * here.curvature;
+    const std::array<double, 2> traction{weight * (pressure * n[0] - shear * n[1]),
+                                         weight * (pressure * n[1] + shear * n[0])};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dofs); ++k)
+      load[k] += at.phi[k / 2] * traction[k % 2];
+  }
+  for (int k = 0; k < dofs; ++k)
+    if (const int column = dof(k); column >= 0) condition.load[column] += load[k];
+}
+
+NodalEvaluation CurveSupport::nodal_at(const FullMu &mu) const {
+  return [this, mu, rest = std::vector<AtRest>(mesh_.count())](const Vector &state, const Vector &x,
+                                                               const std::vector<bool> &near,
+                                                               NodalCondition &condition) mutable {
+    condition.w.setZero(dual_.size());
+    condition.load.setZero(mesh_.columns);
+    condition.normal.setZero(2, dual_.nodes());
+    condition.rotation.setZero(dual_.nodes());
+    for (Index e = 0; e < mesh_.count(); ++e) {
+      const std::span<const int> dual = rows_of(e);
+      if (dual[0] < 0 || !(is_wanted(near, dual[0]) || is_wanted(near, dual[1]))) continue;
+      AtRest &edge = rest[e];
+      if (edge.points.empty()) {
+        const Cell cell = mapped_edge(mu, e);
+        edge.length = length_of(cell);
+        for (const TracePoint &at : points_)
+          edge.points.push_back(place(scene_, facing_, mu, point_on(cell, at)));
+      }
+      add_edge(mu, e, edge, state, x, condition);
+    }
+  };
+}
+
+} // namespace
+
+ContactRecipe by_multipliers(const RigidContact &rigid) {
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::curves, {rigid.boundary}};
+  add_friction(rigid.friction, recipe);
+  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
+                             rigid.coefficients.end());
+  recipe.follows_state = rigid.facing.follows_state;
+  recipe.separable = !recipe.follows_state;
+  recipe.nodal = rigid.lumped && recipe.separable;
+  recipe.keeps_nodes = true;
+  recipe.make = [rigid](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<CurveSupport>(scene, std::move(mesh), rigid);
+  };
+  recipe.record = rigid.record;
+  return recipe;
+}
+
+} // namespace rbvi

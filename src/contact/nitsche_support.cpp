@@ -1,0 +1,186 @@
+#include "rbvi/contact/nitsche_support.hpp"
+
+#include "rbvi/contact/contact.hpp"
+#include "rbvi/contact/curve.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/element/lagrange.hpp"
+
+#include <utility>
+
+namespace rbvi {
+
+namespace {
+
+/// The cells of the mesh as the terms take them.
+std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
+  if (mesh.dim != 2 || mesh.components != 2)
+    throw bad_input("Nitsche's method is for two dimensions: the mesh has " +
+                    std::to_string(mesh.dim));
+  if (mesh.per_entity != nodes_per_cell(2, mesh.degree) ||
+      static_cast<Index>(mesh.edges.size()) != mesh.count())
+    throw bad_input("Nitsche's method needs triangles with an edge on the boundary");
+  std::vector<CurveCell> cells;
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const int *nodes = mesh.nodes_of(e);
+    CurveCell cell{{2, {}, {}}, mesh.edges[e], {}};
+    cell.dofs.fill(-1);
+    for (std::size_t v = 0; v < 3; ++v)
+      cell.cell.reference[v] = mesh.points[nodes[v]];
+    cell.cell.mapped = cell.cell.reference;
+    for (int i = 0; i < 2 * mesh.per_entity; ++i)
+      cell.dofs[i] = mesh.dofs[2 * nodes[i / 2] + i % 2];
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// The vertices of the curve, nodes of the mesh, by increasing x.
+std::vector<Index> curve_vertices(const InterfaceMesh &mesh) {
+  std::vector<Index> vertices;
+  for (Index e = 0; e < mesh.count(); ++e) {
+    const auto [i, j] = simplex_edges[mesh.edges[e]];
+    Index a = mesh.nodes_of(e)[i], b = mesh.nodes_of(e)[j];
+    if (mesh.points[a][0] > mesh.points[b][0]) std::swap(a, b);
+    if (e == 0) vertices.push_back(a);
+    vertices.push_back(b);
+  }
+  return vertices;
+}
+
+class NitscheInterface : public ContactInterface {
+public:
+  NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, NitscheCurve curve)
+      : ContactInterface(scene, std::move(interface_mesh)), layer_{scene,
+                                                                   {std::move(curve)},
+                                                                   curve_cells(mesh_)} {
+    dual_.vertices = curve_vertices(mesh_);
+    for (const Index node : dual_.vertices)
+      dual_.points.push_back(mesh_.points[node]);
+    dual_.components = layer_.friction() ? 2 : 1;
+    dual_.gram = linear_gram(dual_.points, dual_.components);
+    for (const Index node : partly_fixed()) {
+      std::array<bool, 2> &closed = layer_.curves.front().facing.closed_ends;
+      if (node == 0) closed[0] = true;
+      if (node + 1 == dual_.nodes()) closed[1] = true;
+    }
+  }
+
+  const NitscheLayer *nitsche() const override { return &layer_; }
+  void assemble(const FullMu &mu, const ContactState &, const WantedNodes &,
+                ContactOperators &operators) override {
+    std::vector<Point> mapped(mesh_.points.size());
+    for (const Index node : dual_.vertices)
+      mapped[node] = scene_.map(mu, mesh_.points[node]);
+    set_constraints(mu, mapped, {}, {}, operators);
+  }
+  FrictionBound bound(const FullMu &mu) const override {
+    return friction_bound(layer_.curves.front().law, mu);
+  }
+  PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
+                                const Point &displacement) const override {
+    const Facing &facing = layer_.curves.front().facing;
+    const FacedPoint at = facing.at(mu, place(scene_, facing, mu, x), displacement);
+    return {at.normal, at.gap};
+  }
+  /// They come from the pressures along the curve: nitsche_outputs.
+  void outputs(const FullMu &, const ContactOperators &, const Vector &, double,
+               Outputs &) const override {}
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
+    return support_fields(scene_, mu, *this, u, lambda);
+  }
+
+private:
+  NitscheLayer layer_;
+};
+
+/// "rigid_support" -> "nitsche_support", ...
+std::string nitsche_name(const std::string &name) {
+  return "nitsche_" + name.substr(name.starts_with("rigid_") ? 6 : 0);
+}
+
+/// `name`, and of Nitsche's method: of what `thing` makes of a record.
+template <class Thing>
+void add_kinds(const std::string &name, int version, Thing (*thing)(const Stored &),
+               std::vector<ContactKind> &kinds) {
+  kinds.push_back(
+      {name, 1, [thing](const Stored &of) { return by_multipliers(rigid_contact(thing(of))); }});
+  kinds.push_back({nitsche_name(name), version, [thing](const Stored &of) {
+                     return by_nitsche(rigid_contact(thing(of)), number(of, "gamma0"));
+                   }});
+}
+
+} // namespace
+
+NitscheLayer layer_of(const Contact &contact) {
+  const auto one = [](const auto &interface) -> const NitscheLayer & {
+    const NitscheLayer *layer = interface->nitsche();
+    if (layer == nullptr) throw failure("the scene has contact by multipliers, not a curve");
+    return *layer;
+  };
+  NitscheLayer all{one(contact.interfaces.front()).scene, {}, {}};
+  for (const auto &interface : contact.interfaces) {
+    const NitscheLayer &more = one(interface);
+    for (CurveCell cell : more.cells) {
+      cell.curve = static_cast<int>(all.curves.size());
+      all.cells.push_back(cell);
+    }
+    all.curves.push_back(more.curves.front());
+  }
+  return all;
+}
+
+ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0) {
+  if (rigid.facing.along_body)
+    throw bad_input("Nitsche's method takes the normal of the rigid surface: leave out the normal "
+                    "of the body");
+  if (rigid.lumped)
+    throw bad_input("-lumped yes is for contact by multipliers: leave out -formulation nitsche");
+  ContactRecipe recipe;
+  recipe.entities = {InterfaceEntities::Kind::cells_beside, {rigid.boundary}};
+  recipe.formulation = Formulation::nitsche;
+  add_friction(rigid.friction, recipe);
+  recipe.coefficients.insert(recipe.coefficients.end(), rigid.coefficients.begin(),
+                             rigid.coefficients.end());
+  recipe.separable = false;
+  recipe.make = [rigid, gamma0](const Scene &scene, InterfaceMesh mesh) {
+    return std::make_unique<NitscheInterface>(scene, std::move(mesh),
+                                              NitscheCurve{rigid.friction, rigid.facing, gamma0});
+  };
+  recipe.record = rigid.record;
+  recipe.record.name = nitsche_name(rigid.record.name);
+  // 1: of a support the stress was on the normal of contact.
+  recipe.record.version = rigid.facing.follows_state ? 1 : 2;
+  recipe.record.numbers["gamma0"] = {gamma0};
+  return recipe;
+}
+
+std::vector<ContactKind> rigid_kinds() {
+  std::vector<ContactKind> kinds;
+  add_kinds("rigid_support", 2, support_in, kinds);
+  add_kinds("half_plane", 2, half_plane_in, kinds);
+  add_kinds("rigid_surface", 1, surface_in, kinds);
+  return kinds;
+}
+
+std::vector<SceneOption> nitsche_options() {
+  return {{"formulation",
+           "mixed",
+           "of contact: with multipliers, or by Nitsche's method",
+           {"mixed", "nitsche"}},
+          {"nitsche_gamma0",
+           "11.54",
+           "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge",
+           {},
+           {0.1, 2000}}};
+}
+
+bool asks_for_nitsche(const SceneOptions &options) {
+  return options.at("formulation") == "nitsche";
+}
+
+ContactRecipe contact_by(const SceneOptions &options, const RigidContact &rigid) {
+  return asks_for_nitsche(options) ? by_nitsche(rigid, number_in(options, "nitsche_gamma0"))
+                                   : by_multipliers(rigid);
+}
+
+} // namespace rbvi

@@ -1,0 +1,171 @@
+#include "rbvi/contact/support.hpp"
+
+#include "rbvi/contact/curve.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+Point normal_of(const HalfPlane &plane, const FullMu &mu) {
+  const double angle = plane.tilt ? plane.tilt(mu) : 0;
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * plane.normal[0] - s * plane.normal[1], s * plane.normal[0] + c * plane.normal[1], 0};
+}
+
+Record record_of(const HalfPlane &plane) {
+  const auto coordinates = [](const Point &x) { return std::vector<double>(x.begin(), x.end()); };
+  Record record{"half_plane",
+                1,
+                {{"normal", coordinates(plane.normal)},
+                 {"pivot", coordinates(plane.pivot)},
+                 {"lumped", {plane.lumped ? 1.0 : 0.0}}},
+                {{"boundary", plane.boundary}},
+                {{"position", plane.position.record}}};
+  if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
+  if (plane.surface) record.parts["surface"] = plane.surface.record;
+  if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
+  add_friction(plane.friction, record);
+  return record;
+}
+
+} // namespace
+
+RigidContact rigid_contact(const Support &support) {
+  RigidContact rigid{support.boundary,
+                     {},
+                     support.friction,
+                     support.lumped,
+                     {"rigid_support",
+                      1,
+                      {{"lumped", {support.lumped ? 1.0 : 0.0}}},
+                      {{"boundary", support.boundary}},
+                      {{"normal", support.normal.record}, {"gap", support.gap.record}}}};
+  rigid.facing.at = [normal = support.normal,
+                     gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal(mu, point.x);
+    return FacedPoint{n, gap(mu, point.x) - dot(point.motion, n), slip_along(n, point.motion)};
+  };
+  rigid.facing.normal = support.normal;
+  rigid.facing.asks_place = false;
+  rigid.facing.body_normal = support.body_normal;
+  rigid.facing.closed_ends = {support.closed_ends, support.closed_ends};
+  if (support.closed_ends) rigid.record.numbers["closed_ends"] = {1};
+  if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
+  add_friction(support.friction, rigid.record);
+  return rigid;
+}
+
+Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
+                    const Vector &u, const Vector &lambda) {
+  const InterfaceMesh &mesh = interface.mesh();
+  const std::vector<Index> &vertices = interface.dual().vertices;
+  const auto count = static_cast<Index>(vertices.size());
+  Grid grid = polyline(scene, mu, mesh, vertices, u);
+  Vector gap(count);
+  for (Index k = 0; k < count; ++k) {
+    const Index node = vertices[k];
+    const PointConstraint at =
+        interface.constraint_at(mu, mesh.points[node], {u[2 * node], u[2 * node + 1], 0});
+    gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
+  }
+  grid.of_nodes.push_back({"gap", gap, "m"});
+  grid.of_nodes.push_back({"pressure", lambda.head(count), "Pa"});
+  if (lambda.size() > count)
+    grid.of_nodes.push_back({"tangential_stress", lambda.tail(count), "Pa"});
+  return grid;
+}
+
+Support support_in(const Stored &of) {
+  Support support{text(of, "boundary"),
+                  made<PointMap>(part(of, "normal")),
+                  made<PointValue>(part(of, "gap")),
+                  friction_in(of),
+                  number(of, "lumped") != 0,
+                  of.record.numbers.contains("closed_ends")};
+  if (of.record.parts.contains("body_normal"))
+    support.body_normal = made<PointMap>(part(of, "body_normal"));
+  return support;
+}
+
+HalfPlane half_plane_in(const Stored &of) {
+  const auto point = [&](const std::string &name) -> Point {
+    const std::vector<double> &x = numbers(of, name);
+    if (x.size() != 3) throw bad_input("'" + name + "' of a half-plane is not three numbers");
+    return {x[0], x[1], x[2]};
+  };
+  HalfPlane plane{text(of, "boundary"), point("normal"), point("pivot"),
+                  made<Coefficient>(part(of, "position"))};
+  if (of.record.parts.contains("tilt")) plane.tilt = made<Coefficient>(part(of, "tilt"));
+  if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
+  plane.friction = friction_in(of);
+  plane.lumped = number(of, "lumped") != 0;
+  if (of.record.parts.contains("body_normal"))
+    plane.body_normal = made<PointMap>(part(of, "body_normal"));
+  return plane;
+}
+
+RigidContact rigid_contact(const HalfPlane &plane) {
+  const double length = std::hypot(plane.normal[0], plane.normal[1], plane.normal[2]);
+  if (!(std::abs(length - 1) <= 1e-12) || plane.normal[2] != 0)
+    throw bad_input("the normal of the half-plane on '" + plane.boundary + "' is (" +
+                    short_number(plane.normal[0]) + ", " + short_number(plane.normal[1]) + ", " +
+                    short_number(plane.normal[2]) +
+                    "): give one of length 1 in the plane of x and y");
+  RigidContact rigid{plane.boundary, {}, plane.friction, plane.lumped, record_of(plane)};
+  rigid.facing.at = [plane](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal_of(plane, mu);
+    const double gap = plane.position(mu) - (point.y[0] - plane.pivot[0]) * n[0] -
+                       (point.y[1] - plane.pivot[1]) * n[1];
+    return FacedPoint{n, gap, slip_along(n, point.motion)};
+  };
+  rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
+  rigid.facing.at_rest = plane.surface;
+  rigid.facing.body_normal = plane.body_normal;
+  rigid.coefficients.push_back({"position of the half-plane", plane.position});
+  if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
+  return rigid;
+}
+
+RigidContact rigid_contact(const RigidSurface &surface) {
+  RigidContact rigid{surface.boundary,
+                     {},
+                     surface.friction,
+                     surface.lumped,
+                     {"rigid_surface",
+                      1,
+                      {{"lumped", {surface.lumped ? 1.0 : 0.0}}},
+                      {{"boundary", surface.boundary}},
+                      {{"surface", surface.surface.record}}}};
+  rigid.facing.at = [faced = surface.surface](const FullMu &mu, const PlacedPoint &point,
+                                              const Point &displacement) {
+    const SurfacePoint below =
+        faced(mu, {point.y[0] + displacement[0], point.y[1] + displacement[1], point.y[2]});
+    const Point n{-below.normal[0], -below.normal[1], 0};
+    return FacedPoint{n, below.distance + dot(n, displacement), slip_along(n, point.motion),
+                      below.curvature};
+  };
+  rigid.facing.at_rest = surface.at_rest;
+  rigid.facing.follows_state = true;
+  rigid.facing.body_normal = surface.body_normal;
+  rigid.facing.along_body = bool(surface.body_normal);
+  if (surface.at_rest) rigid.record.parts["at_rest"] = surface.at_rest.record;
+  if (surface.body_normal) rigid.record.parts["body_normal"] = surface.body_normal.record;
+  add_friction(surface.friction, rigid.record);
+  return rigid;
+}
+
+RigidSurface surface_in(const Stored &of) {
+  RigidSurface surface{text(of, "boundary"), made<Surface>(part(of, "surface"))};
+  if (of.record.parts.contains("at_rest")) surface.at_rest = made<PointMap>(part(of, "at_rest"));
+  if (of.record.parts.contains("body_normal"))
+    surface.body_normal = made<PointMap>(part(of, "body_normal"));
+  surface.friction = friction_in(of);
+  surface.lumped = number(of, "lumped") != 0;
+  return surface;
+}
+
+} // namespace rbvi

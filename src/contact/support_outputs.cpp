@@ -1,0 +1,80 @@
+#include "rbvi/contact/support_outputs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+/// Arc lengths of the points from the middle of the curve.
+Vector arc_lengths(const Matrix &points) {
+  Vector s = Vector::Zero(points.rows());
+  for (Index i = 1; i < s.size(); ++i)
+    s[i] = s[i - 1] + (points.row(i) - points.row(i - 1)).norm();
+  return s.array() - s[s.size() - 1] / 2;
+}
+
+/// Below its bound by more than round-off, and than the law is met to.
+bool sticks(double tangential, double bound, double violation) {
+  return tangential < (1 - 1e-9) * bound - violation;
+}
+
+} // namespace
+
+double centre_pressure(const Vector &pressure, const Vector &s, double half_width) {
+  Index next = 0;
+  s.cwiseAbs().minCoeff(&next);
+  double count = 0, x = 0, xx = 0, p = 0, xp = 0; // p = a + b x, x = s^2
+  for (Index i = 0; i < s.size(); ++i) {
+    if (!(std::abs(s[i]) < 0.12 * half_width)) continue;
+    const double square = s[i] * s[i];
+    ++count;
+    x += square;
+    xx += square * square;
+    p += pressure[i];
+    xp += square * pressure[i];
+  }
+  return count < 3 ? pressure[next] : (p * xx - xp * x) / (count * xx - x * x);
+}
+
+double direction_count(const Vector &tangential, const Vector &pressure) {
+  const auto in_contact = [&](const auto &of_sign) {
+    return (of_sign && pressure.array() > 0).any() ? 1.0 : 0.0;
+  };
+  return in_contact(tangential.array() > 0) + in_contact(tangential.array() < 0);
+}
+
+void support_outputs(const SupportState &state, Outputs &outputs) {
+  const Index count = state.weights.size();
+  const Vector pressure = state.lambda.head(count);
+  double contact = 0, stick = 0, sticking = 0;
+  for (Index i = 0; i < count; ++i)
+    if (pressure[i] > 0) contact += state.weights[i];
+  outputs.contact_nodes = static_cast<double>((pressure.array() > 0).count());
+  outputs.free_nodes = static_cast<double>(count) - *outputs.contact_nodes;
+  outputs.normal_force = state.weights.dot(pressure);
+  outputs.reaction = -state.lift.dot(state.lambda);
+  outputs.horizontal_reaction = -state.push.dot(state.lambda);
+  outputs.contact_measure = contact;
+  outputs.contact_half_width = contact / 2;
+  outputs.peak_pressure = pressure.maxCoeff();
+  outputs.centre_pressure = centre_pressure(pressure, arc_lengths(state.points), contact / 2);
+  if (state.lambda.size() == count) return;
+
+  const Vector shear = state.lambda.tail(count).cwiseAbs();
+  const Vector bounds = values_of(state.bound, pressure);
+  const double violation = std::max(0.0, (shear - bounds).maxCoeff());
+  for (Index i = 0; i < count; ++i)
+    if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) {
+      stick += state.weights[i];
+      ++sticking;
+    }
+  outputs.slip_directions = direction_count(state.lambda.tail(count), pressure);
+  outputs.tangential_force = state.weights.dot(shear);
+  outputs.stick_half_width = stick / 2;
+  outputs.stick_nodes = sticking;
+  outputs.friction_violation = violation;
+}
+
+} // namespace rbvi

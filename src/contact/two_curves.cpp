@@ -1,0 +1,45 @@
+#include "rbvi/contact/two_curves.hpp"
+
+namespace rbvi {
+
+TwoCurves::TwoCurves(const Scene &scene, InterfaceMesh interface_mesh, MultiplierSpace space)
+    : ContactInterface(scene, std::move(interface_mesh)), space_(space) {
+  (void)check_curve(mesh_, 0, "slave curve");
+  (void)check_curve(mesh_, 1, "master curve");
+  slave_.assign(mesh_.points.begin(), mesh_.points.begin() + mesh_.parts[0]);
+  dual_.points = multiplier_points(slave_, space, mesh_.degree);
+  dual_.gram = multiplier_product(slave_, space, mesh_.degree);
+}
+
+std::vector<double> TwoCurves::lengths(const FullMu &mu) const {
+  std::vector<Point> mapped;
+  for (const Point &x : slave_)
+    mapped.push_back(scene_.map(mu, x));
+  return NodalCurve(std::move(mapped), mesh_.degree).lengths();
+}
+
+void TwoCurves::outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
+                        double least, Outputs &outputs) const {
+  pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
+  outputs.ends_in_contact = ends_in_contact(whole_weights(lengths(mu), space_, mesh_.degree),
+                                            operators.weights, lambda, least, closed_ends_);
+}
+
+Grid TwoCurves::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
+  const Vector state = at_columns(mesh_, u);
+  const PairOperators pair = operators_at(mu, {state});
+  const Index count = std::ssize(pair.paired);
+  if (count < 2) return {};
+  Grid grid = polyline(scene_, mu, mesh_, pair.paired, u);
+  grid.of_nodes.push_back({"gap", pair.nodal_gap - pair.nodal_b * state, "m"});
+  const bool constant = space_ == MultiplierSpace::macro_edges;
+  Vector pressure(constant ? count - 1 : count);
+  for (Index k = 0; k < pressure.size(); ++k) {
+    const Index node = pair.paired[k];
+    pressure[k] = lambda[constant ? macro_edge_of(node, mesh_.parts[0], mesh_.degree) : node];
+  }
+  add_pressure(pressure, grid);
+  return grid;
+}
+
+} // namespace rbvi

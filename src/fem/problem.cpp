@@ -1,0 +1,149 @@
+#include "rbvi/fem/problem.hpp"
+
+#include "rbvi/contact/history.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
+#include "rbvi/element/imposed.hpp"
+#include "rbvi/fem/check_scene.hpp"
+#include "rbvi/par/collective.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace rbvi {
+
+namespace {
+
+/// Throws bad_input where B or G has an entry that is not finite: so is a gap or a normal.
+void check_finite(const Scene &scene, const Contact &contact, const Operators &operators) {
+  const auto is_finite = [&](Index row) {
+    bool finite = std::isfinite(operators.g[row]);
+    for (SparseMatrix::InnerIterator entry(operators.b, row); entry; ++entry)
+      finite = finite && std::isfinite(entry.value());
+    return finite;
+  };
+  for (Index row = 0; row < operators.g.size(); ++row) {
+    if (is_finite(row)) continue;
+    const DualRow of = dual_row(contact, row);
+    const Point &x = contact.interfaces[of.interface]->dual().points[of.node];
+    std::string where;
+    for (int k = 0; k < scene.dim; ++k)
+      where += short_number(x[k]) + ' ';
+    throw bad_input("the gap or the normal of contact on '" +
+                    scene.contacts[of.interface].entities.parts.front() +
+                    "' is not finite at the point " + where + "of the reference domain, " +
+                    describe(scene.parameters, operators.mu));
+  }
+}
+
+Scene checked(Scene scene) {
+  check_functions(scene);
+  return scene;
+}
+
+} // namespace
+
+std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
+  std::vector<ContactPoint> points;
+  for (const Mu &mu : set)
+    points.push_back({mu, {}});
+  return points;
+}
+
+Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
+    : given_(checked(std::move(scene))), mesh_options_(options),
+      scene_(std::make_unique<const Scene>(with_imposed_loads(given_))),
+      mesh_(make_mesh(comm, *scene_, options)),
+      dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
+      places_(place_interfaces(mesh_, dofs_, *scene_)),
+      contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
+      contact_gather_(contact_gather),
+      a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
+      f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
+  if (!imposes_values(*scene_)) return;
+  check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
+  imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
+}
+
+std::unique_ptr<Problem> Problem::coarser(int levels) const {
+  if (mesh_options_.refine < levels) return nullptr;
+  MeshOptions options = mesh_options_;
+  options.refine -= levels;
+  options.levels = mesh_.levels;
+  return std::make_unique<Problem>(comm(), given_, options, contact_gather_);
+}
+
+void Problem::assemble_contact(const Mu &mu, Operators &operators, const ContactState &state) {
+  operators.mu = expand(scene_->parameters, mu);
+  rbvi::assemble(contact_, operators.mu, state, operators);
+  operators.laws = laws_at(contact_, operators.mu);
+}
+
+const DualLayout &Problem::dual_layout() {
+  if (!dual_layout_) dual_layout_ = share_dual(contact_, places_, mesh_, dofs_);
+  return *dual_layout_;
+}
+
+bool Problem::is_split(std::size_t interface) const {
+  const ContactInterface &contact = *contact_.interfaces[interface];
+  return ranks_of(comm()) > 1 && contact.can_be_split() && contact.dual().size() > contact_gather_;
+}
+
+/// Each rank the rows that it owns, then, where all are wanted, those of the others.
+void Problem::assemble_split(ContactRows rows, const Vector &slip) {
+  const DualLayout &layout = dual_layout();
+  std::vector<ContactOperators> all(contact_.interfaces.size());
+  collectively(comm(), [&] {
+    for (std::size_t i = 0; i < all.size(); ++i)
+      contact_.interfaces[i]->assemble(operators_.mu, {},
+                                       is_split(i) ? layout.own[i] : WantedNodes{}, all[i]);
+    operators_.laws = laws_at(contact_, operators_.mu);
+  });
+  for (std::size_t i = 0; i < all.size() && rows == ContactRows::all; ++i)
+    if (is_split(i)) gather_rows(layout, contact_, i, all[i]);
+  if (all.size() == 1)
+    static_cast<ContactOperators &>(operators_) = std::move(all.front());
+  else
+    stack(contact_, all, operators_);
+  if (slip.size() > 0) operators_.g += added_by_history(contact_, slip, operators_.weights);
+}
+
+const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector &slip) {
+  const FullMu all = expand(scene_->parameters, mu);
+  check_contacts(*scene_, all);
+  if (imposes_values(*scene_)) check_imposed(*scene_, all, mesh_, dofs_);
+  operators_.mu = all;
+  bool any_split = false;
+  for (std::size_t i = 0; i < contact_.interfaces.size(); ++i)
+    any_split = any_split || is_split(i);
+  if (any_split)
+    assemble_split(rows, slip);
+  else
+    assemble_contact(mu, operators_, {{}, slip});
+  collectively(comm(), [&] { check_finite(*scene_, contact_, operators_); });
+  const bool new_a = differs(a_, scene_->a, all), new_f = differs(f_, scene_->f, all);
+  if (!a_.made_at || (new_a && a_.mapped) || (new_f && f_.mapped))
+    mapped_ = map_vertices(*scene_, all, mesh_);
+  if (new_a) sum_up(scene_->a, scene_->parameters, all, mesh_, dofs_, mapped_, a_);
+  if (new_f) sum_up(scene_->f, scene_->parameters, all, mesh_, dofs_, mapped_, f_);
+  operators_.a = a_.total.get();
+  operators_.f = f_.total.get();
+  if (imposes_values(*scene_))
+    operators_.imposed_energy = energy_at(imposed_energy_, *scene_, all, mesh_, dofs_, mapped_);
+  return operators_;
+}
+
+Vector Problem::imposed_displacement(const Mu &mu) const {
+  return natural_imposed(*scene_, expand(scene_->parameters, mu), mesh_, dofs_);
+}
+
+Mat Problem::v_product() {
+  if (!v_product_) {
+    v_product_ = make_matrix(mesh_, dofs_);
+    rbvi::assemble(forms_of(scene_->v_product), {}, mesh_, dofs_, {}, v_product_.get());
+  }
+  return v_product_.get();
+}
+
+} // namespace rbvi

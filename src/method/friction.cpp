@@ -1,0 +1,296 @@
+#include "rbvi/method/several_answers.hpp"
+
+#include "friction_convex.hpp"
+#include "order.hpp"
+#include "pivoting.hpp"
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+using namespace friction;
+
+void check(const Vector &q, const NodeLaws &laws, const Vector &start) {
+  rbvi::check(laws);
+  if (q.size() != laws.rows)
+    throw failure("friction: the right-hand side has " + std::to_string(q.size()) +
+                  " entries, and the laws " + std::to_string(laws.rows));
+  if (start.size() != 0 && start.size() != q.size())
+    throw failure("friction: the first guess has " + std::to_string(start.size()) +
+                  " entries instead of " + std::to_string(q.size()));
+  if (!q.allFinite()) throw failure("friction: the right-hand side is not finite");
+  if (!start.allFinite()) throw failure("friction: the first guess is not finite");
+}
+
+/// The largest violation, relative to the terms of its row, of the normal laws.
+double normal_residual(const Vector &x, const Vector &w, const Vector &terms) {
+  double worst = 0;
+  for (Index i = 0; i < x.size(); ++i)
+    if (x[i] > 0 || w[i] < 0) worst = std::max(worst, std::abs(w[i]) / terms[i]);
+  return worst;
+}
+
+/// Contact alone, on the first `nodes` entries. `start`: of x, or empty.
+LcpResult normal_contact(LazyColumns &h, const Vector &q, Index nodes, const Vector &start,
+                         const FrictionOptions &options) {
+  const ColumnSource normals = [&](const std::vector<Index> &which) {
+    h.require(which);
+    Matrix result(nodes, static_cast<Index>(which.size()));
+    for (std::size_t k = 0; k < which.size(); ++k)
+      result.col(static_cast<Index>(k)) = h.column(which[k]).head(nodes);
+    return result;
+  };
+  std::vector<Index> guess;
+  for (Index i = 0; i < nodes && start.size() > 0; ++i)
+    if (start[i] > 0) guess.push_back(i);
+  return solve_lcp(normals, q.head(nodes), guess,
+                   {.tolerance = options.tolerance, .max_iterations = options.max_iterations});
+}
+
+FrictionResult without_friction(const ColumnSource &columns, const Vector &q, const Laws &laws,
+                                const Vector &start, const FrictionOptions &options) {
+  const Index nodes = laws.nodes;
+  LazyColumns h(columns, q.size());
+  LcpResult normal = normal_contact(h, q, nodes, start, options);
+  FrictionResult result;
+  result.iterations = normal.iterations;
+  result.columns = normal.columns;
+  result.backup_steps = normal.backup_steps;
+  result.converged = normal.converged;
+  result.reason = std::move(normal.reason);
+  if (normal.x.size() != nodes) return result; // H is not positive definite
+  Vector x = Vector::Zero(q.size());
+  x.head(nodes) = normal.x;
+  State point = evaluate(h, q, std::move(x));
+  result.residual = normal_residual(normal.x, point.w, point.terms);
+  result.start = smooth_start(diagonal_of(h, q.size()), laws, point);
+  result.x = std::move(point.x);
+  result.w = std::move(point.w);
+  describe(result, laws, ActiveSets(nodes, laws.dim));
+  return result;
+}
+
+class Solver {
+public:
+  Solver(const ColumnSource &columns, const Vector &q, const Laws &laws,
+         const FrictionOptions &options)
+      : h_(columns, q.size()), q_(q), laws_(laws), options_(options),
+        best_sets_(laws.nodes, laws.dim), systems_left_(options.max_iterations) {}
+
+  FrictionAnswer run(const Vector &start, bool by_rule) {
+    Outcome outcome;
+    if (by_rule && laws_.follow_pressure()) {
+      outcome = continued_from_no_friction(start);
+    } else if (start.size() > 0) {
+      best_.x = laws_.feasible(start);
+      result_.residual = std::numeric_limits<double>::infinity();
+      State point;
+      outcome = newton_from(laws_, sets_from(start), point);
+    } else {
+      prepare(laws_, Vector::Zero(q_.size()));
+      State point = evaluate(h_, q_, Vector::Zero(q_.size()));
+      outcome = newton(laws_, point);
+    }
+    if (outcome == Outcome::cycles) outcome = backup(evaluate(h_, q_, laws_.feasible(best_.x)));
+    return finish(outcome);
+  }
+
+private:
+  enum class Outcome { converged, cycles, indefinite, limit };
+
+  /// Along growing coefficients, from the last point that is reached.
+  Outcome continued_from_no_friction(const Vector &guess) {
+    const LcpResult normal = normal_contact(h_, q_, laws_.nodes, guess, options_);
+    systems_left_ -= normal.iterations;
+    Vector x = Vector::Zero(q_.size());
+    if (normal.x.size() == laws_.nodes) x.head(laws_.nodes) = normal.x;
+    prepare(laws_, x);
+    State point = evaluate(h_, q_, std::move(x));
+    const int steps = Laws::steps_to(laws_.coefficient.maxCoeff());
+    for (int k = 1; k < steps; ++k) {
+      State next = point;
+      if (newton(laws_.with_part(static_cast<double>(k) / steps), next) != Outcome::converged)
+        break;
+      point = std::move(next);
+    }
+    return newton(laws_, point);
+  }
+
+  /// The sets that a start tells, with the columns of their support.
+  ActiveSets sets_from(const Vector &start) {
+    ActiveSets sets = predicted_sets(laws_, start);
+    h_.require(sets.support(laws_));
+    set_curvature(diagonal(), laws_, start, sets);
+    return sets;
+  }
+
+  Vector diagonal() const { return diagonal_of(h_, q_.size()); }
+
+  /// The columns of the support of x, of nodes that touch, and of thresholds that hold everywhere.
+  void prepare(const Laws &laws, const Vector &x) {
+    ActiveSets sets = contact_sets(laws, x);
+    for (Index i = 0; i < laws.nodes; ++i)
+      if (laws.at_node(i).carries_traction(sets.is_active(i))) sets.tangent[i] = Tangent::stick;
+    h_.require(sets.support(laws));
+  }
+
+  Outcome newton(const Laws &laws, State &point) {
+    const ActiveSets sets = contact_sets(laws, point.x);
+    Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+    keep(laws, point, sets, verdict);
+    return newton_from(laws, std::move(verdict.next), point);
+  }
+
+  /// Newton from these sets until the laws hold or the policy gives up. In three dimensions the
+  /// directions of slip vary continuously: there the sets alone do not tell that a step returns.
+  Outcome newton_from(const Laws &laws, ActiveSets sets, State &point) {
+    pivoting::Policy<std::string, double> policy(/*patience=*/10);
+    for (;;) {
+      if (laws.dim == 2 && policy.returns(sets.key())) return Outcome::cycles;
+      if (systems_left_ <= 0) return Outcome::limit;
+      --systems_left_;
+      h_.require(sets.support(laws));
+      const Solved solved = newton_step(h_, q_, laws, sets, point);
+      if (solved == Solved::indefinite) return Outcome::indefinite;
+      if (solved == Solved::singular) return Outcome::cycles;
+      Verdict verdict = judge(diagonal(), laws, point, sets, options_.tolerance);
+      keep(laws, point, sets, verdict);
+      if (settled(verdict, policy.least())) return Outcome::converged;
+      if (policy.is_lost(verdict.residual)) return Outcome::cycles;
+      sets = std::move(verdict.next);
+    }
+  }
+
+  /// The sets are right and the violations below tolerance; or as small as round-off lets them be:
+  /// in two dimensions what a repeated step would give again, in three what it did not improve.
+  bool settled(const Verdict &verdict, double least) const {
+    constexpr double round_off = 1e-11;
+    if (verdict.changed) return false;
+    if (verdict.residual <= options_.tolerance) return true;
+    return verdict.residual <= round_off && (laws_.dim == 2 || verdict.residual >= 0.5 * least);
+  }
+
+  /// The fixed point of the bounds, frozen in turn, with shorter steps where it does not contract;
+  /// and Newton whenever they settle. `point` is feasible.
+  Outcome backup(State point) {
+    double near = 0.1, part = 1, before = std::numeric_limits<double>::infinity();
+    Laws frozen = laws_;
+    frozen.coefficient.setZero();
+    frozen.only_in_contact.assign(laws_.nodes, 0);
+    frozen.threshold = laws_.bounds(point.x);
+    while (systems_left_ > 0) {
+      ++result_.backup_steps;
+      if (!solve_frozen(frozen, 1e-2 * near, point)) return Outcome::indefinite;
+      const Vector bounds = laws_.bounds(point.x);
+      const double change = (bounds - frozen.threshold).cwiseAbs().maxCoeff();
+      if (change <= near * bounds.maxCoeff()) {
+        near *= 0.1;
+        State trial = evaluate(h_, q_, laws_.feasible(point.x));
+        const Outcome outcome = newton(laws_, trial);
+        if (outcome != Outcome::cycles) return outcome;
+      }
+      if (change > 0.8 * before) part = std::max(0.1, 0.5 * part);
+      before = change;
+      frozen.threshold += part * (bounds - frozen.threshold);
+      point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
+    }
+    return Outcome::limit;
+  }
+
+  bool solve_frozen(const Laws &frozen, double tolerance, State &point) {
+    prepare(frozen, point.x);
+    State trial = point;
+    const Outcome outcome = newton(frozen, trial);
+    if (outcome != Outcome::converged)
+      return outcome != Outcome::indefinite &&
+             minimise(h_, q_, frozen, tolerance, systems_left_, point);
+    point = std::move(trial);
+    return true;
+  }
+
+  void keep(const Laws &laws, const State &point, const ActiveSets &sets, const Verdict &verdict) {
+    if (&laws != &laws_) return;
+    if (best_.x.size() > 0 && verdict.changed && verdict.residual >= result_.residual) return;
+    best_ = point;
+    best_sets_ = sets;
+    result_.residual = verdict.residual;
+  }
+
+  FrictionAnswer finish(Outcome outcome) {
+    FrictionAnswer result{std::move(result_)};
+    result.iterations = options_.max_iterations - systems_left_;
+    result.columns = h_.count();
+    result.converged = outcome == Outcome::converged;
+    result.has_others = result.converged && best_.negative && laws_.dim == 2 && !laws_.jump();
+    best_.x = laws_.feasible(std::move(best_.x));
+    if (!result.converged) {
+      best_ = evaluate(h_, q_, std::move(best_.x));
+      result.residual = judge(diagonal(), laws_, best_, best_sets_, options_.tolerance).residual;
+    }
+    result.start = smooth_start(diagonal(), laws_, best_);
+    result.x = std::move(best_.x);
+    result.w = std::move(best_.w);
+    describe(result, laws_, best_sets_);
+    result.reason = reason(outcome, result);
+    return result;
+  }
+
+  std::string reason(Outcome outcome, const FrictionResult &result) const {
+    if (outcome == Outcome::converged) return "no violation left";
+    if (outcome == Outcome::indefinite)
+      return "the block of H of the nodes in contact is not positive definite: dependent "
+             "constraints or an inexact H";
+    if (laws_.jump())
+      return "a threshold that acts in contact alone jumps where a node leaves contact, so "
+             "that some problems have no answer: let it act everywhere (-friction_bound arc), or "
+             "ask nearby";
+    const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
+    const std::string remedy = "start closer to the solution (a smaller change of the load or of "
+                               "the coefficient of friction)";
+    if (result.backup_steps == 0)
+      return "the laws of friction are still violated" + after + "raise the limit, or " + remedy;
+    return "neither Newton's method nor the fixed point of the friction bounds has settled" +
+           after + remedy + ", lower the coefficient, or raise the limit";
+  }
+
+  LazyColumns h_;
+  const Vector &q_;
+  const Laws &laws_;
+  const FrictionOptions &options_;
+  State best_; ///< the solution, or the point of the least residual
+  ActiveSets best_sets_;
+  FrictionResult result_;
+  int systems_left_; ///< linear systems
+};
+
+} // namespace
+
+FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                               const Vector &start, bool by_rule, const FrictionOptions &options) {
+  check(q, laws, start);
+  const Laws inner = laws_of(laws);
+  const auto solve = [&](const ColumnSource &source, const Vector &right, const Vector &from) {
+    return laws.friction() ? Solver(source, right, inner, options).run(from, by_rule)
+                           : FrictionAnswer{without_friction(source, right, inner, from, options)};
+  };
+  const Order order(laws);
+  if (order.same()) return solve(columns, q, start);
+  const ColumnSource ordered = order.inwards(columns);
+  FrictionAnswer result = solve(ordered, order.inwards(Matrix(q)),
+                                start.size() > 0 ? Vector(order.inwards(Matrix(start))) : start);
+  for (Vector *part : {&result.x, &result.w, &result.start})
+    *part = order.outwards(*part);
+  return result;
+}
+
+FrictionResult solve_friction(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                              const Vector &start, const FrictionOptions &options) {
+  return friction_answer(columns, q, laws, start, false, options);
+}
+
+} // namespace rbvi

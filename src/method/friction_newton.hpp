@@ -1,0 +1,115 @@
+// One Newton step for contact with friction, and what a vector x says about the laws.
+//
+// A node that slips has x_tau = s e, |e| = 1, s = c x_n + t: in two dimensions e is a sign and
+// x_tau is eliminated; in three the turn z of e is an unknown, x_tau = s e + z e', e' orthogonal to
+// e, with the row  e' . w_tau + kappa z = 0,  kappa = (|y| - s) / (rho s),  y = x_tau - rho w_tau:
+// that is the derivative of the projection on the disk, and kappa >= 0. After the step x_tau is
+// brought back to the circle.
+#pragma once
+
+#include "lazy_columns.hpp"
+#include "rbvi/method/friction.hpp"
+
+#include <string>
+
+namespace rbvi::friction {
+
+/// |x_tau,i| <= c_i x_n,i + t_i. Entries of x: x_n of all nodes, then x_tau of all nodes.
+struct Laws {
+  Index nodes = 0;
+  int dim = 2;
+  Vector coefficient, threshold; ///< c and t of every node
+  std::vector<char> only_in_contact;
+
+  Index tangent(Index i) const { return nodes + i * (dim - 1); }
+  FrictionBound at_node(Index i) const {
+    return {coefficient[i], threshold[i], only_in_contact[i] != 0};
+  }
+  double bound(Index i, double normal) const { return at_node(i).value(normal); }
+  Vector bounds(const Vector &x) const;
+  bool jump() const; ///< at some node
+  bool follow_pressure() const { return (coefficient.array() > 0).any() || jump(); }
+  /// The nearest x that keeps the signs, and then the bounds.
+  Vector feasible(Vector x) const;
+  /// Steps in which coefficients grow from zero, by at most 0.25 each, to `largest` of them all.
+  static int steps_to(double largest);
+  /// With this part of the coefficients.
+  Laws with_part(double part) const;
+};
+
+/// The kind of x_tau at a node: zero, free, or of a given direction.
+enum class Tangent : char { none, stick, slip };
+
+/// The active sets: nodes in contact, and the kind of x_tau at every node. They make the laws
+/// linear equations.
+struct ActiveSets {
+  std::vector<char> active;
+  std::vector<Tangent> tangent;
+  Matrix direction; ///< e of the nodes that slip, dim - 1 x nodes
+  Vector curvature; ///< kappa of those nodes; negative: no turn
+
+  ActiveSets(Index nodes, int dim);
+  bool is_active(Index i) const { return active[i] != 0; }
+  Tangent tangent_at(Index i) const { return tangent[i]; }
+  /// The entries of x that need not be zero.
+  std::vector<Index> support(const Laws &laws) const;
+  /// Equal for sets with the same linear system, in two dimensions.
+  std::string key() const;
+};
+
+struct State {
+  Vector x, w;           ///< multipliers, H x + q
+  Vector terms;          ///< the sum of the sizes of the terms of every row of w
+  bool negative = false; ///< the determinant of the linear system that gave it
+};
+
+/// The point of x, whose support has its columns.
+State evaluate(const LazyColumns &h, const Vector &q, Vector x);
+
+struct Verdict {
+  ActiveSets next;      ///< the sets that x - rho w predicts
+  bool changed = false; ///< next differs from the sets of the point
+  double residual = 0;  ///< largest relative violation of the laws
+};
+
+/// The largest x in the scaling in which H has a unit diagonal.
+double largest_scaled(const Vector &diagonal, const Vector &x);
+/// `diagonal`: H_jj, or its size; 0 where it is not known: of x_j it is then only known whether it
+/// is zero. `sets`: of the step that gave the point (they decide where the difference is below
+/// tolerance). `largest`: largest_scaled, of all nodes.
+Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
+              double tolerance, double largest);
+Verdict judge(const Vector &diagonal, const Laws &laws, const State &point, const ActiveSets &sets,
+              double tolerance);
+/// H_jj of the columns that are there, 0 elsewhere.
+Vector diagonal_of(const LazyColumns &h, Index size);
+/// The sets to judge a point by that no step gave.
+ActiveSets contact_sets(const Laws &laws, const Vector &x);
+/// The sets that y = x - w / H_jj tells, but for their curvature.
+ActiveSets predicted_sets(const Laws &laws, const Vector &y);
+/// The curvature of sets that y predicts.
+void set_curvature(const Vector &diagonal, const Laws &laws, const Vector &y, ActiveSets &sets);
+
+/// An unknown of the linear system, and its row: a combination of at most two entries.
+struct Unknown {
+  Index node;
+  Index first, second;  ///< entries of x
+  double a = 1, b = 0;  ///< their factors
+  double slope = 0;     ///< x_tau grows by this times e with the normal unknown
+  double curvature = 0; ///< on the diagonal
+};
+std::vector<Unknown> unknowns(const Laws &laws, const ActiveSets &sets);
+/// The part of x that no unknown changes: the thresholds of the nodes that slip.
+Vector fixed_part(const Laws &laws, const ActiveSets &sets);
+/// x of the unknowns u, beside its fixed part `x`; slipping nodes on their circle.
+Vector expand(const Laws &laws, const ActiveSets &sets, const std::vector<Unknown> &list,
+              const Vector &u, Vector x);
+
+/// With friction a singular matrix need not be a fault of H.
+enum class Solved { yes, singular, indefinite };
+
+/// Solves the linear system of the sets, whose columns are there; otherwise `point` is unchanged.
+Solved newton_step(const LazyColumns &h, const Vector &q, const Laws &laws, const ActiveSets &sets,
+                   State &point);
+
+} // namespace rbvi::friction

@@ -1,0 +1,57 @@
+#include "rbvi/method/several_answers.hpp"
+
+#include "lazy_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+bool bounds_follow_pressure(const NodeLaws &laws) {
+  for (Index i = 0; i < laws.nodes(); ++i)
+    if (const FrictionBound &bound = laws.bound[i];
+        laws.has_tangent(i) && (bound.coefficient > 0 || bound.jumps()))
+      return true;
+  return false;
+}
+
+double distance_of_answers(const Vector &x, const Vector &other) {
+  constexpr double same = 1e-6;
+  const double size = std::max(x.cwiseAbs().maxCoeff(), other.cwiseAbs().maxCoeff());
+  const double largest = (x - other).cwiseAbs().maxCoeff();
+  return largest > same * size ? largest / size : 0;
+}
+
+double distance_to_other_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,
+                                const FrictionResult &found) {
+  if (!bounds_follow_pressure(laws)) return 0;
+  LazyColumns h(columns, q.size());
+  const ColumnSource kept = [&](const std::vector<Index> &which) {
+    h.require(which);
+    Matrix result(q.size(), std::ssize(which));
+    for (std::size_t k = 0; k < which.size(); ++k)
+      result.col(static_cast<Index>(k)) = h.column(which[k]);
+    return result;
+  };
+  double farthest = 0;
+  const auto look = [&](const Vector &start, bool by_rule) {
+    const FrictionResult other = friction_answer(kept, q, laws, start, by_rule);
+    if (other.converged) farthest = std::max(farthest, distance_of_answers(found.x, other.x));
+  };
+  look({}, false);
+  look(found.start, true);
+  for (const double slip : {0.0, 1.0, -1.0}) {
+    Vector start = found.start;
+    for (Index i = 0; i < laws.nodes(); ++i) {
+      double &normal = start[laws.normal[i]];
+      if (found.active.empty()) normal = std::abs(normal);
+      if (!laws.has_tangent(i)) continue;
+      start.segment(laws.tangent[i], laws.tangents).setZero();
+      start[laws.tangent[i]] = 2 * slip * laws.bound[i].value(normal);
+    }
+    look(start, false);
+  }
+  return farthest;
+}
+
+} // namespace rbvi

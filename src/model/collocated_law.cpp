@@ -1,0 +1,105 @@
+#include "rbvi/model/collocated_law.hpp"
+
+#include "law_methods.hpp"
+#include "rbvi/core/error.hpp"
+
+namespace rbvi {
+
+namespace {
+
+/// Greedy cones can have a generator that depends on the others: its coefficient is any; this
+/// chooses one, far below all tolerances.
+constexpr double ridge = 1e-12;
+
+constexpr double mended_above = 1e-6; ///< violation of the law at all nodes
+
+} // namespace
+
+Matrix multiplier_coefficients(const MultiplierBasis &basis) {
+  const Matrix &a = basis.normal, &b = basis.tangential;
+  Matrix result = Matrix::Zero(a.rows() + b.rows(), a.cols() + b.cols());
+  result.topLeftCorner(a.rows(), a.cols()) = a;
+  result.bottomRightCorner(b.rows(), b.cols()) = b;
+  return result;
+}
+
+CollocatedProblem collocated_problem(const MultiplierBasis &basis, const LawAtMu &law,
+                                     const BodyAtMu &body) {
+  const Matrix functions = multiplier_coefficients(basis);
+  const Matrix y = body.half_response(law.b.transpose() * functions);
+  Matrix h = y.transpose() * y;
+  h.diagonal() *= 1 + ridge;
+  const std::vector<Index> nodes(basis.nodes.begin(), basis.nodes.end());
+  std::vector<Index> rows; // of the tangential multipliers that collocation nodes have
+  for (const Index node : nodes)
+    rows.push_back(law.laws.tangent[node] - law.laws.nodes());
+  return {h, functions.transpose() * law.q, basis.normal(nodes, Eigen::all),
+          basis.tangential(rows, Eigen::all), bounds_at(law.laws.bound, nodes)};
+}
+
+CollocatedSolver::CollocatedSolver(const ReducedModel &model, const Scene &scene,
+                                   const Contact &contact, const QueryOptions &options)
+    : model_(model), scene_(scene), options_(options),
+      at_nodes_(model, scene, contact, options, false),
+      starts_(scene.parameters, model.law->starts_mu) {}
+
+CollocatedResult CollocatedSolver::solve_functions(const LawAtMu &law, const Vector &start) {
+  CollocatedResult found = solve_collocated(
+      collocated_problem(model_.law->basis, law, at_nodes_.problem().body()), start);
+  if (!found.converged)
+    throw failure("the reduced law of contact is not solved: " + found.reason +
+                  "; reduce again with -multiplier_reduction condensed, or with more functions");
+  return found;
+}
+
+Vector CollocatedSolver::start(const FullMu &mu) {
+  if (options_.warm) return last_;
+  return starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
+    const Vector there = model_.law->starts_mu.col(sample);
+    ReducedAnswer unused;
+    const LawAtMu law =
+        at_nodes_.problem().at(expand(scene_.parameters, {there.begin(), there.end()}), unused);
+    return solve_functions(law, {}).x;
+  });
+}
+
+bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &start,
+                                           ReducedAnswer &answer) {
+  const bool checks = model_.law->condensed.terms.size() > 0;
+  const bool mends = model_.law->mended && checks;
+  try {
+    CollocatedResult reduced = solve_functions(law, start);
+    const Matrix functions = multiplier_coefficients(model_.law->basis);
+    answer.lambda = functions * reduced.x;
+    if (options_.looks_for_others)
+      answer.to_other = distance_of_answers(answer.lambda, functions * solve_functions(law, {}).x);
+    answer.residual = reduced.residual;
+    answer.iterations = reduced.iterations;
+    last_ = std::move(reduced.x);
+  } catch (const Error &) {
+    if (!mends) throw;
+    return false;
+  }
+  if (!checks) {
+    const Vector half = at_nodes_.problem().body().half_response(law.b.transpose() * answer.lambda);
+    answer.energy = 0.5 * (half.squaredNorm() - law.load.squaredNorm());
+    return true;
+  }
+  AtAllNodes nodes = at_nodes_.problem().at_all_nodes(law, answer.lambda);
+  answer.energy = 0.5 * (answer.lambda.dot(nodes.w - law.q) - law.load.squaredNorm());
+  answer.residual = violation(law.laws, answer.lambda, nodes.start);
+  answer.start = std::move(nodes.start);
+  return !mends || answer.residual <= mended_above;
+}
+
+ReducedAnswer CollocatedSolver::solve(const FullMu &mu) {
+  const Vector from = start(mu);
+  ReducedAnswer answer;
+  const LawAtMu law = at_nodes_.problem().at(mu, answer);
+  if (!answer_on_functions(law, from, answer)) at_nodes_.solve_at_nodes(law, answer);
+  at_nodes_.problem().finish(law, answer);
+  at_nodes_.starts().keep(answer.start);
+  return answer;
+}
+
+} // namespace rbvi

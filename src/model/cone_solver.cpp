@@ -1,0 +1,204 @@
+#include "rbvi/model/cone_solver.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
+#include "rbvi/method/anderson.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double largest_kkt_residual = 1e-8;
+constexpr double largest_pull = 1e-2;    ///< of the peak: negative pressure where contact is sure
+constexpr double active_fraction = 1e-6; ///< of the peak: below it a node counts as free
+
+/// Number of primal functions of one query.
+Index solved_size(const ReducedModel &model) {
+  if (!model.online_enriched) return model.primal_size();
+  return model.modes + std::min(model.supremizers, model.generators);
+}
+
+} // namespace
+
+ConeSolver::ConeSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                       const QueryOptions &options)
+    : model_(model), scene_(scene), contact_(contact), options_(options), body_(model, scene),
+      positive_(model.free_modes == 0 && (model.dual_basis.array() >= 0).all()),
+      starts_(model.scene.parameters, model.trained_mu), at_mu_(body_),
+      qp_(solved_size(model), model.free_modes), g_(Vector::Zero(model.generators)) {
+  const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
+  Index end = rows.size();
+  while (end > 0 && rows[end - 1] == 0)
+    --end;
+  while (first_dual_ < end && rows[first_dual_] == 0)
+    ++first_dual_;
+  dual_rows_ = end - first_dual_;
+}
+
+void ConeSolver::evaluate_contact(const Vector &state, ReducedAnswer &answer) {
+  ContactOperators &op = answer.contact;
+  assemble(contact_, answer.mu, {state}, op);
+  const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
+  const Matrix traces = op.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
+  b_.noalias() = basis * traces;
+  g_.noalias() = basis * op.g.segment(first_dual_, dual_rows_);
+  turned_b_ = body_.turned(b_.transpose());
+  root_of_y_ = 0;
+}
+
+/// Where the only term of B keeps its sign, b_ stays.
+void ConeSolver::set_b(const Vector &theta_b) {
+  const double ratio = theta_b.size() == 1 && theta_b_.size() == 1 ? theta_b[0] / theta_b_[0] : 0;
+  if (std::isfinite(ratio) && ratio > 0) {
+    b_scale_ = ratio;
+    return;
+  }
+  b_scale_ = 1;
+  b_ = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
+  theta_b_ = theta_b;
+  turned_b_ = body_.turned(b_.transpose());
+  root_of_y_ = 0;
+}
+
+void ConeSolver::set_y() {
+  if (model_.online_enriched) at_mu_.restrict_to(enriched_subspace(b_, model_.modes));
+  if (root_of_y_ == at_mu_.root_number()) return;
+  y_ = std::sqrt(at_mu_.scale()) * at_mu_.half_response_of_turned(turned_b_);
+  root_of_y_ = at_mu_.root_number();
+  ++y_number_;
+  qp_.reset();
+}
+
+void ConeSolver::solve_dual(ReducedAnswer &answer) {
+  // The columns of Y are those of y_ times `scale`: x takes the factor instead.
+  const double scale = b_scale_ / std::sqrt(at_mu_.scale());
+  const NonnegativeQpReport report = qp_.solve(y_, at_mu_.half_response(f_), g_ / scale);
+  if (report.unbounded)
+    throw failure("the reduced constraints contradict each other: reduce again with more "
+                  "supremizers (-pga_beta_fraction) or more modes (-pod_tolerance)");
+  if (!report.converged)
+    throw failure("the reduced problem did not converge in " + std::to_string(report.iterations) +
+                  " active-set updates: reduce again with fewer generators (-cone_tolerance)");
+  answer.iterations = report.iterations;
+  answer.lambda = qp_.x() / scale;
+  answer.u = at_mu_.transposed_half_response(qp_.residual());
+}
+
+void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
+  at_mu_.set(answer.mu);
+  if (model_.evaluates_contact())
+    evaluate_contact(state, answer);
+  else
+    set_b(answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, answer.mu));
+  set_y();
+  f_ = at_mu_.load();
+  if (model_.g.size() > 0)
+    g_.noalias() =
+        model_.g.reduced * contact_coefficients(model_.g, Part::g, contact_, scene_, answer.mu);
+  solve_dual(answer);
+}
+
+void ConeSolver::finish(ReducedAnswer &answer) {
+  const Vector au = at_mu_.times(answer.u), btx = b_scale_ * (b_.transpose() * answer.lambda),
+               bu = b_scale_ * (b_ * answer.u);
+  const double terms = b_scale_ * (b_.cwiseAbs() * answer.u.cwiseAbs()).maxCoeff();
+  answer.energy = 0.5 * answer.u.dot(au) - f_.dot(answer.u);
+  answer.residual =
+      kkt_residual(at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
+                   answer.lambda, model_.free_modes, terms);
+  answer.least_pressure = active_fraction;
+  if (!(answer.residual <= largest_kkt_residual))
+    throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
+                   << answer.residual << ": reduce again with fewer generators or more supremizers")
+                      .str());
+  if (!positive_) check_pull(answer);
+}
+
+void ConeSolver::check_pull(const ReducedAnswer &answer) const {
+  const Vector pressure = model_.dual_basis * answer.lambda;
+  Index node = 0;
+  if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
+  const Point at = dual_points(contact_)[node];
+  throw failure((std::ostringstream("the pressure is negative at the contact point of reference "
+                                    "coordinates ",
+                                    std::ios::ate)
+                 << at[0] << ' ' << at[1] << ' ' << at[2]
+                 << ": contact opens there, and never did in training; reduce again with more "
+                    "training parameters or a larger -cone_ring")
+                    .str());
+}
+
+/// From the undeformed body, on the trace of the primal basis, until (A.8) is met in its norm.
+void ConeSolver::solve_following(ReducedAnswer &answer) {
+  constexpr int most_steps = 60;
+  constexpr double tolerance = 1e-9;
+  Vector state = undeformed(contact_, scene_, answer.mu), last_x;
+  Anderson anderson(3);
+  std::vector<Vector> images;
+  int iterations = 0;
+  double last_change = 0;
+  for (int k = 0; k < most_steps; ++k) {
+    solve_pair(state, answer);
+    iterations += answer.iterations;
+    images.push_back(model_.contact_trace * answer.u);
+    const Vector change = images.back() - state;
+    const bool settled = change.norm() <= tolerance * images.back().norm() && last_x.size() > 0 &&
+                         (answer.lambda - last_x).norm() <= tolerance * answer.lambda.norm();
+    if (settled) {
+      answer.iterations = iterations;
+      answer.contraction = last_change > 0 ? change.norm() / last_change : 0;
+      assemble(contact_, answer.mu, {images.back()}, answer.contact);
+      return;
+    }
+    last_x = answer.lambda;
+    last_change = change.norm();
+    const Vector shares = anderson.combine(change);
+    if (std::ssize(images) > shares.size()) images.erase(images.begin());
+    state.setZero();
+    for (Index j = 0; j < shares.size(); ++j)
+      state += shares[j] * images[j];
+  }
+  throw failure("the reduced condition that follows the displacement does not settle in " +
+                std::to_string(most_steps) +
+                " steps: reduce again with -multiplier_reduction condensed");
+}
+
+void ConeSolver::solve_from_start(ReducedAnswer &answer) {
+  if (follows_state(contact_))
+    solve_following(answer);
+  else
+    solve_pair({}, answer);
+  finish(answer);
+}
+
+void ConeSolver::start(const FullMu &mu) {
+  const Start &start = starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
+    const Vector there = model_.trained_mu.col(sample);
+    ReducedAnswer unused;
+    unused.mu = expand(scene_.parameters, {there.begin(), there.end()});
+    qp_.start_from({});
+    solve_from_start(unused);
+    Start found{qp_.active(), {}, y_number_};
+    if (model_.a.size() == 1 && model_.b.size() == 1) found.qp = qp_; // Y stays
+    return found;
+  });
+  if (start.qp && start.y_number == y_number_)
+    qp_ = *start.qp;
+  else
+    qp_.start_from(start.active);
+}
+
+ReducedAnswer ConeSolver::solve(const FullMu &mu) {
+  ReducedAnswer answer;
+  answer.mu = mu;
+  if (!options_.warm) start(mu);
+  solve_from_start(answer);
+  return answer;
+}
+
+} // namespace rbvi

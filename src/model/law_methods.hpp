@@ -1,0 +1,78 @@
+// The three ways to meet the law of contact and friction in a query.
+#pragma once
+
+#include "rbvi/method/nonlinear.hpp"
+#include "rbvi/model/collocated_law.hpp"
+#include "rbvi/model/law_solver.hpp"
+#include "rbvi/model/sample_starts.hpp"
+
+namespace rbvi {
+
+/// The law of a query has to be met to this.
+constexpr double largest_residual = 1e-8;
+
+/// At every node.
+class NodeLawSolver : public QueryMethod {
+public:
+  /// `by_rule`: as in friction_answer.
+  NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                const QueryOptions &options, bool by_rule);
+  ReducedAnswer solve(const FullMu &mu) override;
+  /// From answer.start, where that is there, or from what the samples predict.
+  void solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer);
+  LawProblem &problem() { return problem_; }
+  LawStarts &starts() { return starts_; }
+
+private:
+  const bool by_rule_, looks_for_others_;
+  LawProblem problem_;
+  LawStarts starts_;
+};
+
+/// On fewer functions. From the answer on them at the nearest training sample.
+class CollocatedSolver : public QueryMethod {
+public:
+  CollocatedSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                   const QueryOptions &options);
+  ReducedAnswer solve(const FullMu &mu) override;
+
+private:
+  Vector start(const FullMu &mu);
+  CollocatedResult solve_functions(const LawAtMu &law, const Vector &start);
+  /// Whether its answer stands; if not, exact steps follow, from it if there is one.
+  bool answer_on_functions(const LawAtMu &law, const Vector &start, ReducedAnswer &answer);
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  const QueryOptions options_;
+  NodeLawSolver at_nodes_;
+  SampleStarts<Vector> starts_;
+  Vector last_; ///< CollocatedResult::x of the last query
+};
+
+/// At every node, contact that follows the displacement.
+class FollowingSolver : public QueryMethod {
+public:
+  FollowingSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
+                  const QueryOptions &options, bool by_rule);
+  ReducedAnswer solve(const FullMu &mu) override;
+
+private:
+  NonlinearStart start(const FullMu &mu) const;
+
+  const ReducedModel &model_;
+  const Scene &scene_;
+  const Contact &contact_;
+  const bool by_rule_, looks_for_others_, warm_;
+  const ColumnLaws columns_; ///< of the dual basis
+  const ReducedBody body_;
+  BodyAtMu at_mu_;
+  EvaluatedContact evaluated_;
+  std::optional<NodalCompliance> nodal_;
+  const bool rows_are_identity_; ///< of evaluated_
+  const SparseMatrix w_product_; ///< of the columns of the dual basis
+  LawStarts starts_;
+  Vector last_state_;
+};
+
+} // namespace rbvi

@@ -1,0 +1,109 @@
+#include "rbvi/model/model.hpp"
+
+#include "checks.hpp"
+#include "model_fields.hpp"
+#include "model_list.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/validity.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+Matrix leading_block(const Matrix &packed, Index rows, Index r, Index n) {
+  Matrix result(r * n, packed.cols());
+  for (Index j = 0; j < n; ++j)
+    result.middleRows(j * r, r) = packed.middleRows(j * rows, r);
+  return result;
+}
+
+} // namespace
+
+void check_model(const ReducedModel &model) {
+  require(!model.interfaces.empty(), "it has no contact interface");
+  const int dim = model.interfaces.front().mesh.dim;
+  require(dim == 2 || dim == 3, "interfaces have neither 2 nor 3 dimensions");
+  const FieldChecker checker;
+  StoredBeside none;
+  list_model(checker, model, none);
+  if (model.mesh_points.rows() > 0 || model.primal_basis.rows() > 0)
+    list_fields(checker, "fields/", model);
+}
+
+const std::vector<std::string> &multiplier_reduction_names() {
+  static const std::vector<std::string> names{"auto", "cone", "condensed", "collocated"};
+  return names;
+}
+
+ReducedModel leading(const ReducedModel &model, int n, int r) {
+  if (n < 1 || n > model.primal_size() || r < std::min(1, model.generators) || r > model.generators)
+    throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
+                    " dual functions in a model of " + std::to_string(model.primal_size()) +
+                    " and " + std::to_string(model.generators));
+  if (model.law && r != model.generators)
+    throw bad_input("a model of contact with a support has no part with fewer multipliers");
+  ReducedModel result = model;
+  result.modes = std::min(n, model.modes);
+  result.supremizers = n - result.modes;
+  result.online_enriched = model.online_enriched && result.supremizers > 0;
+  result.generators = r;
+  result.free_modes = std::max(0, r - (model.generators - model.free_modes));
+  if (model.a_change.rank() > 0) result.a_change.range = model.a_change.range.topRows(n);
+  result.a.reduced = leading_triangles(model.a.reduced, model.primal_size(), n);
+  if (model.b.size() > 0) result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
+  if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);
+  if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
+  result.dual_basis = model.dual_basis.leftCols(r);
+  result.contact_trace = model.contact_trace.leftCols(n);
+  keep_leading_nitsche(model.primal_size(), n, result);
+  if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
+  if (n != model.primal_size()) result.fields_key.clear();
+  if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
+  if (r != model.generators || n != model.primal_size()) result.self_check = {};
+  if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};
+  return result;
+}
+
+const ValidationErrors &expected_errors(const ReducedModel &model) {
+  const ValidationErrors &plain = model.validation_decorrelated;
+  return model.supremizers == 0 && plain.count + plain.unanswered > 0 ? plain
+                                                                      : model.validation_enriched;
+}
+
+ErrorOfOutput errors_of_outputs(const ReducedModel &model) {
+  ErrorOfOutput errors;
+  for (const OutputError &error : expected_errors(model).outputs)
+    if (output_column(error.name).kind != OutputKind::check) errors[error.name] = error.max;
+  return errors;
+}
+
+Point point_of(const Matrix &points, Index i) {
+  Point point{};
+  for (Index k = 0; k < points.cols(); ++k)
+    point[k] = points(i, k);
+  return point;
+}
+
+Contact contact_of(const ReducedModel &model, const Scene &scene) {
+  std::vector<InterfaceMesh> meshes;
+  for (const InterfaceModel &interface : model.interfaces)
+    meshes.push_back(interface.mesh);
+  return make_contact(scene, std::move(meshes));
+}
+
+Scene scene_by_code(const Scene &stored, const Registry &registry) {
+  Scene scene = make_scene(entry_of(registry, stored.name), stored.options);
+  const auto same = [](const Parameter &p, const Parameter &q) { return p.name == q.name; };
+  if (!std::ranges::equal(scene.parameters.all, stored.parameters.all, same))
+    throw bad_input("the parameters of the model are not those of scene " + stored.name +
+                    " in this build");
+  const ParameterSpace of_scene = std::exchange(scene.parameters, stored.parameters);
+  for (std::size_t i = 0; i < of_scene.all.size(); ++i)
+    scene.parameters.all[i].valid = of_scene.all[i].valid;
+  check_box(scene);
+  return scene;
+}
+
+} // namespace rbvi

@@ -1,0 +1,48 @@
+// The file of a model's fields, beside that of the model.
+#pragma once
+
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/io/fields.hpp"
+#include "rbvi/model/model.hpp"
+
+namespace rbvi {
+
+/// The fields of a mesh; `group`: "", or with a slash.
+template <class Store, class Model>
+void list_mesh(const Store &store, const std::string &group, Model &model) {
+  const bool known = !model.interfaces.empty();
+  const Index nodes = model.mesh_points.rows();
+  store(group + "points", model.mesh_points,
+        Shape{any_size, known ? model.interfaces.front().mesh.dim : any_size});
+  store(group + "cells", model.mesh_cells, Indices{nodes});
+  store.ask(group + "cells is not a list of cells", [&] {
+    const InterfaceMesh &mesh = model.interfaces.front().mesh;
+    return std::ssize(model.mesh_cells) % nodes_per_cell(mesh.dim, mesh.degree) == 0;
+  });
+  store(group + "imposed_by", model.imposed_by);
+}
+
+/// The fields that a model holds in memory.
+template <class Store, class Model>
+void list_fields(const Store &store, const std::string &group, Model &model) {
+  const Index nodes = model.mesh_points.rows(), dofs = model.primal_basis.rows();
+  list_mesh(store, group, model);
+  store(group + "primal_basis", model.primal_basis, Shape{any_size, model.primal_size()});
+  store.ask(group + "primal_basis has no whole number of rows per node",
+            [&] { return nodes > 0 && dofs % nodes == 0; });
+  store.ask(group + "imposed_by does not fit",
+            [&] { return model.imposed_by.empty() || std::ssize(model.imposed_by) == dofs; });
+}
+
+/// Tells the fields of one model from those of another; "" for a model without.
+std::string key_of_fields(const ReducedModel &model);
+
+/// Writes the fields that a model holds in memory; leaves the file as it is where it has them.
+void write_fields(const ReducedModel &model, const std::filesystem::path &model_path);
+
+/// `key`: of the model; "" is a model without fields. Throws bad_input for a file that is not there
+/// or has other fields.
+void read_fields(const std::filesystem::path &model_path, const std::string &key,
+                 ReducedModel &model);
+
+} // namespace rbvi

@@ -1,0 +1,136 @@
+#include "rbvi/model/nitsche_solver.hpp"
+
+#include "nitsche_interpolated.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/local_fit.hpp"
+#include "rbvi/model/packed.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+using ChosenPoints = std::vector<std::pair<int, double>>;
+
+/// The points that the model integrates at; none where it interpolates.
+ChosenPoints points_of(const NitscheModel &nitsche, const NitscheLayer &layer) {
+  ChosenPoints chosen;
+  if (nitsche.rule == CurveRule::empirical)
+    for (std::size_t k = 0; k < nitsche.points.size(); ++k)
+      chosen.emplace_back(nitsche.points[k], nitsche.factors[static_cast<Index>(k)]);
+  else if (nitsche.rule == CurveRule::full)
+    for (int k = 0; k < 4 * static_cast<int>(layer.cells.size()); ++k)
+      chosen.emplace_back(k, 1.0);
+  return chosen;
+}
+
+/// All points of the curve. Where scene and mesh are symmetric, so that the points of the model lie
+/// on one half, which stands for both: those of that half, which count twice.
+ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheLayer &layer) {
+  const Vector x = point_abscissae(layer.cells);
+  const bool half = is_symmetric(layer.scene) && nitsche.rule == CurveRule::empirical &&
+                    std::all_of(nitsche.points.begin(), nitsche.points.end(),
+                                [&](int point) { return x[point] < 0; });
+  ChosenPoints chosen;
+  for (Index point = 0; point < x.size(); ++point)
+    if (!half || x[point] < 0) chosen.emplace_back(static_cast<int>(point), half ? 2.0 : 1.0);
+  return chosen;
+}
+
+} // namespace
+
+ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
+    : model_(model), layer_(std::move(layer)), body_(model, layer_.scene),
+      consistency_(model.nitsche->consistency, layer_.cells) {
+  system_ = std::make_unique<System>(model, layer_.cells, points_of(*model.nitsche, layer_));
+  if (model.nitsche->rule == CurveRule::interpolated)
+    interpolated_ = std::make_unique<Interpolated>(model, layer_);
+}
+
+ReducedNitsche::~ReducedNitsche() = default;
+
+ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_parameters) const {
+  BodyAtMu body(body_);
+  body.set(all_parameters);
+  Quadratic result{body.stiffness(), {}, body.load()};
+  const std::vector<NitscheFace> faces =
+      nitsche_faces(layer_, all_parameters, selected(layer_.cells, consistency_.cells()));
+  const Vector theta = consistency_.of_blocks(nitsche_consistency(faces));
+  result.a_gamma =
+      result.a + unpacked(model_.nitsche->consistency.reduced * theta, model_.primal_size());
+  return result;
+}
+
+Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_parameters) const {
+  if (of_samples.cols() == 0) return {};
+  const ParameterSpace &space = layer_.scene.parameters;
+  return local_fit(of_samples, parts_of_box(space, model_.nitsche->starts_mu),
+                   parts_of_box(space, all_parameters));
+}
+
+ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
+  System &system = *system_;
+  const NitscheModel &nitsche = *model_.nitsche;
+  system.quadratic = quadratic_at(all_parameters);
+  ReducedAnswer answer;
+  answer.mu = all_parameters;
+  if (interpolated_) {
+    answer.iterations =
+        interpolated_->solve(all_parameters, predicted(nitsche.starts, all_parameters), system);
+  } else {
+    system.set_points(layer_, all_parameters);
+    system.predict(predicted(nitsche.starts, all_parameters),
+                   predicted(nitsche.states, all_parameters));
+    answer.iterations = system.settle();
+  }
+  answer.u = system.u;
+  answer.residual = system.relative;
+  answer.energy =
+      0.5 * answer.u.dot(system.quadratic.a * answer.u) - system.quadratic.f.dot(answer.u);
+  return answer;
+}
+
+Matrix ReducedNitsche::point_residuals() const {
+  const System &system = *system_;
+  const Vector slopes = system.terms.weighted(&PointTerm::slope, system.pressures, system.bounds);
+  Matrix result =
+      system.functionals.leftCols(system.points) * slopes.head(system.points).asDiagonal();
+  if (system.bounds.size() > 0)
+    result += system.functionals.rightCols(system.points) * slopes.tail(system.points).asDiagonal();
+  return result;
+}
+
+Matrix ReducedNitsche::tangent() const {
+  return system_->tangent_at(system_->pressures);
+}
+
+Vector ReducedNitsche::multiplier(const FullMu &all_parameters, const Vector &u) const {
+  return nitsche_multiplier(layer_, all_parameters, model_.contact_trace * u);
+}
+
+Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vector &u,
+                                        Outputs &outputs) const {
+  if (model_.nitsche->rule == CurveRule::full) return u;
+  if (!whole_)
+    whole_ = std::make_unique<System>(model_, layer_.cells, whole_curve(*model_.nitsche, layer_));
+  whole_->quadratic = quadratic_at(all_parameters);
+  whole_->set_points(layer_, all_parameters);
+  whole_->set(u);
+  whole_->set_bounds();
+  (void)whole_->residual();
+  outputs.quadrature_residual = whole_->relative;
+  (void)whole_->settle();
+  return whole_->u;
+}
+
+void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
+                             Outputs &outputs) const {
+  const Vector on_layer = model_.contact_trace * over_whole_curve(all_parameters, u, outputs);
+  const std::vector<NitscheFace> faces =
+      nitsche_faces(layer_, all_parameters, layer_.cells, on_layer);
+  nitsche_outputs(layer_, all_parameters, faces, on_layer, nitsche_pressures(faces, on_layer),
+                  outputs);
+}
+
+} // namespace rbvi

@@ -1,0 +1,128 @@
+#include "rbvi/model/online.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/largest.hpp"
+#include "rbvi/core/validity.hpp"
+#include "rbvi/element/imposed.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// Throws bad_input where displacements are imposed by boundaries that the scene does not have.
+void check_imposed_by(const ReducedModel &model, const Scene &scene) {
+  std::vector<const std::vector<int> *> lists{&model.imposed_by};
+  for (const InterfaceModel &interface : model.interfaces)
+    lists.push_back(&interface.mesh.imposed_by);
+  for (const AffineTerms *terms : {&model.f, &model.g, &model.imposed_energy})
+    for (const SampleMesh &sample : terms->samples)
+      lists.push_back(&sample.imposed_by);
+  for (const std::vector<int> *list : lists)
+    if (std::ranges::any_of(*list, [&](int b) { return b < -1 || b >= std::ssize(scene.fixed); }))
+      throw bad_input("the imposed displacements of the model are not those of its scene in this "
+                      "build");
+}
+
+} // namespace
+
+OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &options)
+    : OnlineSolver(model, model.scene, options) {}
+
+OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options)
+    : model_(model), scene_(with_imposed_loads(std::move(scene))),
+      imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
+      dual_basis_(model.dual_basis.sparseView()) {
+  check_terms_of(model.a, scene_.a, scene_.parameters, "a");
+  check_terms_of(model.f, scene_.f, scene_.parameters, "f");
+  check_imposed_by(model, scene_);
+  check_terms_of(model.imposed_energy, imposed_energy_, scene_.parameters, "the imposed energy");
+  if (contact_.dual_size() != model.dual_basis.rows() ||
+      has_multipliers(scene_) != model.has_multipliers() ||
+      (model.evaluates_contact() == separable_contact(scene_) && model.has_multipliers()))
+    throw bad_input("the contact of the model does not fit its scene in this build");
+  if (!model.has_multipliers()) {
+    auto nitsche = std::make_unique<ReducedNitsche>(model, layer_of(contact_));
+    nitsche_ = nitsche.get();
+    method_ = std::move(nitsche);
+    return;
+  }
+  trace_.emplace(model, contact_);
+  if (model.law)
+    method_ = law_solver(model, scene_, contact_, options);
+  else
+    method_ = std::make_unique<ConeSolver>(model, scene_, contact_, options);
+}
+
+ReducedAnswer OnlineSolver::solve(const Mu &mu, bool extrapolate) {
+  check_query(scene_, mu, extrapolate);
+  return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu), [&] {
+    ReducedAnswer solution = method_->solve(expand(scene_.parameters, mu));
+    if (const AffineTerms &imposed = model_.imposed_energy; imposed.size() > 0)
+      solution.energy += imposed.reduced.row(0).dot(
+          affine_coefficients(imposed, imposed_energy_, scene_, solution.mu));
+    return solution;
+  });
+}
+
+Vector OnlineSolver::multiplier(const ReducedAnswer &solution) const {
+  if (nitsche_) return nitsche_->multiplier(solution.mu, solution.u);
+  return dual_basis_ * solution.lambda;
+}
+
+ContactOperators OnlineSolver::nodal_operators(const ReducedAnswer &solution,
+                                               const Vector &lambda) const {
+  if (model_.evaluates_contact()) return solution.contact;
+  ContactOperators operators;
+  assemble_nodal(contact_, solution.mu, {}, lambda, operators);
+  return operators;
+}
+
+Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
+  const ContactOperators operators = nodal_operators(solution, multiplier(solution));
+  return trace_->gap_left(operators, solution.u);
+}
+
+Vector OnlineSolver::field(const ReducedAnswer &solution) const {
+  if (model_.primal_basis.rows() == 0)
+    throw failure("the model was read without its fields: no full field can be reconstructed");
+  Vector field = model_.primal_basis * solution.u;
+  if (model_.imposed_by.empty()) return field;
+  std::vector<Point> nodes;
+  for (Index i = 0; i < model_.mesh_points.rows(); ++i)
+    nodes.push_back(point_of(model_.mesh_points, i));
+  return field + imposed_values(scene_, solution.mu, nodes, model_.imposed_by);
+}
+
+Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {
+  Outputs result;
+  const double images = scene_.mirror_images;
+  result.energy = images * solution.energy;
+  result.kkt_residual = solution.residual;
+  result.iterations = solution.iterations;
+  result.load_steps = solution.load_steps;
+  result.contraction = solution.contraction;
+  const ValidationErrors &expected = expected_errors(model_);
+  if (expected.count > 0 && in_box(scene_.parameters, mu)) {
+    result.expected_error_u = expected.u_max;
+    result.expected_error_lambda = std::max(expected.lambda_max, expected.tangential_max);
+  }
+  if (nitsche_) {
+    nitsche_->outputs(solution.mu, solution.u, result);
+    check_finite(result);
+    return result;
+  }
+  const Vector lambda = multiplier(solution);
+  const ContactOperators operators = nodal_operators(solution, lambda);
+  const Vector gap = trace_->gap_left(operators, solution.u);
+  trace_->check_outside(operators, gap);
+  set_penetration(penetration_at(gap, operators.nodal_gap), result);
+  const double least = solution.least_pressure * std::max(0.0, lambda.maxCoeff());
+  contact_outputs(contact_, solution.mu, operators, lambda, least, result);
+  check_finite(result);
+  return result;
+}
+
+} // namespace rbvi

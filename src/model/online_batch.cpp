@@ -1,0 +1,264 @@
+#include "online_batch.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/locking.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/io/output_table.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/io/system_error.hpp"
+#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/print.hpp"
+#include "rbvi/model/training_samples.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+namespace rbvi {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// A temporary file beside FILE until everything is in it, so that of several writers each has its
+/// own; a device, or a stream that is there, as it is.
+class TableFile {
+public:
+  TableFile(const std::string &name, std::ostream &standard)
+      : name_(name), written_(name), stream_(name.empty() ? standard : file_) {
+    if (name.empty()) return;
+    const fs::path path = name;
+    const fs::file_status status = fs::status(path);
+    if (!fs::exists(status) || !fs::is_other(status)) {
+      remove_stale_temporaries(path.has_parent_path() ? path.parent_path() : ".",
+                               path.filename().string());
+      whole_ = std::make_unique<AtomicFile>(path);
+      written_ = whole_->temporary().string();
+    }
+    file_.open(written_);
+    check();
+  }
+  ~TableFile() {
+    if (whole_) whole_->leave();
+  }
+  TableFile(const TableFile &) = delete;
+  TableFile &operator=(const TableFile &) = delete;
+  std::ostream &stream() { return stream_; }
+  /// After every row, which stays whatever happens to the next.
+  void check() {
+    if (stream_.flush()) return;
+    const Error error = cannot_write(name_.empty() ? "to standard output" : name_);
+    throw whole_ ? failure(error.what() + ("; the rows are in " + written_)) : error;
+  }
+  void finish() {
+    if (name_.empty()) return;
+    file_.close();
+    check();
+    if (whole_) whole_->commit();
+  }
+
+private:
+  std::string name_, written_;
+  std::unique_ptr<AtomicFile> whole_;
+  std::ofstream file_;
+  std::ostream &stream_;
+};
+
+/// What is said at the end.
+struct Tally {
+  std::vector<Point> contact_points; ///< where locking is looked for
+  long rows = 0, unanswered = 0, near_failed = 0, not_alone = 0, unvalidated = 0;
+  double seconds = 0, residual = 0, violation = 0, locking = 0;
+  std::string reason; ///< of the first row without an answer
+  ResolutionTally resolution;
+  void add_failure(const std::string &why) {
+    ++rows;
+    if (unanswered++ == 0) reason = why;
+  }
+};
+
+/// On standard error now and then: one updating line on a terminal, else a line every ten seconds.
+class QueryProgress {
+public:
+  /// `total`: 0 where nobody knows.
+  explicit QueryProgress(long total) : total_(total), terminal_(isatty(STDERR_FILENO) == 1) {}
+  ~QueryProgress() {
+    if (terminal_ && shown_) std::cerr << '\n';
+  }
+  void update(const Tally &tally) {
+    const double since = std::chrono::duration<double>(Clock::now() - last_).count();
+    if (since < (terminal_ ? 0.5 : 10)) return;
+    last_ = Clock::now();
+    shown_ = true;
+    const double elapsed = std::chrono::duration<double>(last_ - start_).count();
+    std::cerr << (terminal_ ? "\r  " : "  ") << tally.rows;
+    if (total_ > 0) std::cerr << " of " << total_;
+    std::cerr << " queries, " << tally.unanswered << " without an answer";
+    if (total_ > 0)
+      std::cerr << ", "
+                << short_number(elapsed / static_cast<double>(tally.rows) *
+                                static_cast<double>(total_ - tally.rows))
+                << " s left";
+    std::cerr << (terminal_ ? "\x1b[K" : "\n") << std::flush;
+  }
+
+private:
+  long total_;
+  bool terminal_, shown_ = false;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+/// The number of queries, each of which is read and checked; 0 for a stream.
+long count_queries(const OnlineArguments &arguments, const ParameterSpace &space) {
+  if (is_stream(arguments.queries)) return 0;
+  ParameterReader reader(space, arguments.queries, arguments.extrapolate);
+  long count = 0;
+  while (reader.next())
+    ++count;
+  return count;
+}
+
+/// Which outputs this model has: those of the first of its training parameters, or of some random
+/// ones, that it answers.
+Outputs example(OnlineSolver &solver, const OnlineArguments &arguments) {
+  const Matrix &trained = solver.model().trained_mu;
+  std::vector<Mu> candidates = parse_set(solver.scene().parameters, "random:100:1");
+  for (Index p = trained.cols(); p-- > 0;)
+    candidates.insert(candidates.begin(), Mu(trained.col(p).begin(), trained.col(p).end()));
+  ReducedAnswer solution;
+  for (const Mu &mu : candidates) {
+    try {
+      return answer(solver, mu, arguments, solution);
+    } catch (const Error &) {
+      continue;
+    }
+  }
+  return {};
+}
+
+/// The next query; a row of a stream that is none becomes a row of the table. Nothing at the end.
+std::optional<Mu> next_query(ParameterReader &reader, OutputTable &table, Tally &tally) {
+  for (;;) {
+    try {
+      return reader.next();
+    } catch (const Error &error) {
+      if (error.status() != Status::bad_input) throw;
+      tally.add_failure(error.what());
+      table.add_failure(reader.row(), error.what());
+    }
+  }
+}
+
+/// One row: the answer, or why there is none.
+void answer_row(const Mu &mu, const std::string &id, OnlineSolver &solver,
+                const OnlineArguments &arguments, OutputTable &table, Tally &tally) {
+  try {
+    ReducedAnswer solution;
+    const Outputs outputs = answer(solver, mu, arguments, solution);
+    const bool inside = in_box(solver.scene().parameters, mu);
+    table.add(mu, outputs, inside, id);
+    ++tally.rows;
+    if (nearest_sample_failed(solver.model(), mu)) ++tally.near_failed;
+    if (inside && beyond_validation(solver.model(), mu)) ++tally.unvalidated;
+    if (solution.to_other > 0) ++tally.not_alone;
+    tally.seconds += outputs.seconds.value_or(0);
+    tally.residual = std::max(tally.residual, outputs.kkt_residual.value_or(0));
+    tally.violation = std::max(tally.violation, violation(outputs));
+    tally.resolution.add(outputs);
+    const Scene &scene = solver.scene();
+    tally.locking = std::max(
+        tally.locking, locking_ratio(scene, expand(scene.parameters, mu), tally.contact_points));
+  } catch (const Error &error) {
+    tally.add_failure(error.what());
+    table.add_failure(row_of(mu, id), error.what());
+  }
+}
+
+void report(const OnlineArguments &arguments, const OnlineSolver &solver, const Tally &tally,
+            std::ostream &out) {
+  const long answered = tally.rows - tally.unanswered;
+  out << answered << (answered == 1 ? " answer" : " answers");
+  if (answered > 0)
+    out << ", " << 1e3 * tally.seconds / static_cast<double>(answered)
+        << " ms each, largest kkt_residual " << tally.residual;
+  out << '\n';
+  print_expected_errors(out, solver.model());
+  print_written(out, {arguments.out});
+}
+
+} // namespace
+
+double violation(const Outputs &outputs) {
+  const double peak = outputs.peak_pressure.value_or(0);
+  const double friction = peak > 0 ? outputs.friction_violation.value_or(0) / peak : 0;
+  return std::max(outputs.kkt_residual.value_or(0), friction);
+}
+
+void warn_of_violation(const ReducedModel &model, double violation, std::ostream &out) {
+  constexpr double tolerated = 1e-6;
+  if (!model.law || violation <= tolerated) return;
+  out << "warning: the laws of contact and friction are violated by " << violation
+      << " of the largest pressure at some node: reduce again with -multiplier_exact yes, which "
+         "mends such answers\n";
+}
+
+void warn_of_failed_samples(long answers, std::ostream &out) {
+  if (answers == 0) return;
+  out << "warning: " << answers << (answers == 1 ? " answer lies" : " answers lie")
+      << " nearest to a training parameter that has no high-fidelity answer: nothing there was "
+         "checked\n";
+}
+
+void warn_of_unvalidated(long answers, std::ostream &out) {
+  if (answers == 0) return;
+  out << "warning: " << answers << (answers == 1 ? " answer lies" : " answers lie")
+      << " nearer to a corner or a face of the box than any parameter at which errors were "
+         "measured: theirs may be larger\n";
+}
+
+void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
+  const ParameterSpace &space = solver.scene().parameters;
+  const long total = count_queries(arguments, space);
+  ParameterReader reader(space, arguments.queries, arguments.extrapolate);
+  const bool to_file = !arguments.out.empty() && arguments.out != "-";
+  Tally tally;
+  tally.contact_points = dual_points(solver.contact());
+  const Outputs like = example(solver, arguments);
+  TableFile file(to_file ? arguments.out : "", out);
+  {
+    QueryProgress progress(total);
+    OutputTable table(
+        file.stream(), space, like,
+        {errors_of_outputs(solver.model()), true, arguments.digits(), reader.has_ids()});
+    while (const std::optional<Mu> mu = next_query(reader, table, tally)) {
+      answer_row(*mu, reader.row().id, solver, arguments, table, tally);
+      file.check();
+      progress.update(tally);
+    }
+    file.check();
+  }
+  file.finish();
+  if (to_file) report(arguments, solver, tally, out);
+  std::ostream &warnings = to_file ? out : std::cerr;
+  warn_of_violation(solver.model(), tally.violation, warnings);
+  warn_of_failed_samples(tally.near_failed, warnings);
+  warn_of_unvalidated(tally.unvalidated, warnings);
+  if (!to_file && expected_errors(solver.model()).count == 0)
+    print_expected_errors(warnings, solver.model());
+  tally.resolution.print(warnings);
+  warn_of_locking(tally.locking, warnings);
+  warn_of_other_answers(warnings, tally.not_alone, tally.rows - tally.unanswered);
+  if (tally.unanswered > 0)
+    throw failure(
+        std::to_string(tally.unanswered) + " of " + std::to_string(tally.rows) +
+        " queries have no answer: the column status says why (the first: " + tally.reason + ")");
+}
+
+} // namespace rbvi

@@ -1,0 +1,236 @@
+#include "online_batch.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/locking.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/io/output_table.hpp"
+#include "rbvi/io/overwrite.hpp"
+#include "rbvi/io/system_error.hpp"
+#include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/print.hpp"
+#include "rbvi/model/solution_vtu.hpp"
+#include "rbvi/model/training_samples.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <set>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+std::string usage() {
+  std::string text = "rbvi-online MODEL            what the model is: parameters, sizes, errors\n"
+                     "rbvi-online MODEL [options]  answers\n";
+  for (const OnlineOption &option : online_options()) {
+    const std::string name =
+        "--" + option.name + (option.values.empty() ? "" : " ") + option.values;
+    text += "  " + name +
+            std::string(std::max<std::size_t>(17, name.size() + 1) - name.size(), ' ') +
+            option.help + "\n";
+  }
+  return text + "Exit status: 0 done, 1 it failed, 2 the input is wrong (nothing is written).\n";
+}
+
+const OnlineOption &find_option(const std::string &name) {
+  std::vector<std::string> names;
+  for (const OnlineOption &option : online_options()) {
+    if (option.name == name) return option;
+    names.push_back(option.name);
+  }
+  throw bad_input("unknown option --" + name + "; the nearest one is --" +
+                  nearest_name(name, names) + " (--help lists all)");
+}
+
+void check_combination(const OnlineArguments &given) {
+  if (given.help || given.version) return;
+  if (given.model.empty()) throw bad_input("no model is named; --help shows how");
+  const bool one = !given.mu.empty(), many = !given.queries.empty();
+  if (one && many) throw bad_input("--mu and --queries exclude each other");
+  if (given.warm && !many) throw bad_input("--warm needs --queries");
+  if (!given.vtu.empty() && !one) throw bad_input("--vtu needs --mu");
+  if (!given.out.empty() && !one && !many) throw bad_input("--out needs --mu or --queries");
+  if (given.precision.empty()) return;
+  if (!many && given.out.empty()) throw bad_input("--precision needs --queries or --out");
+  const double digits = parse_number(given.precision, "--precision");
+  if (digits != std::floor(digits) || digits < 1 || digits > 17)
+    throw bad_input("--precision is " + given.precision + ": use a whole number from 1 to 17");
+}
+
+} // namespace
+
+const std::vector<OnlineOption> &online_options() {
+  using Arguments = OnlineArguments;
+  static const std::vector<OnlineOption> options{
+      {"mu", "VALUES", "one answer: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02", &Arguments::mu},
+      {"queries", "SET",
+       "one row per mu: a CSV file (a column id is handed on), grid:5,5,5, random:COUNT:SEED or - "
+       "(a CSV table on standard input)",
+       &Arguments::queries},
+      {"out", "FILE", "the table as CSV (standard output without it, or as -)", &Arguments::out},
+      {"precision", "DIGITS", "of the outputs in the table: 1 to 17, 10 without it",
+       &Arguments::precision},
+      {"vtu", "FILE",
+       "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact",
+       &Arguments::vtu},
+      {"full", "", "reconstruct the field: adds min_u", nullptr, &Arguments::full},
+      {"decorrelated", "", "without the supremizers or responses beside the modes", nullptr,
+       &Arguments::decorrelated},
+      {"extrapolate", "",
+       "allow mu outside the box of the model, within the range of validity (an error otherwise)",
+       nullptr, &Arguments::extrapolate},
+      {"warm", "",
+       "with --queries: each starts from the answer before, for queries along a path; without it "
+       "an "
+       "answer does not depend on the order of the queries",
+       nullptr, &Arguments::warm},
+      {"help", "", "this list", nullptr, &Arguments::help},
+      {"version", "", "of the program", nullptr, &Arguments::version}};
+  return options;
+}
+
+Outputs answer(OnlineSolver &solver, const Mu &mu, const OnlineArguments &arguments,
+               ReducedAnswer &solution) {
+  const auto start = std::chrono::steady_clock::now();
+  solution = solver.solve(mu, arguments.extrapolate);
+  Outputs outputs = solver.outputs(mu, solution);
+  if (arguments.full && solver.scene().components == 1)
+    outputs.min_u = solver.field(solution).minCoeff();
+  outputs.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return outputs;
+}
+
+namespace {
+
+void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ostream &out) {
+  const Mu mu = parse_mu(solver.scene().parameters, arguments.mu, arguments.extrapolate);
+  ReducedAnswer solution;
+  const Outputs outputs = answer(solver, mu, arguments, solution);
+  std::vector<std::filesystem::path> written;
+  if (!arguments.vtu.empty())
+    written = write_vtu(arguments.vtu, solver.scene(), expand(solver.scene().parameters, mu),
+                        solver.model(), solver.field(solution), solver.multiplier(solution));
+  const bool inside = in_box(solver.scene().parameters, mu);
+  const ErrorOfOutput errors = inside ? errors_of_outputs(solver.model()) : ErrorOfOutput{};
+  if (!arguments.out.empty()) {
+    std::ostringstream table;
+    OutputTable(table, solver.scene().parameters, outputs, {errors, true, arguments.digits()})
+        .add(mu, outputs);
+    write_atomically(arguments.out, table.str());
+    written.emplace_back(arguments.out);
+  }
+  out << describe(solver.scene().parameters, mu) << '\n';
+  print_outputs(out, outputs, errors);
+  warn_of_violation(solver.model(), violation(outputs), out);
+  warn_of_failed_samples(nearest_sample_failed(solver.model(), mu) ? 1 : 0, out);
+  warn_of_unvalidated(inside && beyond_validation(solver.model(), mu) ? 1 : 0, out);
+  ResolutionTally resolution;
+  resolution.add(outputs);
+  resolution.print(out);
+  warn_of_locking(locking_ratio(solver.scene(), expand(solver.scene().parameters, mu),
+                                dual_points(solver.contact())),
+                  out);
+  warn_of_other_answers(out, solution.to_other > 0 ? 1 : 0, 1);
+  if (inside)
+    print_expected_errors(out, solver.model());
+  else
+    out << std::left << std::setw(22) << "expected error"
+        << "unknown outside the box\n";
+  if (!written.empty()) print_written(out, written);
+}
+
+} // namespace
+
+OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments) {
+  OnlineArguments result;
+  std::set<std::string> given;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string &argument = arguments[i];
+    if (argument.size() < 2 || argument[0] != '-') {
+      if (!result.model.empty())
+        throw bad_input("'" + argument + "' is left over behind the model " + result.model);
+      result.model = argument;
+      continue;
+    }
+    const std::string body = argument.substr(argument[1] == '-' ? 2 : 1);
+    const std::size_t equals = body.find('=');
+    const OnlineOption &option = find_option(body.substr(0, equals));
+    const std::string name = "--" + option.name;
+    if (!given.insert(name).second) throw bad_input(name + " is given twice");
+    if (option.flag != nullptr) {
+      if (equals != std::string::npos) throw bad_input(name + " takes no value");
+      result.*option.flag = true;
+      continue;
+    }
+    if (equals == std::string::npos && i + 1 == arguments.size())
+      throw bad_input(name + " needs a value");
+    result.*option.text = equals == std::string::npos ? arguments[++i] : body.substr(equals + 1);
+    if ((result.*option.text).empty()) throw bad_input(name + " needs a value");
+  }
+  check_combination(result);
+  return result;
+}
+
+namespace {
+
+/// No file that is read is written.
+void check_files(const OnlineArguments &arguments) {
+  const std::vector<NamedFile> inputs{{"the file of queries", arguments.queries},
+                                      {"the model", arguments.model}};
+  if (arguments.out != "-") check_overwriting({"--out", arguments.out}, inputs);
+  if (arguments.vtu.empty()) return;
+  for (const std::filesystem::path &vtu :
+       {std::filesystem::path(arguments.vtu), contact_file(arguments.vtu)}) {
+    check_overwriting({"--vtu", vtu}, inputs);
+    check_overwriting({"--vtu", vtu}, {{"--out", arguments.out}});
+  }
+}
+
+/// Does what the arguments say. Everything is computed before a file is written.
+void run(const OnlineArguments &arguments, const Registry &registry, std::ostream &out) {
+  if (arguments.help) {
+    out << usage();
+    return;
+  }
+  if (arguments.version) {
+    out << "rbvi-online " RBVI_VERSION "\n";
+    return;
+  }
+  check_files(arguments);
+  const bool fields = arguments.full || !arguments.vtu.empty();
+  ReducedModel model = read_model(arguments.model, registry, fields);
+  if (arguments.decorrelated) model = leading(model, model.modes, model.generators);
+  if (arguments.mu.empty() && arguments.queries.empty()) {
+    print_model(out, model);
+    return;
+  }
+  OnlineSolver solver(model, QueryOptions{.warm = arguments.warm});
+  if (!arguments.mu.empty())
+    answer_one(arguments, solver, out);
+  else
+    answer_many(arguments, solver, out);
+}
+
+} // namespace
+
+int rbvi_online_main(int argc, char **argv, const Registry &registry) {
+  const auto refused = [](const std::exception &error, Status status) {
+    std::cerr << "rbvi-online: " << in_plain_words(error.what()) << '\n';
+    return static_cast<int>(status);
+  };
+  try {
+    run(parse_online_arguments({argv + 1, argv + argc}), registry, std::cout);
+    if (!std::cout.flush()) throw cannot_write("to standard output");
+    return static_cast<int>(Status::done);
+  } catch (const Error &error) {
+    return refused(error, error.status());
+  } catch (const std::exception &error) {
+    return refused(error, Status::failed);
+  }
+}
+
+} // namespace rbvi

@@ -1,0 +1,168 @@
+#include "rbvi/model/reduced_contact.hpp"
+
+#include "edge_of_nodes.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/packed.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+/// The coefficient of each term of one block of the condensed operator.
+Vector block_coefficients(const CondensedOperator &condensed, const Scene &scene,
+                          const FullMu &mu) {
+  return condensed.shape * grid_weights(scene, condensed.axes, mu);
+}
+
+class SeparatedContact : public ReducedContact {
+public:
+  SeparatedContact(const ReducedModel &model, const Scene &scene, const Contact &contact)
+      : model_(model), scene_(scene), contact_(contact) {}
+
+  void set(const FullMu &mu, const Vector &, ReducedAnswer &answer) override {
+    theta_ = contact_coefficients(model_.b, Part::b, contact_, scene_, mu);
+    g_ = model_.g.reduced * contact_coefficients(model_.g, Part::g, contact_, scene_, mu);
+    answer.theta_b = theta_;
+    const CondensedOperator &condensed = model_.law->condensed;
+    coefficients_.resize(condensed.terms.cols());
+    if (coefficients_.size() == 0) return;
+    const Vector of_block = block_coefficients(condensed, scene_, mu);
+    Index at = 0;
+    for (Index p = 0; p < theta_.size(); ++p)
+      for (Index q = p; q < theta_.size(); ++q, at += of_block.size())
+        coefficients_.segment(at, of_block.size()) = theta_[p] * theta_[q] * of_block;
+  }
+
+  Matrix b() const override {
+    return (model_.b.reduced * theta_).reshaped(model_.generators, model_.primal_size());
+  }
+
+  Matrix condensed_columns(const std::vector<Index> &which) override {
+    const Index m = model_.generators;
+    Matrix result(m, std::ssize(which));
+    for (Index k = 0; k < result.cols(); ++k)
+      result.col(k).noalias() =
+          model_.law->condensed.terms.middleRows(which[k] * m, m) * coefficients_;
+    return result;
+  }
+
+  void move(const BodyAtMu &body, ReducedAnswer &answer) const override {
+    answer.u = -body.response(theta_, answer.lambda);
+  }
+
+private:
+  const ReducedModel &model_;
+  const Scene &scene_;
+  const Contact &contact_;
+  Vector theta_, coefficients_;
+};
+
+} // namespace
+
+/// The sum of the model's terms. A column of one body is zero on the others.
+class EvaluatedContact::OfModel : public Compliance {
+public:
+  explicit OfModel(const CondensedOperator &of)
+      : Compliance(std::lround(std::sqrt(static_cast<double>(of.terms.rows())))), of_(of) {
+    for (const Index size : diagonal_blocks(of.terms))
+      bodies_.insert(bodies_.end(), static_cast<std::size_t>(size), {std::ssize(bodies_), size});
+  }
+  bool set(Vector coefficients) {
+    if (coefficients_.size() == coefficients.size() && coefficients_ == coefficients) return false;
+    coefficients_ = std::move(coefficients);
+    forget();
+    return true;
+  }
+  Range body_of(Index dof) const override { return bodies_[dof]; }
+
+private:
+  void make(const std::vector<Index> &dofs, Eigen::Ref<Matrix> columns) override {
+    columns.setZero();
+    for (std::size_t k = 0; k < dofs.size(); ++k) {
+      const auto [first, count] = body_of(dofs[k]);
+      columns.col(static_cast<Index>(k)).segment(first, count).noalias() =
+          of_.terms.middleRows(dofs[k] * size() + first, count) * coefficients_;
+    }
+  }
+
+  const CondensedOperator &of_;
+  Vector coefficients_;
+  std::vector<Range> bodies_; ///< per dof
+};
+
+EvaluatedContact::EvaluatedContact(const ReducedModel &model, const Scene &scene,
+                                   const Contact &contact, const ReducedBody &body)
+    : model_(model), scene_(scene), contact_(contact),
+      rows_(Matrix(model.dual_basis.transpose()).sparseView()),
+      place_(model.contact_trace.rows(), -1) {
+  const std::vector<int> &dofs = model.law->condensed.dofs;
+  trace_ = dofs.empty() ? model.contact_trace : Matrix(model.contact_trace(dofs, Eigen::all));
+  unit_loads_ = body.prepared(trace_.transpose());
+  for (std::size_t k = 0; k < dofs.size(); ++k)
+    place_[dofs[k]] = static_cast<int>(k);
+  if (!dofs.empty()) compliance_ = std::make_unique<OfModel>(model.law->condensed);
+}
+
+EvaluatedContact::~EvaluatedContact() = default;
+
+Compliance &EvaluatedContact::compliance() {
+  return *compliance_;
+}
+
+bool EvaluatedContact::set_compliance(const FullMu &mu) {
+  return compliance_ && compliance_->set(block_coefficients(model_.law->condensed, scene_, mu));
+}
+
+void EvaluatedContact::set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) {
+  assemble(contact_, mu, {state}, answer.contact);
+  b_ = known_columns(rows_ * answer.contact.b);
+  g_ = rows_ * answer.contact.g;
+  set_compliance(mu);
+}
+
+SparseMatrix EvaluatedContact::known_columns(const SparseMatrix &b) const {
+  if (trace_.rows() == b.cols()) return b;
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(b.nonZeros());
+  for (Index row = 0; row < b.rows(); ++row)
+    for (SparseMatrix::InnerIterator entry(b, row); entry; ++entry) {
+      if (entry.value() == 0) continue;
+      const int column = place_[entry.col()];
+      if (column < 0)
+        throw failure("a multiplier of the model meets the other body where no training parameter "
+                      "takes it: " +
+                      std::string(keeps_more));
+      entries.emplace_back(row, column, entry.value());
+    }
+  SparseMatrix known(b.rows(), trace_.rows());
+  known.setFromTriplets(entries.begin(), entries.end());
+  return known;
+}
+
+Matrix EvaluatedContact::condensed_columns(const std::vector<Index> &which) {
+  return rbvi::condensed_columns(*compliance_, b_, which);
+}
+
+Vector EvaluatedContact::moved_by(const BodyAtMu &body, const Vector &forces) const {
+  Vector load = Vector::Zero(unit_loads_.rows());
+  for (Index dof = 0; dof < forces.size(); ++dof)
+    if (forces[dof] != 0) load -= forces[dof] * unit_loads_.col(dof);
+  return body.response_of_prepared(load);
+}
+
+void EvaluatedContact::move(const BodyAtMu &body, ReducedAnswer &answer) const {
+  answer.reaction = b_.transpose() * answer.lambda;
+  answer.u = moved_by(body, answer.reaction);
+}
+
+std::unique_ptr<ReducedContact> reduced_contact(const ReducedModel &model, const Scene &scene,
+                                                const Contact &contact, const ReducedBody &body) {
+  if (model.evaluates_contact())
+    return std::make_unique<EvaluatedContact>(model, scene, contact, body);
+  return std::make_unique<SeparatedContact>(model, scene, contact);
+}
+
+} // namespace rbvi

@@ -1,0 +1,120 @@
+#include "rbvi/model/self_check.hpp"
+
+#include "rbvi/core/box.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+void raise(Worst &worst, double value, const Mu &mu) {
+  if (worst.at.empty() || !(value <= worst.value)) worst = {value, mu};
+}
+
+/// The parameter to the digits that people read.
+std::string at(const Worst &worst, const ParameterSpace &space) {
+  Mu mu = worst.at;
+  for (double &value : mu)
+    value = parse_number(short_number(value), "parameter");
+  return short_number(worst.value) + " (" + describe(space, mu) + ")";
+}
+
+/// Random ones, then those at the boundary of the box.
+std::vector<Mu> set_of_check(const ParameterSpace &space, int queries) {
+  std::vector<Mu> set = parse_set(space, "random:" + std::to_string(queries) + ":17");
+  const std::vector<Mu> boundary = corners_and_faces(space);
+  set.insert(set.end(), boundary.begin(), boundary.end());
+  return set;
+}
+
+} // namespace
+
+int queries_of_check(const ReducedModel &model) {
+  constexpr double most = 200, fewest = 20, quick = 500;
+  const double factor = quick / std::max(1, model.primal_size());
+  return static_cast<int>(std::clamp(most * factor * factor * factor, fewest, most));
+}
+
+SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries) {
+  const std::vector<Mu> set = set_of_check(model.scene.parameters, queries);
+  SelfCheck check;
+  OnlineSolver solver(model, scene);
+  check.queries = static_cast<int>(set.size());
+  check.at_boundary = check.queries - queries;
+  double peak = 0;
+  for (const Mu &mu : set) {
+    try {
+      const ReducedAnswer solution = solver.solve(mu);
+      const Outputs outputs = solver.outputs(mu, solution);
+      raise(check.residual, outputs.kkt_residual.value_or(0), mu);
+      raise(check.penetration, outputs.max_penetration.value_or(0), mu);
+      // By Nitsche's method stresses at nodes exceed the bound by what the mesh leaves of the law.
+      if (outputs.friction_violation && model.has_multipliers())
+        raise(check.friction, *outputs.friction_violation, mu);
+      peak = std::max(peak, outputs.peak_pressure.value_or(0));
+      check.scale =
+          std::max(check.scale, (model.contact_trace * solution.u).lpNorm<Eigen::Infinity>());
+    } catch (const Error &error) {
+      if (check.unanswered++ > 0) continue;
+      check.unanswered_at = mu;
+      check.reason = error.what();
+    }
+  }
+  if (peak > 0) check.friction.value /= peak;
+  return check;
+}
+
+void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set) {
+  if (!has_friction(scene) || !model.law) return;
+  if (set.empty()) set = set_of_check(model.scene.parameters, queries_of_check(model));
+  OnlineSolver solver(model, scene, {.looks_for_others = true});
+  Worst farthest;
+  for (const Mu &mu : set) {
+    try {
+      if (const double other = solver.solve(mu).to_other; other > farthest.value)
+        farthest = {other, mu};
+    } catch (const Error &) { // has none
+      continue;
+    }
+  }
+  if (!(farthest.value > 0)) return;
+  std::vector<double> &known = model.histories["self_check/other"];
+  known.assign(1, farthest.value);
+  known.insert(known.end(), farthest.at.begin(), farthest.at.end());
+}
+
+void print_self_check(std::ostream &out, const SelfCheck &check, const ParameterSpace &space) {
+  if (check.queries == 0) {
+    out << "not made\n";
+    return;
+  }
+  out << check.queries - check.at_boundary << " random queries and " << check.at_boundary
+      << " at corners and faces of the box, ";
+  if (check.unanswered == 0)
+    out << "all answered";
+  else
+    out << check.unanswered << " without an answer";
+  if (check.unanswered < check.queries)
+    out << "; largest residual " << at(check.residual, space) << ", penetration "
+        << at(check.penetration, space) << " where displacements of the contact region reach "
+        << short_number(check.scale);
+  if (!check.friction.at.empty())
+    out << ", violation of friction over the peak pressure " << at(check.friction, space);
+  out << '\n';
+  if (check.unanswered > 0) out << "  no answer at " << check.reason << '\n';
+  if (check.unanswered > 0)
+    out << "  reduce again with more training parameters (-train), or a smaller box\n";
+  else if (!check.answered())
+    out << "  residuals above 1e-10: the laws are met to that only; reduce again with smaller "
+           "tolerances, or -multiplier_reduction condensed where the model has another\n";
+  if (check.unanswered < check.queries && !check.admissible())
+    out << "  bodies penetrate, or friction exceeds its bound, by more than 2 % of these scales: "
+           "the model does not know what happens there; reduce again with more training "
+           "parameters\n";
+}
+
+} // namespace rbvi

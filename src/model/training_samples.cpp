@@ -1,0 +1,51 @@
+#include "rbvi/model/training_samples.hpp"
+
+#include "rbvi/core/box.hpp"
+
+namespace rbvi {
+
+namespace {
+
+/// The smallest squared distance of `mu` to a column, in parts of the box; infinite without
+/// columns.
+double distance_to(const Matrix &columns, const ParameterSpace &space, const Mu &mu) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (Index k = 0; k < columns.cols(); ++k) {
+    double square = 0;
+    for (int i = 0; i < space.size(); ++i) {
+      const double width = space.at(i).upper - space.at(i).lower;
+      const double part = (columns(i, k) - mu[i]) / (width > 0 ? width : 1);
+      square += part * part;
+    }
+    smallest = std::min(smallest, square);
+  }
+  return smallest;
+}
+
+} // namespace
+
+Matrix as_columns(const std::vector<Mu> &set, int rows) {
+  Matrix columns(rows, std::ssize(set));
+  for (std::size_t k = 0; k < set.size(); ++k)
+    columns.col(k) = Eigen::Map<const Vector>(set[k].data(), rows);
+  return columns;
+}
+
+std::vector<Mu> from_columns(const Matrix &columns) {
+  std::vector<Mu> set;
+  for (const auto &column : columns.colwise())
+    set.emplace_back(column.begin(), column.end());
+  return set;
+}
+
+bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {
+  return distance_to(model.failed_mu, model.scene.parameters, free) <
+         distance_to(model.trained_mu, model.scene.parameters, free);
+}
+
+bool beyond_validation(const ReducedModel &model, const Mu &free) {
+  return model.validated_mu.cols() > 0 && expected_errors(model).count > 0 &&
+         nearer_to_boundary(model.scene.parameters, model.validated_mu, free);
+}
+
+} // namespace rbvi

@@ -1,0 +1,341 @@
+#include "rbvi/mor/condensed.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/mor/response_space.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/par/small_svd.hpp"
+#include "rbvi/par/turns.hpp"
+#include "rbvi/solve/complement.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace rbvi {
+
+namespace {
+
+/// Sums of more than two exact terms: what the responses of the body may leave, relative. The
+/// displacements of answers leave as much or less, as combinations of the loads take in more than
+/// they have to, and 1e-6 of them is wanted: 2.9e-7 measured on the disk with two stiffnesses.
+constexpr double response_tolerance = 5e-7;
+constexpr int most_responses = 200; ///< factorisations
+/// Of the responses to the loads: the gap that they leave is what the multipliers answer to.
+constexpr double load_tolerance = 1e-9;
+
+/// The parameters of a that are free, each with so many points.
+std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
+  std::vector<ChebyshevAxis> axes;
+  for (const int i : scene.parameters.free) {
+    if (!depends_on(scene.a, i)) continue;
+    const Parameter &p = scene.parameters.all[i];
+    const Coordinate *own = coordinate_of(scene.a, i);
+    const double lower = own == nullptr ? p.lower : own->of(p.lower);
+    const double upper = own == nullptr ? p.upper : own->of(p.upper);
+    axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});
+  }
+  return axes;
+}
+
+/// The terms of b on the basis, side by side: contact dofs x (multipliers * terms).
+Matrix separated_loads(Problem &problem, const AffineOperators &affine,
+                       const std::vector<Mu> &training, const Matrix &basis) {
+  const Index m = basis.cols();
+  Matrix loads = Matrix::Zero(problem.trace().size, m * affine.b_size());
+  Operators op;
+  int first = 0;
+  for (const RowsOfB &rows : rows_of_b(affine, problem)) {
+    for (int i = 0; i < rows.eim.size(); ++i) {
+      const int snapshot = rows.eim.snapshots[i];
+      problem.assemble_contact(training[snapshot], op);
+      const Matrix at_snapshot = op.b.middleRows(rows.first, rows.count).transpose() *
+                                 basis.middleRows(rows.first, rows.count);
+      for (int p = i; p < rows.eim.size(); ++p)
+        loads.middleCols((first + p) * m, m) += rows.eim.combination(i, p) * at_snapshot;
+    }
+    first += rows.eim.size();
+  }
+  return loads;
+}
+
+/// Ones at some of the contact dofs, a column each.
+template <class Integer> Matrix unit_loads(Index dofs, const std::vector<Integer> &at) {
+  Matrix loads = Matrix::Zero(dofs, std::ssize(at));
+  for (Index k = 0; k < loads.cols(); ++k)
+    loads(at[k], k) = 1;
+  return loads;
+}
+
+/// Contact dofs that b couples, at some mu of the set, with rows of it that are wanted there or
+/// have one that is among their two neighbours on either side. Increasing.
+template <class Wanted>
+std::vector<Index> coupled_dofs(Problem &problem, const std::vector<Mu> &set, Wanted &&wanted) {
+  constexpr Index neighbours = 2;
+  std::set<Index> dofs;
+  Operators op;
+  for (std::size_t p = 0; p < set.size(); ++p) {
+    try {
+      problem.assemble_contact(set[p], op);
+    } catch (const Error &) {
+      continue; // where the interfaces cannot be, no query has an answer
+    }
+    for (Index i = 0; i < op.b.rows(); ++i) {
+      bool near = false;
+      for (Index k = std::max<Index>(0, i - neighbours);
+           k < std::min(op.b.rows(), i + neighbours + 1) && !near; ++k)
+        near = wanted(p, k);
+      for (SparseMatrix::InnerIterator entry(op.b, i); entry && near; ++entry)
+        if (entry.value() != 0) dofs.insert(entry.col());
+    }
+  }
+  return {dofs.begin(), dofs.end()};
+}
+
+/// Beside multipliers that are positive in a sample: where contact is at other mu.
+std::vector<Index> loaded_dofs(Problem &problem, const std::vector<Mu> &training,
+                               const Matrix &multipliers) {
+  return coupled_dofs(problem, training, [&](std::size_t p, Index row) {
+    return multipliers(row, static_cast<Index>(p)) > 0;
+  });
+}
+
+/// Those that the rows of the basis meet wherever the parameters are.
+std::vector<int> met_dofs(Problem &problem, std::vector<Mu> set, const Matrix &basis) {
+  std::vector<int> dofs(problem.trace().size);
+  std::iota(dofs.begin(), dofs.end(), 0);
+  const Vector rows = basis.rowwise().lpNorm<Eigen::Infinity>();
+  if (follows_state(problem.scene()) || rows.minCoeff() > 0) return dofs;
+  const ParameterSpace &space = problem.scene().parameters;
+  std::string corners = "grid:2";
+  for (int i = 1; i < space.size(); ++i)
+    corners += ",2";
+  for (const std::string &more : {corners, std::string("random:100:31")})
+    for (Mu &mu : parse_set(space, more))
+      set.push_back(std::move(mu));
+  const auto met =
+      coupled_dofs(problem, set, [&](std::size_t, Index row) { return rows[row] > 0; });
+  return {met.begin(), met.end()};
+}
+
+/// The blocks of H = `loads`^T A^-1 `loads`, below each other: column by column, m^2 entries each.
+Vector blocks_of(const Matrix &h, Index m) {
+  const Index terms = h.cols() / m;
+  Vector blocks(terms * (terms + 1) / 2 * m * m);
+  Index at = 0;
+  for (Index p = 0; p < terms; ++p)
+    for (Index q = p; q < terms; ++q, at += m * m) {
+      const Matrix block = h.block(p * m, q * m, m, m);
+      const double share = p == q ? 0.5 : 1;
+      blocks.segment(at, m * m) = (share * (block + block.transpose())).reshaped();
+    }
+  return blocks;
+}
+
+/// As few terms as hold the values at all grid points to the tolerance. `values`: (blocks *
+/// `square`) x grid points.
+void compress(const Matrix &values, Index square, double tolerance, CondensedOperator &condensed) {
+  const Index blocks = values.rows() / square;
+  const SmallSvd svd = small_svd(values);
+  Index count = 1;
+  while (count < svd.values.size() && svd.values[count] > 0.1 * tolerance * svd.values[0])
+    ++count;
+  condensed.shape = svd.values.head(count).asDiagonal() * svd.right.leftCols(count).transpose();
+  condensed.terms.resize(square, blocks * count);
+  for (Index block = 0; block < blocks; ++block)
+    condensed.terms.middleCols(block * count, count) =
+        svd.left.block(block * square, 0, square, count);
+}
+
+/// The free parameters at each point of a grid over those of A, the others as in `all_parameters`.
+std::vector<Mu> free_grid(const Scene &scene, const std::vector<ChebyshevAxis> &axes,
+                          const FullMu &all_parameters) {
+  std::vector<Mu> result;
+  for (const FullMu &point : grid_points(scene, axes, all_parameters)) {
+    Mu mu;
+    for (const int i : scene.parameters.free)
+      mu.push_back(point[i]);
+    result.push_back(std::move(mu));
+  }
+  return result;
+}
+
+} // namespace
+
+CondensedLoads condensed_loads(Problem &problem, const AffineOperators &affine,
+                               const std::vector<Mu> &training, const Matrix &multipliers,
+                               const Matrix &basis) {
+  if (!separable_contact(problem.scene())) {
+    const Index dofs = problem.trace().size;
+    std::vector<int> met = met_dofs(problem, training, basis);
+    const auto size = std::ssize(met);
+    return {unit_loads(dofs, met), size, std::move(met), false,
+            loaded_dofs(problem, training, multipliers)};
+  }
+  CondensedLoads loads{
+      separated_loads(problem, affine, training, basis), basis.cols(), {}, affine.b_size() == 1};
+  if (!loads.join && affine.b.exact()) loads.dofs = loaded_dofs(problem, training, multipliers);
+  return loads;
+}
+
+namespace {
+
+/// Combinations of the multipliers, as large as those of `multipliers` (m x P) make them, and at
+/// every node as large as new active sets can change them.
+Matrix weights_of(const Matrix &multipliers) {
+  constexpr double new_at_a_node = 0.1; ///< of the largest multiplier
+  const Index m = multipliers.rows();
+  const double node = new_at_a_node * multipliers.cwiseAbs().maxCoeff();
+  const Matrix covariance =
+      multipliers * multipliers.transpose() / static_cast<double>(multipliers.cols()) +
+      node * node * Matrix::Identity(m, m);
+  return cholesky(covariance, "the covariance of the multipliers");
+}
+
+/// H at single mu, each A factorised; what `condense` appends to the modes on the way.
+class FactorisedResponses {
+public:
+  FactorisedResponses(Problem &problem, const CondensedLoads &loads, double responses,
+                      LinearBasis *modes, std::vector<Mu> ends)
+      : problem_(problem), of_(loads), responses_(responses), modes_(modes),
+        ends_(std::move(ends)) {}
+
+  /// Collective.
+  Vector blocks_at(const Mu &mu) {
+    ++factorisations;
+    const Mat a = problem_.assemble(mu).a;
+    if (modes_ != nullptr && std::find(ends_.begin(), ends_.end(), mu) != ends_.end()) {
+      ResponseSolver solver(a, problem_.trace(), "hf_");
+      if (of_.join)
+        return blocks_of(of_.columns.transpose() * append(solver, of_.columns), of_.size);
+      append(solver, unit_loads(of_.columns.rows(), of_.dofs));
+      return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns, &solver),
+                       of_.size);
+    }
+    return blocks_of(condensed_by_loads(a, problem_.trace(), "hf_", of_.columns), of_.size);
+  }
+
+  int factorisations = 0, appended = 0;
+
+private:
+  /// E^T A^-1 E loads, and what of A^-1 E loads is new.
+  Matrix append(ResponseSolver &solver, const Matrix &loads) {
+    const double least = appended == 0 ? 1e-8 : responses_;
+    Matrix traces;
+    appended += static_cast<int>(append_fields(solver, loads, *modes_, least, &traces).size());
+    return traces;
+  }
+
+  Problem &problem_;
+  const CondensedLoads &of_;
+  double responses_;
+  LinearBasis *modes_;
+  std::vector<Mu> ends_;
+};
+
+/// Values at a grid that is made finer along the axes that need it until the interpolant is right
+/// to the tolerance. `blocks_at`: at many mu. Collective.
+template <class BlocksAt>
+Matrix values_on_grid(const Scene &scene, const FullMu &all, const CondensedOptions &options,
+                      CondensedOperator &condensed, BlocksAt &&blocks_at) {
+  std::map<Mu, Vector> known; // a finer grid holds the points of the coarser one, bit by bit
+  condensed.axes = axes_of(scene, 5);
+  while (true) {
+    const std::vector<Mu> grid = free_grid(scene, condensed.axes, all);
+    std::vector<Mu> added;
+    std::copy_if(grid.begin(), grid.end(), std::back_inserter(added),
+                 [&](const Mu &mu) { return !known.contains(mu); });
+    const std::vector<Vector> blocks = blocks_at(added);
+    for (std::size_t k = 0; k < added.size(); ++k)
+      known.emplace(added[k], blocks[k]);
+    Matrix values(known.begin()->second.size(), std::ssize(grid));
+    for (std::size_t k = 0; k < grid.size(); ++k)
+      values.col(k) = known.at(grid[k]);
+    const Vector tails = chebyshev_tails(condensed.axes, values);
+    condensed.error = tails.size() > 0 ? tails.maxCoeff() : 0;
+    if (condensed.error <= options.tolerance) return values;
+    for (std::size_t d = 0; d < condensed.axes.size(); ++d) {
+      if (tails[d] <= options.tolerance) continue;
+      ChebyshevAxis &axis = condensed.axes[d];
+      if (2 * axis.points - 1 > options.max_points)
+        throw failure("the condensed operator is interpolated to " + short_number(condensed.error) +
+                      " only by " + std::to_string(axis.points) + " points along " +
+                      scene.parameters.all[axis.parameter].name +
+                      ": narrow its bounds, or raise -condensed_tolerance");
+      axis.points = 2 * axis.points - 1;
+    }
+  }
+}
+
+} // namespace
+
+int add_load_responses(Problem &problem, const AffineOperators &affine,
+                       const std::vector<Mu> &training, LinearBasis &modes) {
+  std::vector<Handle<Vec>> mapped;
+  std::vector<Vec> loads;
+  for (const int snapshot : affine.f.snapshots) {
+    problem.assemble(training[snapshot]);
+    const Vec at_snapshot = problem.f_terms().mapped.get();
+    Handle<Vec> copy;
+    RBVI_CALL(VecDuplicate(at_snapshot, copy.put()));
+    RBVI_CALL(VecCopy(at_snapshot, copy.get()));
+    loads.push_back(copy.get());
+    mapped.push_back(std::move(copy));
+  }
+  for (const Handle<Vec> &exact : problem.f_terms().exact)
+    loads.push_back(exact.get());
+  const Scene &scene = problem.scene();
+  const ResponseSearch search{axes_of(scene, 1), expand(scene.parameters, training.front()),
+                              load_tolerance, most_responses};
+  return append_load_responses(problem, loads, search, modes).functions;
+}
+
+Condensation condense(Problem &problem, const CondensedLoads &loads, const FullMu &all,
+                      const CondensedOptions &options, LinearBasis *modes,
+                      const Matrix &multipliers) {
+  const Scene &scene = problem.scene();
+  const Index size = loads.size;
+  const bool appends =
+      modes != nullptr && (loads.join || !loads.dofs.empty()) && options.responses > 0;
+  const SplitSum &split = problem.a_terms().split;
+  Condensation result;
+  CondensedOperator &condensed = result.condensed;
+  Matrix values;
+  if (appends && loads.join && split.mapped.empty() && split.exact.size() > 2) {
+    const ResponseSpace space =
+        append_responses(problem, loads.columns, weights_of(multipliers),
+                         {axes_of(scene, 1), all, response_tolerance, most_responses}, *modes);
+    const ReducedResponses reduced(problem, loads.columns, *modes);
+    values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
+      std::vector<Vector> blocks(set.size(), Vector::Zero(size * size));
+      take_turns(problem.comm(), set.size(), [&](std::size_t k) {
+        blocks[k] = blocks_of(reduced.compliance(expand(scene.parameters, set[k])), size);
+      });
+      for (Vector &block : blocks)
+        over_ranks(problem.comm(), MPI_SUM, block);
+      return blocks;
+    });
+    result.responses = space.functions;
+    result.factorisations = space.points;
+  } else {
+    FactorisedResponses exact(problem, loads, options.responses, appends ? modes : nullptr,
+                              free_grid(scene, axes_of(scene, 3), all));
+    values = values_on_grid(scene, all, options, condensed, [&](const std::vector<Mu> &set) {
+      std::vector<Vector> blocks;
+      for (const Mu &mu : set)
+        blocks.push_back(exact.blocks_at(mu));
+      return blocks;
+    });
+    result.responses = exact.appended;
+    result.factorisations = exact.factorisations;
+  }
+  condensed.dofs = loads.units;
+  compress(values, size * size, options.tolerance, condensed);
+  return result;
+}
+
+} // namespace rbvi

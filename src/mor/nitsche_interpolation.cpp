@@ -1,0 +1,197 @@
+#include "nitsche_interpolation.hpp"
+
+#include "rbvi/model/packed.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double exact = 1e-12; ///< tolerance for what is a sum of few terms
+
+/// The entries of the lower triangle of a matrix that is made of blocks of the faces.
+class LayerPattern {
+public:
+  explicit LayerPattern(const std::vector<CurveCell> &cells) {
+    for (const CurveCell &cell : cells)
+      visit(cell.dofs, [&](int row, int column, Index, Index) { keys_.push_back({row, column}); });
+    std::sort(keys_.begin(), keys_.end());
+    keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+  }
+  const std::vector<EntryKey> &keys() const { return keys_; }
+
+  Vector values(const std::vector<CurveCell> &cells, const std::vector<FaceBlock> &blocks) const {
+    Vector result = Vector::Zero(std::ssize(keys_));
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      visit(cells[k].dofs, [&](int row, int column, Index i, Index j) {
+        const auto found = std::lower_bound(keys_.begin(), keys_.end(), EntryKey{row, column});
+        result[found - keys_.begin()] += blocks[k](i, j);
+      });
+    return result;
+  }
+
+  /// trace^T M trace, its lower triangle column by column.
+  Vector projected(const Vector &values, const Matrix &trace) const {
+    SparseMatrix lower(trace.rows(), trace.rows());
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t k = 0; k < keys_.size(); ++k)
+      entries.emplace_back(keys_[k].row, keys_[k].column, values[k]);
+    lower.setFromTriplets(entries.begin(), entries.end());
+    return pack(trace.transpose() * (lower.selfadjointView<Eigen::Lower>() * trace));
+  }
+
+private:
+  template <class Visit> static void visit(const std::array<int, 12> &dofs, const Visit &at) {
+    for (std::size_t i = 0; i < 12; ++i)
+      for (std::size_t j = 0; j < 12; ++j)
+        if (dofs[j] >= 0 && dofs[i] >= dofs[j])
+          at(dofs[i], dofs[j], static_cast<Index>(i), static_cast<Index>(j));
+  }
+  std::vector<EntryKey> keys_;
+};
+
+struct Interpolation {
+  LayerTerms terms;
+  Eim eim;
+};
+
+/// `project`: of one column of `values` onto the basis.
+template <class Project>
+Interpolation interpolated(const Matrix &values, const std::vector<EntryKey> &keys, bool matrix,
+                           double tolerance, const Project &project) {
+  Interpolation result{{}, eim(MPI_COMM_SELF, values, keys, {.tolerance = tolerance})};
+  const Eim &found = result.eim;
+  LayerTerms &terms = result.terms;
+  terms.interpolation = found.interpolation;
+  terms.error = found.error.empty() ? 0 : found.error.back();
+  for (const EntryKey &entry : found.entries) {
+    terms.rows.push_back(static_cast<int>(entry.row));
+    if (matrix) terms.columns.push_back(static_cast<int>(entry.column));
+  }
+  Matrix taken;
+  for (int i = 0; i < found.size(); ++i) {
+    const Vector column = project(values.col(found.snapshots[i]));
+    if (i == 0) taken.resize(column.size(), found.size());
+    taken.col(i) = column;
+  }
+  if (found.size() > 0) terms.reduced = taken * found.combination.triangularView<Eigen::Upper>();
+  return result;
+}
+
+/// Adds e_EIM along the terms over other columns, and over those that are the last steps: each term
+/// removes what is left at its entry.
+void add_errors_over(Matrix others, const std::vector<Index> &converged, const Matrix &values,
+                     const std::vector<EntryKey> &keys, const Eim &found, EimErrors &errors) {
+  if (others.size() == 0 || found.size() == 0) return;
+  const auto largest = [](const auto &columns) { return columns.cwiseAbs().maxCoeff(); };
+  const double scale = largest(others), last_scale = largest(others(Eigen::all, converged));
+  if (scale == 0) return;
+  const Matrix functions =
+      values(Eigen::all, found.snapshots) * found.combination.triangularView<Eigen::Upper>();
+  errors.validation = {1};
+  if (last_scale > 0) errors.converged = {1};
+  for (int j = 0; j < found.size(); ++j) {
+    const auto entry = std::lower_bound(keys.begin(), keys.end(), found.entries[j]);
+    const Eigen::RowVectorXd left = others.row(entry - keys.begin());
+    others.noalias() -= functions.col(j) * left;
+    errors.validation.push_back(largest(others) / scale);
+    if (last_scale > 0)
+      errors.converged.push_back(largest(others(Eigen::all, converged)) / last_scale);
+  }
+}
+
+Matrix side_by_side(const std::vector<Vector> &columns) {
+  Matrix result(columns.empty() ? 0 : columns.front().size(), std::ssize(columns));
+  for (std::size_t k = 0; k < columns.size(); ++k)
+    result.col(k) = columns[k];
+  return result;
+}
+
+/// The operators at each step of Newton's method.
+struct States {
+  std::array<std::vector<Vector>, 4> values; ///< B^n, Theta^n, B^tau, Theta^tau
+  std::vector<Index> converged;              ///< the last steps
+};
+
+void add_state(const LayerPattern &pattern, const std::vector<CurveCell> &cells,
+               const std::vector<NitscheFace> &faces, const Vector &layer, const Vector &bounds,
+               States &states) {
+  const Matrix pressures = nitsche_pressures(faces, layer);
+  const Vector matrix = pattern.values(cells, nitsche_tangent(faces, pressures, {}));
+  const Vector vector = nitsche_residual(faces, layer, {});
+  states.values[0].push_back(matrix);
+  states.values[1].push_back(vector);
+  if (bounds.size() == 0) return;
+  states.values[2].push_back(pattern.values(cells, nitsche_tangent(faces, pressures, bounds)) -
+                             matrix);
+  states.values[3].push_back(nitsche_residual(faces, layer, bounds) - vector);
+}
+
+States states_at(Problem &problem, NitscheSolver &solver, const LayerPattern &pattern,
+                 const std::vector<Mu> &all_mu) {
+  const NitscheLayer layer = layer_of(problem.contact());
+  const std::vector<CurveCell> &cells = layer.cells;
+  States states;
+  for (const Mu &mu : all_mu) {
+    const Operators &op = problem.assemble(mu);
+    const std::vector<NitscheFace> faces = nitsche_faces(layer, op.mu, cells);
+    solver.watch = [&](const Vector &on_layer, const Vector &bounds) {
+      add_state(pattern, cells, faces, on_layer, bounds, states);
+    };
+    const NitscheSolution last = solver.solve(op);
+    states.converged.push_back(static_cast<Index>(states.values[0].size()));
+    add_state(pattern, cells, faces, last.layer, last.bounds, states);
+  }
+  return states;
+}
+
+} // namespace
+
+LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<Sample> &samples,
+                                   const Matrix &trace) {
+  const LayerPattern pattern(layer.cells);
+  std::vector<Vector> values;
+  for (const Sample &sample : samples) {
+    const auto faces = nitsche_faces(layer, expand(layer.scene.parameters, sample.mu), layer.cells);
+    values.push_back(pattern.values(layer.cells, nitsche_consistency(faces)));
+  }
+  return interpolated(side_by_side(values), pattern.keys(), true, exact,
+                      [&](const Vector &column) { return pattern.projected(column, trace); })
+      .terms;
+}
+
+void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
+                       const CurveOptions &options, ReducedModel &model, CurveReport &report) {
+  NitscheModel &nitsche = *model.nitsche;
+  const Matrix &trace = model.contact_trace;
+  // The steps as printed; with friction they can cycle without line search.
+  const NitscheLayer layer = layer_of(problem.contact());
+  const bool friction = layer.friction();
+  NitscheSolver solver(problem, {.full_steps = !friction});
+  const LayerPattern pattern(layer.cells);
+  const std::vector<Mu> training = parameters_of(samples);
+  const States states = states_at(problem, solver, pattern, training);
+  const States others = states_at(problem, solver, pattern, options.eim_validation);
+  report.states = static_cast<int>(states.values[0].size());
+  std::vector<EntryKey> dofs;
+  for (PetscInt i = 0; i < problem.trace().size; ++i)
+    dofs.push_back({i, 0});
+  const std::array<LayerTerms *, 4> terms{&nitsche.contact_matrix, &nitsche.contact_vector,
+                                          &nitsche.friction_matrix, &nitsche.friction_vector};
+  for (std::size_t k = 0; k < (friction ? 4 : 2); ++k) {
+    const bool matrix = k % 2 == 0;
+    const std::vector<EntryKey> &keys = matrix ? pattern.keys() : dofs;
+    const Matrix values = side_by_side(states.values[k]);
+    Interpolation found =
+        interpolated(values, keys, matrix, options.eim_tolerance, [&](const Vector &column) {
+          return matrix ? pattern.projected(column, trace) : Vector(trace.transpose() * column);
+        });
+    *terms[k] = std::move(found.terms);
+    report.eim_errors[k].training = found.eim.error;
+    add_errors_over(side_by_side(others.values[k]), others.converged, values, keys, found.eim,
+                    report.eim_errors[k]);
+  }
+}
+
+} // namespace rbvi

@@ -1,0 +1,54 @@
+// Active constraints C u = c over the ranks, each of which gives up a displacement dof, its pivot:
+//
+//   u_P = C_P^-1 (c - C_N u_N).
+//
+// A rank has the constraints of its dual nodes. Where those of two ranks share no pivot, as by
+// vertex quadrature, each rank factorises its block of C_P; elsewhere every rank factorises C_P
+// whole, which is as large as the active sets.
+#pragma once
+
+#include "rbvi/contact/pivots.hpp"
+#include "rbvi/fem/distributed_contact.hpp"
+
+namespace rbvi {
+
+class Elimination {
+public:
+  /// `c`: this rank's constraints x contact dofs; `pivots`: a contact dof for each of them. Throws
+  /// failure where C_P is singular. Collective.
+  Elimination(const DualLayout &layout, const SparseMatrix &c, const std::vector<Index> &pivots);
+
+  Index count() const { return count_; } ///< of constraints, over all ranks
+  /// The free displacement dofs of this rank's pivots.
+  const std::vector<PetscInt> &pivots() const { return pivots_; }
+
+  /// u at this rank's pivots, and back. Collective.
+  Vector at_pivots(Vec u) const;
+  void set_pivots(const Vector &values, Vec u) const;
+
+  /// Sets u_P = C_P^-1 (right - C_N u_N); `right`: of this rank's constraints. Collective.
+  void extend(const Vector &right, Vec u) const;
+  /// r - C^T C_P^-T r_P, zero at the pivots. Collective.
+  void reduce(Vec r) const;
+  /// C_P^-T r_P of this rank's constraints. Collective.
+  Vector multipliers(Vec r) const;
+  /// PivotBlock::ties of this rank's constraints.
+  SparseMatrix ties() const;
+
+private:
+  bool is_separate(const DualLayout &layout, const SparseMatrix &c,
+                   const std::vector<Index> &pivots) const;
+  template <class Solve> Vector solved(const Vector &own, Solve &&solve) const;
+
+  MPI_Comm comm_;
+  Index contact_dofs_;
+  Index first_ = 0, count_ = 0; ///< of this rank's constraints among all
+  Handle<Mat> c_;
+  std::vector<PetscInt> pivots_;
+  Handle<Vec> values_; ///< of the constraints
+  Handle<VecScatter> to_pivots_;
+  bool separate_ = true; ///< block_ is of this rank's constraints, else of all
+  PivotBlock block_;
+};
+
+} // namespace rbvi

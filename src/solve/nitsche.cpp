@@ -1,0 +1,85 @@
+#include "rbvi/solve/nitsche.hpp"
+
+#include "nitsche_system.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/solve/vectors.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double bound_accuracy = 1e-12; ///< change of u by new bounds of friction, relative
+constexpr double resting = 0.9;          ///< of the last change: from there on it is round-off
+constexpr double vanishing = 1e-9;       ///< of the start: below it terms count as zero
+constexpr int most_outer_iterations = 60;
+
+} // namespace
+
+NitscheSolver::NitscheSolver(Problem &problem, const NitscheOptions &options)
+    : options_(options), system_(new NitscheSystem(*this, problem, options_)) {}
+
+NitscheSolver::~NitscheSolver() = default;
+
+NitscheSolution NitscheSolver::solve(const Operators &op, const NitscheStart *start) {
+  NitscheSystem &system = *system_;
+  system.set(op);
+  NitscheSolution result;
+  const int factorised_before = system.factorisations;
+  Handle<Vec> unknowns = like(op.f);
+  Vec u = unknowns.get();
+  const bool nested = system.bounds_move() && !options_.single_loop;
+  if (start != nullptr) {
+    system.predict(*start, nitsche_bounds(system.faces, start->pressures), u);
+  } else if (options_.full_steps) {
+    RBVI_CALL(VecZeroEntries(u));
+    system.set_bounds(u);
+  } else {
+    system.predict_from_rest(u);
+  }
+  system.smallest_scale = 0;
+  system.residual(u, system.force.get());
+  system.smallest_scale = vanishing * system.scale;
+  run(nested, u, result);
+  result.factorisations = system.factorisations - factorised_before;
+  result.residual = system.relative_residual(u);
+  result.pressures = nitsche_pressures(system.faces, system.on_layer(u));
+  result.bounds = system.bounds;
+  result.u = system.frames ? system.frames->turned_back(u) : std::move(unknowns);
+  u = result.u.get();
+  result.layer = system.on_layer(u);
+  RBVI_CALL(MatMult(op.a, u, system.au.get()));
+  result.energy = dot(system.au.get(), u) / 2 - dot(op.f, u);
+  return result;
+}
+
+void NitscheSolver::run(bool nested, Vec u, NitscheSolution &result) {
+  NitscheSystem &system = *system_;
+  const Handle<Vec> before = like(u);
+  const double accuracy = system.accuracy;
+  system.tolerance = nested ? std::max(1e-3, accuracy) : accuracy;
+  double last_change = 1;
+  for (;;) {
+    RBVI_CALL(VecCopy(u, before.get()));
+    result.iterations += system.newton(u, result.reason);
+    ++result.outer_iterations;
+    if (!nested) return;
+    system.set_bounds(u);
+    RBVI_CALL(VecAXPY(before.get(), -1, u));
+    const double size = norm(u), change = size == 0 ? 0 : norm(before.get()) / size;
+    const bool rests = change <= NitscheSystem::round_off && change > resting * last_change;
+    // The first bounds are those of the start, not of u.
+    const bool settled = result.outer_iterations > 1 && (change <= bound_accuracy || rests);
+    if (settled && system.tolerance <= accuracy) return;
+    last_change = change;
+    system.tolerance = std::clamp(1e-2 * change, accuracy, system.tolerance);
+    if (result.outer_iterations == most_outer_iterations)
+      throw failure("Coulomb's bound did not settle in " + std::to_string(most_outer_iterations) +
+                    " steps: it still changes u by " + short_number(change) +
+                    "; is the friction coefficient large?");
+  }
+}
+
+} // namespace rbvi

@@ -1,0 +1,106 @@
+#include "rbvi/study/output_errors.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+using Member = std::optional<double> Outputs::*;
+
+/// The largest magnitude of a column: of a component of a force, that of the force.
+double magnitude(const OutputColumn &column, const std::vector<Outputs> &truth) {
+  double largest = 0;
+  for (const Outputs &row : truth) {
+    largest = std::max(largest, std::abs((row.*column.value).value_or(0)));
+    if (column.value == &Outputs::horizontal_reaction)
+      largest = std::max(largest, std::abs(row.normal_force.value_or(0)));
+  }
+  return largest;
+}
+
+/// Absolute and relative errors of one column.
+OutputError error_of(const OutputColumn &column, const std::vector<Outputs> &reduced,
+                     const std::vector<Outputs> &truth) {
+  std::vector<double> all, values, errors;
+  for (std::size_t p = 0; p < truth.size(); ++p) {
+    if (!(truth[p].*column.value)) continue;
+    all.push_back(*(truth[p].*column.value));
+    if (p >= reduced.size() || !(reduced[p].*column.value)) continue;
+    values.push_back(all.back());
+    errors.push_back(std::abs(*(reduced[p].*column.value) - values.back()));
+  }
+  const auto [low, high] = std::minmax_element(all.begin(), all.end());
+  const double least = 1e-2 * magnitude(column, truth);
+  const double range = std::max(*high - *low, least);
+  OutputError result{column.name};
+  const auto count = static_cast<double>(values.size());
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const double size = std::max(std::abs(values[p]), least);
+    const double of_range = range > 0 ? errors[p] / range : errors[p];
+    const double of_value = size > 0 ? errors[p] / size : errors[p];
+    result.mean += errors[p] / count;
+    result.mean_of_range += of_range / count;
+    result.mean_of_value += of_value / count;
+    result.max = std::max(result.max, errors[p]);
+    result.max_of_range = std::max(result.max_of_range, of_range);
+    result.max_of_value = std::max(result.max_of_value, of_value);
+  }
+  return result;
+}
+
+bool has(const std::vector<Outputs> &rows, Member member) {
+  return std::any_of(rows.begin(), rows.end(),
+                     [&](const Outputs &row) { return (row.*member).has_value(); });
+}
+
+} // namespace
+
+Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
+                           const ReducedAnswer &solution) {
+  Outputs outputs = solver.outputs(mu, solution);
+  if (solver.scene().components == 1 && solver.model().primal_basis.rows() > 0)
+    outputs.min_u = solver.field(solution).minCoeff();
+  return outputs;
+}
+
+std::vector<Outputs> reduced_outputs(const ReducedModel &model, const std::vector<Mu> &set) {
+  OnlineSolver solver(model);
+  std::vector<Outputs> rows;
+  for (const Mu &mu : set) {
+    rows.emplace_back();
+    try {
+      rows.back() = outputs_with_field(solver, mu, solver.solve(mu, true));
+    } catch (const Error &error) {
+      if (error.status() == Status::bad_input) throw;
+    }
+  }
+  return rows;
+}
+
+std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
+                                       const std::vector<Outputs> &truth) {
+  if (reduced.size() > truth.size())
+    throw failure("outputs of " + std::to_string(reduced.size()) + " reduced answers and " +
+                  std::to_string(truth.size()) + " high-fidelity ones");
+  std::vector<OutputError> errors;
+  for (const OutputColumn &column : output_columns())
+    if (column.value != &Outputs::seconds && column.value != &Outputs::iterations &&
+        has(truth, column.value) && has(reduced, column.value))
+      errors.push_back(error_of(column, reduced, truth));
+  return errors;
+}
+
+double largest_output_error(const std::vector<Outputs> &reduced,
+                            const std::vector<Outputs> &truth) {
+  double worst = -1;
+  for (const OutputError &error : output_errors(reduced, truth))
+    if (output_column(error.name).kind == OutputKind::quantity)
+      worst = std::max(worst, error.max_of_range);
+  return worst;
+}
+
+} // namespace rbvi

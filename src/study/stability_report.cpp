@@ -1,0 +1,152 @@
+#include "rbvi/study/stability_report.hpp"
+
+#include "rbvi/mor/high_fidelity_pair.hpp"
+#include "rbvi/mor/reduce.hpp"
+#include "rbvi/par/columns.hpp"
+#include "rbvi/par/small_svd.hpp"
+#include "rbvi/par/turns.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace rbvi {
+
+namespace {
+
+/// What the arithmetic leaves of a singular value, relative to the largest.
+constexpr double round_off = 1e-10;
+
+LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
+  LinearBasis basis;
+  const Handle<Vec> like = make_vector(problem.dofs());
+  basis.columns = make_columns(like.get(), natural_columns.cols(), problem.v_product());
+  for (Index j = 0; j < natural_columns.cols(); ++j)
+    RBVI_CALL(BVInsertVec(basis.columns.get(), static_cast<PetscInt>(j),
+                          from_natural(problem.dofs(), natural_columns.col(j)).get()));
+  return basis;
+}
+
+} // namespace
+
+StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model) {
+  StabilityCheck check;
+  check.modes = model.modes;
+  check.space = make_riesz_space(problem.v_product(), problem.trace());
+  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis));
+  check.dual = orthonormal_dual_basis(
+      model.law ? multiplier_functions(model.dual_basis, model.law->basis) : model.dual_basis,
+      problem.w_product());
+  return check;
+}
+
+std::vector<InfSup> infsup_over(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
+                                const std::vector<ContactPoint> &set, bool b_is_scaled) {
+  constexpr Index count = 5;
+  Matrix values = Matrix::Zero(count, std::ssize(set));
+  const Matrix modes = check.coordinates.leftCols(check.modes);
+  std::optional<PairConstants> per_b; // over |b|, where b is scaled
+  const std::optional<SparseInfSup> sparse = sparse_infsup(problem);
+  take_turns(comm, set.size(), [&](std::size_t p) {
+    Operators op;
+    problem.assemble_contact(set[p].mu, op, set[p].state);
+    const InfSup c = infsup_constants(check.space, op.b, modes, check.coordinates, check.dual);
+    const double size = op.b.norm();
+    if (!b_is_scaled || !per_b) {
+      const PairConstants pair = high_fidelity_pair(problem, check.space, op, sparse);
+      per_b = {pair.beta / size, pair.c / size};
+    }
+    values.col(p) << per_b->beta * size, c.dec, c.on, c.off, per_b->c * size;
+  });
+  over_ranks(comm, MPI_SUM, values);
+  std::vector<InfSup> result;
+  for (const auto &at : values.colwise())
+    result.push_back({at[0], at[1], at[2], at[3], at[4]});
+  return result;
+}
+
+ContactPoint weakest_form(Problem &problem, const std::vector<ContactPoint> &set) {
+  constexpr double tie = 1e-10;
+  double least = std::numeric_limits<double>::infinity();
+  ContactPoint weakest;
+  Operators op;
+  for (const ContactPoint &at : set) {
+    problem.assemble_contact(at.mu, op, at.state);
+    if (op.b.norm() >= (1 - tie) * least) continue;
+    least = op.b.norm();
+    weakest = at;
+  }
+  return weakest;
+}
+
+BoundCheck check_bound(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
+                       const std::vector<ContactPoint> &set) {
+  BoundCheck result{.smallest = std::numeric_limits<double>::infinity()};
+  take_turns(comm, set.size(), [&](std::size_t p) {
+    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
+    const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
+    const auto [bound, off] = stability_path(check.coordinates, check.modes, {all}, t).front();
+    result.smallest = std::min(result.smallest, off / bound.sharp);
+    if (!(off >= bound.sharp - round_off * bound.c)) ++result.exceptions;
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &result.smallest, 1, MPI_DOUBLE, MPI_MIN, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &result.exceptions, 1, MPI_INT, MPI_SUM, comm);
+  return result;
+}
+
+std::vector<StabilityRow> stability_along(MPI_Comm comm, Problem &problem,
+                                          const StabilityCheck &check,
+                                          const std::vector<ContactPoint> &set,
+                                          const std::vector<int> &counts) {
+  // Columns: what the worst is the largest of. Smallest values enter with their sign changed.
+  enum { sigma, condition, minus_classic, minus_bound, minus_ratio, minus_beta, columns };
+  const auto size = std::ssize(counts);
+  Matrix worst = Matrix::Constant(size, columns, -std::numeric_limits<double>::infinity());
+  std::vector<int> exceptions(counts.size(), 0);
+  take_turns(comm, set.size(), [&](std::size_t p) {
+    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
+    const auto steps = stability_path(check.coordinates, check.modes, counts, t);
+    for (Index k = 0; k < size; ++k) {
+      const auto &[bound, off] = steps[k];
+      Vector here(static_cast<Index>(columns));
+      here << bound.sigma, bound.sigma * bound.c / bound.on, -bound.classic / bound.on,
+          -bound.sharp / bound.on, -off / bound.on, -off;
+      worst.row(k) = worst.row(k).cwiseMax(here.transpose());
+      if (!(off >= bound.sharp - round_off * bound.c)) ++exceptions[k];
+    }
+  });
+  over_ranks(comm, MPI_MAX, worst);
+  MPI_Allreduce(MPI_IN_PLACE, exceptions.data(), static_cast<int>(size), MPI_INT, MPI_SUM, comm);
+  std::vector<StabilityRow> rows;
+  for (Index k = 0; k < size; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    rows.push_back({counts[at], worst(k, sigma), worst(k, condition), -worst(k, minus_classic),
+                    -worst(k, minus_bound), -worst(k, minus_ratio), -worst(k, minus_beta),
+                    exceptions[at]});
+  }
+  return rows;
+}
+
+int fewest_supremizers(MPI_Comm comm, Problem &problem, const StabilityCheck &check,
+                       const std::vector<ContactPoint> &set, double fraction) {
+  const int all = static_cast<int>(check.coordinates.cols()) - check.modes;
+  int fewest = 0; // enough for every mu so far; all + 1: nothing is
+  take_turns(comm, set.size(), [&](std::size_t p) {
+    const Matrix t = supremizers_at(problem, check.space, check.dual, {set[p]}).front();
+    const double needed = fraction * singular_values(t, "infsup_").minCoeff();
+    const auto enough = [&](int supremizers) {
+      return infsup_constant(check.coordinates.leftCols(check.modes + supremizers), t) >= needed;
+    };
+    if (fewest > all || enough(fewest)) return;
+    int few = fewest;
+    fewest = enough(all) ? all : all + 1;
+    while (fewest - few > 1 && fewest <= all) {
+      const int middle = few + (fewest - few) / 2;
+      (enough(middle) ? fewest : few) = middle;
+    }
+  });
+  MPI_Allreduce(MPI_IN_PLACE, &fewest, 1, MPI_INT, MPI_MAX, comm);
+  return fewest <= all ? fewest : -1;
+}
+
+} // namespace rbvi

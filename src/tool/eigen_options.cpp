@@ -1,0 +1,93 @@
+// Options of SLEPc's objects: which there are, and whether a run asks for them.
+#include "database.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/mor/high_fidelity_constant.hpp"
+#include "rbvi/par/small_eigen.hpp"
+#include "rbvi/par/small_svd.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// Which values: all of a small matrix, the smallest of a large one.
+bool is_ineffective(const std::string &name) {
+  for (const std::string &prefix : eigen_prefixes()) {
+    if (!name.starts_with(prefix)) continue;
+    const std::string rest = name.substr(prefix.size());
+    if (starts_with_any(rest, {"largest", "smallest", "target", "interval", "all"})) return true;
+    if (prefix != "infsup_eps_" && starts_with_any(rest, {"nev", "nsv", "ncv", "mpd"})) return true;
+  }
+  return false;
+}
+
+/// Whether there is a reduced pair of spaces.
+bool has_pair(const ToolOptions &options) {
+  return has_multipliers(options.scene) &&
+         options.reduce.multipliers.reduction != MultiplierReduction::condensed;
+}
+
+/// Why a run makes no supremizers; "" where it does.
+std::string without_supremizers(const ToolOptions &options) {
+  const Scene &scene = options.scene;
+  if (!has_multipliers(scene)) return "Nitsche's method has no multipliers to make supremizers for";
+  if (options.reduce.enrichment == Enrichment::decorrelated)
+    return "-pga_enrichment decorrelated makes no supremizers";
+  if (!has_pair(options)) return "-multiplier_reduction cone and collocated alone make supremizers";
+  return "";
+}
+
+/// Why a run computes no inf-sup constants; "" where it does.
+std::string without_constants(const ToolOptions &options) {
+  if (!has_pair(options))
+    return "inf-sup constants are of a reduced pair: -multiplier_reduction cone or collocated";
+  return options.stability ? "" : "-verify_stability no computes no inf-sup constants";
+}
+
+std::string why_not(const std::string &name, const ToolOptions &options, EigenUse use) {
+  const bool of_greedy = name.starts_with("pga_");
+  if (of_greedy && use != EigenUse::supremizers) return "supremizers are made by offline";
+  if (!of_greedy && use != EigenUse::constants) return "inf-sup constants are computed by verify";
+  return of_greedy ? without_supremizers(options) : without_constants(options);
+}
+
+} // namespace
+
+const std::vector<std::string> &eigen_prefixes() {
+  static const std::vector<std::string> prefixes = prefixes_of({"eps_", "svd_"});
+  return prefixes;
+}
+
+void check_eigen_options(const ToolOptions &options, EigenUse use) {
+  bool asked = false;
+  for (const std::string &name : unread_names(eigen_prefixes())) {
+    if (is_ineffective(name))
+      throw bad_input(
+          "-" + name +
+          " has no effect: all values of a small matrix are computed, the smallest of a large one");
+    const std::string reason = why_not(name, options, use);
+    if (reason.empty())
+      asked = true;
+    else if (contains(options.command_line, name))
+      throw bad_input("nothing of this run asks for the option -" + name + ": " + reason);
+  }
+  if (!asked) return;
+  const char *prefix = use == EigenUse::supremizers ? "pga_" : "infsup_";
+  try {
+    (void)make_small_svd(prefix);
+    if (use == EigenUse::supremizers)
+      (void)SmallEigen(prefix);
+    else
+      (void)make_infsup_eps();
+  } catch (const Error &error) {
+    throw bad_input(std::string("the options -") + prefix + "* do not work (" + error.what() + ")");
+  }
+  std::string unknown;
+  for (const std::string &name : unread_names(eigen_prefixes()))
+    if (name.starts_with(prefix)) unknown += " -" + name;
+  if (!unknown.empty()) throw bad_input("nothing of this run asks for the option" + unknown);
+}
+
+} // namespace rbvi

@@ -1,0 +1,88 @@
+// -help.
+#include "database.hpp"
+#include "table.hpp"
+
+#include "rbvi/core/outputs.hpp"
+
+#include <cstdio>
+
+namespace rbvi {
+
+namespace {
+
+/// "name  help: choices [default], values". `range`: what stands before the range of a number.
+void print_line(const Option &option, const std::string &range) {
+  std::string line = option.help;
+  for (std::size_t i = 0; i < option.choices.size(); ++i)
+    line += (i == 0 ? ": " : " | ") + option.choices[i].name;
+  if (!option.default_value.empty()) line += " [" + option.default_value + "]";
+  if (option.kind == OptionKind::number || option.kind == OptionKind::integer)
+    line += range + option.values;
+  std::printf("  -%-28s %s\n", option.name.c_str(), line.c_str());
+}
+
+/// Options, parameters and the mesh of one scene.
+void print_scene(const SceneEntry &entry) {
+  std::printf("\nScene %s: %s\n", entry.name.c_str(), entry.summary.c_str());
+  for (const SceneOption &option : entry.options)
+    print_line(described(option), ", valid in ");
+  for (const auto &[parameter, choice] : parameters_of(entry))
+    print_line(described(parameter),
+               choice.empty() ? ", valid in " : ", with " + choice + ", valid in ");
+  print_mesh_contract(entry);
+}
+
+/// `command` "": of all.
+void print_options(const std::string &command = "") {
+  std::printf("Options [default], range:\n");
+  std::string group;
+  for (const Option &option : tool_options()) {
+    if (!command.empty() && !serves(option, command)) continue;
+    if (option.group != group) std::printf(" %s\n", (group = option.group).c_str());
+    print_line(option, ", ");
+  }
+}
+
+void print_command(const Command &command) {
+  std::printf("%s\n  %s\n", command.usage.c_str(), command.does.c_str());
+  if (command.name == "list" || command.name == "inspect") return;
+  print_options(command.name);
+  std::printf(
+      "Those of a scene: rbvi -help -scene NAME; of PETSc's objects, outputs: rbvi -help\n");
+}
+
+void print_solver_objects() {
+  std::printf("\nOptions of PETSc's and SLEPc's objects (and -log_view, ...):\n");
+  for (const SolverPrefix &solver : solver_objects()) {
+    std::string all;
+    for (const std::string &kind : solver.kinds)
+      all.append(all.empty() ? "-" : ", -").append(solver.prefix + kind + "*");
+    std::printf("  %s: %s\n", all.c_str(), solver.of.c_str());
+  }
+}
+
+} // namespace
+
+void print_help(const Registry &registry, const std::string &scene, const std::string &command) {
+  if (!scene.empty()) return print_scene(entry_of(registry, scene));
+  for (const Command &known : commands())
+    if (known.name == command) return print_command(known);
+  std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n");
+  for (const Command &known : commands())
+    std::printf("  %-21s %s\n", known.name.c_str(), known.does.c_str());
+  std::printf("  COMMAND -help         usage and options of a command\n"
+              "  -help -scene NAME     options, parameters and mesh of one scene\n"
+              "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n\n");
+  print_options();
+  for (const SceneEntry &entry : registry.scenes)
+    print_scene(entry);
+  std::printf("\nOutputs (columns of tables):\n");
+  for (const OutputColumn &column : output_columns())
+    std::printf("  %-25s %s\n", column.name, column.says);
+  print_solver_objects();
+  std::printf(
+      "\nExit status: 0 done, 1 it failed or some samples did, 2 the input is wrong (nothing is\n"
+      "written), 128 + signal it was stopped: the same command goes on.\n");
+}
+
+} // namespace rbvi

@@ -1,0 +1,250 @@
+#include "rbvi/tool/options.hpp"
+
+#include "database.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
+#include "rbvi/fem/check_scene.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/tool/case_file.hpp"
+#include "rbvi/tool/run_directory.hpp"
+#include "table.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+namespace rbvi {
+
+namespace {
+
+/// -case, or the options that a run directory was made with, or none for the defaults of -scene.
+std::string case_file_name() {
+  const std::string file = text_of("case"), out = text_of("out");
+  if (!file.empty()) return file;
+  if (!out.empty() && std::filesystem::exists(case_of_run(out))) return case_of_run(out);
+  if (!text_of("scene").empty()) return "";
+  throw bad_input("no case is named" +
+                  (out.empty() ? "" : ", and " + out + " is no directory of a run") +
+                  ": use -case cases/<scene>/case.yaml, or -scene NAME (rbvi list)");
+}
+
+/// Throws bad_input where -scene is not the one of the case file, or there is no such scene.
+void check_scene_of_case(const std::string &file, const std::string &scene,
+                         const Registry &registry) {
+  const std::string given = text_of("scene");
+  if (given == scene) return;
+  (void)entry_of(registry, given);
+  throw bad_input("-scene is " + given + ", and " + file + " is a case of " + scene +
+                  ": leave out -scene, or name another -case or -out");
+}
+
+/// Puts the case file below the command line and above what comes from outside. Returns where its
+/// options stand.
+Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_line,
+                        const Registry &registry) {
+  std::string file;
+  collectively(comm, [&] { file = case_file_name(); });
+  Origin origin;
+  if (file.empty()) return origin;
+  for (const CaseEntry &entry : parse_case_file(read_case_text(comm, file), file)) {
+    if (entry.name == "case")
+      throw bad_input("a case file cannot name another: line " + std::to_string(entry.line) +
+                      " of " + file);
+    if (contains(command_line, entry.name)) {
+      if (entry.name == "scene") check_scene_of_case(file, entry.value, registry);
+      continue;
+    }
+    const std::string value = beside_case(entry.name, entry.value, file);
+    RBVI_CALL(PetscOptionsSetValue(nullptr, ("-" + entry.name).c_str(),
+                                   value.empty() ? nullptr : value.c_str()));
+    origin[entry.name] = " (line " + std::to_string(entry.line) + " of " + file + ")";
+  }
+  return origin;
+}
+
+Scene given_scene(const SceneEntry &entry) {
+  SceneOptions options;
+  for (const SceneOption &option : entry.options)
+    if (is_given(option.name)) options[option.name] = text_of(option.name);
+  return make_scene(entry, options);
+}
+
+enum class Given { nothing, value, bounds };
+
+/// "-radius 0.2" fixes a parameter, "-radius 0.18,0.22" frees it between bounds.
+Given adapt_parameter(Parameter &parameter) {
+  const std::string text = text_of(parameter.name);
+  const std::vector<std::string> parts = split(text, ',');
+  const std::string what = "option -" + parameter.name;
+  if (text.empty()) return Given::nothing;
+  if (parts.size() == 1) {
+    parameter.value = parse_number(parts[0], what);
+    check_range(parameter.valid, parameter.value, what);
+    return Given::value;
+  }
+  if (parts.size() != 2)
+    throw bad_input(what + " is '" + text + "': give one value, or two bounds");
+  parameter.lower = parse_number(parts[0], what);
+  parameter.upper = parse_number(parts[1], what);
+  if (parameter.lower == parameter.upper)
+    throw bad_input(what + " is '" + text + "': both bounds are the same; one value fixes it");
+  if (!(parameter.lower < parameter.upper))
+    throw bad_input(what + " is '" + text + "': the lower bound comes first");
+  check_range(parameter.valid, parameter.lower, what + ", lower bound,");
+  check_range(parameter.valid, parameter.upper, what + ", upper bound,");
+  parameter.value = std::clamp(parameter.value, parameter.lower, parameter.upper);
+  return Given::bounds;
+}
+
+/// "-parameters" says which are free; without it those with two bounds and those that the scene
+/// frees, less those with one value.
+void adapt_parameters(Scene &scene, const Registry &registry) {
+  ParameterSpace &space = scene.parameters;
+  std::string unfixed;
+  std::vector<std::string> fixed;
+  for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
+    Parameter &parameter = space.all[i];
+    const Given given = adapt_parameter(parameter);
+    const bool free = std::find(space.free.begin(), space.free.end(), i) != space.free.end();
+    if (given == Given::value)
+      fixed.push_back(parameter.name);
+    else if (free || given == Given::bounds)
+      unfixed += (unfixed.empty() ? "" : ",") + parameter.name;
+  }
+  const std::string named = text_of("parameters");
+  for (const std::string &part : split(named, ',')) {
+    const std::string name = trimmed(part);
+    const std::string needed = what_needs(name, scene, registry);
+    if (!needed.empty() && std::ranges::find(space.all, name, &Parameter::name) == space.all.end())
+      throw bad_input("parameter '" + name + "' " + needed);
+  }
+  space = free_only(space, named.empty() ? unfixed : named);
+  for (int i = 0; i < space.size(); ++i)
+    if (contains(fixed, space.at(i).name))
+      throw bad_input("parameter " + space.at(i).name + " is freed by -parameters and fixed by -" +
+                      space.at(i).name + " " + text_of(space.at(i).name) + ": give two bounds");
+}
+
+/// Corners of the box matter even to a single solve: where they are refused, says what it can do.
+void check_box_of_run(const Scene &scene) {
+  try {
+    check_box(scene);
+  } catch (const Error &error) {
+    if (text_of("mu").empty()) throw;
+    throw Error(error.status(),
+                error.what() + ("; for a single solve narrow the box around -mu (-" +
+                                scene.parameters.at(0).name +
+                                " LOWER,UPPER) or fix parameters (-NAME VALUE)"));
+  }
+}
+
+/// The options as a case file, without those of one command.
+std::string as_case_file(const std::vector<std::string> &names) {
+  std::string text = std::string(run_case_header) + "\n";
+  for (const std::string &name : names) {
+    if (const Option *option = find_option(name); option != nullptr && option->of_command) continue;
+    text += case_line(name, value_in_run(name, text_of(name)));
+    // What a solver must ask for is unread until it does: check_solver_options.
+    if (starts_with_any(name, solver_prefixes())) mark_unread(name);
+  }
+  return text;
+}
+
+/// Every option that is given, into its place.
+void read_table(ToolOptions &options) {
+  for (const Option &option : tool_options()) {
+    if (!option.read || !is_given(option.name)) continue;
+    const std::string value = text_of(option.name);
+    option.read(value, options);
+    if (option.kind == OptionKind::set && is_set_file(value))
+      options.set_files[option.name] = value;
+  }
+}
+
+} // namespace
+
+bool is_option(const std::string &word) {
+  return word.size() > 1 && word[0] == '-' &&
+         std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
+std::filesystem::path case_of_run(const std::filesystem::path &out) {
+  return out / "case.yaml";
+}
+
+std::vector<std::string> normalised_arguments(int argc, char **argv) {
+  std::vector<std::string> arguments(argv, argv + argc);
+  for (std::string &argument : arguments)
+    if (argument.starts_with("--") && is_option(argument.substr(1))) argument.erase(0, 1);
+  return arguments;
+}
+
+namespace {
+
+/// "-young 20 (PETSC_OPTIONS)" for each, those that a case file beats with its line, too.
+std::string described(const std::vector<Foreign> &foreign, const Origin &case_file) {
+  std::string text;
+  for (const Foreign &option : foreign) {
+    const auto beaten = case_file.find(option.name);
+    text += (text.empty() ? "-" : ", -") + option.name + (option.value.empty() ? "" : " ") +
+            option.value + " (" + option.from + ")" +
+            (beaten == case_file.end() ? "" : ", not used for that" + beaten->second);
+  }
+  return text;
+}
+
+/// Everything but where it comes from. `names`: all options that are given.
+ToolOptions read_values(const std::vector<std::string> &names, const Origin &origin,
+                        const std::vector<std::string> &command_line, const Registry &registry) {
+  ToolOptions options;
+  options.registry = &registry;
+  options.command_line = command_line;
+  const std::string scene = text_of("scene");
+  if (scene.empty())
+    throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
+  options.scene = given_scene(entry_of(registry, scene));
+  check_names(names, origin, options.scene, registry);
+  options.case_file = as_case_file(names);
+  adapt_parameters(options.scene, registry);
+  check_functions(options.scene);
+  check_box_of_run(options.scene);
+  options.train = options.scene.training;
+  options.valid = options.scene.validation;
+  read_table(options);
+  MultiplierReduction &reduction = options.reduce.multipliers.reduction;
+  reduction = reduction_of(options.scene, reduction);
+  check_rules(options);
+  if (keeps_law(reduction) && !is_given("cone_type"))
+    options.reduce.cone.type = ConeType::mcpg; // hybrid has functions of either sign
+  return options;
+}
+
+} // namespace
+
+ToolOptions read_options(MPI_Comm comm, const std::string &command, const Registry &registry) {
+  const std::vector<Foreign> foreign = foreign_options(comm);
+  std::vector<std::string> command_line;
+  for (const auto &[name, value] : unread_values())
+    if (std::ranges::find(foreign, name, &Foreign::name) == foreign.end())
+      command_line.push_back(name);
+  std::string outside = described(foreign, {});
+  try {
+    check_command(command, command_line);
+    Origin origin = insert_case_file(comm, command_line, registry);
+    outside = described(foreign, origin);
+    if (!outside.empty() && rank_of(comm) == 0)
+      std::printf("Options from outside: %s\n", outside.c_str());
+    for (const Foreign &option : foreign)
+      origin.try_emplace(option.name, " (" + option.from + ")");
+    std::vector<std::string> names = command_line;
+    for (const auto &[name, where] : origin)
+      names.push_back(name);
+    return read_values(names, origin, command_line, registry);
+  } catch (const Error &error) {
+    if (outside.empty()) throw;
+    throw Error(error.status(), error.what() + ("; options from outside: " + outside));
+  }
+}
+
+} // namespace rbvi

@@ -1,0 +1,82 @@
+#include "rbvi/tool/run_directory.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/temporary_files.hpp"
+#include "rbvi/io/write_atomically.hpp"
+#include "rbvi/par/collective.hpp"
+#include "table.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_of(OptionKind kind, const std::string &name) {
+  const Option *option = find_option(name);
+  return option != nullptr && option->kind == kind;
+}
+
+fs::path copy_of(const std::string &name) {
+  return fs::path("sets") / (name + ".csv");
+}
+
+/// Throws bad_input.
+std::string read_set_file(const std::string &name, const std::string &file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream bytes;
+  if (!(bytes << in.rdbuf()))
+    throw bad_input("cannot read '" + file + "', the set of option -" + name +
+                    " (grid:5,5, random:200:1 or a CSV file)");
+  return bytes.str();
+}
+
+} // namespace
+
+bool is_set_file(const std::string &set) {
+  return !set.empty() && !set.starts_with("grid:") && !set.starts_with("random:") &&
+         set.find_first_not_of("0123456789") != std::string::npos;
+}
+
+std::string beside_case(const std::string &name, const std::string &value,
+                        const fs::path &case_file) {
+  const bool is_file =
+      is_of(OptionKind::file, name) || (is_of(OptionKind::set, name) && is_set_file(value));
+  if (!is_file || value.empty() || fs::path(value).is_absolute()) return value;
+  const fs::path beside = case_file.parent_path() / value;
+  std::error_code ignored;
+  return fs::is_regular_file(beside, ignored) ? beside.string() : value;
+}
+
+std::string value_in_run(const std::string &name, const std::string &value) {
+  if (is_of(OptionKind::set, name) && is_set_file(value)) return copy_of(name).string();
+  if (is_of(OptionKind::file, name) && !value.empty())
+    return fs::absolute(value).lexically_normal().string();
+  return value;
+}
+
+void begin_run(MPI_Comm world, const ToolOptions &options) {
+  collectively(world, [&] {
+    if (rank_of(world) != 0) return;
+    std::map<std::string, std::string> sets; // all are read before anything is written
+    for (const auto &[name, file] : options.set_files)
+      sets[name] = read_set_file(name, file);
+    make_directory(options.out);
+    sweep_up(options.out);
+    for (const auto &[name, bytes] : sets) {
+      make_directory((options.out / copy_of(name)).parent_path());
+      write_atomically(options.out / copy_of(name), bytes);
+    }
+    write_atomically(case_of_run(options.out), options.case_file);
+  });
+}
+
+void sweep_up(const fs::path &out) {
+  for (const char *folder : {"", "samples", "sets", "verify", "bench"})
+    remove_stale_temporaries(out / folder);
+}
+
+} // namespace rbvi

@@ -1,0 +1,190 @@
+#include "table.hpp"
+
+#include "kinds.hpp"
+#include "reduction_table.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/solve/methods.hpp"
+#include "rbvi/tool/run_directory.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// An option of one command, not of the run.
+Option of_command(Option option) {
+  option.of_command = true;
+  return option;
+}
+
+Option mesh_file() {
+  Option option = text("mesh", OptionKind::file, "file", RBVI_AT(mesh.file),
+                       "Gmsh file (MSH 2.2, 4.0 or 4.1, text or binary, order 1) whose physical "
+                       "names and shape are those that -help -scene NAME lists");
+  option.shown = [](const ToolOptions &options) { return value_in_run("mesh", options.mesh.file); };
+  return otherwise("built in", option);
+}
+
+std::vector<Option> of_runs() {
+  return {
+      of_command(
+          text("case", OptionKind::text, "file", RBVI_AT(case_name),
+               "case file (YAML, one 'option: value' per line); without it that of -out is read")),
+      {"scene", OptionKind::text,
+       "name of the scene (rbvi list); a scene runs without a case file, on its defaults", "name"},
+      of_command(text("out", OptionKind::text, "directory", RBVI_AT(out),
+                      "directory of the run: everything is written there")),
+      {"parameters", OptionKind::text,
+       "names of the parameters that vary, in the order of -mu; the others keep one value", "names",
+       "the scene's"},
+      kept(always,
+           otherwise("the scene's",
+                     text("train", OptionKind::set, "set", RBVI_AT(train),
+                          "parameters of the training set: grid:5,5,5 | random:COUNT:SEED | COUNT "
+                          "(seed 1) | file.csv with a header of names")),
+           "training"),
+      otherwise("the scene's", text("valid", OptionKind::set, "set", RBVI_AT(valid),
+                                    "parameters of the validation set, given as -train is; verify "
+                                    "measures at the corners and faces of the box, too")),
+      of_command(
+          text("mu", OptionKind::text, "parameter", RBVI_AT(mu),
+               "parameter at which solve solves: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02")),
+      of_command(text(
+          "vtu", OptionKind::text, "file", RBVI_AT(vtu),
+          "file to which solve writes displacement and stresses; contact goes to FILE_contact")),
+      of_command(text("csv", OptionKind::text, "file", RBVI_AT(csv),
+                      "file to which solve writes its outputs as a table")),
+      flag("verify_stability", RBVI_AT(stability),
+           "verify: measure inf-sup constants and their bounds besides errors"),
+      of_command(
+          rising("bench_growth", refinements, RBVI_AT(growth),
+                 "bench: measure what offline costs, stage by stage, on the meshes with these "
+                 "-mesh_refine, with every number of ranks per solve that divides the ranks or "
+                 "with that of the command line; run time against error is then not measured")),
+      of_command(flag("plan", RBVI_AT(plan), "print which stages would run, and stop"))};
+}
+
+std::vector<Option> of_meshes() {
+  return {kept(always, mesh_file(), "mesh_file"),
+          kept(always, number("mesh_refine", refinements, RBVI_AT(mesh.refine),
+                              "how many times all edges are halved"))};
+}
+
+std::vector<Option> solver_rows() {
+  return {
+      choice(
+          "hf_method",
+          choices(
+              hf_method_names(),
+              {"a semismooth Newton method: guess which nodes touch, stick and slip, solve, and "
+               "guess again",
+               "gradient steps for the multipliers, negative pressures cut off: the slow baseline",
+               "PETSc's solver of variational inequalities (SNES VI): it bounds single nodes, so "
+               "it needs -lumped yes and no friction"}),
+          RBVI_AT(hf.method), "method that solves the full problem"),
+      choice(
+          "hf_contact",
+          choices(hf_contact_names(),
+                  {"the one that takes less time by an estimate from the sizes, which -plan prints",
+                   "for the multipliers, with columns of B A^-1 B^T, which are kept as long as A "
+                   "does not change",
+                   "for the displacement, of which each active constraint eliminates one dof; "
+                   "starts on the coarser meshes that -mesh_refine has"}),
+          RBVI_AT(hf.contact), "for which unknown active_set solves its linear systems"),
+      number("contact_gather", {0, 1000000000}, RBVI_AT(contact_gather),
+             "each rank evaluates a whole interface with up to this many multipliers, and its own "
+             "part of a larger one (of two bodies always the whole)"),
+      number("uzawa_tolerance", {1e-15, 0.1}, RBVI_AT(hf.uzawa_tolerance),
+             "uzawa stops at this relative change of the multipliers"),
+      number("uzawa_max_iterations", {1, 100000000}, RBVI_AT(hf.uzawa_max_iterations),
+             "largest number of iterations of uzawa"),
+      flag("uzawa_accelerated", RBVI_AT(hf.uzawa_accelerated),
+           "accelerate uzawa by Nesterov's extrapolation with restart"),
+      number("uzawa_step", positive, RBVI_AT(hf.uzawa_step),
+             "step rho of uzawa; 0: 1 / largest eigenvalue of B A^-1 B^T")};
+}
+
+std::vector<Option> of_iterations() {
+  return {
+      choice(
+          "nonlinear_method",
+          choices(
+              nonlinear_method_names(),
+              {"nodal if the surface is rigid and has its own normal; if not, or if that fails, "
+               "newton without friction and kacanov with it",
+               "each step solves the problem linearised at the state before (A.7)",
+               "adds the curvature of the condition and converges quadratically; without friction",
+               "kacanov, accelerated by three earlier states (Anderson)",
+               "takes exact residuals and a tangent from averages at the nodes: that of newton "
+               "without friction, with it that of kacanov, accelerated"}),
+          RBVI_AT(hf.nonlinear.method), "iteration for contact that depends on the displacement"),
+      number("nonlinear_tolerance", {1e-13, 0.1}, RBVI_AT(hf.nonlinear.tolerance),
+             "stop at this relative change of u and of the multipliers (A.8)"),
+      number("nonlinear_max_steps", {1, 100000}, RBVI_AT(hf.nonlinear.max_steps),
+             "largest number of steps"),
+      number("nonlinear_load_steps", {0, 1000}, RBVI_AT(hf.nonlinear.load_steps),
+             "number of load steps if the first attempt fails; 0: a failure is an error")};
+}
+
+Option ranks_per_solve() {
+  Option option =
+      number("sweep_ranks_per_solve", {1, 1000000}, RBVI_AT(ranks_per_solve),
+             "how many ranks share one solve, a divisor of all ranks; auto: chosen by the sizes of "
+             "set and mesh and by the memory of the nodes, -plan prints it");
+  option.values += ", auto";
+  option.read = [read_number = option.read](const std::string &value, ToolOptions &options) {
+    if (value == "auto")
+      options.ranks_per_solve = 0;
+    else
+      while_doing("reading -sweep_ranks_per_solve, a number or auto",
+                  [&] { read_number(value, options); });
+  };
+  option.shown = [](const ToolOptions &options) {
+    return options.ranks_per_solve == 0 ? "auto" : std::to_string(options.ranks_per_solve);
+  };
+  return otherwise("auto", option);
+}
+
+std::vector<Option> of_sweeps() {
+  return {
+      ranks_per_solve(),
+      number(
+          "sweep_max_failures", {0, 1}, RBVI_AT(max_failures),
+          "share of a set that may fail; if more does, no model is made and nothing is measured")};
+}
+
+} // namespace
+
+const std::vector<Option> &tool_options() {
+  static const std::vector<Option> options = [] {
+    std::vector<Option> all;
+    add("Run", of_runs(), all);
+    add("Mesh", of_meshes(), all);
+    add("High-fidelity solver", solver_rows(), all);
+    add("Large deformations", of_iterations(), all);
+    add("Sweep", of_sweeps(), all);
+    for (Option &option : reduction_options())
+      all.push_back(std::move(option));
+    return all;
+  }();
+  return options;
+}
+
+const Option *find_option(const std::string &name) {
+  const auto found = std::find_if(tool_options().begin(), tool_options().end(),
+                                  [&](const Option &option) { return option.name == name; });
+  return found == tool_options().end() ? nullptr : &*found;
+}
+
+std::map<std::string, std::string> kept_settings(const ToolOptions &options) {
+  std::map<std::string, std::string> settings;
+  for (const Option &option : tool_options())
+    if (option.kept != nullptr && option.kept(options))
+      if (const std::string value = option.shown(options); !value.empty())
+        settings[option.kept_as] = value;
+  return settings;
+}
+
+} // namespace rbvi

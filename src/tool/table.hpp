@@ -1,0 +1,74 @@
+// The table of the options of rbvi: each is written down there once. What is read, checked, printed
+// by -help, kept in models and listed in cases/OPTIONS.md is made from it.
+#pragma once
+
+#include "rbvi/tool/options.hpp"
+
+#include <functional>
+
+namespace rbvi {
+
+enum class OptionKind {
+  text,
+  file, ///< one that is read
+  set,  ///< of parameters, as parse_set reads it: maybe a file that is read
+  number,
+  integer,
+  flag, ///< without a value: yes
+  choice
+};
+
+struct Choice {
+  std::string name;
+  std::string is = ""; ///< what it means, for the page; "" where the name says it
+};
+
+/// One option. Those of scenes, and their parameters, are described in the same way.
+struct Option {
+  std::string name;
+  OptionKind kind = OptionKind::text;
+  std::string help;
+  std::string values{};          ///< which there are, in words: "0 to 0.5"
+  std::string default_value{};   ///< "" where there is none
+  std::vector<Choice> choices{}; ///< of OptionKind::choice
+  bool of_command = false;       ///< not kept in the case file of a run
+  std::string group{};           ///< heading that it stands below
+
+  /// Reads a value into its place; throws bad_input. Empty: read before all others.
+  std::function<void(const std::string &value, ToolOptions &options)> read{};
+  /// The value in its place as text.
+  std::function<std::string(const ToolOptions &options)> shown{};
+  /// Whether a model keeps it among its settings; null: none does.
+  bool (*kept)(const ToolOptions &options) = nullptr;
+  std::string kept_as{}; ///< name of that setting
+};
+
+/// All options of rbvi that are not a scene's own, those of a group together.
+const std::vector<Option> &tool_options();
+
+struct Command {
+  std::string name, does, usage;
+};
+/// Those of rbvi but help.
+const std::vector<Command> &commands();
+
+/// Whether it is for that command.
+bool serves(const Option &option, const std::string &command);
+
+/// The one of this name; null: there is none.
+const Option *find_option(const std::string &name);
+
+/// An option of a scene, and a parameter, by the same type.
+Option described(const SceneOption &option);
+Option described(const Parameter &parameter);
+
+/// The scene with another choice of one option each, and "-bodies one", that choice.
+std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry);
+
+/// Parameters of the scene, and those that variants add, with "" and that choice.
+std::vector<std::pair<Parameter, std::string>> parameters_of(const SceneEntry &entry);
+
+/// Throws bad_input for options that do not go together, or not with the scene.
+void check_rules(const ToolOptions &options);
+
+} // namespace rbvi

@@ -1,0 +1,78 @@
+// Several answers of Coulomb's law: the rule that chooses one, and how others are noticed.
+#include "friction_problems.hpp"
+#include "rbvi/method/several_answers.hpp"
+
+namespace rbvi::friction_rule_test {
+namespace {
+
+/// One node under a coefficient of 2, h_nn - c h_nt < 0. With q = (0.1, 1) there are three answers:
+/// apart; slipping, x_n = 0.1 / 0.2, with a negative determinant; and sticking, x = -H^-1 q.
+struct OneNode {
+  Matrix h{{1, 0.6}, {0.6, 1}};
+  Vector q{{0.1, 1}};
+  FrictionBound coulomb{2, 0, false};
+  Vector slipping{{0.5, -1}};
+  Vector sticking = -h.inverse() * q;
+  FrictionAnswer from(const Vector &start, bool by_rule = false) const {
+    return friction_answer(columns_of(h), q, uniform_laws(1, 2, coulomb), start, by_rule);
+  }
+};
+
+TEST(FrictionRule, ChoosesOneOfSeveralWhateverTheStart) {
+  const OneNode p;
+  EXPECT_LT((p.from(p.sticking).x - p.sticking).norm(), 1e-12);
+  for (const Vector &start : {Vector(), p.sticking, p.slipping, Vector(-p.q)}) {
+    const FrictionAnswer found = p.from(start, true);
+    ASSERT_TRUE(found.converged) << found.reason;
+    EXPECT_EQ(found.x, Vector::Zero(2)) << "what continues the answer without friction";
+    EXPECT_FALSE(found.has_others);
+  }
+}
+
+TEST(FrictionRule, SeesOthersByTheSignOfTheTangent) {
+  const OneNode p;
+  const FrictionAnswer found = p.from(p.slipping);
+  EXPECT_LT((found.x - p.slipping).norm(), 1e-12);
+  EXPECT_TRUE(found.has_others);
+  EXPECT_FALSE(p.from(p.sticking).has_others) << "its determinant is positive";
+}
+
+TEST(FrictionRule, FindsOthersFromOtherStarts) {
+  const OneNode p;
+  const NodeLaws laws = uniform_laws(1, 2, p.coulomb);
+  for (const Vector &start : {Vector(), p.slipping, p.sticking})
+    EXPECT_GT(distance_to_other_answer(columns_of(p.h), p.q, laws, p.from(start)), 0.1);
+  // Pressed together harder there is one.
+  const Vector pressed{{-1, 0.1}};
+  EXPECT_EQ(distance_to_other_answer(columns_of(p.h), pressed, laws,
+                                     solve_friction(columns_of(p.h), pressed, laws)),
+            0);
+  // A threshold is convex.
+  const NodeLaws tresca = uniform_laws(1, 2, {0, 0.3, false});
+  EXPECT_FALSE(bounds_follow_pressure(tresca));
+  EXPECT_TRUE(bounds_follow_pressure(uniform_laws(1, 2, {0, 0.3, true})));
+}
+
+/// Where there is one answer the rule finds it, from any guess of the contact, in two and three
+/// dimensions.
+TEST(FrictionRule, FindsTheOnlyAnswer) {
+  Random random(5);
+  for (const int dim : {2, 3})
+    for (int trial = 0; trial < 20; ++trial) {
+      const Index n = 12 * dim;
+      const Matrix h = random_positive(random, n, 3);
+      const Vector q = random.vector(n);
+      for (const FrictionBound &bound : all_bounds) {
+        if (bound.jumps()) continue;
+        const FrictionResult plain = solve_friction(columns_of(h), q, dim, bound);
+        const FrictionAnswer ruled =
+            friction_answer(columns_of(h), q, uniform_laws(12, dim, bound), random.vector(n), true);
+        ASSERT_TRUE(plain.converged && ruled.converged) << plain.reason << ' ' << ruled.reason;
+        EXPECT_LT((plain.x - ruled.x).norm(), 1e-10 * (1 + plain.x.norm()));
+        EXPECT_FALSE(ruled.has_others);
+      }
+    }
+}
+
+} // namespace
+} // namespace rbvi::friction_rule_test

@@ -1,0 +1,274 @@
+// Model files: what is written is read, and what does not fit is refused.
+#include "files.hpp"
+#include "full_model.hpp"
+
+#include "../core/refuses.hpp"
+#include "cases/catalogue.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/io/h5.hpp"
+#include "rbvi/model/online.hpp"
+#include "rbvi/model/scene_text.hpp"
+
+namespace rbvi::model_test {
+namespace {
+
+using Path = std::filesystem::path;
+
+struct ModelFile : InOwnDirectory {
+  Path path = directory / "model.h5";
+};
+
+void expect_same(const AffineTerms &a, const AffineTerms &b) {
+  EXPECT_EQ(a.reduced, b.reduced);
+  EXPECT_EQ(a.interpolation, b.interpolation);
+  EXPECT_EQ(a.error, b.error);
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  for (std::size_t k = 0; k < a.samples.size(); ++k) {
+    const SampleMesh &x = a.samples[k], &y = b.samples[k];
+    EXPECT_EQ(x.vertices, y.vertices);
+    EXPECT_EQ(x.corners, y.corners);
+    ASSERT_EQ(x.contributions.size(), y.contributions.size());
+    for (std::size_t i = 0; i < x.contributions.size(); ++i) {
+      EXPECT_EQ(x.contributions[i].entry, y.contributions[i].entry);
+      EXPECT_EQ(x.contributions[i].cell, y.contributions[i].cell);
+      EXPECT_EQ(x.contributions[i].local, y.contributions[i].local);
+    }
+  }
+}
+
+/// It needs the code of its scene: the map has no name in files.
+ReducedModel unnamed_model() {
+  ReducedModel model = full_model();
+  model.scene.map = [](const FullMu &, const Point &x) { return x; };
+  return model;
+}
+
+/// Ranges of validity are the scene's: no file changes them, and none may leave them.
+TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
+  const auto refusal = [&](double lower, double upper) -> std::string {
+    ReducedModel model = unnamed_model();
+    model.scene.parameters.all[0].lower = lower;
+    model.scene.parameters.all[0].upper = upper;
+    model.scene.parameters.all[0].valid = {};
+    write_model(model, path);
+    try {
+      EXPECT_EQ(read_model(path, catalogue()).scene.parameters.all[0].valid.upper, 0.38);
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), Status::bad_input);
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(0.16, 0.24), "");
+  for (const auto &[lower, upper] : {std::pair(-1.0, 0.2), {0.16, 1e300}, {0.24, 0.16}})
+    EXPECT_NE(refusal(lower, upper).find("range of validity is [0.02, 0.38]"), std::string::npos);
+}
+
+/// A model knows what the functions of its scene returned when it was made.
+TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
+  ReducedModel model = full_model();
+  const Scene scene = model.scene;
+  model.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
+  write_model(model, path);
+  EXPECT_EQ(read_model(path, catalogue()).settings, model.settings);
+  const std::string line = "map values: ";
+  std::string &text = model.settings[whole_scene];
+  const std::size_t digit = text.find(line) + line.size() + 5;
+  text[digit] = text[digit] == '5' ? '6' : '5';
+  write_model(model, path);
+  for (const std::string part : {"another one in this build: map values is ", "rbvi offline"})
+    EXPECT_TRUE(refuses(part, [&] { (void)read_model(path, catalogue()); }));
+}
+
+TEST_F(ModelFile, ReturnsTheModel) {
+  const ReducedModel model = full_model();
+  write_model(model, path);
+  const ReducedModel copy = read_model(path, catalogue());
+  EXPECT_EQ(copy.scene.name, model.scene.name);
+  EXPECT_EQ(copy.scene.options, model.scene.options);
+  EXPECT_EQ(copy.scene.parameters.free, model.scene.parameters.free);
+  EXPECT_EQ(copy.scene.parameters.all[1].value, 0.01);
+  EXPECT_EQ(copy.scene.parameters.all[2].unit, "m");
+  EXPECT_EQ(copy.settings, model.settings);
+  EXPECT_EQ(copy.mesh_fingerprint, model.mesh_fingerprint);
+  EXPECT_EQ(copy.primal_size(), 5);
+  EXPECT_EQ(copy.modes, 3);
+  EXPECT_EQ(copy.generators, 4);
+  EXPECT_EQ(copy.free_modes, 1);
+  EXPECT_FALSE(copy.online_enriched);
+  expect_same(copy.a, model.a);
+  expect_same(copy.b, model.b);
+  expect_same(copy.f, model.f);
+  expect_same(copy.g, model.g);
+  EXPECT_EQ(copy.dual_basis, model.dual_basis);
+  EXPECT_EQ(copy.contact_trace, model.contact_trace);
+  EXPECT_TRUE(synthetic::same(copy.interfaces, model.interfaces));
+  EXPECT_EQ(copy.primal_basis, model.primal_basis);
+  EXPECT_EQ(copy.mesh_points, model.mesh_points);
+  EXPECT_EQ(copy.mesh_cells, model.mesh_cells);
+  EXPECT_EQ(copy.histories, model.histories);
+  EXPECT_EQ(copy.stage_seconds, model.stage_seconds);
+  EXPECT_EQ(copy.validation_enriched.lambda_max, 4e-4);
+  EXPECT_EQ(copy.validation_decorrelated.count, 0);
+  ASSERT_EQ(copy.validation_enriched.outputs.size(), 2U);
+  EXPECT_EQ(copy.validation_enriched.outputs[0].name, "energy");
+  EXPECT_EQ(copy.validation_enriched.outputs[0].max_of_value, 6);
+  EXPECT_EQ(errors_of_outputs(copy), (ErrorOfOutput{{"energy", 2}}));
+  EXPECT_EQ(copy.self_check.queries, 200);
+  EXPECT_EQ(copy.self_check.unanswered, 3);
+  EXPECT_EQ(copy.self_check.at_boundary, 8);
+  EXPECT_EQ(copy.self_check.scale, 0.25);
+  EXPECT_EQ(copy.validation_enriched.unanswered, 2);
+  EXPECT_EQ(copy.validated_mu, model.validated_mu);
+  EXPECT_EQ(copy.self_check.unanswered_at, (Mu{0.2, 0.01}));
+  EXPECT_EQ(copy.self_check.reason, "contact opens");
+  EXPECT_EQ(copy.self_check.residual.at, (Mu{0.17, 0}));
+  EXPECT_EQ(copy.self_check.penetration.value, 1e-3);
+  EXPECT_TRUE(copy.self_check.friction.at.empty());
+}
+
+TEST_F(ModelFile, ReturnsWhatLargeModelsHave) {
+  ReducedModel model = full_model();
+  const Index n = model.primal_size(), terms = model.a.size();
+  model.a.reduced = model.a.reduced.leftCols(1).eval();
+  model.a_change = {Vector::Ones(terms), Matrix::Ones(n, 2), Matrix::Ones(3, terms)};
+  model.trace_dofs = {0, 2};
+  model.contact_trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  write_model(model, path);
+  const ReducedModel copy = read_model(path, catalogue());
+  EXPECT_EQ(copy.a.reduced, model.a.reduced);
+  EXPECT_EQ(copy.a_change.scales, model.a_change.scales);
+  EXPECT_EQ(copy.a_change.range, model.a_change.range);
+  EXPECT_EQ(copy.a_change.cores, model.a_change.cores);
+  EXPECT_EQ(copy.trace_dofs, model.trace_dofs);
+  EXPECT_EQ(copy.contact_trace, model.contact_trace);
+  EXPECT_EQ(copy.contact_dofs(), model.contact_dofs());
+}
+
+TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
+  write_model(full_model(), path);
+  const ReducedModel with = read_model(path, catalogue()),
+                     without = read_model(path, catalogue(), false);
+  EXPECT_EQ(without.primal_basis.size(), 0);
+  OnlineSolver a(with), b(without);
+  const Mu mu{0.2, 0.01};
+  const ReducedAnswer solution = a.solve(mu);
+  EXPECT_EQ(solution.u, b.solve(mu).u);
+  EXPECT_EQ(*a.outputs(mu, solution).max_penetration, *b.outputs(mu, solution).max_penetration);
+  EXPECT_THROW(b.field(solution), Error);
+}
+
+TEST_F(ModelFile, FieldsHaveAFileOfTheirOwn) {
+  const Path fields = fields_file(path);
+  EXPECT_EQ(fields, directory / "model.fields.h5");
+  const ReducedModel model = full_model();
+  write_model(model, path);
+  const auto written = std::filesystem::last_write_time(fields);
+  ReducedModel again = read_model(path, catalogue());
+  again.settings["verified"] = "yes";
+  write_model(again, path);
+  EXPECT_EQ(std::filesystem::last_write_time(fields), written) << "the same fields stay";
+  EXPECT_EQ(read_model(path, catalogue()).settings, again.settings);
+
+  const auto refusal = [&]() -> std::string {
+    EXPECT_NO_THROW(read_model(path, catalogue(), false));
+    try {
+      (void)read_model(path, catalogue());
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), Status::bad_input);
+      return error.what();
+    }
+    return "";
+  };
+  std::filesystem::rename(fields, directory / "away");
+  EXPECT_NE(refusal().find("model.fields.h5 is missing"), std::string::npos);
+  ReducedModel other = model;
+  other.primal_basis(0, 0) += 1e-9;
+  write_model(other, directory / "other.h5");
+  std::filesystem::rename(fields_file(directory / "other.h5"), fields);
+  EXPECT_NE(refusal().find("has the fields of another model"), std::string::npos);
+  std::filesystem::rename(directory / "away", fields);
+  EXPECT_EQ(refusal(), "");
+  std::string bad = slurp(fields);
+  bad[bad.size() / 2] = static_cast<char>(bad[bad.size() / 2] ^ 1);
+  std::ofstream(fields, std::ios::binary) << bad;
+  EXPECT_NE(refusal().find("damaged"), std::string::npos);
+}
+
+TEST_F(ModelFile, NoLoadAndNoGapAreModels) {
+  ReducedModel model = synthetic::random_model({3, 2, 4, 2, 1, 1, 1}, 12);
+  model.f = model.g = {};
+  write_model(model, path);
+  const ReducedModel copy = read_model(path, catalogue());
+  OnlineSolver solver(copy);
+  EXPECT_EQ(solver.solve({0.2, 0, 0}).u.norm(), 0);
+  EXPECT_EQ(leading(copy, 2, 3).f.size(), 0);
+}
+
+TEST_F(ModelFile, OnlineEnrichedModelsAnswerTheSame) {
+  ReducedModel model = full_model();
+  model.online_enriched = true;
+  model.supremizers = 2;
+  write_model(model, path);
+  const ReducedModel copy = read_model(path, catalogue());
+  EXPECT_TRUE(copy.online_enriched);
+  const Mu mu{0.2, 0.01};
+  EXPECT_EQ(OnlineSolver(copy).solve(mu).u, OnlineSolver(model).solve(mu).u);
+}
+
+/// What the program before wrote: nothing of it is read, and the message says which is which.
+TEST_F(ModelFile, AnOlderSchemaIsRefused) {
+  H5Writer older;
+  older.write("scene/name", std::string("membrane_obstacle"));
+  older.commit(path, "model", 1);
+  try {
+    (void)read_model(path, catalogue());
+    FAIL() << "accepted";
+  } catch (const Error &error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.status(), Status::bad_input);
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+    const std::string now = "version " + std::to_string(model_schema);
+    for (const std::string &part : {std::string("model.h5"), std::string("schema version 1"), now,
+                                    std::string("make it again by rbvi offline")})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
+TEST_F(ModelFile, DamageIsNoticed) {
+  write_model(full_model(), path);
+  const std::string good = slurp(path);
+  for (std::size_t i = 0; i < good.size(); i += 211) {
+    std::string bad = good;
+    bad[i] = static_cast<char>(bad[i] ^ (1 << (i % 8)));
+    std::ofstream(path, std::ios::binary) << bad;
+    EXPECT_THROW(read_model(path, catalogue()), Error) << "byte " << i;
+    std::ofstream(path, std::ios::binary) << good.substr(0, i);
+    EXPECT_THROW(read_model(path, catalogue()), Error) << "length " << i;
+  }
+}
+
+TEST_F(ModelFile, WhatThisBuildLacksIsBadInput) {
+  const auto refused = [&](const ReducedModel &model) {
+    write_model(model, path);
+    try {
+      (void)read_model(path, catalogue());
+    } catch (const Error &error) {
+      return error.status() == Status::bad_input;
+    }
+    return false;
+  };
+  ReducedModel model = unnamed_model();
+  EXPECT_FALSE(refused(model));
+  model.scene.name = "bridge";
+  EXPECT_TRUE(refused(model));
+  model = unnamed_model();
+  model.scene.options["colour"] = "red";
+  EXPECT_TRUE(refused(model));
+  model = unnamed_model();
+  model.scene.parameters.all[0].name = "diameter";
+  EXPECT_TRUE(refused(model));
+}
+
+} // namespace
+} // namespace rbvi::model_test

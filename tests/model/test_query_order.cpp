@@ -1,0 +1,78 @@
+// Answers do not depend on the queries before.
+#include "synthetic.hpp"
+
+#include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/model/sample_starts.hpp"
+#include "rbvi/model/training_samples.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi::query_order_test {
+namespace {
+
+/// More generators than functions: the multipliers are not unique, and a start chooses some.
+ReducedModel model_of_dependent_generators(bool trained) {
+  ReducedModel model = synthetic::random_model({4, 2, 12, 2, 1, 1, 2}, 3);
+  if (trained) model.trained_mu = as_columns(parse_set(model.scene.parameters, "grid:2,2,2"), 3);
+  return model;
+}
+
+/// The factors of a start may be updated ones, or made anew: the same to round-off.
+double distance(const Vector &one, const Vector &other) {
+  return (one - other).norm() / other.norm();
+}
+
+TEST(OrderOfQueries, DoesNotMatter) {
+  for (const bool trained : {false, true}) {
+    const ReducedModel model = model_of_dependent_generators(trained);
+    const std::vector<Mu> set = parse_set(model.scene.parameters, "random:40:1");
+    OnlineSolver forwards(model), backwards(model);
+    std::vector<ReducedAnswer> first;
+    for (const Mu &mu : set)
+      first.push_back(forwards.solve(mu));
+    for (std::size_t k = set.size(); k-- > 0;) {
+      const ReducedAnswer again = backwards.solve(set[k]);
+      EXPECT_LE(distance(again.lambda, first[k].lambda), 1e-12);
+      EXPECT_LE(distance(again.u, first[k].u), 1e-12);
+      EXPECT_EQ(again.iterations, first[k].iterations);
+      if (k % 10 > 0) continue;
+      EXPECT_LE(distance(OnlineSolver(model).solve(set[k]).lambda, first[k].lambda), 1e-12);
+    }
+  }
+}
+
+TEST(OrderOfQueries, MattersWhereItIsAskedFor) {
+  const ReducedModel model = model_of_dependent_generators(true);
+  OnlineSolver warm(model, QueryOptions{.warm = true}), cold(model);
+  const Mu mu{0.19, 0.01, 0.02};
+  const ReducedAnswer first = warm.solve(mu), again = warm.solve(mu);
+  EXPECT_GT(first.iterations, 0);
+  EXPECT_EQ(again.iterations, 0) << "its own active set";
+  EXPECT_LT((again.u - cold.solve(mu).u).norm(), 1e-10 * again.u.norm());
+}
+
+TEST(SampleStarts, AreFoundOnceAtTheNearestSample) {
+  const ParameterSpace space = all_free({{"a", "", 0, 1, 0.5}, {"b", "", 0, 10, 5}});
+  const Matrix samples{{0.1, 0.9, 0.5}, {5, 5, 9}};
+  SampleStarts<int> starts(space, samples);
+  int asked = 0;
+  const auto at = [&](double a, double b) {
+    return starts.nearest(Vector{{a, b / 10}}, [&](Index k) {
+      ++asked;
+      if (k == 2) throw failure("no answer");
+      return static_cast<int>(10 + k);
+    });
+  };
+  EXPECT_EQ(at(0.2, 6), 10);
+  EXPECT_EQ(at(0.8, 5), 11);
+  EXPECT_EQ(at(0, 4), 10);
+  EXPECT_EQ(asked, 2);
+  EXPECT_EQ(at(0.5, 10), 0) << "from rest";
+  EXPECT_EQ(at(0.5, 9), 0);
+  EXPECT_EQ(asked, 3);
+  SampleStarts<int> none(space, Matrix(2, 0));
+  EXPECT_EQ(none.nearest(Vector::Zero(2), [](Index) { return 1; }), 0);
+}
+
+} // namespace
+} // namespace rbvi::query_order_test

@@ -1,0 +1,128 @@
+// Responses to the answers of the law in place of those to the loads of all multipliers.
+#include "../method/random_matrix.hpp"
+#include "reduced.hpp"
+
+#include "cases/catalogue.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/mor/answered_responses.hpp"
+#include "rbvi/solve/vectors.hpp"
+
+#include <gtest/gtest.h>
+
+namespace rbvi::answered_responses_test {
+namespace {
+
+using namespace testing_reduced;
+
+Scene scene_of(const std::string &name, const SceneOptions &options) {
+  Scene scene = make_scene(name, options);
+  scene.parameters = free_only(scene.parameters, "radius");
+  return scene;
+}
+
+/// Largest distance of the samples to the span of the basis, relative, in V.
+double distance(Problem &problem, const std::vector<Sample> &samples, const LinearBasis &basis) {
+  double largest = 0, scale = 0;
+  for (const Sample &sample : samples) {
+    const Handle<Vec> u = from_natural(problem.dofs(), sample.u), product = like(u.get());
+    Vector inside(basis.size());
+    RBVI_CALL(BVDotVec(basis.columns.get(), u.get(), inside.data()));
+    const auto squared = [&] {
+      double value = 0;
+      RBVI_CALL(MatMult(problem.v_product(), u.get(), product.get()));
+      RBVI_CALL(VecDot(u.get(), product.get(), &value));
+      return value;
+    };
+    scale = std::max(scale, squared());
+    RBVI_CALL(BVMultVec(basis.columns.get(), -1, 1, u.get(), inside.data()));
+    largest = std::max(largest, squared());
+  }
+  return std::sqrt(largest / scale);
+}
+
+TEST(ResponseDirections, AreAsFewAsTheAnswersNeed) {
+  constexpr Index size = 30, rank = 4;
+  constexpr double small = 1e-4;
+  Random random(1);
+  const Matrix root = random.matrix(size, size);
+  const Matrix compliance = root.transpose() * root + Matrix::Identity(size, size);
+  const Matrix factors = random.matrix(size, rank), numbers = random.matrix(rank, 40);
+  Matrix answers = factors * numbers;
+  ResponseDirections directions(compliance);
+  directions.add(answers.leftCols(20), 1e-8);
+  const Matrix few = directions.coefficients(1e-8);
+  EXPECT_EQ(few.cols(), rank);
+  EXPECT_LE((few.transpose() * compliance * few - Matrix::Identity(rank, rank)).norm(), 1e-10)
+      << "orthonormal in the energy";
+  EXPECT_LE(directions.left(answers.rightCols(20)), 1e-8);
+
+  // One more direction, which counts from its size on.
+  answers.col(30) += small * random.vector(size);
+  const double left = directions.left(answers.rightCols(20));
+  EXPECT_GT(left, 0.01 * small);
+  directions.add(answers.rightCols(20), 0.01 * left);
+  EXPECT_LE(directions.left(answers), 0.01 * left);
+  EXPECT_EQ(directions.coefficients(2 * left).cols(), rank);
+  const Matrix all = directions.coefficients(0.01 * left);
+  EXPECT_EQ(all.cols(), rank + 1);
+  const Matrix rest = answers - all * (all.transpose() * (compliance * answers));
+  EXPECT_LE(std::sqrt((rest.transpose() * compliance * rest).diagonal().maxCoeff()),
+            0.02 * left *
+                std::sqrt((answers.transpose() * compliance * answers).diagonal().maxCoeff()));
+  EXPECT_THROW(ResponseDirections(-compliance), Error);
+}
+
+/// Every displacement is there to the tolerance, also where no sample was.
+TEST(AnsweredResponses, HoldTheDisplacementsOfAllParameters) {
+  struct Case {
+    std::string scene;
+    SceneOptions options;
+  };
+  for (const Case &c : {Case{"rigid_disk", {{"arc_edges", "60"}}},
+                        Case{"rigid_disk", {{"arc_edges", "60"}, {"kinematics", "large"}}},
+                        Case{"two_disks", {{"arc_edges", "16"}}},
+                        Case{"two_disks", {{"arc_edges", "16"}, {"kinematics", "large"}}}}) {
+    SCOPED_TRACE(c.scene + (c.options.contains("kinematics") ? ", large" : ""));
+    constexpr double tolerance = 1e-4;
+    Reduced r(scene_of(c.scene, c.options), "grid:5");
+    ReduceOptions options;
+    options.condensed.responses = 0; // the modes alone
+    r.reduce(options);
+    const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:6:3"));
+    EXPECT_GT(distance(r.problem, unseen, r.bases.pod.basis), 5 * tolerance);
+    const CondensedLoads loads = condensed_loads(r.problem, r.affine, r.mus(),
+                                                 multipliers_of(r.samples), r.bases.nodal_dual);
+    const int appended =
+        append_answered_responses(r.problem, loads, r.model, tolerance, r.bases.pod.basis);
+    EXPECT_GT(appended, 0);
+    EXPECT_LT(appended, loads.joining());
+    EXPECT_LE(distance(r.problem, unseen, r.bases.pod.basis), 2 * tolerance)
+        << "in V; the tolerance is one of the energy";
+  }
+}
+
+TEST(AnsweredResponses, TakeThePlaceOfLargeFields) {
+  Reduced r(scene_of("rigid_disk", {{"arc_edges", "160"}}), "grid:7");
+  const auto unseen = solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:5:3"));
+  for (const bool large : {false, true}) {
+    ReduceOptions options;
+    options.eim.tolerance = 1e-10; // of g
+    if (large) options.condensed.large_fields = 1e6;
+    r.reduce(options);
+    check_model(r.model);
+    const Index loads = r.bases.nodal_dual.cols();
+    EXPECT_FALSE(r.bases.awaiting.has_value());
+    EXPECT_EQ(r.model.supremizers, r.bases.responses);
+    if (large) {
+      EXPECT_LT(r.bases.responses, loads / 2);
+    } else {
+      EXPECT_GT(r.bases.responses, loads / 2);
+    }
+    const ModelErrors errors = r.errors_at(unseen);
+    EXPECT_LE(errors.u.maxCoeff(), large ? 2e-5 : 1e-8);
+    EXPECT_LE(errors.lambda.maxCoeff(), 1e-8) << "the multipliers are exact with both";
+  }
+}
+
+} // namespace
+} // namespace rbvi::answered_responses_test
