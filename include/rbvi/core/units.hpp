@@ -1,0 +1,45 @@
+// Units: numbers such as "205 GPa" in one consistent system, and their dimensions.
+//
+//   unit = factor { ("*" | "/") factor }      factor = (name | "1") [ "^" integer ]
+//
+// Names: m N Pa g s K J W with the prefixes n u m c d k M G T; t (1000 kg), deg, rad.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace rbvi {
+
+/// Powers of length, force, time and temperature. Mass is force time^2 / length.
+using Dimension = std::array<int, 4>;
+
+/// Of the units of length, force, time and temperature, the powers of ten of m, N, s and K.
+using UnitSystem = std::array<int, 4>;
+
+/// A value in the units of a system.
+struct Quantity {
+  double value = 0;
+  Dimension dimension{};
+  bool has_unit = false;
+};
+
+/// From {"length", "mm"}, {"force", "N"}; "time" is s and "temperature" K unless declared. Throws
+/// bad_input.
+UnitSystem unit_system(const std::map<std::string, std::string> &declared);
+
+/// A finite number, with a unit behind it or without one: then the value is as it is. Throws
+/// bad_input, also for a unit where no system is declared.
+Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem> &system);
+
+/// The dimension of a product of units: "N/mm^2". Throws bad_input.
+Dimension dimension_of(const std::string &unit);
+
+/// "a stress"; "of dimension force^2*length^-1" where it has no name.
+std::string described(const Dimension &dimension);
+
+/// Throws bad_input if a quantity, written as `text`, has a unit of another dimension.
+void check_dimension(const Quantity &quantity, const Dimension &wanted, const std::string &text);
+
+} // namespace rbvi

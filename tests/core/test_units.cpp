@@ -1,0 +1,65 @@
+#include "rbvi/core/units.hpp"
+
+#include "refuses.hpp"
+
+namespace rbvi::units_test {
+namespace {
+
+TEST(Units, ConvertInto) {
+  const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "N"}});
+  const std::vector<std::pair<std::string, double>> table{{"50 kN", 50000},
+                                                          {"1800 kN/mm", 1.8e6},
+                                                          {"205 GPa", 205000},
+                                                          {"0.5 MPa", 0.5},
+                                                          {"1 m^2", 1e6},
+                                                          {"1 t", 1},
+                                                          {"7850 kg/m^3", 7.85e-9},
+                                                          {"9.81 m/s^2", 9810},
+                                                          {"3 1/K", 3},
+                                                          {"1 J", 1000},
+                                                          {"50 W/m/K", 50},
+                                                          {"2 N*m", 2000},
+                                                          {"180 deg", 3.141592653589793},
+                                                          {"+1 um", 1e-3},
+                                                          {"-3 cm", -30},
+                                                          {"1 m^-1", 1e-3},
+                                                          {"20mm", 20}};
+  for (const auto &[text, expected] : table) {
+    EXPECT_DOUBLE_EQ(parse_quantity(text, mm).value, expected) << text;
+    EXPECT_TRUE(parse_quantity(text, mm).has_unit);
+  }
+  EXPECT_EQ(parse_quantity("205 GPa", unit_system({{"length", "m"}, {"force", "MN"}})).value,
+            205000);
+  EXPECT_EQ(
+      parse_quantity("1 s", unit_system({{"length", "m"}, {"force", "N"}, {"time", "ms"}})).value,
+      1000);
+  EXPECT_FALSE(parse_quantity("5", mm).has_unit);
+  EXPECT_EQ(parse_quantity(" 1e-3 ", std::nullopt).value, 1e-3);
+}
+
+TEST(Units, HaveDimensionsAndErrorsThatNameThem) {
+  const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "N"}});
+  EXPECT_EQ(described(dimension_of("kN/mm^2")), "a stress");
+  EXPECT_EQ(described(dimension_of("g/mm^3")), "a density");
+  EXPECT_EQ(described(dimension_of("N^2/m")), "of dimension length^-1*force^2");
+  EXPECT_TRUE(refuses("a stress is wanted, 5 mm is a length", [&] {
+    check_dimension(parse_quantity("5 mm", mm), dimension_of("Pa"), "5 mm");
+  }));
+  check_dimension(parse_quantity("5", mm), dimension_of("Pa"), "5");
+  check_dimension(parse_quantity("5 N/mm^2", mm), dimension_of("Pa"), "5 N/mm^2");
+  for (const auto &[text, words] : std::vector<std::pair<std::string, std::string>>{
+           {"5 Mpa", "unknown unit 'Mpa' in 'Mpa': the nearest is 'MPa'"},
+           {"5 kN mm", "unknown unit 'kN mm'"},
+           {"5 m^x", "the power 'x'"},
+           {"5 m/", "unknown unit ''"},
+           {"mm", "not a number"},
+           {"", "is empty"}})
+    EXPECT_TRUE(refuses(words, [&, &t = text] { parse_quantity(t, mm); })) << text;
+  EXPECT_TRUE(refuses("no units are declared", [] { parse_quantity("5 mm", std::nullopt); }));
+  EXPECT_TRUE(refuses("lack that of force", [] { unit_system({{"length", "mm"}}); }));
+  EXPECT_TRUE(refuses("a length is wanted, N is a force", [] { unit_system({{"length", "N"}}); }));
+  EXPECT_TRUE(refuses("unknown unit of 'mass'", [] { unit_system({{"mass", "kg"}}); }));
+}
+
+} // namespace
+} // namespace rbvi::units_test
