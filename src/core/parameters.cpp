@@ -134,8 +134,8 @@ bool in_box(const ParameterSpace &space, const Mu &mu) {
 
 void check_mu(const ParameterSpace &space, const Mu &mu, bool allow_outside) {
   if (static_cast<int>(mu.size()) != space.size())
-    throw bad_input(std::to_string(mu.size()) + " values for " + std::to_string(space.size()) +
-                    " free parameters (" + names_of(space) + ")");
+    throw bad_input(counted(std::ssize(mu), "value") + " for " +
+                    counted(space.size(), "free parameter") + " (" + names_of(space) + ")");
   for (std::size_t i = 0; i < mu.size(); ++i) {
     const Parameter &p = space.at(static_cast<int>(i));
     if (!std::isfinite(mu[i])) throw bad_input("parameter " + p.name + " is not finite");

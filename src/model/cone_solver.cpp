@@ -13,7 +13,6 @@ namespace rbvi {
 
 namespace {
 
-constexpr double largest_kkt_residual = 1e-8;
 constexpr double largest_pull = 1e-2;    ///< of the peak: negative pressure where contact is sure
 constexpr double active_fraction = 1e-6; ///< of the peak: below it a node counts as free
 
@@ -112,7 +111,7 @@ void ConeSolver::finish(ReducedAnswer &answer) {
       kkt_residual(at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
                    answer.lambda, model_.free_modes, terms);
   answer.least_pressure = active_fraction;
-  if (!(answer.residual <= largest_kkt_residual))
+  if (!(answer.residual <= largest_left))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
                    << answer.residual << ": reduce again with fewer generators or more supremizers")
                       .str());

@@ -8,9 +8,6 @@
 
 namespace rbvi {
 
-/// The law of a query has to be met to this.
-constexpr double largest_residual = 1e-8;
-
 /// At every node.
 class NodeLawSolver : public QueryMethod {
 public:

@@ -32,7 +32,7 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   for (Index i = 0; i < start.size(); ++i)
     if (start[i] > 0 && !contact.faces(i)) start[i] = 0;
   FrictionAnswer found = friction_answer(columns, law.q, law.laws, start, by_rule_);
-  if (!found.converged || !(found.residual <= largest_residual))
+  if (!found.converged || !(found.residual <= largest_left))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
   if (looks_for_others_)

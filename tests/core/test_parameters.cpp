@@ -48,7 +48,7 @@ TEST(ParseMu, RefusesWhatIsWrong) {
     return refuses(part, [&] { (void)parse_mu(space(), text); });
   };
   EXPECT_TRUE(refused("", "0 values for 2"));
-  EXPECT_TRUE(refused("0.2", "1 values for 2"));
+  EXPECT_TRUE(refused("0.2", "1 value for 2"));
   EXPECT_TRUE(refused("0.2,0,0", "3 values for 2"));
   EXPECT_TRUE(refused("0.2,", "empty"));
   EXPECT_TRUE(refused("nan,0", "not finite"));

@@ -19,6 +19,9 @@ struct ReducedAnswer : Answer {
   double to_other = 0;
 };
 
+/// What is left of the conditions of a query that has an answer: ReducedAnswer::residual.
+constexpr double largest_left = 1e-8;
+
 /// How queries are answered.
 struct QueryOptions {
   /// Start from the last answer: queries that follow each other closely cost less, and where there
