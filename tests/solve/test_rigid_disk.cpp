@@ -51,6 +51,40 @@ const Known known[] = {{0.7, 0.047121, 1.19502, 0.1920, 4.120, 0.2038, 0.0436},
                        {1.0, 0.041290, 1.02905, 0.1657, 3.469, 0.2047, 0.0437},
                        {1.3, 0.037741, 0.93164, 0.1502, 3.106, 0.2048, 0.0440}};
 
+/// Tresca's law with this threshold; free: radius.
+Scene with_threshold(double threshold) {
+  Scene scene = make_scene("rigid_disk", small_with("friction", "tresca"));
+  scene.parameters.free = {0};
+  scene.parameters.all[2].lower = scene.parameters.all[2].upper = threshold;
+  scene.parameters.all[2].value = threshold;
+  return scene;
+}
+
+/// However far the threshold is above all stresses, the answer is that of bodies that stick, and as
+/// good: the round-off of the slip is no violation. A slip is one.
+TEST(RigidDisk, AThresholdAboveAllStressesIsGlue) {
+  const HfSolution sticks = solve(with_threshold(1e2), {1.0});
+  for (const HfContact contact : {HfContact::condensed, HfContact::eliminated}) {
+    HfOptions options;
+    options.contact = contact;
+    const HfSolution glued = solve(with_threshold(1.5e5), {1.0}, options);
+    EXPECT_LE(glued.kkt.largest(), 1e-10);
+    EXPECT_LE((glued.u - sticks.u).norm(), 1e-9 * sticks.u.norm());
+    EXPECT_EQ(*glued.outputs.stick_nodes, *glued.outputs.contact_nodes);
+  }
+  Problem slips(PETSC_COMM_WORLD, with_threshold(1e-3), {}),
+      glues(PETSC_COMM_WORLD, with_threshold(1.5e5), {});
+  const Handle<KSP> ksp = make_direct_solver(slips.comm(), "hf_");
+  const Operators &op = slips.assemble({1.0}), &other = glues.assemble({1.0});
+  set_operator(ksp.get(), op.a);
+  FactoredBody body(ksp.get(), slips.trace(), ColumnsLast::for_one_b);
+  body.set(op.a);
+  const MethodResult found = solve_active_set(body, op, {});
+  ASSERT_TRUE(found.converged) << found.reason;
+  EXPECT_LE(kkt_residual(slips.trace(), op, found.free_u.get(), found.lambda).friction, 1e-10);
+  EXPECT_GE(kkt_residual(glues.trace(), other, found.free_u.get(), found.lambda).friction, 1e-2);
+}
+
 TEST(RigidDisk, AgreesWithTheKnownValues) {
   Problem problem(PETSC_COMM_WORLD, disk(), {});
   HighFidelity solver(problem, {});
