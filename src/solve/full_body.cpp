@@ -7,6 +7,9 @@
 
 namespace rbvi {
 
+namespace {
+
+/// F - B^T lambda. Collective.
 Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda) {
   Handle<Vec> rhs;
   RBVI_CALL(VecDuplicate(op.f, rhs.put()));
@@ -15,6 +18,8 @@ Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &
   add_extension(trace, reaction, rhs.get());
   return rhs;
 }
+
+} // namespace
 
 void FactoredBody::set(Mat a) {
   a_ = a;

@@ -62,7 +62,7 @@ DualMeasures measure_dual(const NodeLaws &laws, const Vector &weights, const Vec
     const auto traction = lambda.segment(first, laws.tangents);
     const auto slip = excess.segment(first, laws.tangents);
     above = std::max(above, traction.norm() - bounds[i]);
-    const double bound = std::min(bounds[i], 2 * sizes.stress);
+    const double bound = sizes.stress > 0 ? std::min(bounds[i], 2 * sizes.stress) : bounds[i];
     idle_friction += std::abs(bound * slip.norm() - traction.dot(slip));
   }
   stress = lambda.size() > 0 ? lambda.cwiseAbs().maxCoeff() : 0;

@@ -83,6 +83,8 @@ TEST(RigidDisk, AThresholdAboveAllStressesIsGlue) {
   ASSERT_TRUE(found.converged) << found.reason;
   EXPECT_LE(kkt_residual(slips.trace(), op, found.free_u.get(), found.lambda).friction, 1e-10);
   EXPECT_GE(kkt_residual(glues.trace(), other, found.free_u.get(), found.lambda).friction, 1e-2);
+  const Vector none = Vector::Zero(found.lambda.size()); // a slip that nothing opposes
+  EXPECT_GT(kkt_residual(glues.trace(), other, found.free_u.get(), none).friction, 1e-2);
 }
 
 TEST(RigidDisk, AgreesWithTheKnownValues) {

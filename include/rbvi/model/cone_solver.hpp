@@ -60,7 +60,7 @@ private:
   MixedQp qp_;
   int y_number_ = 0; ///< Y so far
   int root_of_y_ = 0;
-  // B is b_scale_ b_, Y is sqrt of at_mu_.scale() times b_scale_ times what it is with `y_`.
+  // B = b_scale_ b_, Y = b_scale_ / sqrt(at_mu_.scale()) y_.
   Vector theta_b_; ///< of b_
   Matrix b_, turned_b_, y_;
   double b_scale_ = 1;

@@ -57,7 +57,7 @@ public:
   LawStarts(const ReducedModel &model, const Scene &scene, bool warm);
   /// FrictionResult::start; empty: from rest.
   Vector at(const FullMu &mu) const;
-  /// A row of values for each sample, predicted at mu.
+  /// What a column of values for each sample predicts at mu.
   Vector predicted(const Matrix &of_samples, const FullMu &mu) const;
   void keep(const Vector &start);
 

@@ -21,9 +21,6 @@ public:
   virtual void displacement(const Operators &op, const Vector &lambda, Vec u) = 0;
 };
 
-/// F - B^T lambda. Collective.
-Handle<Vec> reaction_rhs(const Trace &trace, const Operators &op, const Vector &lambda);
-
 /// How long the columns of a compliance last.
 enum class ColumnsLast {
   for_all_mu, ///< A is the same: one factorisation and at most n_c solves for a whole sweep
