@@ -5,9 +5,9 @@
 //   a(mu; u, v) + b(mu; v, lambda)  = f(mu; v)      for all v in V,
 //   b(mu; u, eta)                  <= g(mu; eta)    for all eta in W+                         (2.7)
 //
-//   mpirun -n 2 build/bin/example run/example       # exit status 0: the reduced answer is right
-#include "catalogue.hpp"
-
+//   mpirun -n 2 build/bin/example cases/membrane_obstacle/case.yaml run/example
+//
+// Exit status 0: the reduced answer is right.
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/reduce.hpp"
@@ -15,6 +15,7 @@
 #include "rbvi/par/session.hpp"
 #include "rbvi/par/turns.hpp"
 #include "rbvi/study/errors.hpp"
+#include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/finish.hpp"
 
 #include <algorithm>
@@ -27,8 +28,8 @@ constexpr double most_error = 1e-3; ///< relative, of u in V and of lambda in W
 
 /// 1. The scene: parameters and their box, the reference domain and its map, a, b, f, g. Two of the
 /// three parameters are free, center_y keeps its value.
-Scene membrane() {
-  Scene scene = make_scene("membrane_obstacle", {});
+Scene membrane(const std::string &file) {
+  Scene scene = make_scene(scene_of_file(PETSC_COMM_WORLD, file));
   scene.parameters = free_only(scene.parameters, "radius,center_x");
   return scene;
 }
@@ -109,8 +110,8 @@ double error_of_query(Problem &problem, const ReducedModel &model, const Mu &mu)
   return std::max(errors.u[0], errors.lambda[0]);
 }
 
-void run(const std::string &directory) {
-  const Scene scene = membrane();
+void run(const std::string &file, const std::string &directory) {
+  const Scene scene = membrane(file);
   const std::vector<Sample> samples = snapshots(scene, directory + "/samples").samples;
   Problem problem(PETSC_COMM_WORLD, scene, {}); // distributed over all ranks
   ReducedBases bases = bases_of(problem, samples);
@@ -124,5 +125,8 @@ void run(const std::string &directory) {
 
 int main(int argc, char **argv) {
   Session session(argc, argv);
-  return finish(PETSC_COMM_WORLD, [&] { run(argc > 1 ? argv[1] : "run/example"); });
+  return finish(PETSC_COMM_WORLD, [&] {
+    if (argc != 3) throw bad_input("give the case and a directory: example CASE DIRECTORY");
+    run(argv[1], argv[2]);
+  });
 }

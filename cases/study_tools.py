@@ -46,7 +46,7 @@ class Study:
         if not path.is_file():
             files = ["-csv", path, *(["-vtu", path.with_suffix(".vtu")] if vtu else [])]
             try:
-                self.call("solve", "-case", self.case, *options, *self.options, *files)
+                self.call("solve", "-case", *self.case, *options, *self.options, *files)
             except SystemExit as stopped:
                 return str(stopped).strip().splitlines()[-1].removeprefix("rbvi: ")
         return rows_of(path)[0]
@@ -61,7 +61,7 @@ class Study:
         samples.mkdir(exist_ok=True)
         if not (run / "samples").is_symlink():
             (run / "samples").symlink_to("../samples")
-        self.call("offline", "-case", self.case, *self.variants[variant], "-out", run, *options,
+        self.call("offline", "-case", *self.case, *self.variants[variant], "-out", run, *options,
                   *self.options)
         self.call("verify", "-out", run, "-verify_stability", "yes" if stability else "no")
         return run

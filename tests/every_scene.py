@@ -19,12 +19,11 @@ class Formulation:
 
 def membranes():
     mu = ["0.2,0,0", "0.17,0.03,-0.02", "0.23,-0.04,0.01"]
-    for name, case, scene in (("membrane", "case", []),
-                              ("membrane_graded", "case", ["-disc_map", "graded"]),
-                              ("membrane_consistent", "case", ["-lumped", "no"]),
-                              ("membrane_published", "published", []),
-                              ("membrane_degree_2", "case", ["-degree", "2", "-lumped", "no"])):
-        yield Formulation(name, CASES / f"membrane_obstacle/{case}.yaml", scene,
+    for name, scene in (("membrane", []), ("membrane_graded", ["-disc_map", "graded"]),
+                        ("membrane_consistent", ["-lumped", "no"]),
+                        ("membrane_published", ["-variant", "published"]),
+                        ("membrane_degree_2", ["-degree", "2", "-lumped", "no"])):
+        yield Formulation(name, CASES / "membrane_obstacle/case.yaml", scene,
                           ["-train", "grid:3,3,3"], mu)
     yield Formulation("membrane_frame", CASES / "membrane_obstacle/case.yaml",
                       ["-parameters", "radius,frame_height,frame_tilt"], ["-train", "grid:3,3,3"],
@@ -38,14 +37,15 @@ def two_disks():
                               ("two_disks_published", "published", []),
                               ("two_disks_p1_direct", "cone",
                                ["-degree", "1", "-multiplier", "p1", "-integration", "direct"])):
-        yield Formulation(name, CASES / f"two_disks/{case}.yaml", scene, few, mu)
+        yield Formulation(name, CASES / "two_disks/case.yaml",
+                          ["-variant", case, *scene], few, mu)
 
 
 def two_disks_condensed():
     yield Formulation("two_disks_condensed", CASES / "two_disks/case.yaml", [],
                       ["-train", "grid:21"], ["0.83", "1", "1.17"],
                       ["-multiplier_reduction", "condensed"])
-    yield Formulation("two_disks_large", CASES / "two_disks/large.yaml", [], [],
+    yield Formulation("two_disks_large", CASES / "two_disks/case.yaml", ["-variant", "large"], [],
                       ["0.83", "1", "1.17"])
 
 
@@ -60,13 +60,14 @@ def rigid_disks():
                               [] if rule == "empirical" else ["-nitsche_quadrature", rule])
     yield Formulation("disk_collocated", case, [], ["-train", "grid:31"], mu,
                       ["-multiplier_reduction", "collocated"])
-    large, few_of_large = CASES / "rigid_disk/large.yaml", ["-train", "random:20:1"]
+    few_of_large = ["-train", "random:20:1"]
     for law in ("none", "coulomb"):
-        yield Formulation(f"disk_large_{law}", large, ["-friction", law], few_of_large,
-                          ["0.8,0.05,0", "1,0.1,0.08", "1.2,0.18,-0.05"])
+        yield Formulation(f"disk_large_{law}", case, ["-variant", "large", "-friction", law],
+                          few_of_large, ["0.8,0.05,0", "1,0.1,0.08", "1.2,0.18,-0.05"])
     for law in ("none", "coulomb"):
-        yield Formulation(f"nitsche_large_{law}", CASES / "rigid_disk/large_nitsche.yaml",
-                          ["-friction", law, "-arc_edges", "100"], few_of_large,
+        yield Formulation(f"nitsche_large_{law}", case,
+                          ["-variant", "large_nitsche", "-friction", law, "-arc_edges", "100"],
+                          few_of_large,
                           ["0.8,0.05", "1,0.1", "1.2,0.18"])
     yield Formulation("disk_lumped", case, ["-friction", "none", "-lumped", "yes"], few, mu)
     yield Formulation("disk_rigid_normal", case, ["-normal", "rigid"], few, mu)

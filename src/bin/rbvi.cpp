@@ -1,7 +1,6 @@
-// rbvi with the scenes of cases.
-#include "cases/catalogue.hpp"
+#include "rbvi/contact/registry.hpp"
 #include "rbvi/tool/rbvi_main.hpp"
 
 int main(int argc, char **argv) {
-  return rbvi::rbvi_main(argc, argv, rbvi::catalogue());
+  return rbvi::rbvi_main(argc, argv, rbvi::registry_of({}));
 }

@@ -1,7 +1,6 @@
-// rbvi-online with the scenes of cases.
-#include "cases/catalogue.hpp"
+#include "rbvi/contact/registry.hpp"
 #include "rbvi/model/online_tool.hpp"
 
 int main(int argc, char **argv) {
-  return rbvi::rbvi_online_main(argc, argv, rbvi::catalogue());
+  return rbvi::rbvi_online_main(argc, argv, rbvi::registry_of({}));
 }

@@ -162,25 +162,4 @@ std::vector<ContactKind> rigid_kinds() {
   return kinds;
 }
 
-std::vector<SceneOption> nitsche_options() {
-  return {{"formulation",
-           "mixed",
-           "of contact: with multipliers, or by Nitsche's method",
-           {"mixed", "nitsche"}},
-          {"nitsche_gamma0",
-           "11.54",
-           "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge",
-           {},
-           {0.1, 2000}}};
-}
-
-bool asks_for_nitsche(const SceneOptions &options) {
-  return options.at("formulation") == "nitsche";
-}
-
-ContactRecipe contact_by(const SceneOptions &options, const RigidContact &rigid) {
-  return asks_for_nitsche(options) ? by_nitsche(rigid, number_in(options, "nitsche_gamma0"))
-                                   : by_multipliers(rigid);
-}
-
 } // namespace rbvi

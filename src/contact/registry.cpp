@@ -4,7 +4,9 @@
 #include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/contact/pair.hpp"
+#include "rbvi/contact/surfaces.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
@@ -20,7 +22,8 @@ Registry registry_of(std::vector<SceneEntry> scenes) {
   const auto add = [&](const FunctionLibrary &more) {
     registry.functions.insert(registry.functions.end(), more.begin(), more.end());
   };
-  for (const FunctionLibrary &more : {scalar_functions(), elastic_functions(), facet_functions()})
+  for (const FunctionLibrary &more : {scalar_functions(), elastic_functions(), facet_functions(),
+                                     formula_functions(), surface_functions()})
     add(more);
   for (const SceneEntry &scene : registry.scenes)
     add(scene.functions);

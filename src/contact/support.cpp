@@ -28,6 +28,7 @@ Record record_of(const HalfPlane &plane) {
   if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
   if (plane.surface) record.parts["surface"] = plane.surface.record;
   if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
+  if (plane.closed_ends) record.numbers["closed_ends"] = {1};
   add_friction(plane.friction, record);
   return record;
 }
@@ -103,6 +104,7 @@ HalfPlane half_plane_in(const Stored &of) {
   if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
   plane.friction = friction_in(of);
   plane.lumped = number(of, "lumped") != 0;
+  plane.closed_ends = of.record.numbers.contains("closed_ends");
   if (of.record.parts.contains("body_normal"))
     plane.body_normal = made<PointMap>(part(of, "body_normal"));
   return plane;
@@ -125,6 +127,7 @@ RigidContact rigid_contact(const HalfPlane &plane) {
   rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
   rigid.facing.at_rest = plane.surface;
   rigid.facing.body_normal = plane.body_normal;
+  rigid.facing.closed_ends = {plane.closed_ends, plane.closed_ends};
   rigid.coefficients.push_back({"position of the half-plane", plane.position});
   if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
   return rigid;

@@ -12,8 +12,14 @@ namespace {
 
 void check_option(const SceneOption &option, const std::string &value) {
   if (option.choices.empty()) {
-    check_range(option.valid, parse_number(value, "option " + option.name),
-                "option " + option.name);
+    const std::vector<std::string> numbers =
+        option.may_vary ? split(value, ',') : std::vector{value};
+    if (numbers.size() > 2)
+      throw bad_input("option " + option.name + " is '" + value +
+                      "': give one value, or two bounds");
+    for (const std::string &number : numbers)
+      check_range(option.valid, parse_number(number, "option " + option.name),
+                  "option " + option.name);
   } else if (std::find(option.choices.begin(), option.choices.end(), value) ==
              option.choices.end()) {
     throw bad_input("option " + option.name + " is '" + value + "': use one of " +
@@ -96,6 +102,7 @@ Scene make_scene(const SceneEntry &entry, const SceneOptions &options) {
                                      [&key = key](const SceneOption &o) { return o.name == key; });
     if (option == entry.options.end())
       throw bad_input("scene " + entry.name + " has no option '" + key + "'");
+    if (value.empty() && option->choices.empty()) continue;
     check_option(*option, value);
     resolved[key] = value;
   }

@@ -74,21 +74,51 @@ const Maker<Kernel> elasticity_maker{"elasticity", 1, [](const Stored &of) {
                                                              integer(of, "degree"));
                                      }};
 
+Lame lame_of(double young, double poisson, bool plane_stress) {
+  Lame material = lame(young, poisson);
+  auto &[lambda, shear] = material;
+  if (plane_stress) lambda *= 2 * shear / (lambda + 2 * shear);
+  return material;
+}
+
+const Maker<Material> isotropic_maker{
+    "isotropic", 1, [](const Stored &of) -> std::function<Material> {
+      return [young = made<PointValue>(part(of, "young")),
+              poisson = made<PointValue>(part(of, "poisson")),
+              plane_stress = number(of, "plane_stress") != 0](const FullMu &mu, const Point &x) {
+        return lame_of(young(mu, x), poisson(mu, x), plane_stress);
+      };
+    }};
+
+std::function<Material> alone(const std::function<PointValue> &factor, bool shear) {
+  return [=](const FullMu &mu, const Point &x) {
+    const double value = factor(mu, x);
+    return shear ? Lame{0, value} : Lame{value, 0};
+  };
+}
+
+const Maker<Material> alone_maker{"lame_alone", 1, [](const Stored &of) {
+                                    return alone(made<PointValue>(part(of, "factor")),
+                                                 number(of, "shear") != 0);
+                                  }};
+
+Named<Material> named_alone(const Named<PointValue> &factor, bool shear) {
+  return alone_maker.named(alone(factor, shear), {{"shear", {double(shear)}}},
+                           {{"factor", factor.record}});
+}
+
 /// One of Lame's constants.
 Maker<Coefficient> lame_maker(const std::string &name, double Lame::*constant) {
-  return {name, 1, [constant](const Record &record) -> std::function<Coefficient> {
-            const double young = number(record, "young");
-            const auto index = static_cast<std::size_t>(integer(record, "poisson_ratio"));
-            return [=](const FullMu &mu) { return lame(young, mu.at(index)).*constant; };
+  return {name, 2, [constant](const Stored &of) -> std::function<Coefficient> {
+            return [=, poisson = made<Coefficient>(part(of, "poisson")),
+                    plane_stress = number(of, "plane_stress") != 0](const FullMu &mu) {
+              return lame_of(1, poisson(mu), plane_stress).*constant;
+            };
           }};
 }
 
 const Maker<Coefficient> lambda_maker = lame_maker("lame_lambda", &Lame::lambda),
                          shear_maker = lame_maker("lame_shear", &Lame::shear);
-
-Named<Coefficient> lame_of(const Maker<Coefficient> &maker, double young, int poisson_ratio) {
-  return maker({{"young", {young}}, {"poisson_ratio", {double(poisson_ratio)}}});
-}
 
 } // namespace
 
@@ -109,16 +139,37 @@ Form elasticity(const std::string &region, const Named<Material> &material, int 
                                  {{"material", material.record}})};
 }
 
-Named<Coefficient> lame_lambda(double young, int poisson_ratio) {
-  return lame_of(lambda_maker, young, poisson_ratio);
+Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue> &poisson,
+                          bool plane_stress) {
+  return isotropic_maker.named(
+      [=](const FullMu &mu, const Point &x) {
+        return lame_of(young(mu, x), poisson(mu, x), plane_stress);
+      },
+      {{"plane_stress", {double(plane_stress)}}},
+      {{"young", young.record}, {"poisson", poisson.record}});
 }
 
-Named<Coefficient> lame_shear(double young, int poisson_ratio) {
-  return lame_of(shear_maker, young, poisson_ratio);
+Named<Material> lambda_alone(const Named<PointValue> &factor) {
+  return named_alone(factor, false);
+}
+
+Named<Material> shear_alone(const Named<PointValue> &factor) {
+  return named_alone(factor, true);
+}
+
+Named<Coefficient> lame_lambda(const Named<Coefficient> &poisson, bool plane_stress) {
+  return lambda_maker.named(
+      [=](const FullMu &mu) { return lame_of(1, poisson(mu), plane_stress).lambda; },
+      {{"plane_stress", {double(plane_stress)}}}, {{"poisson", poisson.record}});
+}
+
+Named<Coefficient> lame_shear(const Named<Coefficient> &poisson) {
+  return shear_maker.named([=](const FullMu &mu) { return lame_of(1, poisson(mu), false).shear; },
+                           {{"plane_stress", {0}}}, {{"poisson", poisson.record}});
 }
 
 FunctionLibrary elastic_functions() {
-  return {elasticity_maker, lambda_maker, shear_maker};
+  return {elasticity_maker, isotropic_maker, alone_maker, lambda_maker, shear_maker};
 }
 
 } // namespace rbvi

@@ -82,10 +82,64 @@ const Maker<Kernel> constant_load_maker{
       };
     }};
 
+/// A quadrature point of a cell with the values of its Lagrange functions.
+struct LoadPoint {
+  QuadraturePoint at;
+  Vector values;
+};
+
+std::vector<LoadPoint> load_points(int dim, int degree) {
+  std::vector<LoadPoint> points;
+  for (const QuadraturePoint &q : simplex_quadrature(dim, 5)) {
+    points.push_back({q, Vector(nodes_per_cell(dim, degree))});
+    Vector &values = points.back().values;
+    lagrange_values(dim, degree, q.barycentric, {values.data(), values.data() + values.size()});
+  }
+  return points;
+}
+
+Point mapped_point(const Cell &cell, const QuadraturePoint &point) {
+  Point x{};
+  for (int i = 0; i <= cell.dim; ++i)
+    x = x + point.barycentric[i] * cell.mapped[i];
+  return x;
+}
+
+std::function<Kernel> body_kernel(const std::function<PointMap> &force, int components,
+                                  int degree) {
+  check_degree(degree);
+  return [=, points = of_both([&](int dim) { return load_points(dim, degree); })](
+             const FullMu &mu, const Cell &cell, double *values) {
+    const double volume = volume_of(cell.dim, cell.mapped);
+    const Index nodes = of(points, cell).front().values.size();
+    std::fill_n(values, nodes * components, 0.0);
+    for (const LoadPoint &point : of(points, cell)) {
+      const Point f = volume * point.at.weight * force(mu, mapped_point(cell, point.at));
+      for (Index i = 0; i < nodes; ++i)
+        for (int c = 0; c < components; ++c)
+          values[i * components + c] += point.values[i] * f[c];
+    }
+  };
+}
+
+const Maker<Kernel> body_load_maker{"body_load", 1, [](const Stored &of) {
+                                      return body_kernel(made<PointMap>(part(of, "force")),
+                                                         integer(of, "components"),
+                                                         integer(of, "degree"));
+                                    }};
+
 } // namespace
 
 FunctionLibrary scalar_functions() {
-  return {laplace_maker, constant_load_maker};
+  return {laplace_maker, constant_load_maker, body_load_maker};
+}
+
+Form body_load(const std::string &region, const Named<PointMap> &force, int components,
+               int degree) {
+  return {region, body_load_maker.named(
+                      body_kernel(force, components, degree),
+                      {{"components", {double(components)}}, {"degree", {double(degree)}}},
+                      {{"force", force.record}})};
 }
 
 Form laplace(const std::string &region, int degree) {
@@ -147,10 +201,7 @@ Form function_load(const std::string &region, double factor,
             const double scale = factor * volume_of(cell.dim, cell.mapped);
             std::fill_n(values, count, 0.0);
             for (const QuadraturePoint &q : rule[count - 3]) {
-              Point x{};
-              for (std::size_t i = 0; i < count; ++i)
-                x = x + q.barycentric[i] * cell.mapped[i];
-              const double value = scale * q.weight * psi(mu, x);
+              const double value = scale * q.weight * psi(mu, mapped_point(cell, q));
               for (std::size_t i = 0; i < count; ++i)
                 values[i] += value * q.barycentric[i];
             }

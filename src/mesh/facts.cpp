@@ -87,8 +87,8 @@ std::string part_of(const Subject &s, const MeshFact &fact) {
 }
 
 [[noreturn]] void refuse(const Subject &s, const MeshFact &fact, const std::string &found) {
-  throw bad_input(part_of(s, fact) + " is not " + fact.is + ": " + found + "; rbvi -help -scene " +
-                  s.scene.name + " lists what it needs");
+  throw bad_input(part_of(s, fact) + " is not " + fact.is + ": " + found + "; rbvi -help -case FILE lists what "
+                  "the mesh of a case needs");
 }
 
 bool is_region(const Subject &s, const std::string &name) {
@@ -139,7 +139,7 @@ void check_place(const Subject &s, const MeshFact &fact) {
   if (worst >= 0)
     refuse(s, fact,
            "vertex " + text_of(s, s.mesh.points[worst]) + " is " + short_number(farthest) +
-               " m away from it");
+               " away from it");
 }
 
 /// The region holds every cell in its place, and the mesh fits the rim of that place.
@@ -165,7 +165,7 @@ void check_region(const Subject &s, const MeshFact &fact) {
     if (deepest < -s.tolerance)
       refuse(s, fact,
              "vertex " + text_of(s, s.mesh.points[worst]) + " of a cell outside lies " +
-                 short_number(-deepest) + " m inside it: the edges of the mesh must fit its rim");
+                 short_number(-deepest) + " inside it: the edges of the mesh must fit its rim");
   }
 }
 

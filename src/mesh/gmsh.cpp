@@ -154,7 +154,7 @@ void check_names(const GmshFile &file, const Elements &cells, const Elements &fa
   throw bad_input("has no " + missing + " (it has: cells in " + groups_in(file, scene.dim, cells) +
                   "; facets in " + groups_in(file, scene.dim - 1, facets) +
                   (grouped ? "" : "; version 2.2 has no groups where Mesh.SaveAll = 1") +
-                  "); rbvi -help -scene " + scene.name + " lists what it needs");
+                  "); rbvi -help -case FILE lists what the mesh of a case needs");
 }
 
 /// A mesh of the plane lies in z = 0, but for round-off.

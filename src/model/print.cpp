@@ -25,7 +25,7 @@ std::ostream &label(std::ostream &out, const std::string &text) {
 std::string names_and_values(const std::map<std::string, std::string> &map) {
   std::string text;
   for (const auto &[key, value] : map)
-    text += (text.empty() ? "" : ", ") + key + " " + value;
+    if (!value.empty()) text += (text.empty() ? "" : ", ") + key + " " + value;
   return text.empty() ? "-" : text;
 }
 

@@ -48,7 +48,9 @@ const std::vector<Command> &commands() {
        "rbvi verify -out DIRECTORY [options]"},
       {"solve", "one high-fidelity solve at -mu", "rbvi solve -case FILE -mu VALUES [options]"},
       {"bench", "run time against error", "rbvi bench -out DIRECTORY [options]"},
-      {"list", "the scenes of this build", "rbvi list"},
+      {"check", "a case, before anything is made of it", "rbvi check FILE [options]"},
+      {"new", "a case to begin with, in a folder of its own", "rbvi new NAME"},
+      {"list", "the cases of a folder, by default of cases", "rbvi list [FOLDER]"},
       {"inspect", "what a model file holds", "rbvi inspect FILE"}};
   return all;
 }

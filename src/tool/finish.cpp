@@ -62,8 +62,8 @@ std::vector<char *> Invocation::pointers() const {
 }
 
 Invocation read_invocation(int argc, char **argv) {
-  static const std::vector<std::string> commands{"offline", "solve",   "verify", "bench",
-                                                 "list",    "inspect", "help"};
+  static const std::vector<std::string> commands{"offline", "solve", "verify",  "bench", "check",
+                                                 "new",     "list",  "inspect", "help"};
   Invocation result;
   std::vector<std::string> given = normalised_arguments(argc, argv);
   const auto has = [&](const char *name) {
@@ -75,8 +75,9 @@ Invocation read_invocation(int argc, char **argv) {
     return result;
   }
   if (given.size() < 2 || has("-help") || has("-h")) {
-    const auto scene = std::find(given.begin(), given.end(), "-scene");
-    if (given.end() - scene > 1) result.file = *(scene + 1);
+    for (const char *option : {"-scene", "-case"})
+      if (const auto named = std::find(given.begin(), given.end(), option); given.end() - named > 1)
+        result.file = *(named + 1);
     result.markdown = has("-markdown");
     if (given.size() > 1 && !is_option(given[1])) result.topic = given[1];
     given.resize(1);
@@ -89,15 +90,30 @@ Invocation read_invocation(int argc, char **argv) {
   given.erase(given.begin() + 1);
   if (const std::string name = given_twice(given); !name.empty())
     return refused(name + " is given twice: keep one of the two");
-  const std::size_t words = result.command == "inspect" ? 2 : 1;
+  const bool takes_word = result.command == "inspect" || result.command == "list" ||
+                          result.command == "check" || result.command == "new";
+  const std::size_t words = takes_word ? 2 : 1;
   for (std::size_t i = words; i < given.size(); ++i)
     if (!is_option(given[i]) && !is_option(given[i - 1])) return left_over(given[i]);
   // PETSc reads these on one rank alone while the others wait.
   for (std::size_t i = 1; i < given.size(); ++i)
     if (given[i - 1].starts_with("-options_file") && !std::ifstream(given[i]))
       return refused("the options file " + given[i] + " cannot be read" + system_reason());
-  if ((result.command == "list" || result.command == "help") && given.size() > 1)
-    return left_over(given[1]);
+  if (result.command == "help" && given.size() > 1) return left_over(given[1]);
+  if (result.command == "list") {
+    if (given.size() > 1 && is_option(given[1])) return left_over(given[1]);
+    if (given.size() > 2) return left_over(given[2]);
+    result.file = given.size() > 1 ? given[1] : "cases";
+    given.resize(1);
+  }
+  if (result.command == "check" && given.size() > 1 && !is_option(given[1]))
+    given.insert(given.begin() + 1, "-case");
+  if (result.command == "new") {
+    if (given.size() != 2 || is_option(given[1]))
+      return refused("new takes the name of a folder: rbvi new my_case");
+    result.file = given[1];
+    given.resize(1);
+  }
   if (result.command == "inspect") {
     if (given.size() != 2)
       return refused("inspect takes one model file: rbvi inspect run/obstacle/model.h5");

@@ -99,7 +99,9 @@ Option described(const Parameter &parameter) {
   const std::string unit = parameter.unit.empty() ? "" : " (" + parameter.unit + ")";
   return {parameter.name, OptionKind::number, "parameter" + unit + ": bounds a,b or a fixed value",
           describe(parameter.valid),
-          short_number(parameter.lower) + "," + short_number(parameter.upper)};
+          parameter.lower < parameter.upper
+              ? short_number(parameter.lower) + "," + short_number(parameter.upper)
+              : short_number(parameter.value)};
 }
 
 std::vector<std::pair<std::string, Scene>> variants(const SceneEntry &entry) {

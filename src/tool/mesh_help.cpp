@@ -35,7 +35,7 @@ std::string contract(const Scene &scene) {
 void print_mesh_contract(const SceneEntry &entry) {
   const std::string own = contract(make_scene(entry));
   std::printf(
-      "  A mesh of your own (-mesh FILE: Gmsh 2.2, 4.0 or 4.1, order 1, in metres), its parts\n"
+      "  A mesh of your own (-mesh FILE: Gmsh 2.2, 4.0 or 4.1, order 1), its parts\n"
       "  by physical name, vertices in place to 1e-6 of the extent, edges along the rims:\n%s",
       own.c_str());
   for (const auto &[choice, scene] : variants(entry))

@@ -77,7 +77,9 @@ std::vector<std::string> differences(const ToolOptions &given, const ToolOptions
     if (!same_range(mine, theirs, i))
       differ(mine.all[i].name, range_of(mine, i), range_of(theirs, i));
   for (const auto &[name, value] : own.scene.options)
-    if (given.scene.options.at(name) != value) differ(name, value, given.scene.options.at(name));
+    if (const auto other = given.scene.options.find(name);
+        other != given.scene.options.end() && other->second != value)
+      differ(name, value, other->second);
   if (own.mesh.refine != given.mesh.refine)
     differ("mesh_refine", std::to_string(own.mesh.refine), std::to_string(given.mesh.refine));
   std::error_code ignored;

@@ -3,6 +3,7 @@
 #include "table.hpp"
 
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/tool/cases.hpp"
 
 #include <cstdio>
 
@@ -29,6 +30,8 @@ void print_scene(const SceneEntry &entry) {
   for (const auto &[parameter, choice] : parameters_of(entry))
     print_line(described(parameter),
                choice.empty() ? ", valid in " : ", with " + choice + ", valid in ");
+  for (const auto &[variant, says] : entry.variants)
+    std::printf("  -variant %-20s %s\n", variant.c_str(), says.c_str());
   print_mesh_contract(entry);
 }
 
@@ -45,10 +48,9 @@ void print_options(const std::string &command = "") {
 
 void print_command(const Command &command) {
   std::printf("%s\n  %s\n", command.usage.c_str(), command.does.c_str());
-  if (command.name == "list" || command.name == "inspect") return;
+  if (command.name == "list" || command.name == "inspect" || command.name == "new") return;
   print_options(command.name);
-  std::printf(
-      "Those of a scene: rbvi -help -scene NAME; of PETSc's objects, outputs: rbvi -help\n");
+  std::printf("Those of a case: rbvi -help -case FILE; of PETSc's objects, outputs: rbvi -help\n");
 }
 
 void print_solver_objects() {
@@ -64,14 +66,16 @@ void print_solver_objects() {
 } // namespace
 
 void print_help(const Registry &registry, const std::string &scene, const std::string &command) {
-  if (!scene.empty()) return print_scene(entry_of(registry, scene));
+  for (const SceneEntry &own : registry.scenes)
+    if (own.name == scene) return print_scene(own);
+  if (!scene.empty()) return print_scene(scene_of_file(MPI_COMM_SELF, scene));
   for (const Command &known : commands())
     if (known.name == command) return print_command(known);
   std::printf("rbvi COMMAND -case FILE [options]        (under mpirun; one dash or two)\n");
   for (const Command &known : commands())
     std::printf("  %-21s %s\n", known.name.c_str(), known.does.c_str());
   std::printf("  COMMAND -help         usage and options of a command\n"
-              "  -help -scene NAME     options, parameters and mesh of one scene\n"
+              "  -help -case FILE      options, parameters and mesh of a case\n"
               "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n\n");
   print_options();
   for (const SceneEntry &entry : registry.scenes)

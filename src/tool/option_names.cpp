@@ -77,13 +77,28 @@ std::vector<std::string> prefixes_of(const std::vector<std::string> &kinds) {
   return prefixes;
 }
 
+/// "-friction none": what a scene has that is not the default.
+std::string chosen(const Scene &scene, const SceneEntry &entry) {
+  std::vector<std::string> options;
+  for (const SceneOption &option : entry.options)
+    if (const auto own = scene.options.find(option.name);
+        own != scene.options.end() && own->second != option.default_value)
+      options.push_back("-" + option.name + " " + own->second);
+  return joined(options);
+}
+
 std::string what_needs(const std::string &name, const Scene &scene, const Registry &registry) {
   std::string others;
   for (const SceneEntry &entry : registry.scenes) {
     bool found = std::ranges::find(entry.options, name, &SceneOption::name) != entry.options.end();
     for (const auto &[parameter, choice] : parameters_of(entry)) {
       if (parameter.name != name) continue;
-      if (entry.name == scene.name) return choice.empty() ? "" : "needs " + choice;
+      const bool is_there = std::ranges::find(scene.parameters.all, name, &Parameter::name) !=
+                            scene.parameters.all.end();
+      if (entry.name == scene.name)
+        return !choice.empty() ? "needs " + choice
+               : is_there      ? ""
+                               : "has no effect with " + chosen(scene, entry);
       found = true;
     }
     if (found && entry.name == scene.name) return "";

@@ -5,6 +5,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
 #include "rbvi/model/online_tool.hpp"
+#include "rbvi/tool/cases.hpp"
 
 #include <algorithm>
 #include <map>
@@ -17,12 +18,12 @@ constexpr const char *introduction = R"(# Options
 
 This page is printed by `rbvi -help -markdown`.
 
-Every option of rbvi can stand in the case file or on the command line, with one or two dashes; if it
-stands in both, the command line wins. Options in PETSc's own files (`~/.petscrc`, `.petscrc`,
+Every option of rbvi can stand in the case file, below `options:`, or on the command line, with one or
+two dashes; if it stands in both, the command line wins. Options in PETSc's own files (`~/.petscrc`, `.petscrc`,
 `petscrc`) and variables (`PETSC_OPTIONS`) come last: they are told, and `-skip_petscrc` leaves out the
-files. A case file is YAML: one `name: value` per line, without the dash; two bounds may be a list
-`[0.16, 0.24]`. File names in a case file are looked for beside it, then in the working directory. An
-unknown name, a name that stands there twice, and on the command line one without effect, is an error.
+files. `-case` also takes a file of options alone, one `name: value` per line without the dash, that
+begins with `case: FILE` (a run leaves such a file in its directory); two bounds may be a list `[0.16,
+0.24]`. File names in a file are looked for beside it, then in the working directory. An unknown name, a name that stands there twice, and on the command line one without effect, is an error.
 A flag without a value means yes.
 
 The words of this page are explained where a group of options begins, and in the
@@ -77,13 +78,34 @@ With `-formulation nitsche` contact and friction are terms of one equation for u
 Newton's method solves it; a reduced model integrates these terms by one of three rules.
 )"}};
 
+constexpr const char *of_cases = R"(
+## Case files
+
+A case file (YAML) is a scene: the body, what holds, loads and touches it, and the parameters of all
+that. `rbvi new NAME` writes one to begin with, `rbvi check FILE` tells every defect of one with its
+line and column, and which terms are exact.
+
+**Numbers are expressions** in parameters, in the names of `let:` and, where a point is meant, in x, y
+(and nx, ny, the normal, in tractions): `+ - * / ^`, comparisons, `and or not`, `condition ? a : b`, pi,
+`sqrt cbrt exp log log10 log2 sin cos tan asin acos atan sinh cosh tanh abs sign floor ceil pow atan2
+min max hypot`. Quote an expression that holds `: `, `?` or, inside of `[ ]`, a comma. What occurs in a
+term decides what becomes of it: where the domain does not move, or moves by a similarity (stiffness), a
+term that separates into functions of parameters and of the point is exact; every other one is
+interpolated. A parameter without a range is a constant, which a run may change (`-young 20`) or free
+(`-young 10,30`). With `units:` a number may have a unit of that system: `205 GPa`.
+
+**A path** such as `contact.support.friction` leads to a value. `-set mesh.edges=200` puts one there;
+`choices:` are options of the case whose alternatives do; a variant (`-variant NAME`) does so before all
+of these. An empty value takes away what is there.
+)";
+
 constexpr const char *of_scenes = R"(
 ## Scenes
 
 Each scene has options and parameters of its own. A parameter is an option, too: with two bounds,
 `-radius 0.18,0.22`, it is free and varies between them, with one value, `-radius 0.2`, it is fixed;
 `-parameters` names those that are free. The bounds of all free parameters are the box of a model. No
-box, no value and no query may leave the range of validity. `rbvi -help -scene NAME` also prints what a
+box, no value and no query may leave the range of validity. `rbvi -help -case FILE` also prints what a
 mesh for the scene must have.
 
 Some scenes share options. `-degree` is that of the finite elements for the displacement. `-lumped yes`
@@ -179,12 +201,37 @@ std::string tables_of_groups() {
   return text + after;
 }
 
+/// "contact.*.friction" -> "`contact: NAME: friction:`"
+std::string table_title(const std::string &table) {
+  if (table.empty()) return "At the top";
+  std::string text;
+  for (const std::string &part : split(table, '.'))
+    text += (text.empty() ? "" : " ") + (part == "*" ? "NAME" : part) + ":";
+  return code(text);
+}
+
+std::string tables_of_keys() {
+  std::string text, table = "-";
+  for (const CaseKey &key : case_keys()) {
+    if (key.table != table)
+      text += "\n" + table_title(key.table) + "\n" + head({"key", "value", ""});
+    table = key.table;
+    std::string value = key.value;
+    for (std::size_t at = value.find('|'); at != std::string::npos; at = value.find('|', at + 3))
+      value.replace(at, 1, "or");
+    text += row({code(key.name == "*" ? "NAME" : key.name), value,
+                 key.says + (key.needed ? (key.says.empty() ? "needed" : "; needed") : "")});
+  }
+  return text;
+}
+
 std::string table_of_parameters(const SceneEntry &entry) {
   std::string text =
       head({"parameter", "unit", "box", "value while fixed", "range of validity", ""});
   for (const auto &[p, choice] : parameters_of(entry))
-    text += row({code("-" + p.name), p.unit, describe(Range{p.lower, p.upper}),
-                 short_number(p.value), describe(p.valid), choice.empty() ? "" : "with " + choice});
+    text +=
+        row({code("-" + p.name), p.unit, p.lower < p.upper ? describe(Range{p.lower, p.upper}) : "",
+             short_number(p.value), describe(p.valid), choice.empty() ? "" : "with " + choice});
   const Scene scene = make_scene(entry);
   return text + "\nFree by default: " + names_of(scene.parameters) + "; `-train " + scene.training +
          "`, `-valid " + scene.validation + "`.\n";
@@ -211,8 +258,10 @@ std::string table_of_prefixes() {
 } // namespace
 
 std::string options_page(const Registry &registry) {
-  std::string text = introduction + tables_of_groups() + of_scenes;
+  std::string text = introduction + tables_of_groups() + of_cases + tables_of_keys() + of_scenes;
   for (const SceneEntry &entry : registry.scenes)
+    text += section_of(entry);
+  for (const SceneEntry &entry : cases_in("cases"))
     text += section_of(entry);
   text += of_petsc + table_of_prefixes() + of_petsc_more + of_online;
   text += head({"option", "value", ""});

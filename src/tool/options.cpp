@@ -7,6 +7,7 @@
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/case_file.hpp"
+#include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/run_directory.hpp"
 #include "table.hpp"
 
@@ -17,51 +18,6 @@
 namespace rbvi {
 
 namespace {
-
-/// -case, or the options that a run directory was made with, or none for the defaults of -scene.
-std::string case_file_name() {
-  const std::string file = text_of("case"), out = text_of("out");
-  if (!file.empty()) return file;
-  if (!out.empty() && std::filesystem::exists(case_of_run(out))) return case_of_run(out);
-  if (!text_of("scene").empty()) return "";
-  throw bad_input("no case is named" +
-                  (out.empty() ? "" : ", and " + out + " is no directory of a run") +
-                  ": use -case cases/<scene>/case.yaml, or -scene NAME (rbvi list)");
-}
-
-/// Throws bad_input where -scene is not the one of the case file, or there is no such scene.
-void check_scene_of_case(const std::string &file, const std::string &scene,
-                         const Registry &registry) {
-  const std::string given = text_of("scene");
-  if (given == scene) return;
-  (void)entry_of(registry, given);
-  throw bad_input("-scene is " + given + ", and " + file + " is a case of " + scene +
-                  ": leave out -scene, or name another -case or -out");
-}
-
-/// Puts the case file below the command line and above what comes from outside. Returns where its
-/// options stand.
-Origin insert_case_file(MPI_Comm comm, const std::vector<std::string> &command_line,
-                        const Registry &registry) {
-  std::string file;
-  collectively(comm, [&] { file = case_file_name(); });
-  Origin origin;
-  if (file.empty()) return origin;
-  for (const CaseEntry &entry : parse_case_file(read_case_text(comm, file), file)) {
-    if (entry.name == "case")
-      throw bad_input("a case file cannot name another: line " + std::to_string(entry.line) +
-                      " of " + file);
-    if (contains(command_line, entry.name)) {
-      if (entry.name == "scene") check_scene_of_case(file, entry.value, registry);
-      continue;
-    }
-    const std::string value = beside_case(entry.name, entry.value, file);
-    RBVI_CALL(PetscOptionsSetValue(nullptr, ("-" + entry.name).c_str(),
-                                   value.empty() ? nullptr : value.c_str()));
-    origin[entry.name] = " (line " + std::to_string(entry.line) + " of " + file + ")";
-  }
-  return origin;
-}
 
 Scene given_scene(const SceneEntry &entry) {
   SceneOptions options;
@@ -139,9 +95,10 @@ void check_box_of_run(const Scene &scene) {
   }
 }
 
-/// The options as a case file, without those of one command.
-std::string as_case_file(const std::vector<std::string> &names) {
+/// The options as a file, without those of one command. `of_case`: the case stands beside it.
+std::string as_option_file(const std::vector<std::string> &names, bool of_case) {
   std::string text = std::string(run_case_header) + "\n";
+  if (of_case) text += case_line("case", scene_of_run);
   for (const std::string &name : names) {
     if (const Option *option = find_option(name); option != nullptr && option->of_command) continue;
     text += case_line(name, value_in_run(name, text_of(name)));
@@ -195,18 +152,16 @@ std::string described(const std::vector<Foreign> &foreign, const Origin &case_fi
 }
 
 /// Everything but where it comes from. `names`: all options that are given.
-ToolOptions read_values(const std::vector<std::string> &names, const Origin &origin,
-                        const std::vector<std::string> &command_line, const Registry &registry) {
+ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &given,
+                        const std::vector<std::string> &command_line) {
   ToolOptions options;
-  options.registry = &registry;
+  options.registry = given.registry;
   options.command_line = command_line;
-  const std::string scene = text_of("scene");
-  if (scene.empty())
-    throw bad_input("no scene is named: the case file needs 'scene: NAME' (rbvi list)");
-  options.scene = given_scene(entry_of(registry, scene));
-  check_names(names, origin, options.scene, registry);
-  options.case_file = as_case_file(names);
-  adapt_parameters(options.scene, registry);
+  options.scene = given_scene(entry_of(*given.registry, given.scene));
+  options.scene_text = given.text;
+  check_names(names, given.origin, options.scene, *given.registry);
+  options.case_file = as_option_file(names, !given.text.empty());
+  adapt_parameters(options.scene, *given.registry);
   check_functions(options.scene);
   check_box_of_run(options.scene);
   options.train = options.scene.training;
@@ -231,7 +186,8 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command, const Regist
   std::string outside = described(foreign, {});
   try {
     check_command(command, command_line);
-    Origin origin = insert_case_file(comm, command_line, registry);
+    GivenCase given = insert_case(comm, command_line, registry);
+    Origin &origin = given.origin;
     outside = described(foreign, origin);
     if (!outside.empty() && rank_of(comm) == 0)
       std::printf("Options from outside: %s\n", outside.c_str());
@@ -240,7 +196,7 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command, const Regist
     std::vector<std::string> names = command_line;
     for (const auto &[name, where] : origin)
       names.push_back(name);
-    return read_values(names, origin, command_line, registry);
+    return read_values(names, given, command_line);
   } catch (const Error &error) {
     if (outside.empty()) throw;
     throw Error(error.status(), error.what() + ("; options from outside: " + outside));

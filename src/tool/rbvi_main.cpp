@@ -23,15 +23,17 @@ void print_page(const Invocation &invocation, const Registry &registry) {
 void run_command(const Invocation &invocation, const Registry &registry) {
   const std::string &command = invocation.command;
   const int rank = rank_of(PETSC_COMM_WORLD);
-  if (command == "list" || command == "help" || command == "inspect") {
+  if (command == "list" || command == "help" || command == "inspect" || command == "new") {
     if (rank != 0) return;
-    if (command == "list") command_list(registry);
+    if (command == "list") command_list(invocation.file, registry);
     if (command == "help") print_page(invocation, registry);
+    if (command == "new") command_new(invocation.file);
     if (command == "inspect") command_inspect(invocation.file, registry);
     return;
   }
   const ToolOptions options = read_options(PETSC_COMM_WORLD, command, registry);
   if (command == "offline") command_offline(options);
+  if (command == "check") command_check(options);
   if (command == "solve") command_solve(options);
   if (command == "verify") command_verify(options);
   if (command == "bench") command_bench(options);

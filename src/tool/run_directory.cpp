@@ -4,6 +4,7 @@
 #include "rbvi/io/temporary_files.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/tool/case_file.hpp"
 #include "table.hpp"
 
 #include <fstream>
@@ -43,8 +44,8 @@ bool is_set_file(const std::string &set) {
 
 std::string beside_case(const std::string &name, const std::string &value,
                         const fs::path &case_file) {
-  const bool is_file =
-      is_of(OptionKind::file, name) || (is_of(OptionKind::set, name) && is_set_file(value));
+  const bool is_file = name == "case" || is_of(OptionKind::file, name) ||
+                       (is_of(OptionKind::set, name) && is_set_file(value));
   if (!is_file || value.empty() || fs::path(value).is_absolute()) return value;
   const fs::path beside = case_file.parent_path() / value;
   std::error_code ignored;
@@ -70,6 +71,8 @@ void begin_run(MPI_Comm world, const ToolOptions &options) {
       make_directory((options.out / copy_of(name)).parent_path());
       write_atomically(options.out / copy_of(name), bytes);
     }
+    if (!options.scene_text.empty())
+      write_atomically(options.out / scene_of_run, options.scene_text);
     write_atomically(case_of_run(options.out), options.case_file);
   });
 }

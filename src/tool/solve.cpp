@@ -7,6 +7,7 @@
 #include "rbvi/model/solution_vtu.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/tables.hpp"
 #include "rbvi/tool/workspace.hpp"
@@ -75,9 +76,16 @@ void command_solve(const ToolOptions &options) {
   });
 }
 
-void command_list(const Registry &registry) {
-  for (const SceneEntry &scene : registry.scenes)
+void command_list(const std::string &folder, const Registry &registry) {
+  std::vector<SceneEntry> scenes = registry.scenes, cases = cases_in(folder);
+  if (scenes.empty() && cases.empty())
+    throw bad_input("there is no case " + folder + "/*/case.yaml: use rbvi list FOLDER");
+  scenes.insert(scenes.end(), cases.begin(), cases.end());
+  for (const SceneEntry &scene : scenes) {
     std::printf("%-20s %s\n", scene.name.c_str(), scene.summary.c_str());
+    for (const auto &[variant, says] : scene.variants)
+      std::printf("  -variant %-12s %s\n", variant.c_str(), says.c_str());
+  }
 }
 
 void command_inspect(const std::string &file, const Registry &registry) {

@@ -22,7 +22,7 @@ Option of_command(Option option) {
 Option mesh_file() {
   Option option = text("mesh", OptionKind::file, "file", RBVI_AT(mesh.file),
                        "Gmsh file (MSH 2.2, 4.0 or 4.1, text or binary, order 1) whose physical "
-                       "names and shape are those that -help -scene NAME lists");
+                       "names and shape are those that -help -case FILE lists");
   option.shown = [](const ToolOptions &options) { return value_in_run("mesh", options.mesh.file); };
   return otherwise("built in", option);
 }
@@ -31,9 +31,14 @@ std::vector<Option> of_runs() {
   return {
       of_command(
           text("case", OptionKind::text, "file", RBVI_AT(case_name),
-               "case file (YAML, one 'option: value' per line); without it that of -out is read")),
+               "case file, or one of options alone ('option: value' per line) that names it by "
+               "'case: FILE'; without it that of -out is read")),
+      {"variant", OptionKind::text, "variant of the case (rbvi -help -case FILE)", "name", "none"},
+      {"set", OptionKind::text,
+       "values at paths of the case file: mesh.edges=200,contact.support.lumped=yes", "list",
+       "none"},
       {"scene", OptionKind::text,
-       "name of the scene (rbvi list); a scene runs without a case file, on its defaults", "name"},
+       "name of a scene that a program of its own adds to rbvi, in place of -case", "name"},
       of_command(text("out", OptionKind::text, "directory", RBVI_AT(out),
                       "directory of the run: everything is written there")),
       {"parameters", OptionKind::text,

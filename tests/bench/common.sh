@@ -76,3 +76,10 @@ finish() { # results: path without its ending
   say "written: $1.md, $1.csv"
   grep -E 'NOT (MET|MEASURED)' "$work/targets" || say "all targets met"
 }
+
+variant() { # case, variant: prints a file of options that choose it
+  local file="$work/${1//\//_}_$2.yaml"
+  printf 'case: %s/case.yaml\n' "$PWD/$1" >"$file"
+  [[ $2 == case ]] || printf 'variant: %s\n' "$2" >>"$file"
+  echo "$file"
+}

@@ -155,7 +155,7 @@ struct InDirectory : testing::Test {
     fs::current_path(directory);
     spill("coarse.msh", coarse_gmsh());
     // Exact quadrature: there Uzawa's method is slow enough to fail where a test wants it to.
-    spill("case.yaml", "scene: membrane_obstacle\n"
+    spill("case.yaml", "case: " RBVI_CASES "/membrane_obstacle\n"
                        "mesh: coarse.msh\n"
                        "train: grid:2,2,2\n"
                        "valid: random:3:1\n"

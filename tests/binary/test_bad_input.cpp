@@ -53,14 +53,22 @@ protected:
 TEST_P(BadInput, Commands) {
   refuse({{"oflfine", "nearest one is 'offline'"},
           {"inspect", "one model file"},
-          {"list more", "'more' is left over"},
+          {"list one more", "'more' is left over"},
+          {"list nowhere", "there is no case nowhere/*/case.yaml"},
           {"offline case.yaml", "'case.yaml' is left over"},
           {"solve -case case.yaml -mu 0.2 0 0", "'0' is left over"}});
 }
 
 TEST_P(BadInput, ScenesAndOptions) {
   refuse(
-      {{"offline -case case.yaml -scene membrane -out run", "unknown scene 'membrane'"},
+      {{"offline -scene membrane -out run", "unknown scene 'membrane': this build has none"},
+       {"offline -case case.yaml -scene membrane -out run", "leave out one of the two"},
+       {"offline -case case.yaml -variant big -out run",
+        "there is no variant 'big' of this case: it has published"},
+       {"offline -case case.yaml -set mesh.edges -out run", "give PATH=VALUE"},
+       {"offline -case case.yaml -set mesh.edges=13 -out run",
+        "edges is 13: it must be a multiple of 12"},
+       {"offline -case case.yaml -set mesh.egdes=24 -out run", "the nearest is 'edges'"},
        {"offline -case case.yaml -trian grid:2,2,2 -out run", "nearest one is -train"},
        {"offline -case case.yaml --pod_tolernace 1e-3 -out run", "nearest one is -pod_tolerance"},
        {"offline -case case.yaml -pod_tolerance small -out run", "'small': not a number"},
@@ -95,8 +103,8 @@ TEST_P(BadInput, ScenesAndOptions) {
 
 /// Boxes, values and options of scenes where these make no sense, before a directory is made.
 TEST_P(BadInput, RangesOfValidity) {
-  spill("disk.yaml", "scene: rigid_disk\narc_edges: 40\ntrain: grid:3\n");
-  spill("patch.yaml", "scene: patch\ntrain: grid:3\n");
+  spill("disk.yaml", "case: " RBVI_CASES "/rigid_disk\narc_edges: 40\ntrain: grid:3\n");
+  spill("patch.yaml", "case: " RBVI_CASES "/patch\ntrain: grid:3\n");
   const std::string membrane = "offline -case case.yaml -out run ";
   const std::string disk = "offline -case disk.yaml -out run ";
   refuse({{membrane + "-radius -1,1", "lower bound, is -1: its range of validity is [0.02, 0.38]"},
@@ -143,7 +151,7 @@ TEST_P(BadInput, OptionsOfPetscWithoutAPrefix) {
 TEST_P(BadInput, OptionsOfEigenvalues) {
   const std::string offline = "offline -case case.yaml -out run ";
   const std::string disk = "offline -case disk.yaml -out run ";
-  spill("disk.yaml", "scene: rigid_disk\narc_edges: 40\ntrain: grid:3\n");
+  spill("disk.yaml", "case: " RBVI_CASES "/rigid_disk\narc_edges: 40\ntrain: grid:3\n");
   refuse({{offline + "-pga_eps_nev 3", "all values of a small matrix are computed"},
           {offline + "-pga_eps_tpye lapack", "asks for the option -pga_eps_tpye"},
           {offline + "-pga_eps_type nothing", "the options -pga_* do not work"},
@@ -191,7 +199,8 @@ TEST_P(BadInput, OptionsOfBases) {
           {offline + "-cone_ring 0.5", "must be an integer"},
           {offline + "-cone_level 1", "-mesh_refine is 0"},
           {offline + "-cone_level 1 -mesh_refine 1 -cone_type nodal", "use -cone_type hybrid"},
-          {"offline -scene rigid_disk -formulation nitsche -out run -mesh_refine 1 -cone_level 1",
+          {"offline -case " RBVI_CASES
+           "/rigid_disk -formulation nitsche -out run -mesh_refine 1 -cone_level 1",
            "Nitsche's method has no multipliers"},
           {offline + "-pga_enrichment both", "use one of decorrelated, online, offline"},
           {offline + "-pga_product w", "use one of v, energy"},
@@ -236,19 +245,20 @@ TEST_P(BadInput, Mu) {
 
 TEST_P(BadInput, CaseFiles) {
   spill("text.yaml", "membrane_obstacle\n");
-  spill("brackets.yaml", "scene: membrane_obstacle\ntrain: [grid\n");
-  spill("tab.yaml", "scene: membrane_obstacle\n\tload: -25\n");
+  spill("brackets.yaml", "case: " RBVI_CASES "/membrane_obstacle\ntrain: [grid\n");
+  spill("tab.yaml", "case: " RBVI_CASES "/membrane_obstacle\n\tload: -25\n");
   spill("list.yaml", "- scene\n- train\n");
-  spill("alias.yaml", "scene: *membrane\n");
+  spill("alias.yaml", "case: *membrane\n");
+  spill("old.yaml", "scene: rigid_disk\nradius: 0.7,1.3\n");
   spill("bytes.yaml", std::string("\0\1\377\376scene", 9));
   spill("empty.yaml", "");
-  spill("key.yaml", "scene: membrane_obstacle\ntrian: grid:2,2,2\n");
-  spill("short.yaml", "scene: membrane_obstacle\npod_tol: 1e-3\n");
-  spill("nested.yaml", "scene: membrane_obstacle\npod: {tolerance: 1}\n");
-  spill("twice.yaml", "scene: membrane_obstacle\nload: -25\nload: -20\n");
-  spill("another.yaml", "scene: membrane_obstacle\ncase: case.yaml\n");
-  spill("range.yaml", "scene: membrane_obstacle\nradius: [-1, 1]\n");
-  spill("none.yaml", "scene: membrane_obstacle\nmesh:\n");
+  spill("key.yaml", "case: " RBVI_CASES "/membrane_obstacle\ntrian: grid:2,2,2\n");
+  spill("short.yaml", "case: " RBVI_CASES "/membrane_obstacle\npod_tol: 1e-3\n");
+  spill("nested.yaml", "case: " RBVI_CASES "/membrane_obstacle\npod: {tolerance: 1}\n");
+  spill("twice.yaml", "case: " RBVI_CASES "/membrane_obstacle\nload: -25\nload: -20\n");
+  spill("another.yaml", "case: key.yaml\n");
+  spill("range.yaml", "case: " RBVI_CASES "/membrane_obstacle\nradius: [-1, 1]\n");
+  spill("none.yaml", "case: " RBVI_CASES "/membrane_obstacle\nmesh:\n");
   fs::create_directory("directory.yaml");
   refuse({{"offline -out run", "no case is named"},
           {"offline -case no.yaml -out run", "no.yaml cannot be read"},
@@ -259,14 +269,14 @@ TEST_P(BadInput, CaseFiles) {
           {"offline -case list.yaml -out run", "list.yaml is malformed at line 1"},
           {"offline -case alias.yaml -out run", "alias.yaml is malformed at line 1"},
           {"offline -case bytes.yaml -out run", "bytes.yaml is malformed at line 1"},
-          {"offline -case empty.yaml -out run", "no scene is named"},
+          {"offline -case empty.yaml -out run", "is a list of options and names no case"},
           {"offline -case key.yaml -out run", "unknown option -trian (line 2 of key.yaml)"},
           {"offline -case short.yaml -out run",
            "-pod_tol (line 2 of short.yaml): the nearest one is -pod_tolerance"},
           {"offline -case nested.yaml -out run", "line 2: options are not nested"},
           {"offline -case nested.yaml -out run", "write 'pod_tolerance: value'"},
           {"offline -case twice.yaml -out run", "line 3: load is given again, after line 2"},
-          {"offline -case another.yaml -out run", "a case file cannot name another"},
+          {"offline -case another.yaml -out run", "key.yaml is a list of options, too"},
           {"offline -case range.yaml -out run", "its range of validity is [0.02, 0.38]"},
           {"offline -case none.yaml -out run", "option -mesh (line 2 of none.yaml) has no value"},
           {"offline -case /dev/zero -out run", "larger than 1 MB"}});
@@ -291,7 +301,7 @@ TEST_P(BadInput, Meshes) {
           {"offline -case case.yaml -mesh half.msh -out run", "half.msh"},
           {"offline -case case.yaml -mesh edge.msh -out run", "no physical boundary 'boundary'"},
           {"offline -case case.yaml -mesh millimetres.msh -out run",
-           "mesh file 'millimetres.msh' is not the square of side 1 m about the origin"},
+           "mesh file 'millimetres.msh' is not the square of side 1 about the origin"},
           {"offline -case case.yaml -mesh torn.msh -out run", "without common nodes"},
           {"offline -case case.yaml -mesh part.msh -out run",
            "'boundary' of mesh file 'part.msh' is not all four sides of the square"}});
@@ -328,7 +338,7 @@ TEST_P(BadInput, Models) {
 
 TEST_P(BadInput, RunsOfOtherOptions) {
   make_run();
-  spill("patch.yaml", "scene: patch\n");
+  spill("patch.yaml", "case: " RBVI_CASES "/patch\n");
   refuse({{"offline -case case.yaml -out run -load -20", "load = -25, now it is -20"},
           {"offline -case case.yaml -out run -hf_method uzawa",
            "hf_method = active_set, now it is uzawa"},

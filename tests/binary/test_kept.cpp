@@ -129,8 +129,9 @@ TEST_F(Kept, ARunDirectoryIsCompleteAndMayMove) {
   spill("mine/case.yaml", slurp("mine/case.yaml") + "nitsche_eim_validation: mu.csv\n");
   // Sets of the command line are the caller's, those of the case file stand beside it.
   EXPECT_TRUE(contains(shell(rbvi(1, "offline " + mine + "-out run")).err, "mu.csv"));
-  spill("mine/case.yaml", "scene: membrane_obstacle\nmesh: coarse.msh\nradius: 0.16,0.3\n"
-                          "train: mu.csv\nvalid: mu.csv\n");
+  spill("mine/case.yaml",
+        "case: " RBVI_CASES "/membrane_obstacle\nmesh: coarse.msh\nradius: 0.16,0.3\n"
+        "train: mu.csv\nvalid: mu.csv\n");
   output_of(rbvi(2, "offline -case mine/case.yaml -out run"));
   output_of("sh -c 'cd mine/elsewhere && " + rbvi(2, "verify -out ../../run") + "'");
   const std::string errors = slurp("run/verify/errors.csv");

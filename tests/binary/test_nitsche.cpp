@@ -8,7 +8,7 @@ namespace {
 struct Nitsche : InDirectory {
   void SetUp() override {
     InDirectory::SetUp();
-    spill("disk.yaml", "scene: rigid_disk\n"
+    spill("disk.yaml", "case: " RBVI_CASES "/rigid_disk\n"
                        "formulation: nitsche\n"
                        "arc_edges: 40\n"
                        "train: grid:9\n"
@@ -48,7 +48,8 @@ TEST_F(Nitsche, IsReducedVerifiedAndAsked) {
 /// close to the laws and to the answer by multipliers as where it is.
 TEST_F(Nitsche, FulfilsTheLawsAlongAnyNormal) {
   const auto solved = [](const std::string &options) {
-    return output_of(rbvi(1, "solve -scene rigid_disk -arc_edges 80 -mu 1 " + options));
+    return output_of(
+        rbvi(1, "solve -case " RBVI_CASES "/rigid_disk -arc_edges 80 -mu 1 " + options));
   };
   for (const std::string normal : {"radial", "rigid"}) {
     SCOPED_TRACE(normal);
@@ -60,8 +61,9 @@ TEST_F(Nitsche, FulfilsTheLawsAlongAnyNormal) {
     EXPECT_NEAR(value_of(nitsche, "energy"), energy, 1e-5 * energy);
     EXPECT_NEAR(value_of(nitsche, "peak_pressure"), peak, 1e-2 * peak);
   }
-  const std::string lifted = output_of(
-      rbvi(1, "solve -scene roller -formulation nitsche -top -0.1 -parameters tilt -mu 0"));
+  const std::string lifted =
+      output_of(rbvi(1, "solve -case " RBVI_CASES
+                        "/roller -formulation nitsche -top -0.1 -parameters tilt -mu 0"));
   EXPECT_LT(value_of(lifted, "law_error_normal"), 0.2) << "of two arcs one is not touched";
 }
 

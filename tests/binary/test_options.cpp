@@ -48,16 +48,18 @@ TEST_F(Options, FromOutsideAreNamedWhereTheyAreRefused) {
 }
 
 TEST_F(Options, WithoutEffectAreRefused) {
-  const std::string disk = "offline -scene rigid_disk -arc_edges 40 -train grid:3 -out run ";
-  const std::string patch = "offline -scene patch -train grid:3 -out run ";
+  const std::string disk =
+      "offline -case " RBVI_CASES "/rigid_disk -arc_edges 40 -train grid:3 -out run ";
+  const std::string patch = "offline -case " RBVI_CASES "/patch -train grid:3 -out run ";
   expect_all_refused(
       {{disk + "-nitsche_loop single", "set -formulation nitsche"},
        {disk + "-formulation nitsche -friction tresca -nitsche_loop single", "-friction coulomb"},
        {disk + "-formulation nitsche -nitsche_eim_tolerance 0.1", "quadrature interpolated"},
        {disk + "-nitsche_gamma0 100", "-nitsche_gamma0 has no effect"},
-       {disk + "-friction none -friction_coefficient 0.3", "leave out -friction none"},
+       {disk + "-friction none -friction_coefficient 0.3",
+        "-friction_coefficient has no effect with -friction none"},
        {disk + "-friction none -parameters radius,friction_coefficient",
-        "the free parameter friction_coefficient has no effect"},
+        "'friction_coefficient' has no effect with -friction none"},
        {disk + "-uzawa_step 1", "it is for -hf_method uzawa"},
        {disk + "-nonlinear_max_steps 7", "set -kinematics large"},
        {disk + "-gcns_tolerance 0.1", "it is for -multiplier_reduction collocated"},
@@ -65,27 +67,28 @@ TEST_F(Options, WithoutEffectAreRefused) {
        {disk + "-mu 1", "it is for rbvi solve"},
        {patch + "-shear 0.1", "option -shear needs -bodies one"},
        {patch + "-parameters indentation,shear", "parameter 'shear' needs -bodies one"},
-       {patch + "-disc_map graded", "is of another scene (membrane_obstacle), and this is patch"}});
+       {patch + "-disc_map graded", "unknown option -disc_map"}});
 }
 
 TEST_F(Options, ACaseAndASceneAreOfOneScene) {
-  spill("own.yaml", "scene: membrane_obstacle\noptions_file: x\n");
-  expect_all_refused(
-      {{"offline -case case.yaml -scene patch -out run",
-        "-scene is patch, and case.yaml is a case of membrane_obstacle: leave out -scene"},
-       {"verify -out run", "no case is named, and run is no directory of a run"},
-       {"solve -case own.yaml -mu 0.2,0,0",
-        "option -options_file (line 2 of own.yaml) is PETSc's own"}});
+  spill("own.yaml", "case: " RBVI_CASES "/membrane_obstacle\noptions_file: x\n");
+  expect_all_refused({{"offline -case case.yaml -scene patch -out run",
+                       "-scene names a scene of the program, and " RBVI_CASES
+                       "/membrane_obstacle/case.yaml is a case"},
+                      {"verify -out run", "no case is named, and run is no directory of a run"},
+                      {"solve -case own.yaml -mu 0.2,0,0",
+                       "option -options_file (line 2 of own.yaml) is PETSc's own"}});
 }
 
 /// A single solve outside the training box says what it takes.
 TEST_F(Options, ASingleSolveOutsideTheBoxSaysWhatToAdd) {
-  const std::string solve = "solve -scene patch -mu 0.001 ";
+  const std::string solve = "solve -case " RBVI_CASES "/patch -mu 0.001 ";
   expect_all_refused({{solve, "outside [0.01, 0.1]: add -indentation 0.001,0.1 for a wider box"},
-                      {"solve -scene rigid_disk -indentation 0.1 -mu 1",
+                      {"solve -case " RBVI_CASES "/rigid_disk -indentation 0.1 -mu 1",
                        "for a single solve narrow the box around -mu (-radius LOWER,UPPER)"}});
   EXPECT_TRUE(contains(output_of(rbvi(1, solve + "-indentation 0.001,0.1")), "kkt_residual"));
-  const std::string disk = "solve -scene rigid_disk -arc_edges 40 -indentation 0.1 -mu 1 ";
+  const std::string disk =
+      "solve -case " RBVI_CASES "/rigid_disk -arc_edges 40 -indentation 0.1 -mu 1 ";
   EXPECT_TRUE(contains(output_of(rbvi(1, disk + "-radius 0.9,1.1")), "kkt_residual"));
 }
 

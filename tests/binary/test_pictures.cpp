@@ -45,8 +45,8 @@ TEST_F(Pictures, OfAMembraneWithItsBench) {
 /// A file of more than 2000 nodes, its numbers in base64; nothing else of the run is there.
 TEST_F(Pictures, OfTwoBodiesAloneFromAFileInBase64) {
   fs::create_directory("run");
-  const std::string solve =
-      output_of(rbvi(2, "solve -scene two_disks -mu 0.85 -vtu run/u.vtu -csv run/u.csv"));
+  const std::string solve = output_of(
+      rbvi(2, "solve -case " RBVI_CASES "/two_disks -mu 0.85 -vtu run/u.vtu -csv run/u.csv"));
   EXPECT_TRUE(contains(solve, "wrote run/u.csv\nwrote run/u.vtu, run/u_contact.vtu\n")) << solve;
   EXPECT_TRUE(contains(slurp("run/u.vtu"), "format=\"binary\""));
   EXPECT_FALSE(contains(slurp("run/u_contact.vtu"), "format=\"binary\""));

@@ -8,7 +8,7 @@ namespace {
 struct RigidDisk : InDirectory {
   void SetUp() override {
     InDirectory::SetUp();
-    spill("disk.yaml", "scene: rigid_disk\n"
+    spill("disk.yaml", "case: " RBVI_CASES "/rigid_disk\n"
                        "arc_edges: 40\n"
                        "train: grid:9\n"
                        "valid: random:3:1\n"
@@ -89,7 +89,8 @@ TEST_F(RigidDisk, AnAnswerThatBreaksTheLawSaysSo) {
 
 /// On a large body the ends of the wide arc face away from the rigid disk.
 TEST_F(RigidDisk, ADiskBehindTheArcIsRefused) {
-  const std::string solve = "solve -scene rigid_disk -radius 5 -parameters indentation -mu 0.05 ";
+  const std::string solve =
+      "solve -case " RBVI_CASES "/rigid_disk -radius 5 -parameters indentation -mu 0.05 ";
   for (const std::string formulation : {"", "-formulation nitsche "}) {
     const std::string wide = solve + formulation + "-arc_edges 40 -contact_arc wide ";
     expect_all_refused({{wide, "faces away from the rigid disk"}});
@@ -101,7 +102,7 @@ TEST_F(RigidDisk, ADiskBehindTheArcIsRefused) {
 TEST_F(RigidDisk, ContactAtTheEndOfItsRegionIsSaid) {
   const std::string warning = "contact reaches the end of its boundary";
   const auto says = [&](const std::string &scene) {
-    return contains(output_of(rbvi(1, "solve -scene " + scene)), warning);
+    return contains(output_of(rbvi(1, "solve -case " RBVI_CASES "/" + scene)), warning);
   };
   EXPECT_FALSE(says("membrane_obstacle -mu 0.2,0,0"));
   EXPECT_TRUE(says("membrane_obstacle -load -400 -mu 0.2,0,0"));
@@ -121,7 +122,7 @@ TEST_F(RigidDisk, BadInputIsSaidInOneLine) {
        {offline + "-eim_normal_tolerance 1e-3", "are for -multiplier_reduction collocated"},
        {offline + "-multiplier_reduction collocated -friction none -eim_tangential_tolerance 1e-3",
         "contact with friction, which this scene has not"},
-       {offline + "-arc_edges 7", "must be even and at least 8"},
+       {offline + "-arc_edges 7", "must be a multiple of 2, at least 8"},
        {offline + "-mesh disk.msh", "-arc_edges is of the built-in mesh"},
        {offline + "-multiplier_reduction cones", "use one of auto, cone, condensed, collocated"},
        {offline + "-multiplier_reduction collocated -kinematics large", "changes with every step"},

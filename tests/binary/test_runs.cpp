@@ -1,8 +1,8 @@
 // Whole runs: what the tools print, the same model from any ranks, resume after a kill.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/parameters.hpp"
 #include "rbvi/model/model.hpp"
 #include "run.hpp"
+#include "tests/catalogue.hpp"
 
 #include <signal.h>
 
@@ -157,7 +157,8 @@ double in_table(const std::string &path, const std::string &name) {
 /// A model of hundreds of functions: terms of A that differ on few of them, displacements kept
 /// where contact moves; and one with the hat functions of the coarser mesh, which is smaller.
 TEST_F(Runs, ManyHatFunctionsAndThoseOfACoarserMesh) {
-  spill("case.yaml", "scene: membrane_obstacle\nmesh_refine: 1\ntrain: random:12:1\n");
+  spill("case.yaml",
+        "case: " RBVI_CASES "/membrane_obstacle\nmesh_refine: 1\ntrain: random:12:1\n");
   offline(2, "-out fine");
   offline(2, "-cone_level 1 -out coarse");
   const ReducedModel fine = read_model("fine/model.h5", catalogue()),
@@ -335,14 +336,15 @@ TEST_F(Runs, HelpVersionAndListWithOneAndTwoDashes) {
       EXPECT_EQ(solve.err, "");
       EXPECT_TRUE(contains(slurp("u.csv"), "radius,center_x,center_y,energy"));
     }
-  const Finished list = shell(rbvi(2, "list"));
+  const Finished list = shell(rbvi(2, "list " RBVI_CASES));
   EXPECT_EQ(list.status, 0);
   EXPECT_EQ(lines_with(list.out, "membrane_obstacle"), 1);
-  EXPECT_EQ(shell("sh -c '" + rbvi(1, "list") + " > /dev/full'").status, 1);
+  EXPECT_EQ(shell("sh -c '" + rbvi(1, "list " RBVI_CASES) + " > /dev/full'").status, 1);
 }
 
-TEST_F(Runs, ASceneNeedsNoCaseFile) {
-  const std::string scene = " -scene two_disks -arc_edges 40 -train grid:5 -valid grid:2 ";
+TEST_F(Runs, ACaseMayBeNamedByItsFolder) {
+  const std::string scene =
+      " -case " RBVI_CASES "/two_disks -arc_edges 40 -train grid:5 -valid grid:2 ";
   EXPECT_TRUE(contains(output_of(rbvi(2, "offline -plan" + scene)), "snapshots"));
   EXPECT_TRUE(contains(output_of(rbvi(2, "solve -mu 1" + scene)), "kkt_residual"));
   for (const char *command : {"offline", "verify", "bench"})
@@ -379,7 +381,7 @@ TEST_F(Runs, IterativeSolversOfPetscGiveTheSame) {
 /// Multigrid is as good as the limit on KKT residuals asks for; where it is told not to be, the
 /// failure names that.
 TEST_F(Runs, MultigridOnTheDefaultTolerance) {
-  const std::string solve = "solve -scene rigid_disk -arc_edges 40 -mu 1 "
+  const std::string solve = "solve -case " RBVI_CASES "/rigid_disk -arc_edges 40 -mu 1 "
                             "-hf_ksp_type cg -hf_pc_type gamg ";
   EXPECT_LE(value_of(output_of(rbvi(1, solve)), "kkt_residual"), 1e-10);
   expect_refused({solve, "a smaller -hf_ksp_rtol", 1}, shell(rbvi(1, solve + "-hf_ksp_rtol 1e-7")),
@@ -391,7 +393,7 @@ TEST_F(Runs, MultigridOnTheDefaultTolerance) {
 TEST_F(Runs, AClosedStandardOutputEndsQuietly) {
   const std::string closed = " | (exec <&-; sleep 1); exit ${PIPESTATUS[0]}'";
   for (const std::string &command :
-       {rbvi(1, "-help"), rbvi(1, "list"), rbvi(1, "solve -case case.yaml -mu 0.2,0,0"),
+       {rbvi(1, "-help"), rbvi(1, "list " RBVI_CASES), rbvi(1, "solve -case case.yaml -mu 0.2,0,0"),
         rbvi_online("--help")}) {
     const Finished run = shell("bash -c '" + command + closed);
     EXPECT_TRUE(run.status == 0 || run.status == 141) << command << " " << run.status;

@@ -7,7 +7,7 @@ namespace {
 struct TwoBodies : InDirectory {
   void SetUp() override {
     InDirectory::SetUp();
-    spill("disks.yaml", "scene: two_disks\n"
+    spill("disks.yaml", "case: " RBVI_CASES "/two_disks\n"
                         "train: grid:7\n"
                         "valid: random:3:1\n"
                         "multiplier_reduction: cone\n"
@@ -44,8 +44,9 @@ TEST_F(TwoBodies, AreReducedVerifiedAndAsked) {
 
 /// By default the law of contact is kept at every node: exact from a few radii on.
 TEST_F(TwoBodies, KeepTheirNodesUnlessAskedOtherwise) {
-  const std::string offline = output_of(
-      rbvi(2, "offline -scene two_disks -arc_edges 40 -train grid:5 -valid random:3:1 -out run"));
+  const std::string offline =
+      output_of(rbvi(2, "offline -case " RBVI_CASES
+                        "/two_disks -arc_edges 40 -train grid:5 -valid random:3:1 -out run"));
   EXPECT_TRUE(contains(offline, "\nwrote run/model.h5, run/model.fields.h5,")) << offline;
   const std::string verify = verified();
   EXPECT_TRUE(contains(verify, "Inf-sup constants: none, -multiplier_reduction condensed"))
@@ -68,9 +69,9 @@ TEST_F(TwoBodies, KeepTheirNodesUnlessAskedOtherwise) {
 /// The bodies at rest, where the iteration of a query begins, open at nodes where its answer does
 /// not: no wider ring of nodes is needed.
 TEST_F(TwoBodies, AQueryIsJudgedByItsAnswerAlone) {
-  const std::string offline =
-      output_of(rbvi(2, "offline -scene two_disks -kinematics large -multiplier_reduction cone "
-                        "-radius 1,3 -indentation 0.2 -arc_edges 40 -train grid:15 -out run"));
+  const std::string offline = output_of(
+      rbvi(2, "offline -case " RBVI_CASES "/two_disks -kinematics large -multiplier_reduction cone "
+              "-radius 1,3 -indentation 0.2 -arc_edges 40 -train grid:15 -out run"));
   EXPECT_TRUE(contains(offline, "202 answers to 202 queries")) << offline;
   EXPECT_FALSE(contains(offline, "widened")) << offline;
 }
@@ -93,7 +94,7 @@ TEST_F(TwoBodies, ThePlanSaysWhatIsSkipped) {
 }
 
 TEST_F(TwoBodies, ThePatchTestIsReducedToOneModeAndOneGenerator) {
-  spill("patch.yaml", "scene: patch\ntrain: grid:5\nvalid: random:5:1\n");
+  spill("patch.yaml", "case: " RBVI_CASES "/patch\ntrain: grid:5\nvalid: random:5:1\n");
   const Finished offline = shell(rbvi(2, "offline -case patch.yaml -out run"));
   ASSERT_EQ(offline.status, 0) << offline.err;
   EXPECT_TRUE(contains(offline.out, "N = 1 mode,")) << offline.out;
@@ -126,10 +127,10 @@ TEST_F(TwoBodies, BadInputIsRefused) {
        {disks + "-radius 0,1.4", "is 0: its range of validity is [0.45, 10]"},
        {disks + "-radius 0.7,1e300", "is 1e+300: its range of validity is [0.45, 10]"},
        {disks + "-indentation deep", "'deep': not a number"},
-       {disks + "-load -25", "option -load is of another scene"},
+       {disks + "-load -25", "unknown option -load"},
        {"solve -case disks.yaml -mu 1.5", "radius = 1.5 is outside [0.7, 1.3]"},
        {disks + "-hf_method vi", "needs a bound at each node"},
-       {"offline -scene two_disks -cone_type mcpg -out run",
+       {"offline -case " RBVI_CASES "/two_disks -cone_type mcpg -out run",
         "condensed, the default here, keeps every node: add -multiplier_reduction cone"},
        {"solve -case disks.yaml -mesh coarse.msh -mu 1", "no physical region 'upper'"}});
 }

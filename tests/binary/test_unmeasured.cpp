@@ -8,8 +8,9 @@ namespace {
 struct Unmeasured : InDirectory {
   void SetUp() override {
     InDirectory::SetUp();
-    spill("disk.yaml", "scene: rigid_disk\narc_edges: 30\nfriction: none\nnormal: rigid\n"
-                       "parameters: radius,indentation\nvalid: random:3:1\n");
+    spill("disk.yaml",
+          "case: " RBVI_CASES "/rigid_disk\narc_edges: 30\nfriction: none\nnormal: rigid\n"
+          "parameters: radius,indentation\nvalid: random:3:1\n");
   }
 };
 

@@ -1,7 +1,7 @@
 // Contact with a rigid half-plane that moves and tilts: operators in closed form, the condition at
 // single nodes, friction, what files store, and planes that cannot be.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/contact/registry.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/validity.hpp"

@@ -1,5 +1,5 @@
 // Values at the multipliers of one mesh, interpolated at those of another.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/contact/transfer.hpp"
 #include "rbvi/core/error.hpp"
 

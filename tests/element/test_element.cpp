@@ -1,5 +1,5 @@
 // Quadrature, simplex geometry and maps: against closed forms.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/quadrature.hpp"

@@ -1,6 +1,6 @@
 // A program of others, on the serial library alone and without its flags: with the address
 // sanitizer, which sees what is freed. embedded MODEL...: answers the middle of the box of each.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/model/model.hpp"
 #include "rbvi/model/online.hpp"
 

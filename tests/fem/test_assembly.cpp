@@ -1,7 +1,7 @@
 // Dof numbering and COO assembly: against closed forms, at any number of ranks.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/assembly.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The cells beside the curve of a rigid support, and what Nitsche's method takes of them: against
 // the geometry of the half disk, at any number of ranks.
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/nitsche_curve.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Displacements of degree 2: one node per vertex and edge, the same for any number of ranks, exact
 // for quadratic fields; and the contact curve of a support.
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

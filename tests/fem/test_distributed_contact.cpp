@@ -1,7 +1,7 @@
 // The contact side over the ranks: whose a multiplier is, and that B, g and the weights do what
 // those of a single rank do, evaluated whole or each rank its part.
-#include "cases/catalogue.hpp"
 #include "rbvi/fem/problem.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,10 +2,10 @@
 // same for any number of ranks. Curves: test_two_bodies.cpp, test_degree_two.cpp; cells beside a
 // boundary: test_contact_layer.cpp.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

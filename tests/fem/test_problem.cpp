@@ -1,9 +1,9 @@
 // The assembled problem: facts of the mapped disc, and independence of the number of ranks.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/problem.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Displacements of rigid bodies: orthonormal, and without strain.
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/fem/assembly.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

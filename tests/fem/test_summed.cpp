@@ -1,12 +1,12 @@
 // Operators summed from kept terms: against an assembly of the whole at each mu, and on facets
 // against integrals in closed form.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/problem.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Dirichlet conditions by component and the two contact curves: against the geometry of the quarter
 // discs, at any number of ranks.
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
 #include "rbvi/par/gather.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

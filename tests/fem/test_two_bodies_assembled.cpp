@@ -1,8 +1,9 @@
 // The assembled problem of two bodies: what depends on the parameter, what does not, and what the
 // rigid motion stands for.
-#include "cases/catalogue.hpp"
+#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/par/collective.hpp"
+#include "tests/catalogue.hpp"
 
 #include "../contact/curves.hpp"
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ double difference(Mat a, Mat b) {
 /// the same, however large the lower disk is.
 TEST(TwoBodyProblem, TheStiffnessDoesNotDependOnTheRadius) {
   Scene every_time = discs();
-  every_time.a = {mapped_term(every_time.a.front().form)};
+  every_time.a = {mapped_term(elasticity("", every_time.material, every_time.degree))};
   Problem problem(PETSC_COMM_WORLD, every_time, {}), once(PETSC_COMM_WORLD, discs(), {});
   Mat reference = once.assemble({1}).a;
   for (const double radius : {0.7, 0.9, 1.0, 1.3})
@@ -65,7 +66,8 @@ struct Calls {
 TEST(TwoBodyProblem, TheStiffnessIsAssembledOnce) {
   const Calls calls;
   Problem problem(PETSC_COMM_WORLD, calls.counted(discs()), {});
-  const int checked = 2; // before there is a mesh (check_functions)
+  // Before there is a mesh (check_functions): with another value of each parameter.
+  const int checked = 1 + static_cast<int>(discs().parameters.all.size());
   const int calls_once = checked + static_cast<int>(problem.mesh().cells.size());
   Mat first = problem.assemble({0.7}).a;
   EXPECT_EQ(*calls.kernel, calls_once);
@@ -191,23 +193,24 @@ TEST(TwoBodyProblem, MotionsAreRigidAndPrescribeTheBoundaryValues) {
     Problem problem(PETSC_COMM_WORLD, make_scene(name, {{"degree", "1"}}), {});
     const Scene &scene = problem.scene();
     const Mesh &mesh = problem.mesh();
-    const MappedVertices mapped = map_vertices(scene, {mu}, mesh);
+    const FullMu all = expand(scene.parameters, {mu});
+    const MappedVertices mapped = map_vertices(scene, all, mesh);
     std::vector<double> largest{0};
     for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
       const Cell cell = cell_of(mesh, k, mapped);
       Eigen::Matrix<double, 6, 6, Eigen::RowMajor> stiffness;
-      scene.a.front().form.kernel({mu}, cell, stiffness.data());
+      scene.a.front().form.kernel(all, cell, stiffness.data());
       Vector motion(6);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t c = 0; c < 2; ++c)
-          motion[static_cast<Index>(2 * i + c)] = scene.motion({mu}, cell.reference[i])[c];
+          motion[static_cast<Index>(2 * i + c)] = scene.motion(all, cell.reference[i])[c];
       EXPECT_LE((stiffness * motion).norm(), 1e-14 * stiffness.norm() * (motion.norm() + 1e-3));
       largest.front() = std::max(largest.front(), motion.norm());
     }
     over_ranks(PETSC_COMM_WORLD, MPI_MAX, largest);
     EXPECT_GT(largest.front(), 0.1);
     for (std::size_t v = 0; v < problem.mesh().points.size(); ++v) {
-      const Point motion = scene.motion({mu}, problem.mesh().points[v]);
+      const Point motion = scene.motion(all, problem.mesh().points[v]);
       const bool disks = scene.name == "two_disks";
       const auto lies_on = [&](const char *boundary) {
         return problem.mesh().boundary.at(boundary)[v];
@@ -227,13 +230,14 @@ TEST(TwoBodyProblem, TheNodalConstraintMeasuresTheDeformedState) {
   const InterfaceMesh &curves = problem.contact().interfaces.front()->mesh();
   for (const double radius : {0.7, 1.3}) {
     const Operators op = contact_at(problem, radius);
+    const FullMu all = expand(problem.scene().parameters, {radius});
     Vector w(op.nodal_b.cols());
     std::vector<Point> deformed;
     for (Index i = 0; i < w.size(); ++i) {
       const Point &x = curves.points[i];
       w[i] = 0.05 * std::sin(7.0 * static_cast<double>(i));
-      deformed.push_back(problem.scene().map({radius}, x));
-      deformed.back()[1] += problem.scene().motion({radius}, x)[1] + w[i];
+      deformed.push_back(problem.scene().map(all, x));
+      deformed.back()[1] += problem.scene().motion(all, x)[1] + w[i];
     }
     const std::vector<Point> master(deformed.begin() + curves.parts[0], deformed.end());
     const Vector gap = op.nodal_gap - op.nodal_b * w;

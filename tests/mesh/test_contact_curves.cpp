@@ -1,9 +1,9 @@
 // Boundaries with loads or contact: on the surface, and those of contact in one piece over x.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
+#include "tests/catalogue.hpp"
 
 #include <cmath>
 

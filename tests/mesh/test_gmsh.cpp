@@ -1,7 +1,7 @@
-#include "cases/catalogue.hpp"
 #include "gmsh_writer.hpp"
 #include "rbvi/core/error.hpp"
 #include "temporary_file.hpp"
+#include "tests/catalogue.hpp"
 #include "triangles.hpp"
 
 namespace rbvi::gmsh_test {

@@ -1,7 +1,7 @@
 // Every test compares the mesh spread over all ranks with the same mesh made by one process.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facets.hpp"
+#include "tests/catalogue.hpp"
 #include "triangles.hpp"
 
 #include <cmath>

@@ -1,10 +1,10 @@
 // What a scene asks of its mesh: the built-in ones have it, meshes of another size, place or shape
 // are refused by the name of the part that is wrong.
-#include "cases/catalogue.hpp"
 #include "gmsh_writer.hpp"
 #include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "temporary_file.hpp"
+#include "tests/catalogue.hpp"
 #include "triangles.hpp"
 
 #include <functional>
@@ -196,32 +196,30 @@ const SceneCase membrane{"membrane_obstacle", {}}, disks{"two_disks", {}}, disk{
     blocks{"patch", {}}, block{"patch", {{"bodies", "one"}}};
 
 TEST(MeshFacts, AnotherSizeOrPlaceIsRefused) {
-  const std::string square = "my mesh is not the square of side 1 m about the origin: vertex (";
-  const std::string half = "my mesh is not the half y <= 0 of the disk of radius 1 m";
+  const std::string square = "my mesh is not the square of side 1 about the origin: vertex (";
+  const std::string half = "my mesh is not the half y <= 0 of the disk of radius 1";
   expect_all_refused(
-      {{membrane, scaled(1000), {square, "is 706.4 m away", "-help -scene membrane_obstacle"}},
-       {membrane, shifted(3, 0), {square, "is 3 m away"}},
-       {membrane, shifted(0, 2e-6), {square, "is 2e-06 m away"}},
+      {{membrane, scaled(1000), {square, "is 706.4 away", "-help -case FILE"}},
+       {membrane, shifted(3, 0), {square, "is 3 away"}},
+       {membrane, shifted(0, 2e-6), {square, "is 2e-06 away"}},
        {disk,
         scaled(0.8),
-        {"'contact' of my mesh is not the arc of radius 1 m", "is 0.2 m away from it"}},
-       {disk, scaled(1000), {half, "is 999 m away"}},
-       {disk, shifted(0, -2), {half, "is 2 m away"}},
+        {"'contact' of my mesh is not the arc of radius 1", "is 0.2 away from it"}},
+       {disk, scaled(1000), {half, "is 999 away"}},
+       {disk, shifted(0, -2), {half, "is 2 away"}},
        {disk,
         moved([](const Point &x) -> Point {
           return {-x[0], -x[1], 0};
         }),
-        {half, "is 1 m"}},
+        {half, "is 1"}},
        {disks, scaled(1.1), {"my mesh is not two quarter disks"}},
        {disks,
         moved([](const Point &x) -> Point {
           return {x[0], x[1] - (x[1] > 0 ? 0.5 : -0.5), 0};
         }),
-        {"my mesh is not two quarter disks", "is 0.5 m away"}},
+        {"my mesh is not two quarter disks", "is 0.5 away"}},
        {blocks, scaled(1000), {"my mesh is not two blocks"}},
-       {block,
-        shifted(0, 0.25),
-        {"my mesh is not the block [0, 1] x [0, 0.5]", "is 0.25 m away"}}});
+       {block, shifted(0, 0.25), {"my mesh is not the block [0, 1] x [0, 0.5]", "is 0.25 away"}}});
 }
 
 TEST(MeshFacts, RegionsAreWholeAndFitTheirRims) {
@@ -231,18 +229,18 @@ TEST(MeshFacts, RegionsAreWholeAndFitTheirRims) {
         {"'obstacle' of my mesh", "the cell about (", "missing"}},
        {membrane,
         [](SerialMesh &mesh) { mesh.region["obstacle"].push_back(6000); },
-        {"'obstacle' of my mesh is not the disk of radius 0.2 m", "m away from it"}},
+        {"'obstacle' of my mesh is not the disk of radius 0.2", "away from it"}},
        {membrane,
         moved([](const Point &x) -> Point {
           const double factor = std::hypot(x[0], x[1]) < 0.21 ? 0.95 : 1;
           return {factor * x[0], factor * x[1], 0};
         }),
-        {"'obstacle' of my mesh", "lies 0.01 m inside it: the edges of the mesh must fit its rim"}},
+        {"'obstacle' of my mesh", "lies 0.01 inside it: the edges of the mesh must fit its rim"}},
        {disk, without_last("core"), {"'core' of my mesh", "missing"}},
        {disks, without_last("upper"), {"'upper' of my mesh", "missing"}},
        {disks,
         [](SerialMesh &mesh) { std::swap(mesh.region["upper"], mesh.region["lower"]); },
-        {"'upper' of my mesh", "m away from it"}},
+        {"'upper' of my mesh", "away from it"}},
        {blocks, without_last("lower"), {"'lower' of my mesh", "missing"}}});
 }
 
@@ -259,10 +257,10 @@ TEST(MeshFacts, BoundariesAreWholeAndInPlace) {
         {"'contact' of my mesh is not", "has 50 facets and lacks 50, "}},
        {disk,
         only("arc", [](const Point &x) { return x[1] > -std::cos(std::numbers::pi / 8); }),
-        {"'contact' of my mesh is not the arc of radius 1 m", "is not in 'arc'"}},
+        {"'contact' of my mesh is not the arc of radius 1", "is not in 'arc'"}},
        {disk,
         only("arc", [](const Point &x) { return x[1] < -0.1; }),
-        {"'arc' of my mesh is not the whole half circle of radius 1 m, 'contact' included",
+        {"'arc' of my mesh is not the whole half circle of radius 1, 'contact' included",
          "and lacks "}},
        {disk,
         only("contact", [](const Point &x) { return std::abs(x[0]) > 0.01; }),
@@ -270,13 +268,12 @@ TEST(MeshFacts, BoundariesAreWholeAndInPlace) {
        {disk, without_last("top"), {"'top' of my mesh is not the flat side y = 0", "lacks 1"}},
        {disk,
         [](SerialMesh &mesh) { mesh.boundary["contact"] = mesh.boundary["arc"]; },
-        {"'contact' of my mesh is not the arc of radius 1 m within 22.5 degrees",
-         "m away from it"}},
-       {disks, exchanged("slave", "master"), {"'slave' of my mesh", "m away from it"}},
+        {"'contact' of my mesh is not the arc of radius 1 within 22.5 degrees", "away from it"}},
+       {disks, exchanged("slave", "master"), {"'slave' of my mesh", "away from it"}},
        {disks, without_last("axis"), {"'axis' of my mesh", "lacks 1"}},
-       {disks, exchanged("top", "bottom"), {"'top' of my mesh", "is 3 m away from it"}},
+       {disks, exchanged("top", "bottom"), {"'top' of my mesh", "is 3 away from it"}},
        {blocks, without_last("sides"), {"'sides' of my mesh", "lacks 1"}},
-       {block, exchanged("top", "contact"), {"'top' of my mesh", "is 0.5 m away from it"}}});
+       {block, exchanged("top", "contact"), {"'top' of my mesh", "is 0.5 away from it"}}});
 }
 
 TEST(MeshFacts, AFacetInsideTheBodyIsNoBoundary) {
@@ -385,7 +382,7 @@ TEST(MeshFacts, FilesAreCheckedOnEveryRank) {
       if (factor == 1)
         EXPECT_NO_THROW(make()) << c.name;
       else
-        expect_refused(make, {"mesh file '" + file.name() + "' is not ", " m away from it"});
+        expect_refused(make, {"mesh file '" + file.name() + "' is not ", " away from it"});
     }
 }
 

@@ -1,5 +1,5 @@
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
+#include "tests/catalogue.hpp"
 #include "triangles.hpp"
 
 #include <algorithm>

@@ -2,11 +2,11 @@
 // given numbers, for tests that compute the answer another way.
 #pragma once
 
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/model/packed.hpp"
+#include "tests/catalogue.hpp"
 
 #include <algorithm>
 #include <cmath>

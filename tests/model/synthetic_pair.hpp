@@ -5,9 +5,9 @@
 #include "../couple.hpp"
 #include "brute_force.hpp"
 
-#include "cases/catalogue.hpp"
-#include "rbvi/contact/elastic_pair.hpp"
+#include "rbvi/contact/contact_pair.hpp"
 #include "rbvi/contact/pair.hpp"
+#include "tests/catalogue.hpp"
 
 #include <algorithm>
 
@@ -84,7 +84,10 @@ inline InterfaceMesh pair_mesh(const std::vector<Point> &slave, const std::vecto
 
 /// Of the options of a scene of two bodies.
 inline PairDiscretisation discretisation_of(const Scene &scene) {
-  return pair_discretisation(scene.options);
+  return {scene.options.at("multiplier") == "p1" ? MultiplierSpace::nodes
+                                                 : MultiplierSpace::macro_edges,
+          scene.options.at("integration") == "direct" ? PairQuadrature::direct
+                                                      : PairQuadrature::intersection};
 }
 
 /// On the forms of two_disks; A has one term. The trace is that of the basis.

@@ -2,8 +2,8 @@
 // mesh.
 #include "synthetic.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -3,11 +3,11 @@
 #include "full_model.hpp"
 
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/model/scene_text.hpp"
+#include "tests/catalogue.hpp"
 
 namespace rbvi::model_test {
 namespace {

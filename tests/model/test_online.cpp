@@ -1,12 +1,12 @@
 #include "brute_force.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/contact_area.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/model/packed.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // What model files hold of scenes: every function of every scene has a name, and is the same when
 // made again from it.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
+#include "rbvi/contact/registry.hpp"
 #include "rbvi/model/scene_record.hpp"
+#include "tests/catalogue.hpp"
 
 #include "rbvi/core/error.hpp"
 
@@ -165,7 +166,7 @@ TEST(SceneRecord, WhatThisBuildDoesNotHaveIsNamed) {
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["map"].version = 7;
-            }).find("'two_disks/placed' version 7 is not in this build, which has version 1"),
+            }).find("'expression' version 7 is not in this build, which has version 1"),
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["contact_0"].name = "glue";
@@ -173,15 +174,20 @@ TEST(SceneRecord, WhatThisBuildDoesNotHaveIsNamed) {
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["map"].numbers.clear();
-            }).find("the record of 'two_disks/placed' lacks 'initial_gap'"),
+            }).find("the record of 'expression' lacks 'positions'"),
             std::string::npos);
 }
 
-TEST(SceneRecord, ARegistryHasTheFunctionsOfItsScenesAlone) {
+TEST(SceneRecord, ARegistryHasTheFunctionsOfTheLibraryAndOfItsScenes) {
   const Registry none = registry_of({});
   const Record own = record_of(make_scene("two_disks"));
-  EXPECT_TRUE(refuses("function 'two_disks/placed' version 1 is not in this build", [&] {
-    (void)scene_in({own, &none});
+  EXPECT_NO_THROW((void)scene_in({own, &none}));
+  const auto half =
+      plain<PointMap>("own/half", 1, [](const FullMu &, const Point &x) { return 0.5 * x; });
+  const Registry with = registry_of({{"own", "", {}, {}, {half}}});
+  EXPECT_EQ(made<PointMap>({half().record, &with})({}, {2, 0, 0})[0], 1);
+  EXPECT_TRUE(refuses("function 'own/half' version 1 is not in this build", [&] {
+    (void)made<PointMap>({half().record, &none});
   }));
   EXPECT_TRUE(refuses("contact 'two_bodies' version 2 is not in this build",
                       [&] { (void)contact_in({own.parts.at("contact_0")}); }));

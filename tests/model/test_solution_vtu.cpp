@@ -134,7 +134,7 @@ void expect_curve(const Written &file, const ReducedModel &model, const Scene &s
   const auto &[curves, nodes] = model.interfaces.front();
   for (std::size_t k = 0; k < count; ++k) {
     const auto node = static_cast<std::size_t>(file.paired[k]);
-    const Point image = scene.map({0.8}, curves.points[node]);
+    const Point image = scene.map(expand(scene.parameters, {0.8}), curves.points[node]);
     EXPECT_EQ(points[3 * k], image[0]);
     EXPECT_EQ(points[3 * k + 1], image[1]);
     const Index dof = 2 * nodes[node];

@@ -1,9 +1,9 @@
 #include "synthetic.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/model/training_samples.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 #include <sstream>

@@ -4,10 +4,10 @@
 #include "files.hpp"
 #include "synthetic_pair.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/model/print.hpp"
+#include "tests/catalogue.hpp"
 
 namespace rbvi::two_bodies_test {
 namespace {

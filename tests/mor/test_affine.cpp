@@ -1,5 +1,5 @@
 // The separated operators: B^n and B^tau of contact with a rigid support apart.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/mor/affine.hpp"
 
 #include <gtest/gtest.h>

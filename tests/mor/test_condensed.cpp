@@ -1,6 +1,6 @@
 // The condensed operator of contact with a rigid support, against B A^-1 B^T at single mu.
 #include "../linear_algebra.hpp"
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/condensed.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"

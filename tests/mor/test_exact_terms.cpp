@@ -1,5 +1,5 @@
 // Sums of exact and of interpolated terms: the coefficients of a query reproduce the operators.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/mor/affine.hpp"

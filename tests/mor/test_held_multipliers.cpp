@@ -1,6 +1,6 @@
 // Multipliers that hold a part of the contact region, against what the body does under them.
 #include "../method/random_matrix.hpp"
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/mor/held_multipliers.hpp"
 #include "rbvi/solve/response_solver.hpp"
 

@@ -1,6 +1,6 @@
 // The space of the responses of a body whose stiffness is a sum of exact terms, against a
 // factorisation at parameters that were not in it.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/mor/condensed.hpp"

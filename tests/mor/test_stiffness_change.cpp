@@ -1,5 +1,5 @@
 // Terms of the stiffness that differ on few functions, against the projection of every term.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/model/packed.hpp"
 #include "rbvi/mor/affine.hpp"
 #include "rbvi/mor/stiffness_change.hpp"

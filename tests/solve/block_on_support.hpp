@@ -1,7 +1,7 @@
 // The exact state of one block on a rigid support (scene patch), sticking or slipping.
 #pragma once
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"

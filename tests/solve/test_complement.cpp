@@ -1,11 +1,11 @@
 // The compliance on the contact dofs by a Schur complement: what solves for its columns give.
 #include "../linear_algebra.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/complement.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

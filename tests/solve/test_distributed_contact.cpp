@@ -1,6 +1,6 @@
 // Answers do not depend on whether contact interfaces are gathered, nor on the number of ranks.
-#include "cases/catalogue.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Contact by eliminated displacements is contact by condensed multipliers.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/contact_cost.hpp"
 #include "rbvi/solve/eliminated.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

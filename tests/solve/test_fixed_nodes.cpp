@@ -3,11 +3,11 @@
 #include "../coarse_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
 #include "block_on_support.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facet_forms.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The high-fidelity solvers agree with each other, with exact values, and across ranks.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

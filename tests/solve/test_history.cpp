@@ -1,10 +1,10 @@
 // Steps of friction one after the other: the slip that a step leaves is what the next one starts
 // from.
 #include "block_on_support.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/history.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facet_forms.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,13 +4,13 @@
 #include "../core/refuses.hpp"
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Contact of the deformed body: against values found by another code, by the work of its forces,
 // and with other methods, starts, meshes and ranks.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mesh/mesh.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ Scene disk(const std::string &friction, SceneOptions options = {}) {
   options["friction"] = friction;
   options.try_emplace("kinematics", "large");
   Scene scene = make_scene("rigid_disk", options);
-  scene.parameters.free = {0, 1, 5};
-  scene.parameters.all[2].value = 0.2;
+  scene.parameters = free_only(scene.parameters, "radius,indentation,offset");
+  if (has_friction(scene)) scene.parameters.all[2].value = 0.2;
   return scene;
 }
 

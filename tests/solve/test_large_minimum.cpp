@@ -1,9 +1,9 @@
 // The solution of contact that follows the displacement is the minimum (A.1) that a general-purpose
 // optimiser finds: TAO's augmented Lagrangian, which knows the energy, the weighted distances and
 // their derivatives alone.
-#include "cases/catalogue.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -88,7 +88,7 @@ Matrix compliance_of(Problem &problem, const Operators &op) {
 TEST(LargeDeformations, AGeneralPurposeOptimiserFindsTheSameMinimum) {
   Scene scene = make_scene("rigid_disk",
                            {{"friction", "none"}, {"kinematics", "large"}, {"arc_edges", "20"}});
-  scene.parameters.free = {0, 1, 5};
+  scene.parameters = free_only(scene.parameters, "radius,indentation,offset");
   Problem problem(PETSC_COMM_SELF, scene, {});
   const Mu mu{1, 0.15, 0.1};
   const HfSolution expected = HighFidelity(problem, {}).solve(mu);

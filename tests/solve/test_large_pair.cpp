@@ -1,7 +1,7 @@
 // Two deformed bodies: known values, work and energy, and a patch test with a finite motion.
-#include "cases/catalogue.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -105,14 +105,15 @@ TEST(LargeDeformationsOfTwo, OfEqualDisksTheInterfaceIsFlat) {
   const HfSolution s = HighFidelity(problem, {}).solve({1});
   const ContactInterface &interface = *problem.contact().interfaces.front();
   const InterfaceMesh &mesh = interface.mesh();
+  const FullMu all = expand(problem.scene().parameters, {1});
   std::vector<double> heights;
   for (Index i = 0; i < mesh.parts[0]; ++i) { // vertices of the upper arc, then the middles
     const auto node = static_cast<std::size_t>(i);
     const Index edges = s.lambda.size(), edge = i <= edges ? std::min(i, edges - 1) : i - edges - 1;
     const bool carries = s.lambda[edge] > 0 && (i > edges || i == 0 || s.lambda[i - 1] > 0);
     if (!carries) continue;
-    const Point motion = problem.scene().motion({1}, mesh.points[node]);
-    const Point x = problem.scene().map({1}, mesh.points[node]);
+    const Point motion = problem.scene().motion(all, mesh.points[node]);
+    const Point x = problem.scene().map(all, mesh.points[node]);
     const int dof = mesh.dofs[2 * node + 1];
     ASSERT_GE(dof, 0);
     heights.push_back(x[1] + motion[1] + s.states.back()[dof]);

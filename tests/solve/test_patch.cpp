@@ -1,7 +1,7 @@
 // The patch test: two blocks whose meshes do not match carry a constant pressure exactly.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

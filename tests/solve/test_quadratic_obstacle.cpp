@@ -1,11 +1,11 @@
 // Obstacles under displacements of degree 2: the pressure keeps the hats of the vertices.
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Responses by a factor on every rank and by one that the ranks share.
-#include "cases/catalogue.hpp"
 #include "rbvi/fem/problem.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/response_solver.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

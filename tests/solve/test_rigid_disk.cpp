@@ -1,9 +1,9 @@
 // Hertz contact with friction on a rigid disk: against values found by another code, by symmetry,
 // by the balance of forces and work, and where the parameters go to their ends.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,8 @@ namespace {
 /// Free: radius, indentation, friction, core_stiffness, poisson_ratio.
 Scene disk(SceneOptions options = {}) {
   Scene scene = make_scene("rigid_disk", options);
-  scene.parameters.free = {0, 1, 2, 3, 4}; // all but the offset
+  scene.parameters.free = {0, 1, 2, 3, 4};                    // all but the offset
+  if (!has_friction(scene)) scene.parameters.free.pop_back(); // there is no such parameter
   return scene;
 }
 
@@ -23,9 +24,15 @@ Mu with_radius(double radius, double friction = 0.2, double indentation = 0.09) 
   return {radius, indentation, friction, 1, 0.35};
 }
 
+/// Without the value of friction where there is none.
+Mu suited(Mu mu, const Scene &scene) {
+  if (!has_friction(scene)) mu.erase(mu.begin() + 2);
+  return mu;
+}
+
 HfSolution solve(const Scene &scene, const Mu &mu, const HfOptions &options = {}) {
   Problem problem(PETSC_COMM_WORLD, scene, {});
-  return HighFidelity(problem, options).solve(mu);
+  return HighFidelity(problem, options).solve(suited(mu, scene));
 }
 
 const SceneOptions small{{"arc_edges", "40"}};
@@ -149,9 +156,9 @@ TEST(RigidDisk, TheReactionIsTheDerivativeOfTheEnergyWithoutFriction) {
   HighFidelity solver(problem, {});
   const double d = 0.07, step = 1e-5;
   const auto energy = [&](double indentation) {
-    return *solver.solve(with_radius(0.8, 0, indentation)).outputs.energy;
+    return *solver.solve({0.8, indentation, 1, 0.35}).outputs.energy;
   };
-  const HfSolution s = solver.solve(with_radius(0.8, 0, d));
+  const HfSolution s = solver.solve({0.8, d, 1, 0.35});
   const double derivative = (energy(d + step) - energy(d - step)) / (2 * step);
   EXPECT_NEAR(*s.outputs.reaction, derivative, 1e-5 * derivative);
   EXPECT_GT(*s.outputs.reaction, *s.outputs.normal_force * 0.98);
@@ -164,7 +171,7 @@ TEST(RigidDisk, UzawaAndActiveSetAgree) {
   for (const std::string law : {"none", "tresca", "coulomb"}) {
     SceneOptions options{{"arc_edges", "20"}, {"friction", law}};
     Problem problem(PETSC_COMM_SELF, disk(options), {});
-    const Mu mu = with_radius(0.9, 0.1);
+    const Mu mu = suited(with_radius(0.9, 0.1), problem.scene());
     const HfSolution truth = HighFidelity(problem, {}).solve(mu);
     HfOptions uzawa;
     uzawa.method = HfMethod::uzawa;

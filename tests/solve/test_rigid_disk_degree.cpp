@@ -1,8 +1,8 @@
 // The rigid disk with displacements of degree 1: against those of degree 2 on finer and finer
 // meshes, under every law of friction, by multipliers and by Nitsche's method.
-#include "cases/catalogue.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/solve/methods.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

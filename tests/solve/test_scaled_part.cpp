@@ -1,10 +1,10 @@
 // A body with a part that a parameter scales: one factorisation for every value of it, against a
 // factorisation for each.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/solve/methods.hpp"
 #include "rbvi/solve/scaled_part.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The same code in three dimensions: a block of tetrahedra over an obstacle in its middle.
 #include "../cube_mesh.hpp"
 #include "../mesh/temporary_file.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // The patch test under a rigid half-plane that is tilted: a block turned by any angle carries a
 // constant pressure, and a constant shear where it rubs, exactly.
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Two disks at the ends of what can happen: no contact, contact everywhere, other multipliers and
 // other quadrature. Each rank solves for itself, but where nothing touches.
-#include "cases/catalogue.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

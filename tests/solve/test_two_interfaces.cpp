@@ -1,8 +1,8 @@
 // A problem of two contact interfaces: two blocks that do not meet, each on a support of its own.
 // Together they answer as each of them does by itself.
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

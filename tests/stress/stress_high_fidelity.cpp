@@ -1,6 +1,6 @@
 // The high-fidelity active set method from random starts, over both disc maps, both quadratures,
 // loads of all sizes and the ends of the box: every answer's KKT residual <= 1e-12.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/solve/methods.hpp"

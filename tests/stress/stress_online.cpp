@@ -1,6 +1,6 @@
 // 100000 random queries of a model file: every KKT residual <= 1e-10, and an answer does not
 // depend on the queries before it.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/online.hpp"

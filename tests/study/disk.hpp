@@ -1,7 +1,7 @@
 // The rigid disk with few edges on its arc, and reductions of its multipliers.
 #pragma once
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/mor/reduce.hpp"
 
 namespace rbvi::testing_reduced {

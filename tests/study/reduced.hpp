@@ -1,7 +1,7 @@
 // A reduced model with all that it was made from; of the membrane where no scene is named.
 #pragma once
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/fields.hpp"
 #include "rbvi/mor/reduce.hpp"

@@ -2,7 +2,7 @@
 #include "../method/random_matrix.hpp"
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/mor/answered_responses.hpp"
 #include "rbvi/solve/vectors.hpp"

@@ -1,5 +1,5 @@
 // Every dual basis and every enrichment from snapshots to answers.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "reduced.hpp"

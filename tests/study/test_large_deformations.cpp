@@ -2,7 +2,7 @@
 // parameters that they have not seen; stability over all pairs of a parameter and a step.
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/study/bench.hpp"

@@ -1,5 +1,5 @@
 // Models whose multipliers are those near contact alone.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "disk.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"

@@ -3,7 +3,7 @@
 #include "../mesh/gmsh_writer.hpp"
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/study/output_errors.hpp"

@@ -1,5 +1,5 @@
 // The high-fidelity solution against a closed form: a membrane on a disc over a paraboloid.
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/quadrature.hpp"

@@ -3,7 +3,7 @@
 #include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/study/stability_report.hpp"
 

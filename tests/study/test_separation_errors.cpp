@@ -1,7 +1,7 @@
 // B^n and B^tau interpolated apart, from snapshots to answers; what the terms of a model leave.
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/model/affine_coefficients.hpp"

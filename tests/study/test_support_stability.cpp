@@ -3,7 +3,7 @@
 #include "disk.hpp"
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"

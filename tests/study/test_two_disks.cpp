@@ -3,7 +3,7 @@
 #include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"

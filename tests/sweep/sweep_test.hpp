@@ -1,7 +1,7 @@
 // A sweep of a membrane on a coarse mesh, in a directory of its own.
 #pragma once
 
-#include "cases/catalogue.hpp"
+#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/sweep/sweep.hpp"
 

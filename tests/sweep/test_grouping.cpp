@@ -1,8 +1,8 @@
 // How many ranks share a solve.
-#include "cases/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/sweep/grouping.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // The files of a sweep: what is used again, set aside, refused.
 #include "sweep_test.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/io/h5.hpp"
 #include "rbvi/io/temporary_files.hpp"
+#include "tests/catalogue.hpp"
 
 #include <chrono>
 

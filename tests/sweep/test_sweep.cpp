@@ -1,8 +1,8 @@
 // Samples of a set, by any groups of ranks.
 #include "sweep_test.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "tests/catalogue.hpp"
 
 namespace rbvi::sweep_test {
 namespace {
@@ -38,7 +38,7 @@ TEST_F(SweepTest, SameSamplesForAnyGroups) {
 TEST_F(SweepTest, SamplesTellTheirLoadStepsAndTheEndsOfContact) {
   Scene scene = make_scene("rigid_disk",
                            {{"friction", "none"}, {"kinematics", "large"}, {"arc_edges", "20"}});
-  scene.parameters.free = {0, 1, 5};
+  scene.parameters = free_only(scene.parameters, "radius,indentation,offset");
   const std::vector<Mu> set{{1, 0.05, 0}, {0.7, 0.35, 0.3}, {1, 0.03, 0}};
   HfOptions options;
   options.nonlinear.method = NonlinearMethod::newton;

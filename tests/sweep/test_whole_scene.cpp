@@ -1,11 +1,11 @@
 // Samples and models know the whole scene that they are of, its code among it.
 #include "sweep_test.hpp"
 
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/model/scene_text.hpp"
+#include "tests/catalogue.hpp"
 
 namespace rbvi::whole_scene_test {
 namespace {
@@ -64,7 +64,7 @@ TEST(WholeScene, EveryChangeOfAMembraneIsNoticed) {
                [](Scene &s) { s.a[0].form.kernel = scaled(s.a[0].form.kernel, slightly, 9); }},
               {"f_0 values",
                [](Scene &s) { s.f[0].form.kernel = scaled(s.f[0].form.kernel, slightly, 3); }},
-              {"scene.f_0.kernel:value", [](Scene &s) { s.f[0].form = constant_load("", -25.1); }},
+              {"scene.f_0.kernel", [](Scene &s) { s.f[0].form = constant_load("", -25); }},
               {"v_product_0 values", [](Scene &s) { s.v_product[0].form = h1_product(1.001); }},
               {"scene.a_0:parameters",
                [](Scene &s) {
@@ -108,9 +108,8 @@ TEST(WholeScene, EveryChangeOfARollerIsNoticed) {
                [](Scene &s) {
                  s.motion = Named<PointMap>([](const FullMu &, const Point &) { return Point{}; });
                }},
-              {"scene.a_0.factor_0", [](Scene &s) {
-                 s.a[0].theta = std::vector{Factor{"by a factor", constant(1.0), {}}};
-               }}});
+              {"scene.a_0.factor_0:parameters",
+               [](Scene &s) { s.a[0].theta->front().parameters = {0}; }}});
 }
 
 TEST(WholeScene, WhatAUserChoosesIsNoChangeOfIt) {

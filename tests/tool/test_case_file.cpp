@@ -9,7 +9,7 @@ namespace {
 
 std::string read(const std::string &text) {
   std::string all;
-  for (const CaseEntry &entry : parse_case_file(text, "x.yaml"))
+  for (const CaseSetting &entry : parse_options(text, "x.yaml"))
     all += std::to_string(entry.line) + ":" + entry.name + "=" + entry.value + ";";
   return all;
 }
@@ -56,13 +56,13 @@ TEST(CaseFile, MistakesHaveTheirLine) {
       {"membrane\n", "1: "},
       {"scene: x\n\nload -25\n", "3: "},
       {"scene: x\nload:-25\n", "2: "},
-      {"- scene\n- train\n", "1: one 'option: value' per line"},
+      {"- scene\n- train\n", "1: 'name: value' is expected"},
       {"a: 1\nb: [1, 2\n", "3: "},
       {"a: 1\nb: [[1]]\n", "2: the list of b"},
       {"a: []\n", "1: the list of a is empty"},
       {"a: 1\n\tb: 2\n", "2: it begins with a tab"},
       {"a: 1\npod: {tolerance: 1}\n", "2: options are not nested: write 'pod_tolerance: value'"},
-      {"pod:\n  tolerance: 1\n", "2: options are not nested: write 'pod_tolerance: value'"},
+      {"pod:\n  tolerance: 1\n", "1: options are not nested: write 'pod_tolerance: value'"},
       {"a: 1\n-radius: 2\n", "2: write radius without the dash"},
       {"a: 1\n--radius: 2\n", "2: write radius without the dash"},
       {"a: 1\n$$b: 2\n", "2: '$$b' is no name of an option"},
@@ -72,8 +72,8 @@ TEST(CaseFile, MistakesHaveTheirLine) {
       {"a: *b\n", "1: "},
       {"a: 1\nb: \"x\nc: 2\n", "2: a quote is not closed"},
       {"a: 1\n  b\nc: 2\n", ""},
-      {"a: x\n  y\n", "2: it belongs to no option"},
-      {"a: |\n  x\n  y\n", "2: it belongs to no option"},
+      {"a: x\n  y\n", "2: it belongs to no name"},
+      {"a: |\n  x\n  y\n", "2: it belongs to no name"},
       {"a: 1\n---\nb: 2\n", "3: a second document begins"},
       {"  a: 1\n b: 2\n", "2: "},
       {"a: 1\nb: \xff\xfe\n", "2: a byte is no UTF-8 text"},
@@ -126,8 +126,8 @@ TEST(CaseFile, WhatIsWrittenIsReadBack) {
                                   ",",
                                   "|",
                                   ">"}) {
-    const std::vector<CaseEntry> entries =
-        parse_case_file("scene: x\n" + case_line("out", value), "x.yaml");
+    const std::vector<CaseSetting> entries =
+        parse_options("scene: x\n" + case_line("out", value), "x.yaml");
     ASSERT_EQ(entries.size(), 2U) << value;
     EXPECT_EQ(entries[1].value, value);
   }

@@ -97,7 +97,7 @@ TEST(ReadInvocation, MistakesOfTheCommand) {
                                             {"rbvi", "inspect"},
                                             {"rbvi", "inspect", "a", "b"},
                                             {"rbvi", "inspect", "a", "-b"},
-                                            {"rbvi", "list", "all"},
+                                            {"rbvi", "list", "all", "more"},
                                             {"rbvi", "list", "-all"},
                                             {"rbvi", "solve", "-mu", "1", "--mu", "2"},
                                             {"rbvi", "-case", "c.yaml", "offline"}};

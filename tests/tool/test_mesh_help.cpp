@@ -1,8 +1,8 @@
 // What -help says of a mesh is what make_mesh asks for.
-#include "cases/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/tool/finish.hpp"
 #include "rbvi/tool/options.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Offline runs of scenes that make no sense somewhere: refused before anything is written where
 // training parameters are concerned, and counted by the self-check where only queries are.
 #include "../core/refuses.hpp"
-#include "cases/catalogue.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/tool/offline_run.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // The table of options: what models keep of it, and its page.
-#include "cases/catalogue.hpp"
 #include "rbvi/tool/options.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 

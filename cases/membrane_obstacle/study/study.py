@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from study_tools import (ENRICHMENTS, enrichment_costs, history, markdown, pair_options, short,
                          study_main, summary, table)
 
-CASE = Path(__file__).resolve().parents[1] / "published.yaml"
+CASE = Path(__file__).resolve().parents[1] / "case.yaml"
 MAPS = ("similarity", "graded")
 SETS = {  # the dual bases; all with the operators separated to 1e-4
     "cpg": ["-cone_type", "cpg", "-cone_tolerance", "1e-2"],
@@ -174,4 +174,4 @@ def work(study):
 
 
 if __name__ == "__main__":
-    sys.exit(study_main(__doc__, CASE, {name: ["-disc_map", name] for name in MAPS}, work))
+    sys.exit(study_main(__doc__, [CASE, "-variant", "published"], {name: ["-disc_map", name] for name in MAPS}, work))

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from figure_tools import read_grid
 from study_tools import markdown, rows_of, short, study_main, summary, table
 
-CASE = Path(__file__).resolve().parents[1] / "large.yaml"
+CASE = Path(__file__).resolve().parents[1] / "case.yaml"
 DEPTHS = ("0.01", "0.03", "0.05", "0.07", "0.09", "0.11", "0.13", "0.15", "0.175", "0.2")
 OFFSETS = ("0", "0.1")
 INITIAL_GAP = 0.001
@@ -209,4 +209,4 @@ def work(study):
 
 
 if __name__ == "__main__":
-    sys.exit(study_main(__doc__, CASE, VARIANTS, work))
+    sys.exit(study_main(__doc__, [CASE, "-variant", "large"], VARIANTS, work))

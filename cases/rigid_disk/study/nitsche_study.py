@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from study_tools import (history, markdown, rows_of, short, stage_seconds, stored, study_main,
                          summary)
 
-CASE = Path(__file__).resolve().parents[1] / "nitsche.yaml"
+CASE = Path(__file__).resolve().parents[1] / "case.yaml"
 RADII = ("0.7", "1", "1.3")
 LAWS = {"none": "none", "tresca": "Tresca, 0.1", "coulomb": "Coulomb, 0.1"}
 EDGES = {"5": "158", "2.5": "316", "1.25": "632"}  # of the arc, by their length in mm
@@ -275,4 +275,4 @@ def work(study):
 
 
 if __name__ == "__main__":
-    sys.exit(study_main(__doc__, CASE, VARIANTS, work))
+    sys.exit(study_main(__doc__, [CASE, "-variant", "nitsche"], VARIANTS, work))

@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from study_tools import (first_at, history, markdown, pair_options, separation_errors, short,
                          stored, study_main, summary, table)
 
-CASE = Path(__file__).resolve().parents[1] / "published.yaml"
+CASE = Path(__file__).resolve().parents[1] / "case.yaml"
 VARIANTS = {  # radius: of the free parameter alone
     "radius": [],
     "rigid": ["-normal", "rigid"],
@@ -202,4 +202,4 @@ def work(study):
 
 
 if __name__ == "__main__":
-    sys.exit(study_main(__doc__, CASE, VARIANTS, work))
+    sys.exit(study_main(__doc__, [CASE, "-variant", "published"], VARIANTS, work))

@@ -17,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from study_tools import (ENRICHMENTS, enrichment_costs, first_at, history, markdown, pair_options,
                          rows_of, short, study_main, summary, table)
 
-CASE = Path(__file__).resolve().parents[1] / "published.yaml"
+CASE = Path(__file__).resolve().parents[1] / "case.yaml"
 VARIANTS = {
     "intersection": ["-integration", "intersection"],
     "direct": ["-integration", "direct"],
@@ -53,7 +53,7 @@ def meshes(study):
         for level in LEVELS:
             out = study.out / f"mesh_{level}_{radius}.csv"
             if not out.is_file():
-                study.call("solve", "-case", CASE, "-mu", radius, "-mesh_refine", str(level),
+                study.call("solve", "-case", CASE, "-variant", "published", "-mu", radius, "-mesh_refine", str(level),
                            "-csv", out, *study.options)
             values.append([rows_of(out)[0][name] for name in QUANTITIES])
         for k, name in enumerate(QUANTITIES):
@@ -176,4 +176,4 @@ def work(study):
 
 
 if __name__ == "__main__":
-    sys.exit(study_main(__doc__, CASE, VARIANTS, work))
+    sys.exit(study_main(__doc__, [CASE, "-variant", "published"], VARIANTS, work))

@@ -15,11 +15,4 @@ ContactRecipe by_nitsche(const RigidContact &rigid, double gamma0);
 /// "nitsche_support", "nitsche_half_plane", "nitsche_surface".
 std::vector<ContactKind> rigid_kinds();
 
-/// The options `formulation` and `nitsche_gamma0` of scenes with a support.
-std::vector<SceneOption> nitsche_options();
-bool asks_for_nitsche(const SceneOptions &options);
-
-/// By multipliers or by Nitsche's method, as these options say.
-ContactRecipe contact_by(const SceneOptions &options, const RigidContact &rigid);
-
 } // namespace rbvi

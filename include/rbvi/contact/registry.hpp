@@ -1,11 +1,11 @@
-// What a program knows by name: the scenes that it is given, and what the library has.
+// What a program knows by name: what the library has, and scenes of its own.
 #pragma once
 
 #include "rbvi/core/scene.hpp"
 
 namespace rbvi {
 
-/// Scenes with their functions, beside the kinds of contact and the functions of the library.
+/// Scenes that are code, with their functions, beside the kinds of contact and the functions of the library.
 Registry registry_of(std::vector<SceneEntry> scenes);
 
 /// The contact of a record. Throws bad_input for a kind that the registry does not have, or has in

@@ -48,6 +48,7 @@ struct HalfPlane {
   Friction friction{};
   bool lumped = false;           ///< vertex quadrature
   Named<PointMap> body_normal{}; ///< Support::body_normal
+  bool closed_ends = false;      ///< Support::closed_ends
 };
 
 /// A surface where the body now is: large deformations (Niakh 2022, appendix A). A point x of the

@@ -16,10 +16,13 @@ namespace rbvi {
 using SceneOptions = std::map<std::string, std::string>;
 
 struct SceneOption {
-  std::string name, default_value, help;
+  std::string name;
+  std::string default_value; ///< of a number may be "": none is set
+  std::string help;
   std::vector<std::string> choices; ///< empty: a number
   Range valid{};                    ///< of a number
   bool built_in_mesh = false;       ///< without meaning for a mesh from a file
+  bool may_vary = false;            ///< "10,20" makes it a parameter with these bounds
 };
 
 /// What a part of the mesh must be for the mesh to be the scene's, whoever made it.
@@ -117,11 +120,19 @@ struct Scene {
   Sum v_product; ///< inner product of V, exact terms; mu is empty there
 };
 
+/// An option of the program that a case file sets.
+struct CaseSetting {
+  std::string name, value;
+  int line = 0;
+};
+
 struct SceneEntry {
-  std::string name, summary;
-  std::vector<SceneOption> options;
-  Scene (*make)(const SceneOptions &);
+  std::string name, summary{};
+  std::vector<SceneOption> options{};
+  std::function<Scene(const SceneOptions &)> make{};
   FunctionLibrary functions{}; ///< those of its own that files know by name
+  std::vector<CaseSetting> settings{};
+  std::vector<std::pair<std::string, std::string>> variants{}; ///< of its file, with what they are
 };
 
 /// What a program knows by name, and finds in model files (contact/registry.hpp).

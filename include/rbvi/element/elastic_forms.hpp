@@ -1,5 +1,5 @@
 // Cell kernels of linear elasticity, as Forms: local dof = node * dim + component, degree 1 or 2.
-// One kernel serves 2D (plane strain) and 3D.
+// One kernel serves 2D (plane strain; plane stress with a lambda of its own) and 3D.
 #pragma once
 
 #include "rbvi/core/scene.hpp"
@@ -24,9 +24,18 @@ Form elasticity(const std::string &region, const Lame &material, int degree = 1)
 /// that of the reference cell.
 Form elasticity(const std::string &region, const Named<Material> &material, int degree);
 
-/// Lame's constants for a Poisson's ratio that is a parameter, an index into parameters.all.
-Named<Coefficient> lame_lambda(double young, int poisson_ratio);
-Named<Coefficient> lame_shear(double young, int poisson_ratio);
+/// lame() at each point, or that of a thin plate (plane stress), whose lambda is 2 lambda shear /
+/// (lambda + 2 shear).
+Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue> &poisson,
+                          bool plane_stress);
+
+/// One constant alone, `factor`; the other is 0.
+Named<Material> lambda_alone(const Named<PointValue> &factor);
+Named<Material> shear_alone(const Named<PointValue> &factor);
+
+/// The same constants of a Young's modulus 1.
+Named<Coefficient> lame_lambda(const Named<Coefficient> &poisson, bool plane_stress = false);
+Named<Coefficient> lame_shear(const Named<Coefficient> &poisson);
 
 /// The makers of these functions.
 FunctionLibrary elastic_functions();

@@ -10,7 +10,7 @@
 
 namespace rbvi {
 
-/// The makers of laplace and constant_load.
+/// The makers of laplace, constant_load and body_load.
 FunctionLibrary scalar_functions();
 
 /// int grad u . grad v over the mapped cells (2.37): nodes x nodes.
@@ -22,6 +22,10 @@ Form h1_product(double length, int components = 1, int degree = 1);
 
 /// value * int v over the mapped cells (2.38): nodes. Of degree 1 and value 1 the integrals of eta.
 Form constant_load(const std::string &region, double value, int degree = 1);
+
+/// int force . v over the mapped cells, exact where the force is of degree 3 in x, a point of them:
+/// local dof = node * components + component.
+Form body_load(const std::string &region, const Named<PointMap> &force, int components, int degree);
 
 /// int eta_i eta_j over the reference cells: vertices x vertices.
 Form l2_product(const std::string &region);

@@ -1,27 +1,23 @@
-// Case files: YAML, one 'option: value' per line.
+// Files that options and cases come from, and that a run leaves.
 #pragma once
+
+#include "rbvi/core/scene.hpp"
 
 #include <mpi.h>
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 namespace rbvi {
 
-/// How the case file that a run leaves begins.
+/// How the file of options that a run leaves begins.
 inline constexpr const char *run_case_header = "# The options of this run.";
+/// The case of a run, beside its options.
+inline constexpr const char *scene_of_run = "scene.yaml";
 
-/// One line of a case file. A list [a, b] of scalars has the value "a,b"; no value is "".
-struct CaseEntry {
-  std::string name, value;
-  int line = 0; ///< from 1 on
-};
-
-/// The options in the text of a case file, in its order. Throws bad_input, naming `file` and the
-/// line, unless the text is UTF-8 and one flat YAML map of names of options to scalars or lists of
-/// scalars, without duplicates.
-std::vector<CaseEntry> parse_case_file(const std::string &text, const std::string &file);
+/// The options in the text of a file, in its order. Throws bad_input, naming `file` and the line,
+/// unless the text is UTF-8 and one flat YAML map of names of options to values or lists of values,
+/// without duplicates. A list [a, b] has the value "a,b"; no value is "".
+std::vector<CaseSetting> parse_options(const std::string &text, const std::string &file);
 
 /// "name: value" and a line end, the value quoted where YAML would take it for something else.
 std::string case_line(const std::string &name, const std::string &value);

@@ -21,7 +21,15 @@ void command_bench(const ToolOptions &options);
 /// What offline takes on several meshes, by several ranks per solve. Collective on the world.
 void command_growth(const ToolOptions &options);
 
-void command_list(const Registry &registry);
+/// A case: its text and variants, its mesh, its functions, contact over the box, one solve. What was
+/// read is printed, every defect told. Collective on the world.
+void command_check(const ToolOptions &options);
+
+/// Writes NAME/case.yaml, a case to begin with.
+void command_new(const std::string &name);
+
+/// The scenes of the program and the cases FOLDER/*/case.yaml.
+void command_list(const std::string &folder, const Registry &registry);
 void command_inspect(const std::string &file, const Registry &registry);
 
 } // namespace rbvi

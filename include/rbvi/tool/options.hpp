@@ -8,13 +8,14 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace rbvi {
 
 struct ToolOptions {
-  const Registry *registry = nullptr; ///< of the program
+  std::shared_ptr<const Registry> registry; ///< of the program, with the scene of the case
   Scene scene; ///< with its parameters as freed, fixed and bounded by the options
   MeshOptions mesh;
   std::string train, valid; ///< as parse_set reads them
@@ -25,7 +26,8 @@ struct ToolOptions {
   double max_failures = 0.1;       ///< share of a set that may fail
   std::filesystem::path case_name; ///< of -case; "" where it is that of the run directory
   std::filesystem::path out;       ///< run directory; "" where none is given
-  std::string case_file;           ///< all options of the run, for its own case file (case_of_run)
+  std::string case_file;           ///< all options of the run, for its own file (case_of_run)
+  std::string scene_text;          ///< of the case, which stands beside it; "": of the program
   std::vector<std::string> command_line;        ///< names of the options that stand there
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
@@ -41,9 +43,9 @@ bool is_option(const std::string &word);
 /// starts.
 std::vector<std::string> normalised_arguments(int argc, char **argv);
 
-/// Collective. Inserts the case file under the command line, above PETSc's files and variables,
-/// and reads everything for a command of rbvi; rank 0 prints one line of options from these files
-/// and variables. `registry` must outlive the options. Throws bad_input for an unknown option
+/// Collective. Inserts the options of the case under the command line, above PETSc's files and
+/// variables, and reads everything for a command of rbvi; rank 0 prints one line of options from
+/// these files and variables. Throws bad_input for an unknown option
 /// (naming the nearest one), one of another command, a missing or malformed case file, or a value
 /// that does not fit.
 ToolOptions read_options(MPI_Comm comm, const std::string &command, const Registry &registry);

@@ -1,0 +1,47 @@
+// Circles as boundaries of bodies, disks as rigid surfaces, and gaps to them: what supports
+// (contact/support.hpp) of scenes from files are made of.
+#pragma once
+
+#include "rbvi/core/functions.hpp"
+
+namespace rbvi {
+
+/// In the reference domain. A hole is a circle whose body is outside.
+struct Circle {
+  Point centre{};
+  double radius = 1;
+  bool hole = false;
+};
+
+/// The point of the nearest of these circles that is next to x.
+Point on_circles(const std::vector<Circle> &circles, const Point &x);
+Named<PointMap> on_circles(const std::vector<Circle> &circles);
+/// The unit normal of the nearest circle, out of the body.
+Named<PointMap> normals_of_circles(const std::vector<Circle> &circles);
+
+/// outer(mu, inner(mu, x)).
+Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &inner);
+
+/// The outside of a disk.
+Named<Surface> disk_surface(const Named<PointMap> &centre, const Named<Coefficient> &radius);
+
+/// Unit normal, out of the body, of a surface that the point at(mu, x) faces: -(gradient of the
+/// distance).
+Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at);
+
+/// What the partner of a point on the surface is.
+enum class GapKind {
+  closest, ///< the next point
+  ray,     ///< along the normal of contact
+  vertical ///< along e_y
+};
+
+/// (partner - at) . normal, at = at(mu, x) (Niakh 2022, (3.4)). Evaluation throws failure where the
+/// line misses the surface.
+Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
+                                 const Named<PointMap> &normal, GapKind kind);
+
+/// The makers of these functions.
+FunctionLibrary surface_functions();
+
+} // namespace rbvi

@@ -1,0 +1,48 @@
+// Functions of a scene that are written as expressions: their text is their record, so that a model
+// file holds all that its evaluation needs.
+#pragma once
+
+#include "rbvi/core/expression.hpp"
+#include "rbvi/core/functions.hpp"
+
+namespace rbvi {
+
+/// An expression with a name, which others use.
+struct Let {
+  std::string name;
+  Expression value;
+};
+
+/// Expressions of one point. They have the names of parameters, of `lets`, each evaluated once a
+/// point, and those of coordinates: x, y, z of the point, and in a traction nx, ny, nz of a unit
+/// normal.
+struct Formula {
+  std::vector<Expression> values;
+  std::vector<Let> lets{};               ///< each may use those before it
+  std::vector<std::string> parameters{}; ///< in the order of FullMu
+};
+
+/// Throws bad_input for names that are none of these.
+Named<Coefficient> coefficient_of(const Formula &value);
+Named<PointValue> point_value_of(const Formula &value);
+/// Components that are left out are 0.
+Named<PointMap> point_map_of(const Formula &components);
+Named<Traction> traction_of(const Formula &components);
+/// Throws bad_input with the message of the first of these conditions that is 0 or NaN;
+/// {expression} in it becomes the value.
+Named<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages);
+
+/// With every let written out.
+Expression expanded(const Expression &expression, const std::vector<Let> &lets);
+
+/// Positions of the parameters that the values depend on, increasing.
+std::vector<int> dependence_of(const Formula &formula);
+/// Whether the values depend on the point or the normal.
+bool depends_on_point(const Formula &formula);
+/// Whether a name is one of those of coordinates.
+bool is_coordinate(const std::string &name);
+
+/// The makers of these functions.
+FunctionLibrary formula_functions();
+
+} // namespace rbvi

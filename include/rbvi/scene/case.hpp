@@ -1,0 +1,42 @@
+// Scenes from files: a case file (YAML) says the bodies, what holds, loads and touches them, and
+// the parameters of all that. cases/README.md describes the format; src/scene/keys.cpp is its
+// table.
+#pragma once
+
+#include "rbvi/core/scene.hpp"
+
+namespace rbvi {
+
+/// What a run changes of a case file before it is read.
+struct CaseChanges {
+  std::string variant = ""; ///< one of `variants:`
+  /// "mesh.edges" -> "200": values at paths of the file.
+  std::vector<std::pair<std::string, std::string>> values{};
+};
+
+/// Whether the text is that of a case, with a scene: it has the key rbvi. Throws bad_input for
+/// text that is no YAML table.
+bool is_scene_file(const std::string &text, const std::string &file);
+
+/// The scene of a case file, and the options that the file chooses. `file` is for messages, and
+/// names the scene that has no name: after its folder if it is a case.yaml, else after itself.
+/// Throws bad_input with every defect of the text that can be found without a mesh.
+SceneEntry read_case(const std::string &text, const std::string &file,
+                     const CaseChanges &changes = {});
+
+/// A case to begin with: a block with friction on a floor.
+std::string new_case();
+
+/// A key of case files.
+struct CaseKey {
+  std::string table; ///< "", "mesh", "contact.*", ...: * is a name of the author's
+  std::string name;  ///< of the key; "*": any
+  std::string value; ///< "expression", "text", "a | b", "[a, b]", "table", ...
+  std::string says;
+  bool needed = false;
+};
+
+/// All keys, by table: what is checked, explained and completed comes from here.
+const std::vector<CaseKey> &case_keys();
+
+} // namespace rbvi

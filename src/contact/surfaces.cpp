@@ -1,0 +1,174 @@
+#include "rbvi/contact/surfaces.hpp"
+
+#include <cmath>
+
+namespace rbvi {
+
+namespace {
+
+const Circle &nearest_circle(const std::vector<Circle> &circles, const Point &x) {
+  const auto distance = [&](const Circle &circle) {
+    return std::abs(norm(x - circle.centre) - circle.radius);
+  };
+  const Circle *nearest = &circles.front();
+  for (const Circle &circle : circles)
+    if (distance(circle) < distance(*nearest)) nearest = &circle;
+  return *nearest;
+}
+
+std::map<std::string, std::vector<double>> numbers_of(const std::vector<Circle> &circles) {
+  std::map<std::string, std::vector<double>> numbers;
+  for (const Circle &circle : circles) {
+    numbers["x"].push_back(circle.centre[0]);
+    numbers["y"].push_back(circle.centre[1]);
+    numbers["radius"].push_back(circle.radius);
+    numbers["hole"].push_back(circle.hole ? 1 : 0);
+  }
+  return numbers;
+}
+
+std::vector<Circle> circles_in(const Record &of) {
+  const std::vector<double> &x = numbers(of, "x"), &y = numbers(of, "y"),
+                            &radius = numbers(of, "radius"), &hole = numbers(of, "hole");
+  if (x.empty() || y.size() != x.size() || radius.size() != x.size() || hole.size() != x.size())
+    throw bad_input("the circles of '" + of.name + "' are not three lists of one length");
+  std::vector<Circle> circles;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    circles.push_back({{x[i], y[i], 0}, radius[i], hole[i] != 0});
+  return circles;
+}
+
+const Maker<PointMap> on_circles_maker{
+    "on_circles", 1, [](const Record &of) -> std::function<PointMap> {
+      return [circles = circles_in(of)](const FullMu &, const Point &x) {
+        return on_circles(circles, x);
+      };
+    }};
+
+const Maker<PointMap> circle_normals_maker{
+    "normals_of_circles", 1, [](const Record &of) -> std::function<PointMap> {
+      return [circles = circles_in(of)](const FullMu &, const Point &x) {
+        const Circle &circle = nearest_circle(circles, x);
+        const Point out = x - circle.centre;
+        return (circle.hole ? -1 : 1) / norm(out) * out;
+      };
+    }};
+
+std::function<PointMap> composition(const std::function<PointMap> &outer,
+                                    const std::function<PointMap> &inner) {
+  return [=](const FullMu &mu, const Point &x) { return outer(mu, inner(mu, x)); };
+}
+
+const Maker<PointMap> composed_maker{"composed", 1, [](const Stored &of) {
+                                       return composition(made<PointMap>(part(of, "outer")),
+                                                          made<PointMap>(part(of, "inner")));
+                                     }};
+
+std::function<Surface> disk_function(const std::function<PointMap> &centre,
+                                     const std::function<Coefficient> &radius) {
+  return [=](const FullMu &mu, const Point &y) {
+    const Point p = y - centre(mu, y);
+    const double distance = norm(p);
+    if (!(distance > 0)) throw failure("a point of the body is at the centre of a rigid disk");
+    return SurfacePoint{distance - radius(mu), p / distance, 1 / distance};
+  };
+}
+
+const Maker<Surface> disk_maker{"disk", 1, [](const Stored &of) {
+                                  return disk_function(made<PointMap>(part(of, "centre")),
+                                                       made<Coefficient>(part(of, "radius")));
+                                }};
+
+std::function<PointMap> normal_function(const std::function<Surface> &surface,
+                                        const std::function<PointMap> &at) {
+  return [=](const FullMu &mu, const Point &x) { return -1.0 * surface(mu, at(mu, x)).normal; };
+}
+
+const Maker<PointMap> normal_maker{"normal_of_surface", 1, [](const Stored &of) {
+                                     return normal_function(made<Surface>(part(of, "surface")),
+                                                            made<PointMap>(part(of, "at")));
+                                   }};
+
+/// How far along a unit direction the surface is, by Newton's method: from outside a convex body it
+/// is monotone.
+double distance_along(const std::function<Surface> &surface, const FullMu &mu, const Point &from,
+                      const Point &direction) {
+  double way = 0;
+  for (int step = 0; step < 60; ++step) {
+    const SurfacePoint there = surface(mu, from + way * direction);
+    const double slope = dot(there.normal, direction);
+    const double change = there.distance / slope;
+    if (!std::isfinite(change)) break;
+    way -= change;
+    // Quadratic convergence: what is left is of the square of this.
+    if (std::abs(change) <= 1e-12 * std::max(norm(from), std::abs(way))) return way;
+  }
+  throw failure("a line from a point of the body misses the rigid surface: use 'gap: closest'");
+}
+
+std::function<PointValue> gap_function(const std::function<Surface> &surface,
+                                       const std::function<PointMap> &at,
+                                       const std::function<PointMap> &normal, GapKind kind) {
+  return [=](const FullMu &mu, const Point &x) {
+    const Point from = at(mu, x), n = normal(mu, x);
+    if (kind == GapKind::ray) return distance_along(surface, mu, from, n);
+    if (kind == GapKind::vertical) {
+      const double side = n[1] < 0 ? -1 : 1;
+      return side * n[1] * distance_along(surface, mu, from, {0, side, 0});
+    }
+    const SurfacePoint there = surface(mu, from);
+    return -there.distance * dot(there.normal, n);
+  };
+}
+
+const Maker<PointValue> gap_maker{"gap_to_surface", 1, [](const Stored &of) {
+                                    return gap_function(made<Surface>(part(of, "surface")),
+                                                        made<PointMap>(part(of, "at")),
+                                                        made<PointMap>(part(of, "normal")),
+                                                        static_cast<GapKind>(integer(of, "kind")));
+                                  }};
+
+} // namespace
+
+Point on_circles(const std::vector<Circle> &circles, const Point &x) {
+  const Circle &circle = nearest_circle(circles, x);
+  const Point out = x - circle.centre;
+  return circle.centre + circle.radius / norm(out) * out;
+}
+
+Named<PointMap> on_circles(const std::vector<Circle> &circles) {
+  return on_circles_maker(numbers_of(circles));
+}
+
+Named<PointMap> normals_of_circles(const std::vector<Circle> &circles) {
+  return circle_normals_maker(numbers_of(circles));
+}
+
+Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &inner) {
+  return composed_maker.named(composition(outer, inner), {},
+                              {{"outer", outer.record}, {"inner", inner.record}});
+}
+
+Named<Surface> disk_surface(const Named<PointMap> &centre, const Named<Coefficient> &radius) {
+  return disk_maker.named(disk_function(centre, radius), {},
+                          {{"centre", centre.record}, {"radius", radius.record}});
+}
+
+Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at) {
+  return normal_maker.named(normal_function(surface, at), {},
+                            {{"surface", surface.record}, {"at", at.record}});
+}
+
+Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
+                                 const Named<PointMap> &normal, GapKind kind) {
+  return gap_maker.named(
+      gap_function(surface, at, normal, kind), {{"kind", {double(kind)}}},
+      {{"surface", surface.record}, {"at", at.record}, {"normal", normal.record}});
+}
+
+FunctionLibrary surface_functions() {
+  return {on_circles_maker, circle_normals_maker, composed_maker,
+          disk_maker,       normal_maker,         gap_maker};
+}
+
+} // namespace rbvi

@@ -1,0 +1,113 @@
+#include "reader.hpp"
+
+#include "rbvi/core/text.hpp"
+#include "rbvi/scene/case.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// The keys of one table.
+std::vector<const CaseKey *> keys_of(const std::string &table) {
+  std::vector<const CaseKey *> keys;
+  for (const CaseKey &key : case_keys())
+    if (key.table == table) keys.push_back(&key);
+  return keys;
+}
+
+std::string below(const std::string &table, const std::string &name) {
+  return table.empty() ? name : table + "." + name;
+}
+
+/// Names of an expression that nothing declares.
+void check_names(const Reader &reader, const CaseNode &node, const std::vector<std::string> &known,
+                 Defects &defects) {
+  defects.collect(node, [&] {
+    const Expression value = expression_in(reader, node);
+    for (const std::string &name : value.free_names())
+      if (std::ranges::find(known, name) == known.end())
+        throw bad_input("unknown name '" + name + "' in '" + node.value + "': the nearest is '" +
+                        nearest_name(name, known) + "'");
+  });
+}
+
+class Walk {
+public:
+  Walk(const Reader &reader, Defects &defects) : reader_(reader), defects_(defects) {
+    known_ = {"x", "y", "z", "nx", "ny", "nz"};
+    for (const char *section_name : {"parameters", "let"})
+      for (const auto &[name, node] : section(reader, section_name).entries)
+        known_.push_back(name);
+  }
+
+  /// An entry of the table whose keys are those of `table`.
+  void visit(const CaseNode &node, const std::string &table) {
+    const std::vector<const CaseKey *> keys = keys_of(table);
+    std::vector<std::string> names;
+    for (const CaseKey *key : keys)
+      names.push_back(key->name);
+    for (const auto &[name, value] : node.entries) {
+      const auto own = std::ranges::find(names, name);
+      const auto any = own != names.end() ? own : std::ranges::find(names, std::string("*"));
+      if (any == names.end())
+        defects_.add(value, "unknown key '" + name + "'" +
+                                (table.empty() ? std::string() : " of " + table) +
+                                ": the nearest is '" + nearest_name(name, names) + "'");
+      else
+        check(*keys[static_cast<std::size_t>(any - names.begin())], name, value, table);
+    }
+    for (const CaseKey *key : keys)
+      if (key->needed && node.find(key->name) == nullptr)
+        defects_.add(node, "'" + key->name + "' is missing (" + key->value +
+                               (key->says.empty() ? "" : ": " + key->says) + ")");
+  }
+
+private:
+  void check(const CaseKey &key, const std::string &name, const CaseNode &value,
+             const std::string &table) {
+    const bool may_be_table = key.value.find("table") != std::string::npos;
+    if (value.is_table()) {
+      if (!may_be_table && key.value != "anything")
+        defects_.add(value, name + " is no table: " + key.value + " belongs here");
+      else
+        visit_table(name, value, table);
+      return;
+    }
+    if (key.value == "table" && !(value.is_value() && value.value.empty()))
+      defects_.add(value, name + " is a table: write 'NAME: value' below it, or {NAME: value}");
+    else if (key.value == "expression" ||
+             (key.value == "expression | motion" && value.value != "motion"))
+      check_names(reader_, value, known_, defects_);
+    else if (key.value.starts_with("expressions") || key.value.starts_with("[expression"))
+      for (const CaseNode &item : value.items)
+        check_names(reader_, item, known_, defects_);
+  }
+
+  void visit_table(const std::string &name, const CaseNode &value, const std::string &table) {
+    const std::string own = below(table, name);
+    if (own == "choices" || own == "variants" || own == "options") return; // read on their own
+    if (!keys_of(own).empty()) {
+      visit(value, own);
+    } else if (!keys_of(own + ".*").empty()) {
+      for (const auto &[entry_name, entry_node] : value.entries)
+        if (entry_node.is_table())
+          visit(entry_node, own + ".*");
+        else
+          defects_.add(entry_node, entry_name + " is a table: write {at: ..., ...}");
+    }
+  }
+
+  const Reader &reader_;
+  Defects &defects_;
+  std::vector<std::string> known_;
+};
+
+} // namespace
+
+void check_keys(const Reader &reader, Defects &defects) {
+  Walk(reader, defects).visit(reader.root, "");
+}
+
+} // namespace rbvi

@@ -1,0 +1,219 @@
+#include "rbvi/scene/document.hpp"
+
+#include "rbvi/core/error.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace rbvi {
+
+namespace {
+
+constexpr const char *byte_order_mark = "\xef\xbb\xbf";
+
+Error malformed(const std::string &file, int line, const std::string &what) {
+  return bad_input("the case file " + file + " is malformed at line " + std::to_string(line) +
+                   ": " + what);
+}
+
+int line_of(const YAML::Mark &mark) {
+  return mark.is_null() ? 1 : mark.line + 1;
+}
+
+/// Bytes of the UTF-8 character that begins at i; 0: none does.
+std::size_t character_size(const std::string &text, std::size_t i) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  const unsigned first = byte(i);
+  const std::size_t size = first < 0x80                    ? 1
+                           : first >= 0xc2 && first < 0xe0 ? 2
+                           : first >= 0xe0 && first < 0xf0 ? 3
+                           : first >= 0xf0 && first < 0xf5 ? 4
+                                                           : 0;
+  if (size == 0 || i + size > text.size()) return 0;
+  for (std::size_t k = 1; k < size; ++k)
+    if ((byte(i + k) & 0xc0U) != 0x80U) return 0;
+  const bool control = size == 1 && first < 0x20 && first != '\t' && first != '\n' && first != '\r';
+  return control ? 0 : size;
+}
+
+/// What YAML libraries differ in, or let through.
+void check_text(const std::string &text, const std::string &file) {
+  int line = 1;
+  bool indenting = true;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t size = character_size(text, i);
+    if (size == 0) throw malformed(file, line, "a byte is no UTF-8 text");
+    if (indenting && text[i] == '\t')
+      throw malformed(file, line, "it begins with a tab: indent with blanks");
+    if (text[i] == '\n') ++line;
+    indenting = text[i] == '\n' || (indenting && text[i] == ' ');
+    i += size;
+  }
+}
+
+/// The one document of a file; undefined: there is none.
+YAML::Node document(const std::string &text, const std::string &file) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      throw malformed(file, line_of(documents[1].Mark()),
+                      "a second document begins, or the indentation changes: use one table");
+    return documents.empty() ? YAML::Node() : documents[0];
+  } catch (const YAML::Exception &error) {
+    throw malformed(file, line_of(error.mark), error.msg + " ('name: value' is expected)");
+  }
+}
+
+/// The lines on which a key, a value or an entry of a list begins.
+void collect_lines(const YAML::Node &node, std::set<int> &lines) {
+  lines.insert(line_of(node.Mark()));
+  if (node.IsSequence())
+    for (const YAML::Node &entry : node)
+      collect_lines(entry, lines);
+  if (node.IsMap())
+    for (const auto &pair : node) {
+      collect_lines(pair.first, lines);
+      collect_lines(pair.second, lines);
+    }
+}
+
+/// Whether a quote is opened behind the colon and not closed again.
+bool open_quote(const std::string &line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string::npos) return false;
+  const std::size_t begin = line.find_first_not_of(" \t", colon + 1);
+  if (begin == std::string::npos || (line[begin] != '"' && line[begin] != '\'')) return false;
+  return line.find(line[begin], begin + 1) == std::string::npos;
+}
+
+/// YAML folds further lines into a value, which nobody means.
+void check_lines(const std::string &text, const YAML::Node &root, const std::string &file) {
+  std::set<int> begun;
+  collect_lines(root, begun);
+  std::istringstream in(text);
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#' || line[first] == '%') continue;
+    if (open_quote(line)) throw malformed(file, number, "a quote is not closed");
+    const bool idle = line.starts_with("---") || line.starts_with("...") ||
+                      line.find_first_not_of("[]{}, \t\r") == std::string::npos;
+    if (!idle && !begun.contains(number))
+      throw malformed(file, number, "it belongs to no name: write 'name: value'");
+  }
+}
+
+CaseNode node_of(const YAML::Node &yaml, const std::string &file);
+
+void add_entries(const YAML::Node &yaml, const std::string &file, CaseNode &table) {
+  for (const auto &pair : yaml) {
+    const int line = line_of(pair.first.Mark());
+    if (!pair.first.IsScalar() || pair.first.Scalar().empty())
+      throw malformed(file, line, "'name: value' is expected, with a name alone");
+    const std::string &name = pair.first.Scalar();
+    if (const CaseNode *first = table.find(name); first != nullptr)
+      throw malformed(file, line,
+                      name + " is given again, after line " + std::to_string(first->line) +
+                          ": keep one of the two");
+    CaseNode entry = node_of(pair.second, file);
+    entry.line = line;
+    entry.column = pair.first.Mark().column + 1;
+    table.entries.emplace_back(name, std::move(entry));
+  }
+}
+
+CaseNode node_of(const YAML::Node &yaml, const std::string &file) {
+  CaseNode node;
+  node.line = line_of(yaml.Mark());
+  node.column = std::max(0, yaml.Mark().column) + 1;
+  if (yaml.IsMap()) {
+    node.kind = CaseNode::Kind::table;
+    add_entries(yaml, file, node);
+  } else if (yaml.IsSequence()) {
+    node.kind = CaseNode::Kind::list;
+    for (const YAML::Node &item : yaml)
+      node.items.push_back(node_of(item, file));
+  } else if (yaml.IsScalar()) {
+    node.value = yaml.Scalar();
+    if (node.value.find_first_of("\r\n") != std::string::npos)
+      throw malformed(file, node.line, "a value goes over several lines");
+  }
+  return node;
+}
+
+} // namespace
+
+const CaseNode *CaseNode::find(const std::string &name) const {
+  const auto found =
+      std::ranges::find(entries, name, [](const auto &entry) { return entry.first; });
+  return found == entries.end() ? nullptr : &found->second;
+}
+
+CaseNode parse_document(const std::string &text, const std::string &file) {
+  const bool marked = text.starts_with(byte_order_mark);
+  const std::string plain = marked ? text.substr(3) : text;
+  check_text(plain, file);
+  const YAML::Node root = document(plain, file);
+  CaseNode table;
+  table.kind = CaseNode::Kind::table;
+  if (!root.IsDefined() || root.IsNull()) return table;
+  if (!root.IsMap()) throw malformed(file, line_of(root.Mark()), "'name: value' is expected");
+  check_lines(plain, root, file);
+  return node_of(root, file);
+}
+
+bool replace(CaseNode &root, const std::string &path, const CaseNode &value) {
+  const bool takes_away = value.is_value() && value.value.empty();
+  CaseNode *at = &root;
+  std::size_t begin = 0;
+  for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
+    const std::string name = path.substr(begin, dot - begin);
+    begin = dot + 1;
+    const auto found =
+        std::ranges::find(at->entries, name, [](const auto &entry) { return entry.first; });
+    if (found != at->entries.end()) {
+      at = &found->second;
+    } else if (takes_away) {
+      return true;
+    } else {
+      CaseNode table{CaseNode::Kind::table, "", {}, {}, value.line, value.column};
+      at = &at->entries.emplace_back(name, std::move(table)).second;
+    }
+    if (!at->is_table() && !(at->is_value() && at->value.empty())) return false;
+    at->kind = CaseNode::Kind::table;
+  }
+  const std::string name = path.substr(begin);
+  const auto found =
+      std::ranges::find(at->entries, name, [](const auto &entry) { return entry.first; });
+  if (found == at->entries.end()) {
+    if (!takes_away) at->entries.emplace_back(name, value);
+  } else if (takes_away) {
+    at->entries.erase(found);
+  } else {
+    found->second = value;
+  }
+  return true;
+}
+
+void Defects::add(const CaseNode &at, const std::string &what) {
+  all_.push_back({at.line, at.column, what});
+}
+
+void Defects::throw_all() const {
+  if (all_.empty()) return;
+  std::vector<Defect> sorted = all_;
+  std::ranges::stable_sort(sorted, [](const Defect &a, const Defect &b) {
+    return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+  });
+  std::string text;
+  for (const Defect &defect : sorted)
+    text += (text.empty() ? "" : "\n") + file_ + ":" + std::to_string(defect.line) + ":" +
+            std::to_string(defect.column) + ": " + defect.what;
+  throw bad_input(text);
+}
+
+} // namespace rbvi

@@ -1,0 +1,34 @@
+#include "rbvi/scene/case.hpp"
+
+namespace rbvi {
+
+std::string new_case() {
+  return R"(# A block that is pushed onto a floor with friction and sheared. All keys: cases/OPTIONS.md, Case files.
+rbvi: 1
+says: block on a floor with friction
+physics: plane_strain
+mesh: {built_in: one_block, degree: 2} # or {file: MESH.msh}; 1 wide, 0.5 high
+
+parameters: # what has a range can vary; what has none is a constant that a run may change
+  depth:    {range: [0.01, 0.1], default: 0.05, unit: m, says: how far the top is pushed down}
+  shear:    {range: [0, 0.2], default: 0.05, unit: m, says: how far the top is moved sideways}
+  friction: {range: [0.1, 1], default: 0.3, says: coefficient of friction}
+  young:    {default: 15, unit: Pa, says: Young's modulus}
+
+materials:
+  rubber: {at: all, E: young, nu: 0.35}
+imposed: # a component that is absent is free
+  top: {at: top, ux: shear, uy: -depth}
+contact:
+  floor:
+    at: contact
+    against: {plane: {normal: [0, -1], position: 0}} # out of the body; along it from [0, 0]
+    friction: {coulomb: friction}
+    closed_ends: [yes, yes] # the body ends where the boundary does
+
+train: grid:4,4,4
+validate: random:20:1
+)";
+}
+
+} // namespace rbvi

@@ -1,0 +1,225 @@
+#include "reader.hpp"
+
+#include "rbvi/contact/large_pair.hpp"
+#include "rbvi/contact/nitsche_support.hpp"
+#include "rbvi/contact/obstacle.hpp"
+#include "rbvi/contact/pair.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+constexpr double usual_gamma0 = 11.54;
+constexpr Range gamma0_range{0.1, 2000};
+
+/// Throws bad_input for a key that this kind of contact does not have.
+void check_used(const CaseNode &node, const std::string &kind,
+                const std::vector<std::string> &keys) {
+  for (const auto &[name, value] : node.entries)
+    if (std::ranges::find(keys, name) == keys.end())
+      throw bad_input("contact " + kind + " has no '" + name + "': leave it out");
+}
+
+Friction friction_in(Reader &reader, const CaseNode &contact, Scene &scene) {
+  const CaseNode *node = contact.find("friction");
+  Friction friction;
+  if (node == nullptr || node->entries.empty()) return friction;
+  const CaseNode *coulomb = node->find("coulomb"), *tresca = node->find("tresca");
+  if ((coulomb == nullptr) == (tresca == nullptr))
+    throw bad_input("friction is 'coulomb: COEFFICIENT' or 'tresca: THRESHOLD'");
+  const CaseNode &value = coulomb != nullptr ? *coulomb : *tresca;
+  friction.law = coulomb != nullptr ? FrictionLaw::coulomb : FrictionLaw::tresca;
+  friction.value = coefficient_of(formula_in(reader, value));
+  friction.only_in_contact =
+      choice_or(*node, "bound", "everywhere", {"everywhere", "contact"}) == "contact";
+  if (coulomb != nullptr) limit(reader, expression_in(reader, value), friction_range, scene);
+  return friction;
+}
+
+bool is_large(const CaseNode &node) {
+  return choice_or(node, "kinematics", "small", {"small", "large"}) == "large";
+}
+
+/// What is known of a boundary: the mapped points of its circles, and their normals.
+struct Side {
+  std::string boundary;
+  Named<PointMap> at{};     ///< empty without circles
+  Named<PointMap> normal{}; ///< of the body; likewise
+};
+
+Side side_of(const Reader &reader, const std::string &boundary, const Scene &scene) {
+  Side side{boundary};
+  const auto found = reader.circles.find(boundary);
+  if (found == reader.circles.end()) return side;
+  const Named<PointMap> curve = on_circles(found->second);
+  side.at = map_of(reader).empty() ? curve : composed(scene.map, curve);
+  side.normal = normals_of_circles(found->second);
+  return side;
+}
+
+std::string normal_choice(const CaseNode &node) {
+  return choice_or(node, "normal", "auto", {"auto", "body", "rigid", "deformed"});
+}
+
+/// Where the body is at rest, as `gap_from` says.
+Named<PointMap> measured_from(const CaseNode &node, const Side &side, const Scene &scene) {
+  const bool edges =
+      choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "edges" || !side.at;
+  return edges ? scene.map : side.at;
+}
+
+/// Where the body now is.
+RigidContact following(const CaseNode &node, const Side &side, const Named<Surface> &surface,
+                       const Friction &friction) {
+  if (choice_or(node, "gap", "closest", {"closest", "ray", "vertical"}) != "closest")
+    throw bad_input("kinematics: large measures the gap to the next point: leave out gap");
+  const std::string normal = normal_choice(node);
+  if (normal == "body")
+    throw bad_input("normal: body is that of the undeformed body: with kinematics: large use rigid "
+                    "or deformed");
+  RigidSurface contact{side.boundary, surface};
+  if (choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve")
+    contact.at_rest = side.at;
+  if (normal == "deformed") {
+    if (!side.normal) throw bad_input("normal: deformed needs a boundary on a circle ('curves:')");
+    contact.body_normal = side.normal;
+  }
+  contact.friction = friction;
+  contact.lumped = yes_or(node, "lumped", false);
+  return rigid_contact(contact);
+}
+
+RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface> &surface,
+                     const Friction &friction, const Scene &scene) {
+  const std::string choice = normal_choice(node);
+  if (choice == "deformed")
+    throw bad_input("normal: deformed is that of the deformed body: use it with kinematics: large");
+  if (choice == "body" && !side.normal)
+    throw bad_input("normal: body needs a boundary on a circle ('curves:')");
+  const Named<PointMap> normal = choice == "rigid" || !side.normal
+                                     ? normal_of_surface(surface, side.at ? side.at : scene.map)
+                                     : side.normal;
+  const std::string gap = choice_or(node, "gap", "closest", {"closest", "ray", "vertical"});
+  const GapKind kind = gap == "ray"        ? GapKind::ray
+                       : gap == "vertical" ? GapKind::vertical
+                                           : GapKind::closest;
+  Support support{side.boundary, normal,
+                  gap_to_surface(surface, measured_from(node, side, scene), normal, kind), friction,
+                  yes_or(node, "lumped", false)};
+  support.body_normal = side.normal;
+  return rigid_contact(support);
+}
+
+RigidContact disk_contact(Reader &reader, const CaseNode &node, const CaseNode &disk,
+                          const Side &side, Scene &scene) {
+  check_used(node, "with a disk",
+             {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
+              "nitsche_gamma0", "lumped"});
+  const std::vector<Expression> centre = components_in(reader, entry(disk, "center"));
+  const Formula radius = formula_in(reader, entry(disk, "radius"));
+  const Named<Surface> surface =
+      disk_surface(point_map_of(formula_of(reader, centre)), coefficient_of(radius));
+  const Friction friction = friction_in(reader, node, scene);
+  return is_large(node) ? following(node, side, surface, friction)
+                        : at_rest(node, side, surface, friction, scene);
+}
+
+RigidContact plane_contact(Reader &reader, const CaseNode &node, const CaseNode &table,
+                           const Side &side, Scene &scene) {
+  check_used(node, "with a plane",
+             {"at", "against", "friction", "kinematics", "formulation", "nitsche_gamma0", "lumped",
+              "closed_ends"});
+  if (is_large(node)) throw bad_input("kinematics: large is not for a plane yet: use small");
+  const std::vector<double> normal = numbers_in(reader, entry(table, "normal"), 2);
+  HalfPlane plane{side.boundary,
+                  {normal[0], normal[1], 0},
+                  {},
+                  coefficient_of(formula_in(reader, entry(table, "position")))};
+  if (const CaseNode *pivot = table.find("pivot")) {
+    const std::vector<double> x = numbers_in(reader, *pivot, 2);
+    plane.pivot = {x[0], x[1], 0};
+  }
+  if (const CaseNode *tilt = table.find("tilt"))
+    plane.tilt = coefficient_of(formula_in(reader, *tilt));
+  plane.surface = side.at;
+  plane.body_normal = side.normal;
+  plane.friction = friction_in(reader, node, scene);
+  plane.lumped = yes_or(node, "lumped", false);
+  if (const CaseNode *ends = node.find("closed_ends")) {
+    if (ends->items.size() != 2 || is_yes(ends->items[0]) != is_yes(ends->items[1]))
+      throw bad_input("with a plane both ends are closed, [yes, yes], or none is");
+    plane.closed_ends = is_yes(ends->items[0]);
+  }
+  return rigid_contact(plane);
+}
+
+ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const CaseNode &against,
+                                   Scene &scene) {
+  const CaseNode *disk = against.find("disk"), *plane = against.find("plane");
+  if ((disk == nullptr) == (plane == nullptr))
+    throw bad_input("against: a boundary, {disk: {...}} or {plane: {...}}");
+  const Side side = side_of(reader, entry(node, "at").value, scene);
+  const RigidContact rigid = disk != nullptr ? disk_contact(reader, node, *disk, side, scene)
+                                             : plane_contact(reader, node, *plane, side, scene);
+  if (choice_or(node, "formulation", "mixed", {"mixed", "nitsche"}) == "mixed")
+    return by_multipliers(rigid);
+  const double gamma0 = number_or(reader, node, "nitsche_gamma0", usual_gamma0);
+  if (!(gamma0 >= gamma0_range.lower && gamma0 <= gamma0_range.upper))
+    throw bad_input("nitsche_gamma0 is " + short_number(gamma0) + ": it lies between 0.1 and 2000");
+  return by_nitsche(rigid, gamma0);
+}
+
+ContactRecipe with_another_body(const CaseNode &node, const std::string &master) {
+  check_used(node, "between bodies",
+             {"at", "against", "kinematics", "multiplier", "integration", "closed_ends"});
+  const std::string &slave = entry(node, "at").value;
+  const MultiplierSpace space = choice_or(node, "multiplier", "p0", {"p0", "p1"}) == "p1"
+                                    ? MultiplierSpace::nodes
+                                    : MultiplierSpace::macro_edges;
+  const bool direct =
+      choice_or(node, "integration", "intersection", {"intersection", "direct"}) == "direct";
+  if (is_large(node)) {
+    if (direct)
+      throw bad_input("integration: direct is for small deformations: leave it out with "
+                      "kinematics: large");
+    return deformed_bodies({slave, master, space});
+  }
+  Pair pair{slave, master, {space, direct ? PairQuadrature::direct : PairQuadrature::intersection}};
+  if (const CaseNode *ends = node.find("closed_ends")) {
+    if (ends->items.size() != 2) throw bad_input("closed_ends are two, [yes, no]");
+    pair.closed_ends = {is_yes(ends->items[0]), is_yes(ends->items[1])};
+  }
+  return two_bodies(pair);
+}
+
+ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
+  const CaseNode *above = node.find("above"), *against = node.find("against");
+  if ((above == nullptr) == (against == nullptr))
+    throw bad_input("contact is 'above: HEIGHT' of a membrane, or 'against:' something");
+  if ((above != nullptr) != (scene.components == 1))
+    throw bad_input(above != nullptr ? "'above' is for a membrane: use 'against'"
+                                     : "a membrane has contact 'above: HEIGHT'");
+  if (above != nullptr) {
+    check_used(node, "of a membrane", {"at", "above", "lumped"});
+    return obstacle({entry(node, "at").value, point_value_of(formula_in(reader, *above)),
+                     yes_or(node, "lumped", false)});
+  }
+  return against->is_table() ? with_something_rigid(reader, node, *against, scene)
+                             : with_another_body(node, against->value);
+}
+
+} // namespace
+
+void read_contact(Reader &reader, Scene &scene, Defects &defects) {
+  const CaseNode &contacts = section(reader, "contact");
+  if (contacts.entries.empty()) defects.add(contacts, "no contact is named");
+  for (const auto &[name, node] : contacts.entries)
+    defects.collect(
+        node, [&, &value = node] { scene.contacts.push_back(contact_in(reader, value, scene)); });
+}
+
+} // namespace rbvi

@@ -1,0 +1,159 @@
+#include "reader.hpp"
+
+#include "rbvi/core/places.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace rbvi {
+
+namespace {
+
+void add_name(std::vector<std::string> &names, const std::string &name) {
+  if (name != "all" && std::ranges::find(names, name) == names.end()) names.push_back(name);
+}
+
+/// The regions and boundaries that the sections name: what a mesh from a file must have.
+MeshRecipe recipe_of_sections(const Reader &reader) {
+  MeshRecipe recipe;
+  const auto add = [](const CaseNode &node, const std::string &key, std::vector<std::string> &to) {
+    const CaseNode *at = node.find(key);
+    if (at != nullptr && (at->is_value() || !at->items.empty()) && !at->is_table())
+      for (const std::string &name : names_in(*at))
+        add_name(to, name);
+  };
+  for (const auto &[name, node] : section(reader, "materials").entries)
+    add(node, "at", recipe.regions);
+  for (const auto &[name, node] : section(reader, "loads").entries)
+    add(node, "at", node.find("force") != nullptr ? recipe.regions : recipe.boundaries);
+  for (const auto &[name, node] : section(reader, "imposed").entries)
+    add(node, "at", recipe.boundaries);
+  for (const auto &[name, node] : section(reader, "contact").entries) {
+    add(node, "at", node.find("above") != nullptr ? recipe.regions : recipe.boundaries);
+    add(node, "against", recipe.boundaries);
+  }
+  for (const auto &[name, node] : section(reader, "curves").entries)
+    if (std::ranges::find(recipe.regions, name) == recipe.regions.end()) {
+      add_name(recipe.boundaries, name);
+      recipe.curved.push_back(name);
+    }
+  return recipe;
+}
+
+/// Throws bad_input for a name that the shape does not have, or has of another kind.
+void check_parts(const MeshRecipe &shape, const MeshRecipe &named) {
+  const auto check = [&](const std::vector<std::string> &names,
+                         const std::vector<std::string> &known, const std::string &kind) {
+    for (const std::string &name : names)
+      if (std::ranges::find(known, name) == known.end())
+        throw bad_input("the built-in mesh " + shape.generator + " has no " + kind + " '" + name +
+                        "': it has " + (known.empty() ? "none" : joined(known)));
+  };
+  check(named.regions, shape.regions, "region");
+  check(named.boundaries, shape.boundaries, "boundary");
+}
+
+Circle circle_in(const Reader &reader, const CaseNode &node) {
+  const std::vector<double> circle = numbers_in(reader, entry(node, "circle"), 3);
+  if (!(circle[2] > 0)) throw bad_input("the radius of a circle is positive");
+  return {{circle[0], circle[1], 0}, circle[2], yes_or(node, "hole", false)};
+}
+
+/// Each circle once, for refined vertices.
+std::vector<Circle> all_circles(const Reader &reader) {
+  std::vector<Circle> all;
+  for (const auto &[name, circles] : reader.circles)
+    for (const Circle &circle : circles)
+      if (std::ranges::none_of(all, [&](const Circle &other) {
+            return other.centre == circle.centre && other.radius == circle.radius;
+          }))
+        all.push_back(circle);
+  return all;
+}
+
+} // namespace
+
+std::vector<Expression> map_of(const Reader &reader) {
+  const CaseNode &map = section(reader, "map");
+  if (map.is_table()) {
+    const std::string scale = "(" + expression_in(reader, entry(map, "scale")).text() + ") * ";
+    return {parse_expression(scale + "x"), parse_expression(scale + "y")};
+  }
+  if (map.is_value() && map.value.empty()) return {};
+  std::vector<Expression> components = components_in(reader, map);
+  if (components.size() != 2) throw bad_input("the map has two components, [x, y]");
+  return components;
+}
+
+std::vector<int> dependence_of_map(Reader &reader) {
+  return dependence_of(formula_of(reader, map_of(reader)));
+}
+
+bool is_similarity(Reader &reader, const Scene &scene) {
+  const std::vector<Expression> map = map_of(reader);
+  if (map.empty()) return true;
+  std::vector<std::string> names = reader.parameters;
+  names.insert(names.end(), {"x", "y", "z"});
+  std::vector<BoundExpression> bound;
+  for (const Expression &component : map)
+    bound.push_back(bound_to(expanded(component, reader.lets), names, {"x", "y"}));
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(0, 1);
+  constexpr int points = 400;
+  for (int i = 0; i < points; ++i) {
+    std::vector<double> at;
+    for (const Parameter &parameter : scene.parameters.all)
+      at.push_back(parameter.lower + unit(random) * (parameter.upper - parameter.lower));
+    // Bodies are of any size: six decades of it about 1.
+    const double size = std::pow(10, 6 * unit(random) - 3), angle = 2 * M_PI * unit(random);
+    at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle), 0});
+    std::array<std::array<double, 2>, 2> by{};
+    for (std::size_t c = 0; c < 2; ++c) {
+      double value;
+      bound[c].value_and_gradient(at.data(), value, by[c].data());
+    }
+    const double one = std::hypot(by[0][0], by[1][0]), two = std::hypot(by[0][1], by[1][1]);
+    const double skew = by[0][0] * by[0][1] + by[1][0] * by[1][1];
+    if (!(std::abs(one - two) <= 1e-10 * one && std::abs(skew) <= 1e-10 * one * two)) return false;
+  }
+  return true;
+}
+
+void read_mesh(Reader &reader, Scene &scene, Defects &defects) {
+  const CaseNode &mesh = section(reader, "mesh");
+  const CaseNode *shape_name = mesh.find("built_in"), *file = mesh.find("file");
+  const std::string usual = section(reader, "physics").value == "membrane" ? "1" : "2";
+  defects.collect(mesh, [&] {
+    scene.degree = choice_or(mesh, "degree", usual, {"1", "2"}) == "2" ? 2 : 1;
+    if ((shape_name == nullptr) == (file == nullptr))
+      throw bad_input("a mesh is 'built_in: SHAPE' or 'file: FILE.msh'");
+    scene.mesh = recipe_of_sections(reader);
+    if (shape_name == nullptr) return;
+    ShapeNumbers numbers;
+    const double edges = number_or(reader, mesh, "edges", 0);
+    if (edges != std::floor(edges) || edges < 0 || edges > 1e6)
+      throw bad_input("edges is " + short_number(edges) + ": it must be a whole number");
+    numbers.edges = static_cast<int>(edges);
+    numbers.angle = number_or(reader, mesh, "angle", numbers.angle);
+    Shape shape = shape_of(shape_name->value, numbers);
+    check_parts(shape.recipe, scene.mesh);
+    scene.mesh = std::move(shape.recipe);
+    reader.circles = std::move(shape.circles);
+  });
+  for (const auto &[name, node] : section(reader, "curves").entries)
+    defects.collect(node, [&, &own = name, &value = node] {
+      reader.circles[own] = {circle_in(reader, value)};
+    });
+  const std::vector<Circle> circles = all_circles(reader);
+  if (!circles.empty()) scene.snap = [circles](const Point &x) { return on_circles(circles, x); };
+  const CaseNode &map = section(reader, "map");
+  defects.collect(map, [&] {
+    const std::vector<Expression> components = map_of(reader);
+    scene.map = components.empty() ? identity() : point_map_of(formula_of(reader, components));
+  });
+}
+
+} // namespace rbvi

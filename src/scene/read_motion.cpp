@@ -1,0 +1,110 @@
+#include "reader.hpp"
+
+#include "rbvi/core/text.hpp"
+
+namespace rbvi {
+
+namespace {
+
+const std::vector<std::string> displacements{"ux", "uy"};
+
+bool is_zero(const Expression &value) {
+  return value.constant() == 0.0;
+}
+
+/// What a boundary imposes by component; unset: free. The word motion is the motion itself.
+using Imposed = std::vector<std::optional<Expression>>;
+
+Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
+                   const std::vector<Expression> &motion) {
+  Imposed imposed;
+  if (components == 1) {
+    if (node.find("ux") != nullptr || node.find("uy") != nullptr)
+      throw bad_input("the displacement of a membrane is u");
+    return {expression_in(reader, entry(node, "u"))};
+  }
+  if (node.find("u") != nullptr) throw bad_input("the displacement has the components ux and uy");
+  for (std::size_t c = 0; c < displacements.size(); ++c) {
+    const CaseNode *value = node.find(displacements[c]);
+    if (value == nullptr)
+      imposed.emplace_back();
+    else if (value->value != "motion")
+      imposed.emplace_back(expression_in(reader, *value));
+    else if (motion.empty())
+      throw bad_input("there is no 'motion:' of the bodies");
+    else
+      imposed.emplace_back(motion[c]);
+  }
+  if (!imposed[0] && !imposed[1]) throw bad_input("neither ux nor uy is imposed");
+  return imposed;
+}
+
+/// The motion that moves the one body as what is imposed moves its boundary; empty: none.
+std::vector<Expression> derived_motion(Reader &reader, const Scene &scene) {
+  const auto &all = section(reader, "imposed").entries;
+  if (scene.components != 2 || all.size() != 1) return {};
+  const Imposed imposed = imposed_in(reader, all.front().second, 2, {});
+  if (!imposed[0] || !imposed[1] || (is_zero(*imposed[0]) && is_zero(*imposed[1]))) return {};
+  std::vector<Expression> motion{*imposed[0], *imposed[1]};
+  return depends_on_point(formula_of(reader, motion)) ? std::vector<Expression>{} : motion;
+}
+
+/// value - motion on a boundary, component by component.
+void add_values(Reader &reader, const Expression &value, std::size_t c, FixedBoundary &boundary) {
+  std::vector<Expression> components(c, parse_expression("0"));
+  const auto products = products_of(reader, value);
+  if (!products) {
+    components.push_back(value);
+    const Formula formula = formula_of(reader, components);
+    boundary.values.push_back({point_map_of(formula), std::nullopt, dependence_of(formula)});
+    return;
+  }
+  for (const Product &product : *products) {
+    std::vector<Expression> own = components;
+    own.push_back(product.at_point);
+    boundary.values.push_back({point_map_of(formula_of(reader, own)), product.factors});
+  }
+}
+
+FixedBoundary boundary_in(Reader &reader, const CaseNode &node,
+                          const std::vector<Expression> &motion, int count) {
+  FixedBoundary boundary{entry(node, "at").value, {}};
+  const Imposed imposed = imposed_in(reader, node, count, motion);
+  for (std::size_t c = 0; c < imposed.size(); ++c) {
+    if (!imposed[c]) continue;
+    boundary.components.push_back(static_cast<int>(c));
+    if (motion.empty() && !is_zero(*imposed[c]))
+      add_values(reader, *imposed[c], c, boundary);
+    else if (!motion.empty() && imposed[c]->text() != motion[c].text())
+      add_values(reader,
+                 parse_expression("(" + imposed[c]->text() + ") - (" + motion[c].text() + ")"), c,
+                 boundary);
+  }
+  if (static_cast<int>(boundary.components.size()) == count) boundary.components.clear();
+  return boundary;
+}
+
+} // namespace
+
+void read_motion(Reader &reader, Scene &scene, Defects &defects) {
+  const CaseNode &given = section(reader, "motion");
+  std::vector<Expression> motion;
+  defects.collect(given, [&] {
+    if (!given.items.empty())
+      motion = components_in(reader, given);
+    else
+      motion = derived_motion(reader, scene);
+    if (!motion.empty() && motion.size() != static_cast<std::size_t>(scene.components))
+      throw bad_input("the motion has " + counted(scene.components, "component"));
+    if (!motion.empty()) scene.motion = point_map_of(formula_of(reader, motion));
+  });
+  for (const auto &[name, node] : section(reader, "imposed").entries)
+    defects.collect(node, [&, &value = node] {
+      for (const std::string &boundary : names_in(entry(value, "at"))) {
+        scene.fixed.push_back(boundary_in(reader, value, motion, scene.components));
+        scene.fixed.back().name = boundary;
+      }
+    });
+}
+
+} // namespace rbvi

@@ -1,0 +1,143 @@
+#include "reader.hpp"
+
+#include "rbvi/core/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rbvi {
+
+const CaseNode &section(const Reader &reader, const std::string &name) {
+  static const CaseNode none;
+  const CaseNode *found = reader.root.find(name);
+  return found == nullptr ? none : *found;
+}
+
+Expression expression_in(const Reader &reader, const CaseNode &node) {
+  if (!node.is_value() || node.value.empty())
+    throw bad_input("a number or an expression belongs here");
+  try {
+    return parse_expression(node.value);
+  } catch (const Error &error) {
+    // "205 GPa" is no expression.
+    if (std::isdigit(static_cast<unsigned char>(node.value[node.value[0] == '-' ? 1 : 0])) == 0)
+      throw;
+    try {
+      const Quantity quantity = parse_quantity(node.value, reader.units);
+      return Expression({{Operation::number, 0, quantity.value}}, {});
+    } catch (const Error &of_quantity) {
+      const bool has_words = node.value.find(' ') != std::string::npos;
+      throw bad_input(has_words ? of_quantity.what() : error.what());
+    }
+  }
+}
+
+double number_in(const Reader &reader, const CaseNode &node) {
+  const Expression value = expanded(expression_in(reader, node), reader.lets);
+  if (!value.constant())
+    throw bad_input("'" + node.value + "' has the name " + value.free_names().front() +
+                    ": a number belongs here");
+  if (!std::isfinite(*value.constant()))
+    throw bad_input("'" + node.value + "' is not finite: a number belongs here");
+  return *value.constant();
+}
+
+double number_or(const Reader &reader, const CaseNode &table, const std::string &name,
+                 double otherwise) {
+  const CaseNode *node = table.find(name);
+  return node == nullptr ? otherwise : number_in(reader, *node);
+}
+
+std::vector<double> numbers_in(const Reader &reader, const CaseNode &list, std::size_t count) {
+  if (list.kind != CaseNode::Kind::list || list.items.size() != count)
+    throw bad_input("a list of " + std::to_string(count) + " numbers belongs here");
+  std::vector<double> numbers;
+  for (const CaseNode &item : list.items)
+    numbers.push_back(number_in(reader, item));
+  return numbers;
+}
+
+std::string choice_or(const CaseNode &table, const std::string &name, const std::string &otherwise,
+                      const std::vector<std::string> &choices) {
+  const CaseNode *node = table.find(name);
+  if (node == nullptr) return otherwise;
+  if (std::ranges::find(choices, node->value) == choices.end())
+    throw bad_input(name + " is '" + node->value + "': use one of " + joined(choices));
+  return node->value;
+}
+
+bool is_yes(const CaseNode &node) {
+  if (node.value == "yes" || node.value == "true") return true;
+  if (node.value == "no" || node.value == "false") return false;
+  throw bad_input("'" + node.value + "': use yes or no");
+}
+
+bool yes_or(const CaseNode &table, const std::string &name, bool otherwise) {
+  const CaseNode *node = table.find(name);
+  return node == nullptr ? otherwise : is_yes(*node);
+}
+
+std::vector<std::string> names_in(const CaseNode &node) {
+  std::vector<std::string> names;
+  if (node.is_value())
+    for (const std::string &name : split(node.value, ','))
+      names.push_back(trimmed(name));
+  for (const CaseNode &item : node.items)
+    names.push_back(item.value);
+  if (names.empty()) throw bad_input("a name, or a list of names, belongs here");
+  return names;
+}
+
+const CaseNode &entry(const CaseNode &table, const std::string &name) {
+  const CaseNode *found = table.find(name);
+  if (found == nullptr) throw bad_input("'" + name + "' is missing");
+  return *found;
+}
+
+Formula formula_of(Reader &reader, std::vector<Expression> values) {
+  Formula formula{std::move(values), reader.lets, reader.parameters};
+  for (const int position : dependence_of(formula))
+    reader.used.insert(reader.parameters[static_cast<std::size_t>(position)]);
+  return formula;
+}
+
+Formula formula_in(Reader &reader, const CaseNode &node) {
+  return formula_of(reader, {expression_in(reader, node)});
+}
+
+std::vector<Expression> components_in(const Reader &reader, const CaseNode &node) {
+  if (node.is_value()) return {expression_in(reader, node)};
+  std::vector<Expression> components;
+  for (const CaseNode &item : node.items)
+    components.push_back(expression_in(reader, item));
+  if (components.empty() || components.size() > 3)
+    throw bad_input("a list of components, [x, y], belongs here (a comma inside of [ ] begins the "
+                    "next one: quote expressions that have commas)");
+  return components;
+}
+
+Factor factor_of(Reader &reader, const Expression &value) {
+  const Formula formula = formula_of(reader, {value});
+  Factor factor{expanded(value, reader.lets).text(), coefficient_of(formula),
+                dependence_of(formula)};
+  for (const int position : factor.parameters)
+    if (reader.log_spaced.contains(reader.parameters[static_cast<std::size_t>(position)]))
+      factor.coordinates[position] = {logarithm(), exponential()};
+  return factor;
+}
+
+std::optional<std::vector<Product>> products_of(Reader &reader, const Expression &value) {
+  const Expression whole = expanded(value, reader.lets);
+  const auto sum = separated(whole, reader.parameters);
+  if (!sum) return std::nullopt;
+  std::vector<Product> products;
+  for (const auto &[in_parameters, at_point] : *sum) {
+    if (in_parameters.constant() == 0 || at_point.constant() == 0) continue;
+    Product product{{}, at_point};
+    if (in_parameters.constant() != 1) product.factors = {factor_of(reader, in_parameters)};
+    products.push_back(std::move(product));
+  }
+  return products;
+}
+
+} // namespace rbvi

@@ -1,0 +1,92 @@
+// What the sections of a case file are read with.
+#pragma once
+
+#include "rbvi/scene/document.hpp"
+#include "shapes.hpp"
+
+#include "rbvi/core/formula.hpp"
+#include "rbvi/core/units.hpp"
+
+#include <optional>
+#include <set>
+
+namespace rbvi {
+
+/// A case file with its changes while its scene is made.
+struct Reader {
+  const CaseNode &root;
+  std::optional<UnitSystem> units{};
+  std::vector<Parameter> constants{}; ///< parameters without a range, the first of the lets
+  std::vector<Let> lets{};
+  std::vector<std::string> parameters{}; ///< names, in the order of FullMu
+  std::set<std::string> log_spaced{};    ///< parameters
+  std::set<std::string> used{};          ///< parameters that some function depends on
+  std::map<std::string, std::vector<Circle>> circles{}; ///< by boundary or region
+};
+
+/// The table of a section, empty if there is none.
+const CaseNode &section(const Reader &reader, const std::string &name);
+
+/// A number with a unit, or an expression. Throws bad_input with the column in the text.
+Expression expression_in(const Reader &reader, const CaseNode &node);
+/// The same without names. Throws bad_input where it is not finite.
+double number_in(const Reader &reader, const CaseNode &node);
+double number_or(const Reader &reader, const CaseNode &table, const std::string &name,
+                 double otherwise);
+/// Two, or as many as asked for.
+std::vector<double> numbers_in(const Reader &reader, const CaseNode &list, std::size_t count);
+
+/// The text of an entry that is one of some. Throws bad_input.
+std::string choice_or(const CaseNode &table, const std::string &name, const std::string &otherwise,
+                      const std::vector<std::string> &choices);
+/// yes, no, true or false.
+bool is_yes(const CaseNode &node);
+bool yes_or(const CaseNode &table, const std::string &name, bool otherwise);
+/// A name, "a, b" or [a, b].
+std::vector<std::string> names_in(const CaseNode &node);
+/// An entry that must be there.
+const CaseNode &entry(const CaseNode &table, const std::string &name);
+
+/// What is this value by itself, a parameter or a constant, cannot leave the range.
+void limit(Reader &reader, const Expression &value, const Range &range, Scene &scene);
+
+/// Of some expressions; the parameters that they depend on count as used.
+Formula formula_of(Reader &reader, std::vector<Expression> values);
+Formula formula_in(Reader &reader, const CaseNode &node);
+/// The components of a list, or of a single value the first.
+std::vector<Expression> components_in(const Reader &reader, const CaseNode &node);
+
+/// A factor that is an expression in parameters alone, with the coordinates of these.
+Factor factor_of(Reader &reader, const Expression &value);
+
+/// A function as sum of products: factors in parameters and functions of the point, lets written
+/// out; empty where it does not separate.
+struct Product {
+  std::vector<Factor> factors; ///< none: 1
+  Expression at_point;
+};
+std::optional<std::vector<Product>> products_of(Reader &reader, const Expression &value);
+
+/// Sections, in the order in which they depend on each other. They throw bad_input, or collect
+/// defects one by one.
+void read_parameters(Reader &reader, Scene &scene, Defects &defects);
+void read_mesh(Reader &reader, Scene &scene, Defects &defects);
+void read_motion(Reader &reader, Scene &scene, Defects &defects);
+void read_physics(Reader &reader, Scene &scene, Defects &defects);
+void read_contact(Reader &reader, Scene &scene, Defects &defects);
+
+/// Defaults outside of their limits and of those that what they are gives them. After
+/// all sections.
+void check_limits(const Reader &reader, const Scene &scene, Defects &defects);
+
+/// Positions of the parameters that the map depends on.
+std::vector<int> dependence_of_map(Reader &reader);
+/// The components of the map; none: the identity.
+std::vector<Expression> map_of(const Reader &reader);
+/// Whether the map is a similarity wherever it is smooth, at random points and parameters.
+bool is_similarity(Reader &reader, const Scene &scene);
+
+/// Unknown names, shapes and expressions of the whole file.
+void check_keys(const Reader &reader, Defects &defects);
+
+} // namespace rbvi

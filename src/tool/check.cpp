@@ -1,0 +1,134 @@
+// rbvi check: a case before anything is made of it. rbvi new: a case to begin with.
+#include "rbvi/core/box.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
+#include "rbvi/fem/check_scene.hpp"
+#include "rbvi/io/write_atomically.hpp"
+#include "rbvi/model/print.hpp"
+#include "rbvi/mor/reduce.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/solve/high_fidelity.hpp"
+#include "rbvi/tool/cases.hpp"
+#include "rbvi/tool/commands.hpp"
+
+#include <cstdio>
+#include <iostream>
+
+namespace rbvi {
+
+namespace {
+
+constexpr const char *random_points = "random:20:1";
+
+/// Each of the work's complaints is one more line.
+class Complaints {
+public:
+  template <class Work> void collect(const std::string &at, Work &&work) {
+    try {
+      std::forward<Work>(work)();
+    } catch (const Error &error) {
+      text_ += (text_.empty() ? "" : "\n") + (at.empty() ? "" : at + ": ") + error.what();
+    }
+  }
+  void throw_all() const {
+    if (!text_.empty()) throw bad_input(text_);
+  }
+
+private:
+  std::string text_;
+};
+
+/// "lambda of poisson_ratio * shear, ..."
+std::string factors_of(const Term &term, const ParameterSpace &space) {
+  if (!term.theta) {
+    std::vector<std::string> names;
+    for (const int i : term.parameters.value_or(std::vector<int>{}))
+      names.push_back(space.all[static_cast<std::size_t>(i)].name);
+    return "interpolated over " + (names.empty() ? std::string("nothing") : joined(names, ", "));
+  }
+  std::vector<std::string> names;
+  for (const Factor &factor : *term.theta)
+    if (!factor.parameters.empty()) names.push_back(factor.name);
+  return "exact" + (names.empty() ? std::string(", constant") : ", times " + joined(names, " * "));
+}
+
+void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
+  for (const Term &term : sum)
+    if (!term.of_imposed) std::printf("  %-10s %s\n", name, factors_of(term, space).c_str());
+}
+
+void print_scene(const Problem &problem) {
+  const Scene &scene = problem.scene();
+  std::printf("%s: %s\n", scene.name.c_str(), scene.summary.c_str());
+  for (const Parameter &p : scene.parameters.all) {
+    const bool free = find_free(scene.parameters, p.name).has_value();
+    std::printf(
+        "  %-20s %s %s\n", p.name.c_str(),
+        (free ? describe(Range{p.lower, p.upper}) : short_number(p.value) + " (fixed)").c_str(),
+        p.unit.c_str());
+  }
+  std::printf("  %-20s %ld dofs, %ld contact nodes\n", "mesh", long(problem.dofs().total),
+              long(problem.contact().nodes()));
+  print_sum("a", scene.a, scene.parameters);
+  print_sum("f", scene.f, scene.parameters);
+  std::printf("  %-10s %s\n", "b and g",
+              separable_contact(scene) ? "interpolated where they vary" : "evaluated at each mu");
+}
+
+/// Contact and the mapped mesh at the corners of the box and at random points.
+void check_points(Problem &problem) {
+  const ParameterSpace &space = problem.scene().parameters;
+  std::vector<Mu> points = corners_and_faces(space);
+  if (space.size() > 0)
+    for (Mu &mu : parse_set(space, random_points))
+      points.push_back(std::move(mu));
+  Complaints complaints;
+  for (const Mu &mu : points)
+    complaints.collect("at " + describe(space, mu), [&] {
+      check_query(problem.scene(), mu, false);
+      problem.assemble(mu);
+    });
+  complaints.throw_all();
+}
+
+/// Every variant of the case can be read.
+void check_variants(const ToolOptions &options) {
+  const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
+  Complaints complaints;
+  for (const auto &[variant, says] : entry.variants)
+    complaints.collect("variant " + variant, [&, &name = variant] {
+      (void)make_scene(read_case(options.scene_text, options.case_name.string(), {name, {}}));
+    });
+  complaints.throw_all();
+}
+
+} // namespace
+
+void command_check(const ToolOptions &options) {
+  const MPI_Comm world = PETSC_COMM_WORLD;
+  collectively(world, [&] { check_variants(options); });
+  Problem problem(world, options.scene, options.mesh, options.contact_gather);
+  check_scene(problem);
+  if (rank_of(world) == 0) print_scene(problem);
+  check_points(problem);
+  const Mu mu = box_centre(problem.scene().parameters);
+  const std::string at = describe(problem.scene().parameters, mu);
+  const HfSolution solution =
+      while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
+  if (rank_of(world) != 0) return;
+  std::printf("at the middle of the box, %s:\n", at.c_str());
+  print_outputs(std::cout, solution.outputs);
+  std::printf("no defect was found\n");
+}
+
+void command_new(const std::string &name) {
+  namespace fs = std::filesystem;
+  const fs::path file = fs::path(name) / "case.yaml";
+  if (fs::exists(file)) throw bad_input(file.string() + " is there already: give another name");
+  make_directory(name);
+  write_atomically(file, new_case());
+  std::printf("wrote %s: rbvi check %s\n", file.c_str(), file.c_str());
+}
+
+} // namespace rbvi

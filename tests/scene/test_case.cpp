@@ -1,0 +1,200 @@
+// Case files: what becomes of what they say.
+#include "rbvi/core/error.hpp"
+#include "rbvi/scene/case.hpp"
+#include "tests/catalogue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi::case_test {
+namespace {
+
+/// A block on a floor, with other lines for some of its sections.
+std::string block(const std::map<std::string, std::string> &other = {}) {
+  std::map<std::string, std::string> sections{
+      {"rbvi", "1"},
+      {"physics", "plane_strain"},
+      {"mesh", "{built_in: one_block}"},
+      {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, "
+                     "k: {range: [0.5, 20], default: 1}, nu: {range: [0.1, 0.4], default: 0.3}, "
+                     "young: {default: 15, limits: [1, 100]}}"},
+      {"materials", "{rubber: {at: all, E: young*k, nu: nu}}"},
+      {"imposed", "{top: {at: top, ux: 0, uy: -depth}}"},
+      {"contact", "{floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}}}"}};
+  for (const auto &[name, text] : other)
+    sections[name] = text;
+  std::string all;
+  for (const auto &[name, text] : sections)
+    if (!text.empty()) all += name + ": " + text + "\n";
+  return all;
+}
+
+SceneEntry entry_in(const std::map<std::string, std::string> &other,
+                    const CaseChanges &changes = {}) {
+  return read_case(block(other), "block.yaml", changes);
+}
+
+Scene scene_of(const std::map<std::string, std::string> &other = {},
+               const SceneOptions &options = {}, const CaseChanges &changes = {}) {
+  return make_scene(entry_in(other, changes), options);
+}
+
+std::vector<std::string> names_in(const Scene &scene) {
+  std::vector<std::string> names;
+  for (const Parameter &parameter : scene.parameters.all)
+    names.push_back(parameter.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(Case, IsAScene) {
+  const Scene scene = scene_of();
+  EXPECT_EQ(scene.name, "block");
+  EXPECT_EQ(scene.degree, 2);
+  EXPECT_EQ(scene.components, 2);
+  EXPECT_EQ(names_in(scene), (Names{"depth", "k", "nu"}));
+  EXPECT_EQ(scene.parameters.size(), 3);
+  ASSERT_EQ(scene.fixed.size(), 1U);
+  EXPECT_TRUE(scene.fixed[0].values.empty()) << "the block moves as a whole";
+  EXPECT_EQ(scene.motion({0.07, 1, 0.3}, {}), (Point{0, -0.07, 0}));
+  const auto [lambda, shear] = scene.material({0.05, 2, 0.25}, {});
+  EXPECT_NEAR(shear, 30 / 2.5, 1e-14);
+  EXPECT_NEAR(lambda, 30 * 0.25 / (1.25 * 0.5), 1e-14);
+}
+
+TEST(Case, AStiffnessIsExactWhereItSeparates) {
+  const Scene scene = scene_of();
+  ASSERT_EQ(scene.a.size(), 2U);
+  for (const Term &term : scene.a)
+    EXPECT_TRUE(term.theta);
+  const Term &first = scene.a.front();
+  ASSERT_EQ(first.theta->size(), 2U);
+  EXPECT_EQ(first.theta->front().parameters, std::vector<int>{1});
+  EXPECT_EQ(first.theta->front().coordinates.count(1), 1U) << "more than a decade: logarithmic";
+  EXPECT_EQ(first.theta->back().parameters, std::vector<int>{2});
+  const Scene by_place =
+      scene_of({{"materials", "{rubber: {at: all, E: 'young * (x < 0.5 ? k : 1)', nu: nu}}"}});
+  EXPECT_EQ(by_place.a.size(), 4U);
+  const Scene turned =
+      scene_of({{"map", "['(x*cos(k) - y*sin(k)) * depth', '(x*sin(k) + y*cos(k)) * depth + k']"}});
+  EXPECT_TRUE(turned.a.front().theta) << "a similarity";
+  const Scene sheared = scene_of({{"map", "[x + depth*y, y]"}});
+  ASSERT_EQ(sheared.a.size(), 1U);
+  EXPECT_FALSE(sheared.a.front().theta);
+  EXPECT_EQ(sheared.a.front().parameters, (std::vector<int>{0, 1, 2}));
+  const Scene tangled = scene_of({{"materials", "{rubber: {at: all, E: young*exp(k*x), nu: nu}}"}});
+  EXPECT_FALSE(tangled.a.front().theta);
+}
+
+TEST(Case, LoadsAreExactWhereTheDomainIsFixed) {
+  const std::string load = "{own: {at: all, force: [0, -k*(1 + x)]}, "
+                           "side: {at: sides, pressure: depth}}";
+  const Scene fixed = scene_of({{"loads", load}});
+  ASSERT_EQ(fixed.f.size(), 3U) << "one component of the force, two of the pressure";
+  for (const Term &term : fixed.f)
+    EXPECT_TRUE(term.theta);
+  const Scene moved = scene_of({{"loads", load}, {"map", "{scale: 1 + depth}"}});
+  for (const Term &term : moved.f)
+    EXPECT_FALSE(term.theta);
+  EXPECT_TRUE(scene_of({{"loads", "{none: {at: all, force: [0, 0]}}"}}).f.empty());
+}
+
+TEST(Case, WhatIsImposedIsASumOfProducts) {
+  const Scene scene = scene_of({{"imposed", "{top: {at: top, uy: -depth*(1 + k*x)}}"}});
+  ASSERT_EQ(scene.fixed.size(), 1U);
+  EXPECT_EQ(scene.fixed[0].components, std::vector<int>{1});
+  EXPECT_FALSE(scene.motion);
+  double sum = 0;
+  const FullMu mu{0.1, 2, 0.3};
+  for (const ImposedTerm &term : scene.fixed[0].values) {
+    ASSERT_TRUE(term.theta);
+    double theta = 1;
+    for (const Factor &factor : *term.theta)
+      theta *= factor.value(mu);
+    EXPECT_EQ(term.value({}, {0.25, 0, 0})[0], 0);
+    sum += theta * term.value({}, {0.25, 0, 0})[1];
+  }
+  EXPECT_NEAR(sum, -0.15, 1e-15);
+}
+
+TEST(Case, AMotionTakesWhatIsImposedWithIt) {
+  const Scene scene = scene_of({{"motion", "[0, -depth]"},
+                                {"imposed", "{top: {at: top, ux: 0, uy: motion}, "
+                                            "sides: {at: sides, ux: 0, uy: 0}}"}});
+  EXPECT_TRUE(scene.fixed[0].values.empty());
+  ASSERT_EQ(scene.fixed[1].values.size(), 1U);
+  EXPECT_NEAR(scene.fixed[1].values[0].theta->front().value({0.05, 1, 0.3}) *
+                  scene.fixed[1].values[0].value({}, {})[1],
+              0.05, 1e-16);
+}
+
+TEST(Case, ConstantsMayBeChangedOrFreed) {
+  EXPECT_NEAR(scene_of({}, {{"young", "30"}}).material({0.05, 1, 0}, {}).shear, 15, 1e-14);
+  const Scene freed = scene_of({}, {{"young", "10,30"}});
+  EXPECT_EQ(names_in(freed), (Names{"depth", "k", "nu", "young"}));
+  EXPECT_EQ(freed.parameters.all[3].upper, 30);
+  EXPECT_TRUE(freed.a.front().theta);
+  EXPECT_THROW((void)scene_of({}, {{"young", "101"}}), Error);
+  EXPECT_THROW((void)scene_of({}, {{"young", "1,2,3"}}), Error);
+}
+
+TEST(Case, UnitsAreThoseOfTheSystem) {
+  const Scene scene = scene_of({{"units", "{length: mm, force: N}"},
+                                {"parameters", "{depth: {range: [10 um, 1 mm], default: 0.05 cm}}"},
+                                {"materials", "{steel: {at: all, E: 205 GPa, nu: 0.25}}"}});
+  EXPECT_NEAR(scene.parameters.all[0].lower, 0.01, 1e-17);
+  EXPECT_NEAR(scene.parameters.all[0].value, 0.5, 1e-15);
+  EXPECT_NEAR(scene.material({0.5}, {}).shear, 205000 / 2.5, 1e-9);
+}
+
+const std::map<std::string, std::string> chosen{
+    {"let", "{stiff: 1}"},
+    {"materials", "{rubber: {at: all, E: young*k*stiff, nu: nu}}"},
+    {"choices",
+     "{law: {default: none, none: {}, coulomb: {contact.floor.friction: {coulomb: 0.3}}}, "
+     "stiffness: {sets: let.stiff, range: [0, 10]}}"},
+    {"variants", "{hard: {says: harder, let.stiff: 4, choices.law.default: coulomb, "
+                 "options: {pod_tolerance: 1e-3}, train: grid:2}}"}};
+
+TEST(Case, ChoicesVariantsAndPathsChangeIt) {
+  EXPECT_FALSE(has_friction(scene_of(chosen)));
+  EXPECT_TRUE(has_friction(scene_of(chosen, {{"law", "coulomb"}})));
+  EXPECT_THROW((void)scene_of(chosen, {{"law", "glue"}}), Error);
+  const auto shear = [](const Scene &scene) { return scene.material({0, 1, 0}, {}).shear; };
+  EXPECT_NEAR(shear(scene_of(chosen, {{"stiffness", "2"}})), 15, 1e-14);
+  const SceneEntry hard = entry_in(chosen, {"hard", {}});
+  EXPECT_EQ(hard.variants.front().second, "harder");
+  EXPECT_EQ(hard.settings.front().value, "1e-3");
+  const Scene scene = make_scene(hard, {});
+  EXPECT_NEAR(shear(scene), 30, 1e-14);
+  EXPECT_TRUE(has_friction(scene));
+  EXPECT_EQ(scene.training, "grid:2");
+  EXPECT_NEAR(shear(make_scene(hard, {{"stiffness", "1"}})), 7.5, 1e-14);
+  EXPECT_NEAR(shear(scene_of(chosen, {{"stiffness", "2"}}, {"hard", {{"let.stiff", "8"}}})), 60,
+              1e-13);
+  EXPECT_THROW((void)entry_in(chosen, {"soft", {}}), Error);
+  EXPECT_THROW((void)entry_in(chosen, {"", {{"contact.wall.lumped", "yes"}}}), Error);
+}
+
+TEST(Case, ParametersThatNothingUsesAreLeftOut) {
+  const std::map<std::string, std::string> other{
+      {"materials", "{rubber: {at: all, E: young, nu: nu}}"}};
+  EXPECT_THROW((void)scene_of(other), Error) << "k would be free";
+  std::map<std::string, std::string> fixed = other;
+  fixed["free"] = "depth";
+  EXPECT_EQ(names_in(scene_of(fixed)), (Names{"depth", "nu"}));
+  EXPECT_EQ(scene_of(fixed).parameters.size(), 1);
+}
+
+TEST(Case, TheCasesOfTheRepositoryAndTheirVariantsAreScenes) {
+  for (const SceneEntry &entry : catalogue().scenes) {
+    EXPECT_NO_THROW((void)make_scene(entry, {})) << entry.name;
+    EXPECT_FALSE(entry.summary.empty());
+  }
+  EXPECT_NO_THROW((void)make_scene(read_case(new_case(), "new.yaml"), {}));
+}
+
+} // namespace
+} // namespace rbvi::case_test
