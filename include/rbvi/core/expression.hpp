@@ -40,7 +40,7 @@ enum class Operation : unsigned char {
 
 int operands_of(Operation operation);
 
-/// What a stack machine does in one step.
+/// What a stack machine would do in one step.
 struct Instruction {
   Operation operation = Operation::number;
   int name = 0;      ///< of a name, its position
@@ -70,25 +70,72 @@ private:
 /// Throws bad_input with the column, from 1, of what cannot be read.
 Expression parse_expression(std::string_view text);
 
-/// An expression with a place for the value of each name. Nothing is allocated in an evaluation.
-/// Values that are not finite are returned as they are. Both branches of "?" are evaluated, the
-/// value and derivatives are those of the branch taken. Derivatives at kinks: abs at 0 has 1, its
-/// own from the right; min and max of equal numbers have those of the first; hypot at (0, 0), sign,
-/// floor, ceil, comparisons, and, or, not have 0.
-class BoundExpression {
+/// Values by name, each of which may use the names of those before it.
+using Lets = std::vector<std::pair<std::string, Expression>>;
+
+/// One operation on registers.
+struct ProgramStep {
+  Operation operation;
+  unsigned short target, a, b, c;
+};
+
+/// Expressions in parameters and coordinates that are evaluated together: what they share once,
+/// what has parameters alone once per call, what no result needs never. Nothing is allocated in an
+/// evaluation; any number of threads may evaluate one. Values that are not finite are returned as
+/// they are. Both branches of "?" are evaluated, the value and derivatives are those of the branch
+/// taken. Derivatives at kinks: abs at 0 has 1, its own from the right; min and max of equal
+/// numbers have those of the first; hypot at (0, 0), sign, floor, ceil, comparisons, and, or, not
+/// have 0.
+class BoundProgram {
 public:
-  double value(const double *values) const;
-  /// `gradient`: a number for each name of `by` in bound_to().
-  void value_and_gradient(const double *values, double &value, double *gradient) const;
-  /// At `count` points; `columns`: count x names, column by column.
-  void values(const double *columns, std::size_t count, double *results) const;
+  /// At `count` points. `coordinates`: count x coordinates, `results`: count x results, both column
+  /// by column: for one point these are its coordinates and its results.
+  void values(const double *parameters, const double *coordinates, std::size_t count,
+              double *results) const;
+  /// `gradients`: count x (results x by), column by column: for one point, the gradient of the
+  /// first result, then that of the second.
+  void values_and_gradients(const double *parameters, const double *coordinates, std::size_t count,
+                            double *results, double *gradients) const;
 
 private:
-  friend BoundExpression bound_to(const Expression &, const std::vector<std::string> &,
-                                  const std::vector<std::string> &);
-  Program program_;
-  std::vector<int> slots_; ///< where in a gradient each name is; -1: nowhere
-  int gradient_size_ = 0;
+  friend struct ProgramBuilder;
+  void values_in_blocks(const double *start, const double *coordinates, std::size_t count,
+                        double *results) const;
+  // Registers: constants, parameters, what has parameters alone, coordinates, the rest.
+  std::vector<double> constants_;
+  std::vector<ProgramStep> fixed_, steps_; ///< with parameters alone; with coordinates
+  std::vector<int> results_;               ///< their registers
+  std::vector<int> slots_; ///< of parameters, then coordinates: their place in a gradient, or -1
+  int parameters_ = 0, first_coordinate_ = 0, coordinates_ = 0, gradient_size_ = 0;
+};
+
+/// Derivatives come in the order of `by`, which are some of the parameters and coordinates. Throws
+/// bad_input for a name that is not known where it is used, is given twice, or is no name.
+BoundProgram bound_program(const Lets &lets, const std::vector<Expression> &results,
+                           const std::vector<std::string> &parameters,
+                           const std::vector<std::string> &coordinates,
+                           const std::vector<std::string> &by);
+
+/// One expression with a place for the value of each name: a BoundProgram of one result.
+class BoundExpression {
+public:
+  explicit BoundExpression(BoundProgram program) : program_(std::move(program)) {}
+  double value(const double *values) const {
+    double result;
+    program_.values(nullptr, values, 1, &result);
+    return result;
+  }
+  /// `gradient`: a number for each name of `by` in bound_to().
+  void value_and_gradient(const double *values, double &value, double *gradient) const {
+    program_.values_and_gradients(nullptr, values, 1, &value, gradient);
+  }
+  /// At `count` points; `columns`: count x names, column by column.
+  void values(const double *columns, std::size_t count, double *results) const {
+    program_.values(nullptr, columns, count, results);
+  }
+
+private:
+  BoundProgram program_;
 };
 
 /// Values come in the order of `names`, derivatives in that of `by`, which are some of them. Throws
