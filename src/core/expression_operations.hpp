@@ -27,17 +27,16 @@ inline bool first_is_largest(double a, double b) {
 }
 
 /// Calls one of work.unary(f, df): f(x), and its derivative df(x, f(x)); work.binary(f, df): f(a,
-/// b), and its partial derivatives df(a, b, f(a, b)); work.choose().
+/// b), and its partial derivatives df(a, b, f(a, b)); work.jump(f): f(x) or f(a, b) of slope 0;
+/// work.pick(first): a if first(a, b), else b; work.choose().
 template <class Work> void with_operation(Operation operation, const Work &work) {
   using enum Operation;
   using Pair = SlopePair;
-  const auto flat = [](double, double) { return 0.0; };
-  const auto none = [](double, double, double) { return Pair(0, 0); };
   // clang-format off
   switch (operation) {
   case number: case name: return; // these are registers
   case negate: return work.unary([](double x) { return -x; }, [](double, double) { return -1.0; });
-  case negation: return work.unary([](double x) { return double(x == 0); }, flat);
+  case negation: return work.jump([](double x) { return double(x == 0); });
   case sqrt: return work.unary([](double x) { return std::sqrt(x); }, [](double, double f) { return 0.5 / f; });
   case cbrt: return work.unary([](double x) { return std::cbrt(x); }, [](double, double f) { return 1 / (3 * f * f); });
   case exp: return work.unary([](double x) { return std::exp(x); }, [](double, double f) { return f; });
@@ -54,28 +53,26 @@ template <class Work> void with_operation(Operation operation, const Work &work)
   case cosh: return work.unary([](double x) { return std::cosh(x); }, [](double x, double) { return std::sinh(x); });
   case tanh: return work.unary([](double x) { return std::tanh(x); }, [](double, double f) { return 1 - f * f; });
   case abs: return work.unary([](double x) { return std::abs(x); }, [](double x, double) { return x < 0 ? -1.0 : 1.0; });
-  case sign: return work.unary([](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : x; }, flat);
-  case floor: return work.unary([](double x) { return std::floor(x); }, flat);
-  case ceil: return work.unary([](double x) { return std::ceil(x); }, flat);
+  case sign: return work.jump([](double x) { return x > 0 ? 1.0 : x < 0 ? -1.0 : x; });
+  case floor: return work.jump([](double x) { return std::floor(x); });
+  case ceil: return work.jump([](double x) { return std::ceil(x); });
   case add: return work.binary([](double a, double b) { return a + b; }, [](double, double, double) { return Pair(1, 1); });
   case subtract: return work.binary([](double a, double b) { return a - b; }, [](double, double, double) { return Pair(1, -1); });
   case multiply: return work.binary([](double a, double b) { return a * b; }, [](double a, double b, double) { return Pair(b, a); });
   case divide: return work.binary([](double a, double b) { return a / b; }, [](double, double b, double f) { return Pair(1 / b, -f / b); });
   case power: return work.binary(power_of, slopes_of_power);
-  case less: return work.binary([](double a, double b) { return double(a < b); }, none);
-  case at_most: return work.binary([](double a, double b) { return double(a <= b); }, none);
-  case greater: return work.binary([](double a, double b) { return double(a > b); }, none);
-  case at_least: return work.binary([](double a, double b) { return double(a >= b); }, none);
-  case equal: return work.binary([](double a, double b) { return double(a == b); }, none);
-  case different: return work.binary([](double a, double b) { return double(a != b); }, none);
-  case both: return work.binary([](double a, double b) { return double(a != 0 && b != 0); }, none);
-  case either: return work.binary([](double a, double b) { return double(a != 0 || b != 0); }, none);
+  case less: return work.jump([](double a, double b) { return double(a < b); });
+  case at_most: return work.jump([](double a, double b) { return double(a <= b); });
+  case greater: return work.jump([](double a, double b) { return double(a > b); });
+  case at_least: return work.jump([](double a, double b) { return double(a >= b); });
+  case equal: return work.jump([](double a, double b) { return double(a == b); });
+  case different: return work.jump([](double a, double b) { return double(a != b); });
+  case both: return work.jump([](double a, double b) { return double(a != 0 && b != 0); });
+  case either: return work.jump([](double a, double b) { return double(a != 0 || b != 0); });
   case atan2: return work.binary([](double a, double b) { return std::atan2(a, b); },
                           [](double a, double b, double) { return Pair(b / (a * a + b * b), -a / (a * a + b * b)); });
-  case min: return work.binary([](double a, double b) { return first_is_least(a, b) ? a : b; },
-                        [](double a, double b, double) { return first_is_least(a, b) ? Pair(1, 0) : Pair(0, 1); });
-  case max: return work.binary([](double a, double b) { return first_is_largest(a, b) ? a : b; },
-                        [](double a, double b, double) { return first_is_largest(a, b) ? Pair(1, 0) : Pair(0, 1); });
+  case min: return work.pick(first_is_least);
+  case max: return work.pick(first_is_largest);
   case hypot: return work.binary([](double a, double b) { return std::hypot(a, b); },
                        [](double a, double b, double f) { return f == 0 ? Pair(0, 0) : Pair(a / f, b / f); });
   case choose: return work.choose();

@@ -10,6 +10,13 @@ namespace {
 
 using Step = ProgramStep;
 
+template <class Work, class F> void without_slopes(const Work &work, const F &f) {
+  if constexpr (std::is_invocable_v<F, double>)
+    work.unary(f, 0);
+  else
+    work.binary(f, 0);
+}
+
 /// A register holds a value.
 struct ValueStep {
   double *registers;
@@ -19,6 +26,11 @@ struct ValueStep {
   }
   template <class F, class Slopes> void binary(const F &f, const Slopes &) const {
     registers[step.target] = f(registers[step.a], registers[step.b]);
+  }
+  template <class F> void jump(const F &f) const { without_slopes(*this, f); }
+  template <class First> void pick(const First &first) const {
+    const double a = registers[step.a], b = registers[step.b];
+    registers[step.target] = first(a, b) ? a : b;
   }
   void choose() const {
     registers[step.target] = registers[registers[step.c] != 0 ? step.b : step.a];
@@ -43,6 +55,10 @@ struct BlockStep {
     const double *a = registers[step.a].data(), *b = registers[step.b].data();
     for (std::size_t i = 0; i < vector_size * vectors; ++i)
       to[i] = f(a[i], b[i]);
+  }
+  template <class F> void jump(const F &f) const { without_slopes(*this, f); }
+  template <class First> void pick(const First &first) const {
+    binary([&](double a, double b) { return first(a, b) ? a : b; }, 0);
   }
   void choose() const {
     double *__restrict to = registers[step.target].data();
@@ -80,6 +96,18 @@ struct VariedStep {
     const auto [by_a, by_b] = slopes(a.value, b.value, to.value);
     for (int i = 0; i < derivatives_at_once; ++i)
       to.by[i] = (a.by[i] == 0 ? 0 : by_a * a.by[i]) + (b.by[i] == 0 ? 0 : by_b * b.by[i]);
+  }
+  template <class F> void jump(const F &f) const {
+    Varied &to = registers[step.target];
+    if constexpr (std::is_invocable_v<F, double>)
+      to.value = f(registers[step.a].value);
+    else
+      to.value = f(registers[step.a].value, registers[step.b].value);
+    to.by = {};
+  }
+  template <class First> void pick(const First &first) const {
+    const Varied &a = registers[step.a], &b = registers[step.b];
+    registers[step.target] = first(a.value, b.value) ? a : b;
   }
   void choose() const {
     registers[step.target] = registers[registers[step.c].value != 0 ? step.b : step.a];
