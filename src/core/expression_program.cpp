@@ -17,11 +17,13 @@ namespace {
 
 constexpr double most_factors = 16; ///< of an integer power that is a product
 
+/// text(): where the name is.
+template <class Text>
 std::size_t position(const std::vector<std::string> &names, const std::string &name,
-                     const std::string &text) {
+                     const Text &text) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw bad_input("unknown name '" + name + "' in '" + text + "'" +
+    throw bad_input("unknown name '" + name + "' in '" + text() + "'" +
                     (names.empty() ? ": no name is known here"
                                    : ": the nearest is '" + nearest_name(name, names) + "'"));
   return static_cast<std::size_t>(found - names.begin());
@@ -84,7 +86,7 @@ struct ProgramBuilder {
   int compiled(const Expression &expression) {
     std::vector<int> place;
     for (const std::string &name : expression.free_names())
-      place.push_back(node_of_name[position(names, name, expression.text())]);
+      place.push_back(node_of_name[position(names, name, [&] { return expression.text(); })]);
     std::vector<int> stack;
     for (const Instruction &step : expression.program()) {
       const int count = operands_of(step.operation);
@@ -175,7 +177,8 @@ BoundProgram ProgramBuilder::program(const std::vector<int> &results, int parame
   bound.slots_.assign(parameters + coordinates, -1);
   const std::vector<std::string> given(names.begin(), names.begin() + parameters + coordinates);
   for (const std::string &name : by)
-    bound.slots_[position(given, name, "the names of a gradient")] = bound.gradient_size_++;
+    bound.slots_[position(given, name, [] { return std::string("the names of a gradient"); })] =
+        bound.gradient_size_++;
   return bound;
 }
 

@@ -52,8 +52,7 @@ using Program = std::vector<Instruction>;
 /// Immutable: any number of threads may evaluate one.
 class Expression {
 public:
-  /// The positions in the program are those in `names`. Throws bad_input if more than 64 numbers
-  /// would have to be kept at once.
+  /// The positions in the program are those in `names`.
   Expression(Program program, const std::vector<std::string> &names);
   const Program &program() const { return program_; } ///< its names: positions in free_names()
   const std::vector<std::string> &free_names() const { return names_; } ///< sorted, each once
