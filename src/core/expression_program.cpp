@@ -130,13 +130,13 @@ BoundProgram ProgramBuilder::program(const std::vector<int> &results, int parame
                                      int coordinates, const std::vector<std::string> &by) const {
   const int size = static_cast<int>(nodes.size());
   std::vector<int> last = last_uses(results), target(size), free;
-  BoundProgram bound;
-  bound.parameters_ = parameters;
-  bound.coordinates_ = coordinates;
+  ProgramCode bound;
+  bound.parameters = parameters;
+  bound.coordinates = coordinates;
   int registers = 0;
   for (int i = 0; i < size; ++i)
     if (last[i] >= 0 && is_number(i)) {
-      bound.constants_.push_back(nodes[i].number);
+      bound.constants.push_back(nodes[i].number);
       target[i] = registers++;
     }
   for (int i = 0; i < parameters; ++i)
@@ -150,9 +150,9 @@ BoundProgram ProgramBuilder::program(const std::vector<int> &results, int parame
   for (int i = 0; i < size; ++i)
     if (is_step(i) && nodes[i].fixed) {
       target[i] = registers++;
-      add_step(bound.fixed_, i);
+      add_step(bound.fixed, i);
     }
-  bound.first_coordinate_ = registers;
+  bound.first_coordinate = registers;
   for (int i = 0; i < coordinates; ++i)
     target[node_of_name[parameters + i]] = registers++;
   for (int i = 0; i < size; ++i)
@@ -160,7 +160,7 @@ BoundProgram ProgramBuilder::program(const std::vector<int> &results, int parame
       if (free.empty()) free.push_back(registers++);
       target[i] = free.back();
       free.pop_back();
-      add_step(bound.steps_, i);
+      add_step(bound.steps, i);
       for (int k = 0; k < operands_of(nodes[i].operation); ++k) {
         const int operand = nodes[i].of[k];
         if (last[operand] != i || nodes[operand].fixed || !is_step(operand)) continue;
@@ -173,13 +173,13 @@ BoundProgram ProgramBuilder::program(const std::vector<int> &results, int parame
                     " numbers at once, more than " + std::to_string(most_registers) +
                     ": write them with fewer values that several terms share");
   for (const int result : results)
-    bound.results_.push_back(target[result]);
-  bound.slots_.assign(parameters + coordinates, -1);
+    bound.results.push_back(target[result]);
+  bound.slots.assign(parameters + coordinates, -1);
   const std::vector<std::string> given(names.begin(), names.begin() + parameters + coordinates);
   for (const std::string &name : by)
-    bound.slots_[position(given, name, [] { return std::string("the names of a gradient"); })] =
-        bound.gradient_size_++;
-  return bound;
+    bound.slots[position(given, name, [] { return std::string("the names of a gradient"); })] =
+        bound.gradient_size++;
+  return BoundProgram(std::move(bound));
 }
 
 BoundProgram bound_program(const Lets &lets, const std::vector<Expression> &results,

@@ -7,7 +7,7 @@
 
 namespace rbvi {
 
-constexpr int most_registers = 1024;
+constexpr int most_registers = 512;
 
 double evaluated(Operation operation, const std::array<double, 3> &operands);
 

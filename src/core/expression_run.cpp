@@ -1,201 +1,181 @@
-#include "expression_operations.hpp"
+#include "expression_machine.hpp"
 #include "expression_program.hpp"
 
 #include <algorithm>
-#include <array>
+#include <atomic>
 
 namespace rbvi {
 
 namespace {
 
-using Step = ProgramStep;
+struct Points {
+  const double *parameters, *coordinates;
+  std::size_t count;
+};
 
-template <class Work, class F> void without_slopes(const Work &work, const F &f) {
-  if constexpr (std::is_invocable_v<F, double>)
-    work.unary(f, 0);
-  else
-    work.binary(f, 0);
+/// Of few, for which a call of memmove takes longer.
+double *copied(const double *from, int count, double *to) {
+  for (const double *end = from + count; from != end; ++from, ++to) {
+    *to = *from;
+    std::atomic_signal_fence(std::memory_order_acq_rel); // keeps it a loop
+  }
+  return to;
 }
 
-/// A register holds a value.
-struct ValueStep {
-  double *registers;
-  const Step &step;
-  template <class F, class Slope> void unary(const F &f, const Slope &) const {
-    registers[step.target] = f(registers[step.a]);
-  }
-  template <class F, class Slopes> void binary(const F &f, const Slopes &) const {
-    registers[step.target] = f(registers[step.a], registers[step.b]);
-  }
-  template <class F> void jump(const F &f) const { without_slopes(*this, f); }
-  template <class First> void pick(const First &first) const {
-    const double a = registers[step.a], b = registers[step.b];
-    registers[step.target] = first(a, b) ? a : b;
-  }
-  void choose() const {
-    registers[step.target] = registers[registers[step.c] != 0 ? step.b : step.a];
-  }
-};
-
-constexpr std::size_t block_size = 32, vector_size = 4;
-
-/// A register holds the values at some points. That of a result is none of an operand.
-struct BlockStep {
-  std::array<double, block_size> *registers;
-  std::size_t vectors; ///< of points
-  const Step &step;
-  template <class F, class Slope> void unary(const F &f, const Slope &) const {
-    double *__restrict to = registers[step.target].data();
-    const double *a = registers[step.a].data();
-    for (std::size_t i = 0; i < vector_size * vectors; ++i)
-      to[i] = f(a[i]);
-  }
-  template <class F, class Slopes> void binary(const F &f, const Slopes &) const {
-    double *__restrict to = registers[step.target].data();
-    const double *a = registers[step.a].data(), *b = registers[step.b].data();
-    for (std::size_t i = 0; i < vector_size * vectors; ++i)
-      to[i] = f(a[i], b[i]);
-  }
-  template <class F> void jump(const F &f) const { without_slopes(*this, f); }
-  template <class First> void pick(const First &first) const {
-    binary([&](double a, double b) { return first(a, b) ? a : b; }, 0);
-  }
-  void choose() const {
-    double *__restrict to = registers[step.target].data();
-    const double *otherwise = registers[step.a].data(), *if_so = registers[step.b].data(),
-                 *condition = registers[step.c].data();
-    for (std::size_t i = 0; i < vector_size * vectors; ++i)
-      to[i] = condition[i] != 0 ? if_so[i] : otherwise[i];
-  }
-};
-
-constexpr int derivatives_at_once = 8;
-
-struct Varied {
-  double value;
-  std::array<double, derivatives_at_once> by;
-};
-
-/// A register holds a value with some of its derivatives. What does not vary adds none, even by an
-/// infinite slope.
-struct VariedStep {
-  Varied *registers;
-  const Step &step;
-  template <class F, class Slope> void unary(const F &f, const Slope &slope) const {
-    const Varied &a = registers[step.a];
-    Varied &to = registers[step.target];
-    to.value = f(a.value);
-    const double factor = slope(a.value, to.value);
-    for (int i = 0; i < derivatives_at_once; ++i)
-      to.by[i] = a.by[i] == 0 ? 0 : factor * a.by[i];
-  }
-  template <class F, class Slopes> void binary(const F &f, const Slopes &slopes) const {
-    const Varied &a = registers[step.a], &b = registers[step.b];
-    Varied &to = registers[step.target];
-    to.value = f(a.value, b.value);
-    const auto [by_a, by_b] = slopes(a.value, b.value, to.value);
-    for (int i = 0; i < derivatives_at_once; ++i)
-      to.by[i] = (a.by[i] == 0 ? 0 : by_a * a.by[i]) + (b.by[i] == 0 ? 0 : by_b * b.by[i]);
-  }
-  template <class F> void jump(const F &f) const {
-    Varied &to = registers[step.target];
-    if constexpr (std::is_invocable_v<F, double>)
-      to.value = f(registers[step.a].value);
-    else
-      to.value = f(registers[step.a].value, registers[step.b].value);
-    to.by = {};
-  }
-  template <class First> void pick(const First &first) const {
-    const Varied &a = registers[step.a], &b = registers[step.b];
-    registers[step.target] = first(a.value, b.value) ? a : b;
-  }
-  void choose() const {
-    registers[step.target] = registers[registers[step.c].value != 0 ? step.b : step.a];
-  }
-};
-
-void run(const std::vector<Step> &steps, double *registers) {
-  for (const Step &step : steps)
+void run(const std::vector<ProgramStep> &steps, double *registers) {
+  for (const ProgramStep &step : steps)
     with_operation(step.operation, ValueStep{registers, step});
 }
 
-void run(const std::vector<Step> &steps, Varied *registers) {
-  for (const Step &step : steps)
-    with_operation(step.operation, VariedStep{registers, step});
+void run(const std::vector<ProgramStep> &steps, double *registers, Slopes *slopes) {
+  for (const ProgramStep &step : steps)
+    with_operation(step.operation, VariedStep{registers, slopes, step});
+}
+
+/// All before the coordinates.
+void start(const ProgramCode &code, const double *parameters, double *registers) {
+  double *behind =
+      copied(code.constants.data(), static_cast<int>(code.constants.size()), registers);
+  copied(parameters, code.parameters, behind);
+  run(code.fixed, registers);
+}
+
+/// With the slopes of coordinates; by names from slot `first`.
+void start(const ProgramCode &code, const double *parameters, int first, double *registers,
+           Slopes *slopes) {
+  const auto vary = [&](int name, int target) {
+    slopes[target] = {};
+    const int slot = code.slots[name] - first;
+    const bool varies = code.slots[name] >= 0 && slot >= 0 && slot < slopes_at_once;
+    if (varies) slopes[target][slot] = 1;
+    return varies;
+  };
+  start(code, parameters, registers);
+  std::fill_n(slopes, code.first_coordinate, Slopes{});
+  bool varied = false;
+  for (int k = 0; k < code.parameters; ++k)
+    varied |= vary(k, static_cast<int>(code.constants.size()) + k);
+  if (varied) run(code.fixed, registers, slopes);
+  for (int k = 0; k < code.coordinates; ++k)
+    vary(code.parameters + k, code.first_coordinate + k);
+}
+
+void gradient_at_point(const ProgramCode &code, const Points &point, int first, double *results,
+                       double *gradients) {
+  std::array<double, most_registers> registers; // not initialised, as all below
+  std::array<Slopes, most_registers> slopes;
+  start(code, point.parameters, first, registers.data(), slopes.data());
+  copied(point.coordinates, code.coordinates, &registers[code.first_coordinate]);
+  run(code.steps, registers.data(), slopes.data());
+  for (std::size_t k = 0; k < code.results.size(); ++k) {
+    results[k] = registers[code.results[k]];
+    for (int j = first; j < std::min(code.gradient_size, first + slopes_at_once); ++j)
+      gradients[k * code.gradient_size + j] = slopes[code.results[k]][j - first];
+  }
+}
+
+/// Those that follow `first`.
+struct BlockOfPoints {
+  std::size_t first, count, all;
+  std::size_t vectors() const { return (count + vector_size - 1) / vector_size; }
+  std::size_t lanes() const { return vector_size * vectors(); }
+};
+
+BlockOfPoints block_of_points(std::size_t first, std::size_t all) {
+  return {first, std::min(block_size, all - first), all};
+}
+
+void load(const ProgramCode &code, const double *coordinates, const BlockOfPoints &points,
+          Block *registers) {
+  for (int k = 0; k < code.coordinates; ++k) {
+    double *target = registers[code.first_coordinate + k].data();
+    std::copy_n(coordinates + k * points.all + points.first, points.count, target);
+    std::fill(target + points.count, target + points.lanes(), target[0]);
+  }
+}
+
+void store(const ProgramCode &code, const Block *registers, const BlockOfPoints &points,
+           double *results) {
+  for (std::size_t k = 0; k < code.results.size(); ++k)
+    std::copy_n(registers[code.results[k]].data(), points.count,
+                results + k * points.all + points.first);
+}
+
+void values_in_blocks(const ProgramCode &code, const Points &points, const double *started,
+                      double *results) {
+  std::array<Block, most_registers> registers;
+  for (int i = 0; i < code.first_coordinate; ++i)
+    std::fill_n(registers[i].data(), block_of_points(0, points.count).lanes(), started[i]);
+  for (std::size_t first = 0; first < points.count; first += block_size) {
+    const BlockOfPoints block = block_of_points(first, points.count);
+    load(code, points.coordinates, block, registers.data());
+    for (const ProgramStep &step : code.steps)
+      with_operation(step.operation, BlockStep{registers.data(), block.vectors(), step});
+    store(code, registers.data(), block, results);
+  }
+}
+
+void gradients_in_blocks(const ProgramCode &code, const Points &points, int first_slot,
+                         double *results, double *gradients) {
+  std::array<double, most_registers> started;
+  std::array<Slopes, most_registers> slopes_of;
+  start(code, points.parameters, first_slot, started.data(), slopes_of.data());
+  std::array<Block, most_registers> registers;
+  std::array<std::array<Block, slopes_at_once>, most_registers> slopes;
+  std::array<std::array<bool, slopes_at_once>, most_registers> varies;
+  const std::size_t lanes = block_of_points(0, points.count).lanes();
+  for (int i = 0; i < code.first_coordinate + code.coordinates; ++i) {
+    if (i < code.first_coordinate) std::fill_n(registers[i].data(), lanes, started[i]);
+    for (int k = 0; k < slopes_at_once; ++k) {
+      varies[i][k] = slopes_of[i][k] != 0;
+      if (varies[i][k]) std::fill_n(slopes[i][k].data(), lanes, slopes_of[i][k]);
+    }
+  }
+  const int wanted = std::min(slopes_at_once, code.gradient_size - first_slot);
+  for (std::size_t first = 0; first < points.count; first += block_size) {
+    const BlockOfPoints block = block_of_points(first, points.count);
+    load(code, points.coordinates, block, registers.data());
+    for (const ProgramStep &step : code.steps)
+      with_operation(step.operation, VariedBlockStep{registers.data(), slopes.data(), varies.data(),
+                                                     block.vectors(), step});
+    store(code, registers.data(), block, results);
+    for (std::size_t k = 0; k < code.results.size(); ++k)
+      for (int j = 0; j < wanted; ++j) {
+        double *to = gradients + (k * code.gradient_size + first_slot + j) * block.all + first;
+        if (varies[code.results[k]][j])
+          std::copy_n(slopes[code.results[k]][j].data(), block.count, to);
+        else
+          std::fill_n(to, block.count, 0);
+      }
+  }
 }
 
 } // namespace
 
 double evaluated(Operation operation, const std::array<double, 3> &operands) {
   std::array<double, 4> registers{operands[0], operands[1], operands[2]};
-  with_operation(operation, ValueStep{registers.data(), Step{operation, 3, 0, 1, 2}});
+  with_operation(operation, ValueStep{registers.data(), ProgramStep{operation, 3, 0, 1, 2}});
   return registers[3];
 }
 
 void BoundProgram::values(const double *parameters, const double *coordinates, std::size_t count,
                           double *results) const {
-  std::array<double, most_registers> registers; // not initialised, as those below
-  std::copy(constants_.begin(), constants_.end(), registers.begin());
-  std::copy_n(parameters, parameters_, registers.begin() + constants_.size());
-  run(fixed_, registers.data());
-  if (count != 1) return values_in_blocks(registers.data(), coordinates, count, results);
-  std::copy_n(coordinates, coordinates_, registers.begin() + first_coordinate_);
-  run(steps_, registers.data());
-  for (std::size_t k = 0; k < results_.size(); ++k)
-    results[k] = registers[results_[k]];
-}
-
-void BoundProgram::values_in_blocks(const double *start, const double *coordinates,
-                                    std::size_t count, double *results) const {
-  std::array<std::array<double, block_size>, most_registers> registers;
-  for (int i = 0; i < first_coordinate_; ++i)
-    registers[i].fill(start[i]);
-  for (std::size_t first = 0; first < count; first += block_size) {
-    const std::size_t points = std::min(block_size, count - first);
-    const std::size_t vectors = (points + vector_size - 1) / vector_size;
-    for (int k = 0; k < coordinates_; ++k) {
-      auto &target = registers[first_coordinate_ + k];
-      std::copy_n(coordinates + static_cast<std::size_t>(k) * count + first, points,
-                  target.begin());
-      std::fill(target.begin() + points, target.begin() + vector_size * vectors, target[0]);
-    }
-    for (const Step &step : steps_)
-      with_operation(step.operation, BlockStep{registers.data(), vectors, step});
-    for (std::size_t k = 0; k < results_.size(); ++k)
-      std::copy_n(registers[results_[k]].begin(), points, results + k * count + first);
-  }
+  std::array<double, most_registers> registers;
+  start(code_, parameters, registers.data());
+  if (count != 1)
+    return values_in_blocks(code_, {parameters, coordinates, count}, registers.data(), results);
+  copied(coordinates, code_.coordinates, &registers[code_.first_coordinate]);
+  run(code_.steps, registers.data());
+  for (const int result : code_.results)
+    *results++ = registers[result];
 }
 
 void BoundProgram::values_and_gradients(const double *parameters, const double *coordinates,
                                         std::size_t count, double *results,
                                         double *gradients) const {
-  std::array<Varied, most_registers> registers;
-  for (std::size_t i = 0; i < constants_.size(); ++i)
-    registers[i] = {constants_[i], {}};
-  int first = 0; // of the derivatives that are computed at once
-  const auto set = [&](std::size_t target, int name, double value) {
-    registers[target] = {value, {}};
-    const int slot = slots_[name] - first;
-    if (slot >= 0 && slot < derivatives_at_once) registers[target].by[slot] = 1;
-  };
-  do {
-    for (int k = 0; k < parameters_; ++k)
-      set(constants_.size() + k, k, parameters[k]);
-    run(fixed_, registers.data());
-    const int wanted = std::min(derivatives_at_once, gradient_size_ - first);
-    for (std::size_t point = 0; point < count; ++point) {
-      for (int k = 0; k < coordinates_; ++k)
-        set(first_coordinate_ + k, parameters_ + k, coordinates[k * count + point]);
-      run(steps_, registers.data());
-      for (std::size_t k = 0; k < results_.size(); ++k) {
-        const Varied &result = registers[results_[k]];
-        results[k * count + point] = result.value;
-        for (int i = 0; i < wanted; ++i)
-          gradients[(k * gradient_size_ + first + i) * count + point] = result.by[i];
-      }
-    }
-    first += derivatives_at_once;
-  } while (first < gradient_size_);
+  const auto &at = count == 1 ? gradient_at_point : gradients_in_blocks;
+  for (int first = 0; first == 0 || first < code_.gradient_size; first += slopes_at_once)
+    at(code_, {parameters, coordinates, count}, first, results, gradients);
 }
 
 } // namespace rbvi

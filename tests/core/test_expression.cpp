@@ -81,6 +81,16 @@ TEST(Expression, BindsAsTheGrammarSays) {
   EXPECT_EQ(value("1/0"), INFINITY);
 }
 
+TEST(Expression, HypotNeitherOverflowsNorLosesDigits) {
+  const BoundExpression bound = bound_to(parse_expression("hypot(x, y)"), {"x", "y"});
+  for (const double scale : {1e-320, 1e-300, 1e-160, 1e-140, 1e-139, 1.0, 1e139, 1e140, 1e300})
+    for (const double ratio : {0.0, 1e-20, 0.3, 1.0}) {
+      const std::array<double, 2> at{scale, -ratio * scale};
+      EXPECT_DOUBLE_EQ(bound.value(at.data()), std::hypot(at[0], at[1])) << scale << " " << ratio;
+    }
+  EXPECT_EQ(value("hypot(1/0, log(-1))"), INFINITY);
+}
+
 TEST(Expression, HasItsFreeNamesSortedAndAConstant) {
   EXPECT_EQ(parse_expression("y + b * pi + y").free_names(), (std::vector<std::string>{"b", "y"}));
   EXPECT_EQ(parse_expression("2 * 3").constant(), 6);

@@ -26,21 +26,22 @@ testing::AssertionResult is_kind(const std::string &message, const std::string &
 
 /// Reads a text, and does with the expression all that can be done. How many were read.
 int tried(const std::string &text, bool also_separate = true) {
+  const std::string shown = text.substr(0, 200);
   try {
     const Expression parsed = parse_expression(text);
-    EXPECT_EQ(parse_expression(parsed.text()).program(), parsed.program()) << text;
+    EXPECT_EQ(parse_expression(parsed.text()).program(), parsed.program()) << shown;
     const std::vector<std::string> &names = parsed.free_names();
     std::vector<double> at(names.size(), 0.7), gradient(names.size());
     const BoundExpression bound = bound_to(parsed, names);
     double value;
     bound.value_and_gradient(at.data(), value, gradient.data());
     const double alone = bound.value(at.data());
-    EXPECT_TRUE(value == alone || (std::isnan(value) && std::isnan(alone))) << text;
+    EXPECT_TRUE(value == alone || (std::isnan(value) && std::isnan(alone))) << shown;
     if (also_separate && !names.empty()) separated(parsed, {names[0]});
     return 1;
   } catch (const Error &error) {
-    EXPECT_EQ(error.status(), Status::bad_input) << text;
-    EXPECT_TRUE(is_kind(error.what(), text)) << text;
+    EXPECT_EQ(error.status(), Status::bad_input) << shown;
+    EXPECT_TRUE(is_kind(error.what(), text)) << shown;
     return 0;
   }
 }
@@ -195,7 +196,7 @@ TEST(ExpressionFuzz, LongTextsTakeLinearTime) {
   const auto names = [](std::size_t count) {
     std::string text = "x0";
     for (std::size_t i = 1; i < count; ++i)
-      text += "+x" + std::to_string(i % 900);
+      text += "+x" + std::to_string(i % 200);
     return text;
   };
   const auto many_names = [](std::size_t count) {

@@ -94,6 +94,24 @@ Slope difference(const BoundExpression &bound, std::array<double, 4> at, std::si
   return best;
 }
 
+constexpr std::size_t block = 7;
+
+/// At (x, y) and six points near it, evaluated together; a and b are parameters.
+struct InBlock {
+  std::array<double, 2 * block> columns;
+  std::array<double, block> values, values_alone;
+  std::array<double, 4 * block> gradients;
+  InBlock(const Expression &expression, const std::array<double, 4> &at) {
+    const BoundProgram program = bound_program({}, {expression}, {"a", "b"}, {"x", "y"}, all_names);
+    for (std::size_t i = 0; i < block; ++i) {
+      columns[i] = at[2] + 0.1 * double(i);
+      columns[block + i] = at[3] - 0.1 * double(i);
+    }
+    program.values(at.data(), columns.data(), block, values_alone.data());
+    program.values_and_gradients(at.data(), columns.data(), block, values.data(), gradients.data());
+  }
+};
+
 TEST(ExpressionRandom, DerivativesAreThoseOfDifferences) {
   RandomExpressions expressions(2, all_names);
   std::uniform_real_distribution<double> number(0.2, 1.8);
@@ -110,6 +128,15 @@ TEST(ExpressionRandom, DerivativesAreThoseOfDifferences) {
     bound.value_and_gradient(at.data(), value, gradient.data());
     if (!bounded(parsed, of_its_names(parsed, at)).all_finite) continue;
     ASSERT_EQ(value, bound.value(at.data())) << text.ours;
+    const InBlock together(parsed, at);
+    for (std::size_t i = 0; i < block; ++i) {
+      const std::array<double, 4> here{at[0], at[1], together.columns[i],
+                                       together.columns[block + i]};
+      const BoundedValue expected = bounded(parsed, of_its_names(parsed, here));
+      if (!std::isfinite(expected.value) || !std::isfinite(expected.error)) continue;
+      ASSERT_NEAR(together.values[i], expected.value, 4 * expected.error) << text.ours;
+      ASSERT_NEAR(together.values_alone[i], expected.value, 4 * expected.error) << text.ours;
+    }
     for (std::size_t i = 0; i < 4; ++i) {
       const Slope slope = difference(bound, at, i);
       const double scale = 1 + std::abs(slope.value);
@@ -117,6 +144,8 @@ TEST(ExpressionRandom, DerivativesAreThoseOfDifferences) {
       ++checked;
       nonzero += slope.value != 0;
       ASSERT_NEAR(gradient[i], slope.value, 1e-8 * scale) << text.ours << " by " << all_names[i];
+      ASSERT_NEAR(together.gradients[i * block], slope.value, 1e-8 * scale)
+          << text.ours << " by " << all_names[i];
     }
   }
   EXPECT_GT(checked, 4 * count * 7 / 10);

@@ -78,6 +78,16 @@ struct ProgramStep {
   unsigned short target, a, b, c;
 };
 
+/// Registers hold constants, parameters, what has parameters alone, coordinates, the rest. That of
+/// a target is none of an operand.
+struct ProgramCode {
+  std::vector<double> constants;
+  std::vector<ProgramStep> fixed, steps; ///< with parameters alone; with coordinates
+  std::vector<int> results;              ///< their registers
+  std::vector<int> slots; ///< of parameters, then coordinates: their place in a gradient, or -1
+  int parameters = 0, first_coordinate = 0, coordinates = 0, gradient_size = 0;
+};
+
 /// Expressions in parameters and coordinates that are evaluated together: what they share once,
 /// what has parameters alone once per call, what no result needs never. Nothing is allocated in an
 /// evaluation; any number of threads may evaluate one. Values that are not finite are returned as
@@ -87,6 +97,7 @@ struct ProgramStep {
 /// have 0.
 class BoundProgram {
 public:
+  explicit BoundProgram(ProgramCode code) : code_(std::move(code)) {}
   /// At `count` points. `coordinates`: count x coordinates, `results`: count x results, both column
   /// by column: for one point these are its coordinates and its results.
   void values(const double *parameters, const double *coordinates, std::size_t count,
@@ -97,15 +108,7 @@ public:
                             double *results, double *gradients) const;
 
 private:
-  friend struct ProgramBuilder;
-  void values_in_blocks(const double *start, const double *coordinates, std::size_t count,
-                        double *results) const;
-  // Registers: constants, parameters, what has parameters alone, coordinates, the rest.
-  std::vector<double> constants_;
-  std::vector<ProgramStep> fixed_, steps_; ///< with parameters alone; with coordinates
-  std::vector<int> results_;               ///< their registers
-  std::vector<int> slots_; ///< of parameters, then coordinates: their place in a gradient, or -1
-  int parameters_ = 0, first_coordinate_ = 0, coordinates_ = 0, gradient_size_ = 0;
+  ProgramCode code_;
 };
 
 /// Derivatives come in the order of `by`, which are some of the parameters and coordinates. Throws
