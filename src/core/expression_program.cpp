@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 namespace rbvi {
@@ -28,8 +27,6 @@ std::size_t position(const std::vector<std::string> &names, const std::string &n
                                    : ": the nearest is '" + nearest_name(name, names) + "'"));
   return static_cast<std::size_t>(found - names.begin());
 }
-
-} // namespace
 
 /// A number that a program computes: each operation on the same operands is one node.
 struct ProgramBuilder {
@@ -174,13 +171,14 @@ BoundProgram ProgramBuilder::program(const std::vector<int> &results, int parame
                     ": write them with fewer values that several terms share");
   for (const int result : results)
     bound.results.push_back(target[result]);
-  bound.slots.assign(parameters + coordinates, -1);
   const std::vector<std::string> given(names.begin(), names.begin() + parameters + coordinates);
   for (const std::string &name : by)
-    bound.slots[position(given, name, [] { return std::string("the names of a gradient"); })] =
-        bound.gradient_size++;
+    bound.by.push_back(target[node_of_name[position(
+        given, name, [] { return std::string("the names of a gradient"); })]]);
   return BoundProgram(std::move(bound));
 }
+
+} // namespace
 
 BoundProgram bound_program(const Lets &lets, const std::vector<Expression> &results,
                            const std::vector<std::string> &parameters,

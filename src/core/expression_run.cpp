@@ -40,24 +40,22 @@ void start(const ProgramCode &code, const double *parameters, double *registers)
   run(code.fixed, registers);
 }
 
-/// With the slopes of coordinates; by names from slot `first`.
+/// How many derivatives there are from `first`, of those that are computed at once.
+int slopes_from(const ProgramCode &code, int first) {
+  return std::min(slopes_at_once, static_cast<int>(code.by.size()) - first);
+}
+
+/// With slopes, also of the coordinates.
 void start(const ProgramCode &code, const double *parameters, int first, double *registers,
            Slopes *slopes) {
-  const auto vary = [&](int name, int target) {
-    slopes[target] = {};
-    const int slot = code.slots[name] - first;
-    const bool varies = code.slots[name] >= 0 && slot >= 0 && slot < slopes_at_once;
-    if (varies) slopes[target][slot] = 1;
-    return varies;
-  };
   start(code, parameters, registers);
-  std::fill_n(slopes, code.first_coordinate, Slopes{});
+  std::fill_n(slopes, code.first_coordinate + code.coordinates, Slopes{});
   bool varied = false;
-  for (int k = 0; k < code.parameters; ++k)
-    varied |= vary(k, static_cast<int>(code.constants.size()) + k);
+  for (int k = 0; k < slopes_from(code, first); ++k) {
+    slopes[code.by[first + k]][k] = 1;
+    varied |= code.by[first + k] < code.first_coordinate;
+  }
   if (varied) run(code.fixed, registers, slopes);
-  for (int k = 0; k < code.coordinates; ++k)
-    vary(code.parameters + k, code.first_coordinate + k);
 }
 
 void gradient_at_point(const ProgramCode &code, const Points &point, int first, double *results,
@@ -69,8 +67,8 @@ void gradient_at_point(const ProgramCode &code, const Points &point, int first, 
   run(code.steps, registers.data(), slopes.data());
   for (std::size_t k = 0; k < code.results.size(); ++k) {
     results[k] = registers[code.results[k]];
-    for (int j = first; j < std::min(code.gradient_size, first + slopes_at_once); ++j)
-      gradients[k * code.gradient_size + j] = slopes[code.results[k]][j - first];
+    for (int j = 0; j < slopes_from(code, first); ++j)
+      gradients[k * code.by.size() + first + j] = slopes[code.results[k]][j];
   }
 }
 
@@ -131,7 +129,6 @@ void gradients_in_blocks(const ProgramCode &code, const Points &points, int firs
       if (varies[i][k]) std::fill_n(slopes[i][k].data(), lanes, slopes_of[i][k]);
     }
   }
-  const int wanted = std::min(slopes_at_once, code.gradient_size - first_slot);
   for (std::size_t first = 0; first < points.count; first += block_size) {
     const BlockOfPoints block = block_of_points(first, points.count);
     load(code, points.coordinates, block, registers.data());
@@ -140,8 +137,8 @@ void gradients_in_blocks(const ProgramCode &code, const Points &points, int firs
                                                      block.vectors(), step});
     store(code, registers.data(), block, results);
     for (std::size_t k = 0; k < code.results.size(); ++k)
-      for (int j = 0; j < wanted; ++j) {
-        double *to = gradients + (k * code.gradient_size + first_slot + j) * block.all + first;
+      for (int j = 0; j < slopes_from(code, first_slot); ++j) {
+        double *to = gradients + (k * code.by.size() + first_slot + j) * block.all + first;
         if (varies[code.results[k]][j])
           std::copy_n(slopes[code.results[k]][j].data(), block.count, to);
         else
@@ -174,7 +171,8 @@ void BoundProgram::values_and_gradients(const double *parameters, const double *
                                         std::size_t count, double *results,
                                         double *gradients) const {
   const auto &at = count == 1 ? gradient_at_point : gradients_in_blocks;
-  for (int first = 0; first == 0 || first < code_.gradient_size; first += slopes_at_once)
+  for (int first = 0; first == 0 || first < static_cast<int>(code_.by.size());
+       first += slopes_at_once)
     at(code_, {parameters, coordinates, count}, first, results, gradients);
 }
 

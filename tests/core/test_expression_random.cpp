@@ -3,6 +3,7 @@
 
 #include <muParser.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

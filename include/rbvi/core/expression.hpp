@@ -83,9 +83,8 @@ struct ProgramStep {
 struct ProgramCode {
   std::vector<double> constants;
   std::vector<ProgramStep> fixed, steps; ///< with parameters alone; with coordinates
-  std::vector<int> results;              ///< their registers
-  std::vector<int> slots; ///< of parameters, then coordinates: their place in a gradient, or -1
-  int parameters = 0, first_coordinate = 0, coordinates = 0, gradient_size = 0;
+  std::vector<int> results, by;          ///< registers: of results, of the names of a gradient
+  int parameters = 0, first_coordinate = 0, coordinates = 0;
 };
 
 /// Expressions in parameters and coordinates that are evaluated together: what they share once,
@@ -103,7 +102,7 @@ public:
   void values(const double *parameters, const double *coordinates, std::size_t count,
               double *results) const;
   /// `gradients`: count x (results x by), column by column: for one point, the gradient of the
-  /// first result, then that of the second.
+  /// first result, then that of the second. More points than one take 0.7 MB of stack.
   void values_and_gradients(const double *parameters, const double *coordinates, std::size_t count,
                             double *results, double *gradients) const;
 
