@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
+#include <map>
 #include <numbers>
 
 namespace rbvi {
@@ -52,6 +52,11 @@ const Spelling &spelling(Operation operation) {
                    static_cast<std::size_t>(Operation::negate)];
 }
 
+/// A function of two operands or more.
+bool takes_more(Operation operation) {
+  return operation >= Operation::min && operation <= Operation::hypot;
+}
+
 /// Operation::number if there is none.
 Operation spelled(const std::string &text, bool function) {
   if (function && text == "pow") return Operation::power;
@@ -72,13 +77,35 @@ struct Parser {
   std::size_t begin = 0, behind = 0; ///< of the token
   double value = 0;                  ///< of a number
   std::vector<std::string> names;
+  std::map<std::string, int> place_of_name;
   int nested = 0;
 
+  static bool continues(char c) { return (c & 0xC0) == 0x80; } ///< a character of UTF-8
+
+  /// All of a short text, what is around `at` of a long one.
+  std::string excerpt(std::size_t at) const {
+    constexpr std::size_t most = 80;
+    if (source.size() <= most) return source;
+    std::size_t first = at - std::min(at, most / 2), last = std::min(source.size(), at + most / 2);
+    while (first > 0 && continues(source[first]))
+      --first;
+    while (last < source.size() && continues(source[last]))
+      ++last;
+    return (first > 0 ? "..." : "") + source.substr(first, last - first) +
+           (last < source.size() ? "..." : "");
+  }
+
   [[noreturn]] void refuse(std::size_t at, const std::string &what) const {
-    std::string line = source;
+    const auto column = 1 + std::count_if(source.begin(), source.begin() + at,
+                                          [](char c) { return !continues(c); });
+    std::string line = "column " + std::to_string(column) + " of '" + excerpt(at) + "': " + what;
     std::replace_if(
-        line.begin(), line.end(), [](unsigned char c) { return c < ' '; }, ' ');
-    throw bad_input("column " + std::to_string(at + 1) + " of '" + line + "': " + what);
+        line.begin(), line.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+    throw bad_input(line);
+  }
+
+  std::string quoted() const { ///< the token
+    return "'" + (token.size() > 40 ? token.substr(0, 40) + "..." : token) + "'";
   }
 
   [[noreturn]] void refuse_token() const {
@@ -86,10 +113,10 @@ struct Parser {
          {std::pair{"**", "^"}, {"&&", "and"}, {"||", "or"}, {"!", "not"}, {"=", "=="}})
       if (token == theirs) refuse(begin, "write " + std::string(ours) + " for " + token);
     if (kind == number || kind == name || token == "(")
-      refuse(begin, "an operator is missing before '" + token + "'");
+      refuse(begin, "an operator is missing before " + quoted());
     if (token == ")") refuse(begin, "')' closes nothing");
     if (token == ",") refuse(begin, "a comma stands between the arguments of a function alone");
-    refuse(begin, "'" + token + "' cannot stand here");
+    refuse(begin, quoted() + " cannot stand here");
   }
 
   void next() {
@@ -97,8 +124,8 @@ struct Parser {
     if (begin == std::string::npos) begin = source.size();
     behind = begin + 1;
     const auto at = [&](std::size_t i) { return i < source.size() ? source[i] : '\0'; };
-    const auto is_letter = [&](char c) {
-      return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+    const auto is_letter = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
     };
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     const char c = at(begin);
@@ -118,7 +145,7 @@ struct Parser {
       const std::string two = source.substr(begin, 2);
       for (const char *pair : {"<=", ">=", "==", "!=", "**", "&&", "||"})
         if (two == pair) behind = begin + 2;
-      while ((at(behind) & 0xC0) == 0x80) // the rest of a character of UTF-8
+      while (continues(at(behind)))
         ++behind;
     }
     token = source.substr(begin, behind - begin);
@@ -126,7 +153,6 @@ struct Parser {
 
   /// Whatever binds as tightly as this, or more.
   Program expression(Precedence loosest) {
-    if (++nested > 64) refuse(begin, "nested deeper than 64: write it in smaller parts");
     Program left = operand(loosest);
     for (bool compared = false;;) {
       const Operation operation = spelled(token, false);
@@ -136,21 +162,28 @@ struct Parser {
         refuse(begin, "write a < b and b < c for a < b < c");
       compared = precedence == of_comparison;
       next();
-      append(left, expression(precedence == of_power ? of_sign : Precedence(precedence + 1)),
+      append(left, precedence == of_power ? inner(of_sign) : expression(Precedence(precedence + 1)),
              operation);
     }
     if (loosest == of_choice && token == "?") {
       next();
-      const Program if_so = expression(of_choice);
+      const Program if_so = inner(of_choice);
       if (token != ":") refuse(begin, "':' is missing: condition ? value : value otherwise");
       next();
-      Program otherwise = expression(of_choice);
+      Program otherwise = inner(of_choice);
       otherwise.insert(otherwise.end(), if_so.begin(), if_so.end());
       append(otherwise, left, Operation::choose);
       left = std::move(otherwise);
     }
-    --nested;
     return left;
+  }
+
+  /// In parentheses, behind a sign and the like.
+  Program inner(Precedence loosest) {
+    if (++nested > 64) refuse(begin, "nested deeper than 64: write it in smaller parts");
+    Program result = expression(loosest);
+    --nested;
+    return result;
   }
 
   static void append(Program &left, const Program &right, Operation operation) {
@@ -170,13 +203,13 @@ struct Parser {
       const bool is_not = here == "not";
       if (is_not && loosest > of_not) refuse(column, "write (not ...) in an operand");
       next();
-      Program result = expression(is_not ? of_not : of_sign);
+      Program result = inner(is_not ? of_not : of_sign);
       if (here != "+") result.push_back({is_not ? Operation::negation : Operation::negate});
       return result;
     }
     if (here == "(") {
       next();
-      Program result = expression(of_choice);
+      Program result = inner(of_choice);
       close(column);
       return result;
     }
@@ -184,16 +217,15 @@ struct Parser {
       for (const char *other : {"**", "&&", "||", "!", "="})
         if (here == other) refuse_token();
       refuse(column,
-             "a number, a name or '(' is missing" + (kind == end ? "" : " before '" + here + "'"));
+             "a number, a name or '(' is missing" + (kind == end ? "" : " before " + quoted()));
     }
     next();
     if (token == "(") return call(here, column);
     if (spelled(here, true) != Operation::number)
       refuse(column, here + " is a function: write " + here + "(...)");
-    const auto found = std::find(names.begin(), names.end(), here);
-    const int place = static_cast<int>(found - names.begin());
-    if (found == names.end()) names.push_back(here);
-    return {{Operation::name, place}};
+    const auto [found, is_new] = place_of_name.emplace(here, static_cast<int>(names.size()));
+    if (is_new) names.push_back(here);
+    return {{Operation::name, found->second}};
   }
 
   void close(std::size_t open) {
@@ -208,17 +240,17 @@ struct Parser {
       std::vector<std::string> known;
       for (const Spelling &one : spellings)
         if (one.precedence == of_operand) known.push_back(one.text);
-      refuse(column, "unknown function '" + function + "': the nearest is '" +
-                         nearest_name(function, known) + "'");
+      refuse(column, "unknown function '" + function.substr(0, 40) + "': the nearest is '" +
+                         nearest_name(function.substr(0, 40), known) + "'");
     }
     const std::size_t open = begin;
     const int wanted = operands_of(operation);
-    const bool any = operation >= Operation::min && operation <= Operation::hypot;
+    const bool any = takes_more(operation);
     Program result;
     int given = 0;
     do {
       next();
-      const Program argument = expression(of_choice);
+      const Program argument = inner(of_choice);
       result.insert(result.end(), argument.begin(), argument.end());
       if (++given > 1 && wanted == 2) result.push_back({operation});
     } while (token == ",");
@@ -246,38 +278,46 @@ std::string Expression::text() const {
   struct Written {
     std::string text;
     Precedence precedence;
-    std::string at_least(int loosest) const {
-      return precedence < loosest ? "(" + text + ")" : text;
+    Operation operation;
+    /// For once.
+    std::string at_least(int loosest) {
+      return precedence < loosest ? "(" + text + ")" : std::move(text);
     }
   };
   std::vector<Written> stack;
   for (const Instruction &step : program_) {
-    const int operands = operands_of(step.operation);
+    const Operation operation = step.operation;
+    const int operands = operands_of(operation);
     if (operands == 0) {
-      stack.push_back({step.operation == Operation::name ? names_[step.name]
+      stack.push_back({operation == Operation::name      ? names_[step.name]
                        : step.number == std::numbers::pi ? "pi"
                                                          : shortest_number(step.number),
-                       of_operand});
+                       of_operand, operation});
       continue;
     }
-    const auto &[name, precedence] = spelling(step.operation);
-    const Written *of = stack.data() + stack.size() - operands;
-    Written all{"", precedence};
+    const auto &[name, precedence] = spelling(operation);
+    Written *of = stack.data() + stack.size() - operands;
+    Written all{"", precedence, operation};
     if (operands == 3)
       all.text = of[2].at_least(of_or) + " ? " + of[1].text + " : " + of[0].text;
+    else if (precedence == of_operand && operands == 2 && takes_more(operation) &&
+             of[0].operation == operation)
+      all.text = std::move(of[0].text.erase(of[0].text.size() - 1)) + ", " + of[1].text + ")";
     else if (precedence == of_operand)
       all.text = name + "(" + of[0].text + (operands == 2 ? ", " + of[1].text : "") + ")";
     else if (operands == 1)
       all.text = name + (precedence == of_not ? " " : "") + of[0].at_least(precedence);
+    else if (precedence == of_power && of[1].precedence < of_sign) // nests less than ^ with ( )
+      all = {"pow(" + of[0].text + ", " + of[1].text + ")", of_operand, operation};
     else if (precedence == of_power)
-      all.text = of[0].at_least(of_operand) + "^" + of[1].at_least(of_sign);
+      all.text = of[0].at_least(of_operand) + "^" + of[1].text;
     else
       all.text = of[0].at_least(precedence + (precedence == of_comparison)) + " " + name + " " +
                  of[1].at_least(precedence + 1);
     stack.resize(stack.size() - operands);
-    stack.push_back(all);
+    stack.push_back(std::move(all));
   }
-  return stack[0].text;
+  return std::move(stack[0].text);
 }
 
 } // namespace rbvi

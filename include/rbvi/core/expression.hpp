@@ -40,7 +40,7 @@ enum class Operation : unsigned char {
 
 int operands_of(Operation operation);
 
-/// What a stack machine does in one step.
+/// What a stack machine would do in one step.
 struct Instruction {
   Operation operation = Operation::number;
   int name = 0;      ///< of a name, its position
@@ -52,8 +52,7 @@ using Program = std::vector<Instruction>;
 /// Immutable: any number of threads may evaluate one.
 class Expression {
 public:
-  /// The positions in the program are those in `names`. Throws bad_input if more than 64 numbers
-  /// would have to be kept at once.
+  /// The positions in the program are those in `names`.
   Expression(Program program, const std::vector<std::string> &names);
   const Program &program() const { return program_; } ///< its names: positions in free_names()
   const std::vector<std::string> &free_names() const { return names_; } ///< sorted, each once
@@ -70,25 +69,74 @@ private:
 /// Throws bad_input with the column, from 1, of what cannot be read.
 Expression parse_expression(std::string_view text);
 
-/// An expression with a place for the value of each name. Nothing is allocated in an evaluation.
-/// Values that are not finite are returned as they are. Both branches of "?" are evaluated, the
-/// value and derivatives are those of the branch taken. Derivatives at kinks: abs at 0 has 1, its
-/// own from the right; min and max of equal numbers have those of the first; hypot at (0, 0), sign,
-/// floor, ceil, comparisons, and, or, not have 0.
-class BoundExpression {
+/// Values by name, each of which may use the names of those before it.
+using Lets = std::vector<std::pair<std::string, Expression>>;
+
+/// One operation on registers.
+struct ProgramStep {
+  Operation operation;
+  unsigned short target, a, b, c;
+};
+
+/// Registers hold constants, parameters, what has parameters alone, coordinates, the rest. That of
+/// a target is none of an operand.
+struct ProgramCode {
+  std::vector<double> constants;
+  std::vector<ProgramStep> fixed, steps; ///< with parameters alone; with coordinates
+  std::vector<int> results, by;          ///< registers: of results, of the names of a gradient
+  int parameters = 0, first_coordinate = 0, coordinates = 0;
+};
+
+/// Expressions in parameters and coordinates that are evaluated together: what they share once,
+/// what has parameters alone once per call, what no result needs never. Nothing is allocated in an
+/// evaluation; any number of threads may evaluate one. Values that are not finite are returned as
+/// they are. Both branches of "?" are evaluated, the value and derivatives are those of the branch
+/// taken. Derivatives at kinks: abs at 0 has 1, its own from the right; min and max of equal
+/// numbers have those of the first; hypot at (0, 0), sign, floor, ceil, comparisons, and, or, not
+/// have 0.
+class BoundProgram {
 public:
-  double value(const double *values) const;
-  /// `gradient`: a number for each name of `by` in bound_to().
-  void value_and_gradient(const double *values, double &value, double *gradient) const;
-  /// At `count` points; `columns`: count x names, column by column.
-  void values(const double *columns, std::size_t count, double *results) const;
+  explicit BoundProgram(ProgramCode code) : code_(std::move(code)) {}
+  /// At `count` points. `coordinates`: count x coordinates, `results`: count x results, both column
+  /// by column: for one point these are its coordinates and its results.
+  void values(const double *parameters, const double *coordinates, std::size_t count,
+              double *results) const;
+  /// `gradients`: count x (results x by), column by column: for one point, the gradient of the
+  /// first result, then that of the second. More points than one take 0.7 MB of stack.
+  void values_and_gradients(const double *parameters, const double *coordinates, std::size_t count,
+                            double *results, double *gradients) const;
 
 private:
-  friend BoundExpression bound_to(const Expression &, const std::vector<std::string> &,
-                                  const std::vector<std::string> &);
-  Program program_;
-  std::vector<int> slots_; ///< where in a gradient each name is; -1: nowhere
-  int gradient_size_ = 0;
+  ProgramCode code_;
+};
+
+/// Derivatives come in the order of `by`, which are some of the parameters and coordinates. Throws
+/// bad_input for a name that is not known where it is used, is given twice, or is no name.
+BoundProgram bound_program(const Lets &lets, const std::vector<Expression> &results,
+                           const std::vector<std::string> &parameters,
+                           const std::vector<std::string> &coordinates,
+                           const std::vector<std::string> &by);
+
+/// One expression with a place for the value of each name: a BoundProgram of one result.
+class BoundExpression {
+public:
+  explicit BoundExpression(BoundProgram program) : program_(std::move(program)) {}
+  double value(const double *values) const {
+    double result;
+    program_.values(nullptr, values, 1, &result);
+    return result;
+  }
+  /// `gradient`: a number for each name of `by` in bound_to().
+  void value_and_gradient(const double *values, double &value, double *gradient) const {
+    program_.values_and_gradients(nullptr, values, 1, &value, gradient);
+  }
+  /// At `count` points; `columns`: count x names, column by column.
+  void values(const double *columns, std::size_t count, double *results) const {
+    program_.values(nullptr, columns, count, results);
+  }
+
+private:
+  BoundProgram program_;
 };
 
 /// Values come in the order of `names`, derivatives in that of `by`, which are some of them. Throws
