@@ -1,6 +1,7 @@
 #include "rbvi/contact/entity_sum.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/imposed.hpp"
@@ -212,8 +213,12 @@ std::vector<Point> EntitySum::mapped_vertices(const FullMu &mu,
       needed[mesh_.nodes_of(static_cast<Index>(e))[a]] = true;
   std::vector<Point> mapped(mesh_.points.begin(),
                             mesh_.points.begin() + std::ssize(dual_of_vertex_));
+  std::vector<Point> wanted;
   for (std::size_t i = 0; i < mapped.size(); ++i)
-    if (needed[i]) mapped[i] = scene_.map(mu, mapped[i]);
+    if (needed[i]) wanted.push_back(mapped[i]);
+  const std::vector<Point> image = images(scene_.map, mu, wanted);
+  for (std::size_t i = 0, k = 0; i < mapped.size(); ++i)
+    if (needed[i]) mapped[i] = image[k++];
   return mapped;
 }
 

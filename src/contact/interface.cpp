@@ -1,6 +1,7 @@
 #include "rbvi/contact/interface.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "rbvi/element/imposed.hpp"
 
 #include <algorithm>
@@ -81,11 +82,10 @@ Vector at_columns(const InterfaceMesh &mesh, const Vector &nodal) {
 
 Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Point> &points) {
   Matrix result(static_cast<Index>(points.size()), scene.dim);
-  for (Index i = 0; i < result.rows(); ++i) {
-    const Point image = scene.map(mu, points[i]);
+  const std::vector<Point> mapped = images(scene.map, mu, points);
+  for (Index i = 0; i < result.rows(); ++i)
     for (Index k = 0; k < result.cols(); ++k)
-      result(i, k) = image[k];
-  }
+      result(i, k) = mapped[i][k];
   return result;
 }
 

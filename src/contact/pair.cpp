@@ -2,6 +2,7 @@
 
 #include "rbvi/contact/two_curves.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 
 namespace rbvi {
 
@@ -30,10 +31,7 @@ PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, c
 }
 
 PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &) const {
-  std::vector<Point> mapped;
-  mapped.reserve(mesh_.points.size());
-  for (const Point &x : mesh_.points)
-    mapped.push_back(scene_.map(mu, x));
+  const std::vector<Point> mapped = images(scene_.map, mu, mesh_.points);
   const auto master = mapped.begin() + mesh_.parts[0];
   PairOperators pair;
   try {
@@ -45,8 +43,9 @@ PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &
   }
   if (!scene_.motion) return pair;
   Vector moved = Vector::Zero(mesh_.columns);
+  const std::vector<Point> motion = images(scene_.motion, mu, mesh_.points);
   for (Index i = 0; i < mesh_.nodes(); ++i)
-    moved[vertical_[i]] = scene_.motion(mu, mesh_.points[i])[1];
+    moved[vertical_[i]] = motion[i][1];
   pair.g -= pair.b * moved;
   pair.nodal_gap -= pair.nodal_b * moved;
   return pair;

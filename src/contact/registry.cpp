@@ -23,7 +23,7 @@ Registry registry_of(std::vector<SceneEntry> scenes) {
     registry.functions.insert(registry.functions.end(), more.begin(), more.end());
   };
   for (const FunctionLibrary &more : {scalar_functions(), elastic_functions(), facet_functions(),
-                                     formula_functions(), surface_functions()})
+                                      formula_functions(), surface_functions()})
     add(more);
   for (const SceneEntry &scene : registry.scenes)
     add(scene.functions);

@@ -11,6 +11,7 @@ const Circle &nearest_circle(const std::vector<Circle> &circles, const Point &x)
     return std::abs(norm(x - circle.centre) - circle.radius);
   };
   const Circle *nearest = &circles.front();
+  if (circles.size() == 1) return *nearest;
   for (const Circle &circle : circles)
     if (distance(circle) < distance(*nearest)) nearest = &circle;
   return *nearest;
@@ -64,10 +65,11 @@ const Maker<PointMap> composed_maker{"composed", 1, [](const Stored &of) {
                                                           made<PointMap>(part(of, "inner")));
                                      }};
 
-std::function<Surface> disk_function(const std::function<PointMap> &centre,
+std::function<Surface> disk_function(const std::function<Coefficient> &x,
+                                     const std::function<Coefficient> &y,
                                      const std::function<Coefficient> &radius) {
-  return [=](const FullMu &mu, const Point &y) {
-    const Point p = y - centre(mu, y);
+  return [=](const FullMu &mu, const Point &point) {
+    const Point p{point[0] - x(mu), point[1] - y(mu), 0};
     const double distance = norm(p);
     if (!(distance > 0)) throw failure("a point of the body is at the centre of a rigid disk");
     return SurfacePoint{distance - radius(mu), p / distance, 1 / distance};
@@ -75,7 +77,8 @@ std::function<Surface> disk_function(const std::function<PointMap> &centre,
 }
 
 const Maker<Surface> disk_maker{"disk", 1, [](const Stored &of) {
-                                  return disk_function(made<PointMap>(part(of, "centre")),
+                                  return disk_function(made<Coefficient>(part(of, "x")),
+                                                       made<Coefficient>(part(of, "y")),
                                                        made<Coefficient>(part(of, "radius")));
                                 }};
 
@@ -149,9 +152,10 @@ Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &in
                               {{"outer", outer.record}, {"inner", inner.record}});
 }
 
-Named<Surface> disk_surface(const Named<PointMap> &centre, const Named<Coefficient> &radius) {
-  return disk_maker.named(disk_function(centre, radius), {},
-                          {{"centre", centre.record}, {"radius", radius.record}});
+Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient> &y,
+                            const Named<Coefficient> &radius) {
+  return disk_maker.named(disk_function(x, y, radius), {},
+                          {{"x", x.record}, {"y", y.record}, {"radius", radius.record}});
 }
 
 Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<PointMap> &at) {

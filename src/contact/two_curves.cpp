@@ -1,5 +1,7 @@
 #include "rbvi/contact/two_curves.hpp"
 
+#include "rbvi/core/formula.hpp"
+
 namespace rbvi {
 
 TwoCurves::TwoCurves(const Scene &scene, InterfaceMesh interface_mesh, MultiplierSpace space)
@@ -12,10 +14,7 @@ TwoCurves::TwoCurves(const Scene &scene, InterfaceMesh interface_mesh, Multiplie
 }
 
 std::vector<double> TwoCurves::lengths(const FullMu &mu) const {
-  std::vector<Point> mapped;
-  for (const Point &x : slave_)
-    mapped.push_back(scene_.map(mu, x));
-  return NodalCurve(std::move(mapped), mesh_.degree).lengths();
+  return NodalCurve(images(scene_.map, mu, slave_), mesh_.degree).lengths();
 }
 
 void TwoCurves::outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,

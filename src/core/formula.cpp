@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <set>
 
 namespace rbvi {
@@ -11,7 +13,7 @@ namespace rbvi {
 namespace {
 
 const std::vector<std::string> coordinates{"x", "y", "z", "nx", "ny", "nz"};
-constexpr std::size_t most_values = 96; ///< names and lets of one formula
+constexpr std::size_t most_parameters = 64; ///< of one formula
 constexpr int version = 1;
 
 /// What the values use: their lets with what these use, and the parameters, in their order.
@@ -48,96 +50,101 @@ Record record_of_formula(const Formula &formula) {
   return record;
 }
 
-/// Evaluates the values of a record.
+/// "a", "b", ... of a record that has name_0, name_1, ...
+std::vector<std::string> texts_of(const Record &record, const std::string &name) {
+  std::vector<std::string> texts;
+  for (auto found = record.texts.find(name + "_0"); found != record.texts.end();
+       found = record.texts.find(name + "_" + std::to_string(texts.size())))
+    texts.push_back(found->second);
+  return texts;
+}
+
+/// `at`: how many of the coordinates the values may have.
+BoundProgram program_of(const Record &record, std::size_t at) {
+  const std::vector<std::string> names = split(text(record, "parameters"), ' ');
+  if (names.size() != numbers(record, "positions").size() || names.size() > most_parameters)
+    throw bad_input("a function of the file has other parameters than positions of them");
+  Lets lets;
+  for (const std::string &line : texts_of(record, "let")) {
+    const std::size_t equals = line.find(" = ");
+    if (equals == std::string::npos) throw bad_input("a function of the file has a let without =");
+    lets.emplace_back(line.substr(0, equals), parse_expression(line.substr(equals + 3)));
+  }
+  std::vector<Expression> values;
+  for (const std::string &value : texts_of(record, "value"))
+    values.push_back(parse_expression(value));
+  return bound_program(lets, values, names,
+                       {coordinates.begin(), coordinates.begin() + static_cast<long>(at)}, {});
+}
+
+/// Evaluates the values of a record at a point.
 class Evaluator {
 public:
-  explicit Evaluator(const Record &record) {
+  /// Throws bad_input unless it has `least` to `most` values.
+  Evaluator(const Record &record, std::size_t at, std::size_t least, std::size_t most)
+      : size_(texts_of(record, "value").size()), program_(program_of(record, at)) {
     for (const double position : numbers(record, "positions"))
       positions_.push_back(static_cast<std::size_t>(position));
-    std::vector<std::string> names = split(text(record, "parameters"), ' ');
-    if (names.size() != positions_.size())
-      throw bad_input("a function of the file has other parameters than positions of them");
-    first_ = names.size();
-    names.insert(names.end(), coordinates.begin(), coordinates.end());
-    for (std::size_t i = 0; record.texts.contains("let_" + std::to_string(i)); ++i) {
-      const std::string &line = record.texts.at("let_" + std::to_string(i));
-      const std::size_t equals = std::min(line.find(" = "), line.size() - 1);
-      lets_.push_back(bound_to(parse_expression(line.substr(equals + 2)), names, {}));
-      names.push_back(line.substr(0, equals));
-    }
-    for (std::size_t i = 0; record.texts.contains("value_" + std::to_string(i)); ++i)
-      values_.push_back(
-          bound_to(parse_expression(record.texts.at("value_" + std::to_string(i))), names, {}));
-    if (names.size() > most_values)
-      throw bad_input("an expression uses " + std::to_string(names.size()) +
-                      " names and lets: at most " + std::to_string(most_values) + " are possible");
+    if (size_ < least || size_ > most)
+      throw bad_input("an expression of the file has " + counted(long(size_), "value") + " where " +
+                      std::to_string(most) + " are asked for");
   }
 
-  std::size_t size() const { return values_.size(); }
+  std::size_t size() const { return size_; }
 
-  /// The first `count` values. x, n: null where the values have none.
-  void operator()(const FullMu &mu, const Point *x, const Point *n, std::size_t count,
-                  double *results) const {
-    std::array<double, most_values> at; // not initialised
-    for (std::size_t i = 0; i < first_; ++i)
-      at[i] = mu.at(positions_[i]);
-    double *next = at.data() + first_;
-    for (const Point *point : {x, n})
-      for (std::size_t c = 0; c < 3; ++c)
-        *next++ = point == nullptr ? 0 : (*point)[c];
-    for (const BoundExpression &let : lets_)
-      *next++ = let.value(at.data());
-    for (std::size_t i = 0; i < count; ++i)
-      results[i] = values_[i].value(at.data());
+  /// At `count` points; coordinates and results column by column.
+  void operator()(const FullMu &mu, const double *at, double *results,
+                  std::size_t count = 1) const {
+    std::array<double, most_parameters> parameters; // not initialised
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+      parameters[i] = mu.at(positions_[i]);
+    program_.values(parameters.data(), at, count, results);
   }
 
 private:
+  std::size_t size_;
+  BoundProgram program_;
   std::vector<std::size_t> positions_;
-  std::size_t first_; ///< where the coordinates begin
-  std::vector<BoundExpression> lets_, values_;
 };
 
-/// An evaluator of as many values as that.
-Evaluator evaluator(const Record &record, std::size_t least, std::size_t most) {
-  Evaluator own(record);
-  if (own.size() < least || own.size() > most)
-    throw bad_input("an expression of the file has " + counted(long(own.size()), "value") +
-                    " where " + std::to_string(most) + " are asked for");
-  return own;
-}
+const Maker<Coefficient> expression_coefficient_maker{
+    "expression", version, [](const Record &of) -> std::function<Coefficient> {
+      return [own = Evaluator(of, 0, 1, 1)](const FullMu &mu) {
+        double value;
+        own(mu, nullptr, &value);
+        return value;
+      };
+    }};
 
-const Maker<Coefficient> coefficient_maker{"expression", version,
-                                           [](const Record &of) -> std::function<Coefficient> {
-                                             return [own = evaluator(of, 1, 1)](const FullMu &mu) {
-                                               double value;
-                                               own(mu, nullptr, nullptr, 1, &value);
-                                               return value;
-                                             };
+const Maker<PointValue> expression_value_maker{
+    "expression", version, [](const Record &of) -> std::function<PointValue> {
+      return [own = Evaluator(of, 3, 1, 1)](const FullMu &mu, const Point &x) {
+        double value;
+        own(mu, x.data(), &value);
+        return value;
+      };
+    }};
+
+struct ExpressionMap {
+  Evaluator own;
+  Point operator()(const FullMu &mu, const Point &x) const {
+    Point value{};
+    own(mu, x.data(), value.data());
+    return value;
+  }
+};
+
+const Maker<PointMap> expression_map_maker{"expression", version,
+                                           [](const Record &of) -> std::function<PointMap> {
+                                             return ExpressionMap{Evaluator(of, 3, 1, 3)};
                                            }};
 
-const Maker<PointValue> value_maker{
-    "expression", version, [](const Record &of) -> std::function<PointValue> {
-      return [own = evaluator(of, 1, 1)](const FullMu &mu, const Point &x) {
-        double value;
-        own(mu, &x, nullptr, 1, &value);
-        return value;
-      };
-    }};
-
-const Maker<PointMap> map_maker{
-    "expression", version, [](const Record &of) -> std::function<PointMap> {
-      return [own = evaluator(of, 1, 3)](const FullMu &mu, const Point &x) {
-        Point value{};
-        own(mu, &x, nullptr, own.size(), value.data());
-        return value;
-      };
-    }};
-
-const Maker<Traction> traction_maker{
+const Maker<Traction> expression_traction_maker{
     "expression", version, [](const Record &of) -> std::function<Traction> {
-      return [own = evaluator(of, 1, 3)](const FullMu &mu, const Point &x, const Point &n) {
+      return [own = Evaluator(of, 6, 1, 3)](const FullMu &mu, const Point &x, const Point &n) {
+        const std::array at{x[0], x[1], x[2], n[0], n[1], n[2]};
         Point value{};
-        own(mu, &x, &n, own.size(), value.data());
+        own(mu, at.data(), value.data());
         return value;
       };
     }};
@@ -168,23 +175,20 @@ std::vector<Expression> expressions_in(const std::string &message) {
 }
 
 /// The conditions come first, then the values in their messages.
-const Maker<Check> check_maker{"expression", version, [](const Record &of) -> std::function<Check> {
-                                 const Evaluator own(of);
-                                 std::vector<std::string> messages;
-                                 for (std::size_t i = 0;
-                                      of.texts.contains("message_" + std::to_string(i)); ++i)
-                                   messages.push_back(text(of, "message_" + std::to_string(i)));
-                                 return [own, messages](const FullMu &mu) {
-                                   std::vector<double> values(own.size());
-                                   own(mu, nullptr, nullptr, own.size(), values.data());
-                                   const double *in_message = values.data() + messages.size();
-                                   for (std::size_t i = 0; i < messages.size(); ++i) {
-                                     if (!(values[i] != 0) || values[i] != values[i])
-                                       throw bad_input(filled(messages[i], in_message));
-                                     in_message += std::ranges::count(messages[i], '{');
-                                   }
-                                 };
-                               }};
+const Maker<Check> expression_check_maker{
+    "expression", version, [](const Record &of) -> std::function<Check> {
+      const Evaluator own(of, 0, 1, 1000);
+      return [own, messages = texts_of(of, "message")](const FullMu &mu) {
+        std::vector<double> values(own.size());
+        own(mu, nullptr, values.data());
+        const double *in_message = values.data() + messages.size();
+        for (std::size_t i = 0; i < messages.size(); ++i) {
+          if (!(values[i] != 0) || values[i] != values[i])
+            throw bad_input(filled(messages[i], in_message));
+          in_message += std::ranges::count(messages[i], '{');
+        }
+      };
+    }};
 
 template <class Signature>
 Named<Signature> function_of(const Maker<Signature> &maker, Record record) {
@@ -201,6 +205,23 @@ void check_names(const Formula &formula, const std::vector<std::string> &allowed
   }
   for (const Expression &value : own.values)
     (void)bound_to(value, names, {});
+}
+
+/// f(0) and f' of an expression in one name that is affine.
+std::optional<std::pair<double, double>> affine_of(const Expression &whole) {
+  if (whole.free_names().size() != 1) return std::nullopt;
+  const BoundExpression bound = bound_to(whole, whole.free_names());
+  double at_zero = 0, slope = 0;
+  const double zero = 0;
+  bound.value_and_gradient(&zero, at_zero, &slope);
+  for (const double x : {1.0, -3.0, 0.37, 1e3}) {
+    double value = 0, own = 0;
+    bound.value_and_gradient(&x, value, &own);
+    if (!(own == slope) || !(std::abs(value - at_zero - slope * x) <=
+                             1e-15 * (std::abs(at_zero) + std::abs(slope * x))))
+      return std::nullopt;
+  }
+  return std::pair(at_zero, slope);
 }
 
 } // namespace
@@ -256,22 +277,33 @@ Expression expanded(const Expression &expression, const std::vector<Let> &lets) 
 
 Named<Coefficient> coefficient_of(const Formula &value) {
   check_names(value, {});
-  return function_of(coefficient_maker, record_of_formula(value));
+  const Expression whole = expanded(value.values.front(), value.lets);
+  if (whole.constant()) return constant(*whole.constant());
+  if (const auto line = affine_of(whole))
+    return affine(line->first, line->second, dependence_of(value).front());
+  return function_of(expression_coefficient_maker, record_of_formula(value));
 }
 
 Named<PointValue> point_value_of(const Formula &value) {
   check_names(value, {"x", "y", "z"});
-  return function_of(value_maker, record_of_formula(value));
+  if (!depends_on_point(value)) return everywhere(coefficient_of(value));
+  return function_of(expression_value_maker, record_of_formula(value));
 }
 
 Named<PointMap> point_map_of(const Formula &components) {
   check_names(components, {"x", "y", "z"});
-  return function_of(map_maker, record_of_formula(components));
+  if (dependence_of(components).empty() && !depends_on_point(components)) {
+    Point vector{};
+    for (std::size_t c = 0; c < components.values.size(); ++c)
+      vector[c] = *expanded(components.values[c], components.lets).constant();
+    return everywhere(vector);
+  }
+  return function_of(expression_map_maker, record_of_formula(components));
 }
 
 Named<Traction> traction_of(const Formula &components) {
   check_names(components, coordinates);
-  return function_of(traction_maker, record_of_formula(components));
+  return function_of(expression_traction_maker, record_of_formula(components));
 }
 
 Named<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages) {
@@ -283,11 +315,33 @@ Named<Check> check_of(const Formula &conditions, const std::vector<std::string> 
   Record record = record_of_formula(all);
   for (std::size_t i = 0; i < messages.size(); ++i)
     record.texts["message_" + std::to_string(i)] = messages[i];
-  return function_of(check_maker, std::move(record));
+  return function_of(expression_check_maker, std::move(record));
+}
+
+std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
+                          const std::vector<Point> &points) {
+  const std::size_t count = points.size();
+  std::vector<Point> result(count);
+  const auto *many = map.target<ExpressionMap>();
+  if (many == nullptr) {
+    for (std::size_t i = 0; i < count; ++i)
+      result[i] = map(mu, points[i]);
+    return result;
+  }
+  std::vector<double> at(3 * count), values(many->own.size() * count);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      at[c * count + i] = points[i][c];
+  many->own(mu, at.data(), values.data(), count);
+  for (std::size_t c = 0; c < many->own.size(); ++c)
+    for (std::size_t i = 0; i < count; ++i)
+      result[i][c] = values[c * count + i];
+  return result;
 }
 
 FunctionLibrary formula_functions() {
-  return {coefficient_maker, value_maker, map_maker, traction_maker, check_maker};
+  return {expression_coefficient_maker, expression_value_maker, expression_map_maker,
+          expression_traction_maker, expression_check_maker};
 }
 
 } // namespace rbvi

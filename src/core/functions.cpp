@@ -36,6 +36,21 @@ const Maker<PointValue> value_maker{
       return [value = number(of, "value")](const FullMu &, const Point &) { return value; };
     }};
 
+std::function<PointValue> value_of(const std::function<Coefficient> &coefficient) {
+  return [coefficient](const FullMu &mu, const Point &) { return coefficient(mu); };
+}
+
+const Maker<PointValue> coefficient_maker{
+    "of_parameters", 1,
+    [](const Stored &of) { return value_of(made<Coefficient>(part(of, "coefficient"))); }};
+
+std::function<PointMap> scaling(const std::function<Coefficient> &scale) {
+  return [scale](const FullMu &mu, const Point &x) { return scale(mu) * x; };
+}
+
+const Maker<PointMap> scaled_maker{
+    "scaled", 1, [](const Stored &of) { return scaling(made<Coefficient>(part(of, "scale"))); }};
+
 const Maker<PointMap> vector_maker{
     "everywhere", 1, [](const Record &of) -> std::function<PointMap> {
       const Point vector{number(of, "x"), number(of, "y"), number(of, "z")};
@@ -51,8 +66,9 @@ const Maker<Material> material_maker{
 } // namespace
 
 FunctionLibrary common_functions() {
-  return {log_maker,      exp_maker,      log_to_half_maker, exp_to_half_maker, affine_maker,
-          constant_maker, identity_maker, value_maker,       vector_maker,      material_maker};
+  return {log_maker,    exp_maker,      log_to_half_maker, exp_to_half_maker,
+          affine_maker, constant_maker, identity_maker,    value_maker,
+          vector_maker, material_maker, coefficient_maker, scaled_maker};
 }
 
 template <class Signature> Named<Signature> made(const Stored &stored) {
@@ -120,6 +136,14 @@ Named<PointValue> everywhere(double value) {
 
 Named<PointMap> everywhere(const Point &vector) {
   return vector_maker({{"x", {vector[0]}}, {"y", {vector[1]}}, {"z", {vector[2]}}});
+}
+
+Named<PointValue> everywhere(const Named<Coefficient> &value) {
+  return coefficient_maker.named(value_of(value), {}, {{"coefficient", value.record}});
+}
+
+Named<PointMap> scaled(const Named<Coefficient> &scale) {
+  return scaled_maker.named(scaling(scale), {}, {{"scale", scale.record}});
 }
 
 Named<Material> everywhere(const Lame &material) {

@@ -147,9 +147,11 @@ std::string described(const Dimension &dimension) {
     if (dimension_of(unit) == dimension) return name;
   std::vector<std::string> factors;
   for (std::size_t i = 0; i < 4; ++i)
-    if (dimension[i] != 0)
-      factors.push_back(base_names[i] +
-                        (dimension[i] == 1 ? "" : "^" + std::to_string(dimension[i])));
+    if (dimension[i] == 1)
+      factors.emplace_back(base_names[i]);
+    else if (dimension[i] != 0)
+      factors.push_back(
+          std::string(base_names[i]).append("^").append(std::to_string(dimension[i])));
   return "of dimension " + joined(factors, "*");
 }
 

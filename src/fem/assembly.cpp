@@ -1,6 +1,7 @@
 #include "rbvi/fem/assembly.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -54,9 +55,11 @@ Cell cell_of(const Mesh &mesh, std::size_t cell, const MappedVertices &mapped) {
 MappedVertices map_vertices(const Scene &scene, const FullMu &mu, const Mesh &mesh) {
   MappedVertices mapped;
   collectively(mesh.comm, [&] {
+    std::vector<Point> vertices;
     for (std::size_t v = 0; v < mesh.points.size() && mesh.natural_node[v] < mesh.total_vertices;
          ++v)
-      mapped.push_back(scene.map(mu, mesh.points[v]));
+      vertices.push_back(mesh.points[v]);
+    mapped = images(scene.map, mu, vertices);
     for (std::size_t k = 0; k < mesh.cells.size(); ++k)
       check_orientation(scene, mu, cell_of(mesh, k, mapped));
   });

@@ -2,6 +2,7 @@
 
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/formula.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/model/packed.hpp"
@@ -12,13 +13,28 @@ namespace rbvi {
 
 namespace {
 
-/// A sampled cell or edge, mapped.
-Cell sample_cell(const SampleMesh &sample, const Scene &scene, const FullMu &mu, Index number) {
+/// The vertices of sampled cells or edges, and where the map takes them.
+struct SampleVertices {
+  std::vector<Point> reference, mapped;
+};
+
+SampleVertices vertices_of(const SampleMesh &sample, const Scene &scene, const FullMu &mu) {
+  SampleVertices vertices;
+  for (Index i = 0; i < sample.vertices.rows(); ++i)
+    vertices.reference.push_back(point_of(sample.vertices, i));
+  vertices.mapped = images(scene.map, mu, vertices.reference);
+  return vertices;
+}
+
+/// A sampled cell or edge.
+Cell sample_cell(const SampleMesh &sample, const SampleVertices &vertices, const Scene &scene,
+                 const FullMu &mu, Index number) {
   Cell cell{sample.corners - 1, {}, {}};
   for (int i = 0; i < sample.corners; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    cell.reference[at] = point_of(sample.vertices, number * sample.corners + i);
-    cell.mapped[at] = scene.map(mu, cell.reference[at]);
+    const auto vertex = static_cast<std::size_t>(number * sample.corners + i);
+    cell.reference[at] = vertices.reference[vertex];
+    cell.mapped[at] = vertices.mapped[vertex];
   }
   if (cell.dim == scene.dim) check_orientation(scene, mu, cell);
   if (!sample.imposed_by.empty()) {
@@ -42,10 +58,12 @@ Vector affine_coefficients(const AffineTerms &terms, const Sum &sum, const Scene
   const SampleMesh &sample = terms.samples.front();
   const Index cells = sample.vertices.rows() / sample.corners;
   const Index dofs = Index{nodes_per_cell(scene.dim, scene.degree)} * scene.components;
+  const SampleVertices vertices = vertices_of(sample, scene, all_parameters);
   Matrix values(dofs * dofs, cells); // a linear form, or one on a facet, fills the first rows only
   for (Index number = 0; number < cells; ++number) {
     const int term = sample.terms[number];
-    sum[term].form.kernel(all_parameters, sample_cell(sample, scene, all_parameters, number),
+    sum[term].form.kernel(all_parameters,
+                          sample_cell(sample, vertices, scene, all_parameters, number),
                           values.col(number).data());
   }
   for (const SampleMesh::Contribution &c : sample.contributions)
@@ -65,11 +83,12 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
     const EntitySum &interface = *contact.interfaces[i]->entity_sum();
     const SampleMesh &sample = terms.samples[i];
     const auto entities = static_cast<std::size_t>(sample.vertices.rows() / sample.corners);
+    const SampleVertices vertices = vertices_of(sample, scene, all_parameters);
     std::vector<EntityValues> values(entities, interface.shape());
     for (std::size_t e = 0; e < entities; ++e)
       interface.integrate_beside_imposed(
-          all_parameters, sample_cell(sample, scene, all_parameters, static_cast<Index>(e)),
-          values[e]);
+          all_parameters,
+          sample_cell(sample, vertices, scene, all_parameters, static_cast<Index>(e)), values[e]);
     for (const SampleMesh::Contribution &c : sample.contributions) {
       const EntityValues &of = values[c.cell];
       theta[c.entry] += part == Part::b ? of.b.data()[c.local] : of.g[c.local];

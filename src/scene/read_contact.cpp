@@ -120,9 +120,11 @@ RigidContact disk_contact(Reader &reader, const CaseNode &node, const CaseNode &
              {"at", "against", "normal", "gap", "gap_from", "friction", "kinematics", "formulation",
               "nitsche_gamma0", "lumped"});
   const std::vector<Expression> centre = components_in(reader, entry(disk, "center"));
+  if (centre.size() != 2) throw bad_input("the center of a disk is [x, y]");
   const Formula radius = formula_in(reader, entry(disk, "radius"));
   const Named<Surface> surface =
-      disk_surface(point_map_of(formula_of(reader, centre)), coefficient_of(radius));
+      disk_surface(coefficient_of(formula_of(reader, {centre[0]})),
+                   coefficient_of(formula_of(reader, {centre[1]})), coefficient_of(radius));
   const Friction friction = friction_in(reader, node, scene);
   return is_large(node) ? following(node, side, surface, friction)
                         : at_rest(node, side, surface, friction, scene);

@@ -152,6 +152,10 @@ void read_mesh(Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &map = section(reader, "map");
   defects.collect(map, [&] {
     const std::vector<Expression> components = map_of(reader);
+    if (const CaseNode *scale = map.find("scale")) {
+      scene.map = scaled(coefficient_of(formula_in(reader, *scale)));
+      return;
+    }
     scene.map = components.empty() ? identity() : point_map_of(formula_of(reader, components));
   });
 }

@@ -22,8 +22,9 @@ Named<PointMap> normals_of_circles(const std::vector<Circle> &circles);
 /// outer(mu, inner(mu, x)).
 Named<PointMap> composed(const Named<PointMap> &outer, const Named<PointMap> &inner);
 
-/// The outside of a disk.
-Named<Surface> disk_surface(const Named<PointMap> &centre, const Named<Coefficient> &radius);
+/// The outside of a disk about (x, y).
+Named<Surface> disk_surface(const Named<Coefficient> &x, const Named<Coefficient> &y,
+                            const Named<Coefficient> &radius);
 
 /// Unit normal, out of the body, of a surface that the point at(mu, x) faces: -(gradient of the
 /// distance).

@@ -32,6 +32,10 @@ Named<Traction> traction_of(const Formula &components);
 /// {expression} in it becomes the value.
 Named<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages);
 
+/// map(mu, x) of many points: those of an expression are evaluated together, in less time.
+std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
+                          const std::vector<Point> &points);
+
 /// With every let written out.
 Expression expanded(const Expression &expression, const std::vector<Let> &lets);
 

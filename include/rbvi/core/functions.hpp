@@ -79,5 +79,9 @@ Named<PointMap> identity();
 Named<PointValue> everywhere(double value);
 Named<PointMap> everywhere(const Point &vector);
 Named<Material> everywhere(const Lame &material);
+/// The same at all points.
+Named<PointValue> everywhere(const Named<Coefficient> &value);
+/// x -> scale x.
+Named<PointMap> scaled(const Named<Coefficient> &scale);
 
 } // namespace rbvi
