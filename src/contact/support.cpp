@@ -1,6 +1,7 @@
 #include "rbvi/contact/support.hpp"
 
 #include "rbvi/contact/curve.hpp"
+#include "rbvi/contact/surfaces.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -48,7 +49,10 @@ RigidContact rigid_contact(const Support &support) {
   rigid.facing.at = [normal = support.normal,
                      gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
     const Point n = normal(mu, point.x);
-    return FacedPoint{n, gap(mu, point.x) - dot(point.motion, n), slip_along(n, point.motion)};
+    const auto *to_surface = gap.target<GapToSurface>(); // which needs no other normal
+    const double distance =
+        to_surface != nullptr ? to_surface->along(mu, point.x, n) : gap(mu, point.x);
+    return FacedPoint{n, distance - dot(point.motion, n), slip_along(n, point.motion)};
   };
   rigid.facing.normal = support.normal;
   rigid.facing.asks_place = false;

@@ -11,7 +11,6 @@ const Circle &nearest_circle(const std::vector<Circle> &circles, const Point &x)
     return std::abs(norm(x - circle.centre) - circle.radius);
   };
   const Circle *nearest = &circles.front();
-  if (circles.size() == 1) return *nearest;
   for (const Circle &circle : circles)
     if (distance(circle) < distance(*nearest)) nearest = &circle;
   return *nearest;
@@ -39,8 +38,22 @@ std::vector<Circle> circles_in(const Record &of) {
   return circles;
 }
 
+Point on_circle(const Circle &circle, const Point &x) {
+  const Point out = x - circle.centre;
+  return circle.centre + circle.radius / norm(out) * out;
+}
+
+Point normal_of_circle(const Circle &circle, const Point &x) {
+  const Point out = x - circle.centre;
+  return (circle.hole ? -1 : 1) / norm(out) * out;
+}
+
 const Maker<PointMap> on_circles_maker{
     "on_circles", 1, [](const Record &of) -> std::function<PointMap> {
+      if (numbers(of, "x").size() == 1)
+        return [circle = circles_in(of).front()](const FullMu &, const Point &x) {
+          return on_circle(circle, x);
+        };
       return [circles = circles_in(of)](const FullMu &, const Point &x) {
         return on_circles(circles, x);
       };
@@ -48,10 +61,12 @@ const Maker<PointMap> on_circles_maker{
 
 const Maker<PointMap> circle_normals_maker{
     "normals_of_circles", 1, [](const Record &of) -> std::function<PointMap> {
+      if (numbers(of, "x").size() == 1)
+        return [circle = circles_in(of).front()](const FullMu &, const Point &x) {
+          return normal_of_circle(circle, x);
+        };
       return [circles = circles_in(of)](const FullMu &, const Point &x) {
-        const Circle &circle = nearest_circle(circles, x);
-        const Point out = x - circle.centre;
-        return (circle.hole ? -1 : 1) / norm(out) * out;
+        return normal_of_circle(nearest_circle(circles, x), x);
       };
     }};
 
@@ -109,34 +124,28 @@ double distance_along(const std::function<Surface> &surface, const FullMu &mu, c
   throw failure("a line from a point of the body misses the rigid surface: use 'gap: closest'");
 }
 
-std::function<PointValue> gap_function(const std::function<Surface> &surface,
-                                       const std::function<PointMap> &at,
-                                       const std::function<PointMap> &normal, GapKind kind) {
-  return [=](const FullMu &mu, const Point &x) {
-    const Point from = at(mu, x), n = normal(mu, x);
-    if (kind == GapKind::ray) return distance_along(surface, mu, from, n);
-    if (kind == GapKind::vertical) {
-      const double side = n[1] < 0 ? -1 : 1;
-      return side * n[1] * distance_along(surface, mu, from, {0, side, 0});
-    }
-    const SurfacePoint there = surface(mu, from);
-    return -there.distance * dot(there.normal, n);
-  };
-}
-
-const Maker<PointValue> gap_maker{"gap_to_surface", 1, [](const Stored &of) {
-                                    return gap_function(made<Surface>(part(of, "surface")),
-                                                        made<PointMap>(part(of, "at")),
-                                                        made<PointMap>(part(of, "normal")),
-                                                        static_cast<GapKind>(integer(of, "kind")));
-                                  }};
+const Maker<PointValue> gap_maker{
+    "gap_to_surface", 1, [](const Stored &of) -> std::function<PointValue> {
+      return GapToSurface{made<Surface>(part(of, "surface")), made<PointMap>(part(of, "at")),
+                          made<PointMap>(part(of, "normal")),
+                          static_cast<GapKind>(integer(of, "kind"))};
+    }};
 
 } // namespace
 
+double GapToSurface::along(const FullMu &mu, const Point &x, const Point &n) const {
+  const Point from = at(mu, x);
+  if (kind == GapKind::ray) return distance_along(surface, mu, from, n);
+  if (kind == GapKind::vertical) {
+    const double side = n[1] < 0 ? -1 : 1;
+    return side * n[1] * distance_along(surface, mu, from, {0, side, 0});
+  }
+  const SurfacePoint there = surface(mu, from);
+  return -there.distance * dot(there.normal, n);
+}
+
 Point on_circles(const std::vector<Circle> &circles, const Point &x) {
-  const Circle &circle = nearest_circle(circles, x);
-  const Point out = x - circle.centre;
-  return circle.centre + circle.radius / norm(out) * out;
+  return on_circle(nearest_circle(circles, x), x);
 }
 
 Named<PointMap> on_circles(const std::vector<Circle> &circles) {
@@ -166,7 +175,7 @@ Named<PointMap> normal_of_surface(const Named<Surface> &surface, const Named<Poi
 Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
                                  const Named<PointMap> &normal, GapKind kind) {
   return gap_maker.named(
-      gap_function(surface, at, normal, kind), {{"kind", {double(kind)}}},
+      GapToSurface{surface, at, normal, kind}, {{"kind", {double(kind)}}},
       {{"surface", surface.record}, {"at", at.record}, {"normal", normal.record}});
 }
 

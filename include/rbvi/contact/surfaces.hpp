@@ -37,6 +37,15 @@ enum class GapKind {
   vertical ///< along e_y
 };
 
+/// What gap_to_surface makes; `along` takes a normal that is known already.
+struct GapToSurface {
+  std::function<Surface> surface;
+  std::function<PointMap> at, normal;
+  GapKind kind;
+  double operator()(const FullMu &mu, const Point &x) const { return along(mu, x, normal(mu, x)); }
+  double along(const FullMu &mu, const Point &x, const Point &n) const;
+};
+
 /// (partner - at) . normal, at = at(mu, x) (Niakh 2022, (3.4)). Evaluation throws failure where the
 /// line misses the surface.
 Named<PointValue> gap_to_surface(const Named<Surface> &surface, const Named<PointMap> &at,
