@@ -182,12 +182,13 @@ void read_free(Reader &reader, Scene &scene, Defects &defects) {
   }
   for (const std::string &name : names) {
     const auto found = std::ranges::find(scene.parameters.all, name, &Parameter::name);
-    const bool declared = section(reader, "parameters").find(name) != nullptr;
-    if (found == scene.parameters.all.end())
-      defects.add(node, declared ? "nothing depends on the free parameter " + name
-                                 : "there is no parameter '" + name + "' that could be free");
-    else if (!(found->upper > found->lower))
+    const CaseNode *declared = section(reader, "parameters").find(name);
+    const bool varies = declared != nullptr && declared->find("range") != nullptr;
+    if (declared != nullptr && !varies)
       defects.add(node, "the free parameter " + name + " needs a range");
+    else if (found == scene.parameters.all.end())
+      defects.add(node, varies ? "nothing depends on the free parameter " + name
+                               : "there is no parameter '" + name + "' that could be free");
     else
       scene.parameters.free.push_back(static_cast<int>(found - scene.parameters.all.begin()));
   }
@@ -223,10 +224,23 @@ std::optional<UnitSystem> units_of(const CaseNode &root, Defects &defects) {
   return system;
 }
 
+void check_version(const CaseNode &root, Defects &defects) {
+  if (const CaseNode *version = root.find("rbvi"); version != nullptr && version->value != "1")
+    defects.add(*version, "rbvi is '" + version->value + "': this build reads version 1");
+  if (const CaseNode *physics = root.find("physics"); physics != nullptr && physics->is_value())
+    defects.collect(*physics, [&] {
+      (void)choice_or(root, "physics", "", {"membrane", "plane_strain", "plane_stress"});
+    });
+}
+
 /// The scene of a file whose changes are made. Throws its defects.
 Scene scene_of(const CaseNode &root, Defects &defects) {
   Reader reader{.root = root, .units = units_of(root, defects)};
+  check_version(root, defects);
   check_keys(reader, defects);
+  Reader parameters{.root = root, .units = reader.units};
+  Scene idle;
+  read_parameters(parameters, idle, defects);
   defects.throw_all();
   Scene first;
   read_sections(reader, first, defects); // tells which parameters are used
@@ -272,6 +286,11 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
       defects.collect(node, [&, &own = name, &value = node] {
         scene_entry.options.push_back(option_of_constant(reader, own, value));
       });
+  for (const auto &[name, node] : section(reader, "options").entries)
+    if (node.is_table())
+      defects.add(node, "options are not nested: write '" + name + "_" +
+                            (node.entries.empty() ? "..." : node.entries.front().first) +
+                            ": value'");
   for (const auto &[name, node] : section(reader, "options").entries)
     scene_entry.settings.push_back({name, setting_text(node), node.line});
   if (const CaseNode *mesh = root.find("mesh"); mesh != nullptr)

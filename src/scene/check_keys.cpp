@@ -33,6 +33,20 @@ void check_names(const Reader &reader, const CaseNode &node, const std::vector<s
   });
 }
 
+/// "contact.*.friction" -> "contact: friction"
+std::string in_words(const std::string &table) {
+  std::vector<std::string> names;
+  for (const std::string &name : split(table, '.'))
+    if (name != "*") names.push_back(name);
+  return joined(names, ": ");
+}
+
+bool may_be_list(const CaseKey &key) {
+  for (const char *part : {"[", "expressions", "names", "regions", "boundar", "anything", "table"})
+    if (key.value.find(part) != std::string::npos) return true;
+  return key.table == "options";
+}
+
 class Walk {
 public:
   Walk(const Reader &reader, Defects &defects) : reader_(reader), defects_(defects) {
@@ -53,7 +67,7 @@ public:
       const auto any = own != names.end() ? own : std::ranges::find(names, std::string("*"));
       if (any == names.end())
         defects_.add(value, "unknown key '" + name + "'" +
-                                (table.empty() ? std::string() : " of " + table) +
+                                (table.empty() ? std::string() : " of " + in_words(table)) +
                                 ": the nearest is '" + nearest_name(name, names) + "'");
       else
         check(*keys[static_cast<std::size_t>(any - names.begin())], name, value, table);
@@ -75,6 +89,11 @@ private:
         visit_table(name, value, table);
       return;
     }
+    if (value.kind == CaseNode::Kind::list && !may_be_list(key)) {
+      defects_.add(value, name + " is a list: " + key.value + " belongs here");
+      return;
+    }
+    if (!key.dimension.empty()) check_units(key, value);
     if (key.value == "table" && !(value.is_value() && value.value.empty()))
       defects_.add(value, name + " is a table: write 'NAME: value' below it, or {NAME: value}");
     else if (key.value == "expression" ||
@@ -83,6 +102,21 @@ private:
     else if (key.value.starts_with("expressions") || key.value.starts_with("[expression"))
       for (const CaseNode &item : value.items)
         check_names(reader_, item, known_, defects_);
+  }
+
+  /// A number with a unit has the dimension of its key.
+  void check_units(const CaseKey &key, const CaseNode &node) {
+    for (const CaseNode &item : node.items)
+      check_units(key, item);
+    if (node.is_value())
+      defects_.collect(node, [&] {
+        std::optional<Quantity> quantity;
+        try {
+          quantity = parse_quantity(node.value, reader_.units);
+        } catch (const Error &) { // an expression, or told elsewhere
+        }
+        if (quantity) check_dimension(*quantity, dimension_of(key.dimension), node.value);
+      });
   }
 
   void visit_table(const std::string &name, const CaseNode &value, const std::string &table) {
@@ -95,7 +129,7 @@ private:
         if (entry_node.is_table())
           visit(entry_node, own + ".*");
         else
-          defects_.add(entry_node, entry_name + " is a table: write {at: ..., ...}");
+          defects_.add(entry_node, entry_name + " is a table: write {NAME: VALUE, ...}");
     }
   }
 

@@ -200,7 +200,10 @@ bool replace(CaseNode &root, const std::string &path, const CaseNode &value) {
 }
 
 void Defects::add(const CaseNode &at, const std::string &what) {
-  all_.push_back({at.line, at.column, what});
+  const bool told = std::ranges::any_of(all_, [&](const Defect &other) {
+    return other.line == at.line && other.column == at.column && at.line != 0;
+  });
+  if (!told) all_.push_back({at.line, at.column, what});
 }
 
 void Defects::throw_all() const {
@@ -211,8 +214,11 @@ void Defects::throw_all() const {
   });
   std::string text;
   for (const Defect &defect : sorted)
-    text += (text.empty() ? "" : "\n") + file_ + ":" + std::to_string(defect.line) + ":" +
-            std::to_string(defect.column) + ": " + defect.what;
+    text += (text.empty() ? "" : "\n") + file_ + ":" +
+            (defect.line == 0
+                 ? "" // of what is not there
+                 : std::to_string(defect.line) + ":" + std::to_string(defect.column) + ":") +
+            " " + defect.what;
   throw bad_input(text);
 }
 

@@ -2,6 +2,8 @@
 
 #include "rbvi/core/text.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -84,6 +86,18 @@ FixedBoundary boundary_in(Reader &reader, const CaseNode &node,
   return boundary;
 }
 
+/// Throws bad_input for a component that is imposed on a boundary before.
+void check_new(const std::vector<FixedBoundary> &fixed, const FixedBoundary &boundary) {
+  for (const FixedBoundary &other : fixed) {
+    if (other.name != boundary.name) continue;
+    const bool all = other.components.empty() || boundary.components.empty();
+    if (all || std::ranges::any_of(boundary.components, [&](int c) {
+          return std::ranges::find(other.components, c) != other.components.end();
+        }))
+      throw bad_input("a displacement is imposed twice on '" + boundary.name + "'");
+  }
+}
+
 } // namespace
 
 void read_motion(Reader &reader, Scene &scene, Defects &defects) {
@@ -94,15 +108,19 @@ void read_motion(Reader &reader, Scene &scene, Defects &defects) {
       motion = components_in(reader, given);
     else
       motion = derived_motion(reader, scene);
-    if (!motion.empty() && motion.size() != static_cast<std::size_t>(scene.components))
+    if (!motion.empty() && motion.size() != static_cast<std::size_t>(scene.components)) {
+      motion.clear();
       throw bad_input("the motion has " + counted(scene.components, "component"));
+    }
     if (!motion.empty()) scene.motion = point_map_of(formula_of(reader, motion));
   });
   for (const auto &[name, node] : section(reader, "imposed").entries)
     defects.collect(node, [&, &value = node] {
       for (const std::string &boundary : names_in(entry(value, "at"))) {
-        scene.fixed.push_back(boundary_in(reader, value, motion, scene.components));
-        scene.fixed.back().name = boundary;
+        FixedBoundary fixed = boundary_in(reader, value, motion, scene.components);
+        fixed.name = boundary;
+        check_new(scene.fixed, fixed);
+        scene.fixed.push_back(std::move(fixed));
       }
     });
 }

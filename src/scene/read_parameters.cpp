@@ -73,7 +73,13 @@ void read_lets(Reader &reader, Defects &defects) {
   for (const auto &[name, node] : section(reader, "let").entries)
     defects.collect(node, [&, &own = name, &value = node] {
       check_new(reader, own);
-      reader.lets.push_back({own, expression_in(reader, value)});
+      const Expression expression = expression_in(reader, value);
+      for (const std::string &used : expression.free_names())
+        if (!is_coordinate(used) && section(reader, "parameters").find(used) == nullptr &&
+            std::ranges::find(reader.lets, used, &Let::name) == reader.lets.end())
+          throw bad_input("unknown name '" + used + "' in '" + value.value +
+                          "': it may have parameters, coordinates and what stands above it");
+      reader.lets.push_back({own, expression});
     });
 }
 

@@ -47,8 +47,27 @@ std::string given_twice(const std::vector<std::string> &words) {
   return "";
 }
 
-Invocation left_over(const std::string &word) {
-  return refused("'" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)");
+std::string left_over(const std::string &word) {
+  return "'" + word + "' is left over: rbvi COMMAND -option value ... (rbvi -help)";
+}
+
+/// Takes the word behind the command, where it has one: a file, a folder, a name. Returns why not.
+std::string take_word(Invocation &result, std::vector<std::string> &given) {
+  const std::string &command = result.command;
+  const bool word = given.size() > 1 && !is_option(given[1]);
+  if (command == "check" && word) given.insert(given.begin() + 1, "-case");
+  if (command == "new" && (given.size() != 2 || !word))
+    return "new takes the name of a folder: rbvi new my_case";
+  if (command == "inspect" && given.size() != 2)
+    return "inspect takes one model file: rbvi inspect run/obstacle/model.h5";
+  if (command == "list" && !word && given.size() == 1) given.emplace_back("cases");
+  const bool takes = command == "inspect" || command == "list" || command == "new";
+  if (command == "help" && given.size() > 1) return left_over(given[1]);
+  if (!takes) return "";
+  if (given.size() > 2 || is_option(given[1])) return left_over(given.back());
+  result.file = given[1];
+  given.resize(1);
+  return "";
 }
 
 } // namespace
@@ -94,32 +113,12 @@ Invocation read_invocation(int argc, char **argv) {
                           result.command == "check" || result.command == "new";
   const std::size_t words = takes_word ? 2 : 1;
   for (std::size_t i = words; i < given.size(); ++i)
-    if (!is_option(given[i]) && !is_option(given[i - 1])) return left_over(given[i]);
+    if (!is_option(given[i]) && !is_option(given[i - 1])) return refused(left_over(given[i]));
   // PETSc reads these on one rank alone while the others wait.
   for (std::size_t i = 1; i < given.size(); ++i)
     if (given[i - 1].starts_with("-options_file") && !std::ifstream(given[i]))
       return refused("the options file " + given[i] + " cannot be read" + system_reason());
-  if (result.command == "help" && given.size() > 1) return left_over(given[1]);
-  if (result.command == "list") {
-    if (given.size() > 1 && is_option(given[1])) return left_over(given[1]);
-    if (given.size() > 2) return left_over(given[2]);
-    result.file = given.size() > 1 ? given[1] : "cases";
-    given.resize(1);
-  }
-  if (result.command == "check" && given.size() > 1 && !is_option(given[1]))
-    given.insert(given.begin() + 1, "-case");
-  if (result.command == "new") {
-    if (given.size() != 2 || is_option(given[1]))
-      return refused("new takes the name of a folder: rbvi new my_case");
-    result.file = given[1];
-    given.resize(1);
-  }
-  if (result.command == "inspect") {
-    if (given.size() != 2)
-      return refused("inspect takes one model file: rbvi inspect run/obstacle/model.h5");
-    result.file = given[1];
-    given.resize(1);
-  }
+  if (const std::string reason = take_word(result, given); !reason.empty()) return refused(reason);
   result.arguments = given;
   return result;
 }

@@ -1,4 +1,5 @@
 // Case files: what becomes of what they say.
+#include "block_case.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/scene/case.hpp"
 #include "tests/catalogue.hpp"
@@ -10,29 +11,9 @@
 namespace rbvi::case_test {
 namespace {
 
-/// A block on a floor, with other lines for some of its sections.
-std::string block(const std::map<std::string, std::string> &other = {}) {
-  std::map<std::string, std::string> sections{
-      {"rbvi", "1"},
-      {"physics", "plane_strain"},
-      {"mesh", "{built_in: one_block}"},
-      {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, "
-                     "k: {range: [0.5, 20], default: 1}, nu: {range: [0.1, 0.4], default: 0.3}, "
-                     "young: {default: 15, limits: [1, 100]}}"},
-      {"materials", "{rubber: {at: all, E: young*k, nu: nu}}"},
-      {"imposed", "{top: {at: top, ux: 0, uy: -depth}}"},
-      {"contact", "{floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}}}"}};
-  for (const auto &[name, text] : other)
-    sections[name] = text;
-  std::string all;
-  for (const auto &[name, text] : sections)
-    if (!text.empty()) all += name + ": " + text + "\n";
-  return all;
-}
-
 SceneEntry entry_in(const std::map<std::string, std::string> &other,
                     const CaseChanges &changes = {}) {
-  return read_case(block(other), "block.yaml", changes);
+  return read_case(block_case(other), "block.yaml", changes);
 }
 
 Scene scene_of(const std::map<std::string, std::string> &other = {},

@@ -34,6 +34,7 @@ struct CaseKey {
   std::string value; ///< "expression", "text", "a | b", "[a, b]", "table", ...
   std::string says;
   bool needed = false;
+  std::string dimension = ""; ///< of its numbers, as a unit: "N/m^2"; "": any
 };
 
 /// All keys, by table: what is checked, explained and completed comes from here.

@@ -41,6 +41,7 @@ struct Defect {
 class Defects {
 public:
   explicit Defects(std::string file) : file_(std::move(file)) {}
+  /// Of a place the first one counts.
   void add(const CaseNode &at, const std::string &what);
   /// `work()`; what it throws becomes a defect of that value.
   template <class Work> void collect(const CaseNode &at, Work &&work);

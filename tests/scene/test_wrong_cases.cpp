@@ -1,0 +1,250 @@
+// Wrong case files: each is refused where it is wrong, with what to do.
+#include "block_case.hpp"
+#include "rbvi/core/error.hpp"
+#include "rbvi/scene/case.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace rbvi::wrong_cases_test {
+namespace {
+
+/// What is said of a text; "" if nothing is.
+std::string said(const std::string &text) {
+  try {
+    (void)make_scene(read_case(text, "x.yaml"), {});
+  } catch (const Error &error) {
+    EXPECT_EQ(error.status(), Status::bad_input) << error.what();
+    return error.what();
+  }
+  return "";
+}
+
+struct Wrong {
+  Sections sections;
+  std::string says;
+};
+
+void expect_refused(const std::vector<Wrong> &all) {
+  for (const auto &[sections, says] : all) {
+    const std::string text = block_case(sections), message = said(text);
+    EXPECT_NE(message.find(says), std::string::npos)
+        << text << "\n  expected " << says << "\n  got " << message;
+    EXPECT_TRUE(message.starts_with("x.yaml:") || message.starts_with("the case file x.yaml"))
+        << message;
+  }
+}
+
+TEST(WrongCase, TheBlockItselfIsRight) {
+  EXPECT_EQ(said(block_case()), "");
+}
+
+TEST(WrongCase, Keys) {
+  expect_refused({
+      {{{"rbvi", ""}}, "'rbvi' is missing"},
+      {{{"physics", ""}}, "'physics' is missing"},
+      {{{"mesh", ""}}, "'mesh' is missing"},
+      {{{"parameters", ""}}, "'parameters' is missing"},
+      {{{"contact", ""}}, "'contact' is missing"},
+      {{{"materials", ""}}, "an elastic body needs 'materials:'"},
+      {{{"material", "{}"}}, "unknown key 'material': the nearest is 'materials'"},
+      {{{"springs", "{bolts: {stiffness: 1}}"}}, "unknown key 'springs'"},
+      {{{"outputs", "{force: {max: gap}}"}}, "unknown key 'outputs'"},
+      {{{"rbvi", "2"}}, "rbvi is '2': this build reads version 1"},
+      {{{"physics", "plane_stran"}}, "physics is 'plane_stran': use one of"},
+      {{{"physics", "axisymmetric"}}, "physics is 'axisymmetric': use one of"},
+      {{{"physics", "[plane_strain]"}}, "physics is a list"},
+      {{{"parameters", "depth"}}, "parameters is a table"},
+      {{{"parameters", "[depth]"}}, "parameters is a table"},
+      {{{"parameters", "{depth: 0.05}"}}, "depth is a table"},
+      {{{"mesh", "one_block"}}, "mesh is a table"},
+      {{{"mesh", "{built_in: one_block, egdes: 4}"}},
+       "unknown key 'egdes' of mesh: the nearest is"},
+      {{{"contact", "{floor: {at: contact, agaisnt: top}}"}}, "the nearest is 'against'"},
+      {{{"contact", "{floor: {against: {plane: {normal: [0, -1], position: 0}}}}"}},
+       "'at' is missing"},
+      {{{"imposed", "{top: {at: top, uz: 0}}"}}, "unknown key 'uz' of imposed"},
+      {{{"materials", "{rubber: {at: all, E: 15}}"}}, "'nu' is missing (expression"},
+      {{{"free", "{depth: 1}"}}, "free is no table"},
+  });
+}
+
+TEST(WrongCase, Expressions) {
+  const auto young = [](const std::string &text) {
+    return Sections{{"materials", "{rubber: {at: all, E: '" + text + "', nu: nu}}"}};
+  };
+  expect_refused({
+      {young("young *"), "column 8"},
+      {young("yuong*k"), "unknown name 'yuong' in 'yuong*k': the nearest is 'young'"},
+      {young("young**k"), "write ^"},
+      {young("young*foo(k)"), "foo"},
+      {young("sin()"), "column"},
+      {young("(young"), "column"},
+      {young("young k"), "column"},
+      {young("15 GPa"), "units"},
+      {young(""), "belongs here"},
+      {{{"let", "{x: 2}"}}, "'x' is the name of a coordinate"},
+      {{{"let", "{k: 2}"}}, "there is a parameter 'k' already"},
+      {{{"let", "{a: b, b: 2}"}}, "unknown name 'b'"},
+      {{{"map", "[x]"}}, "the map has two components"},
+      {{{"map", "[atan2(x, 1), y]"}}, "column"}, // the comma inside of the list
+      {{{"map", "{scael: 2}"}}, "unknown key 'scael' of map"},
+      {{{"imposed", "{top: {at: top, uy: -depth + nx}}"}}, "unknown name 'nx'"},
+      {{{"motion", "[0]"}}, "the motion has 2 components"},
+      {{{"imposed", "{top: {at: top, uy: motion}}"}}, "there is no 'motion:'"},
+      {{{"units", "{length: mm, force: N}"},
+        {"materials", "{rubber: {at: all, E: 15 mm, nu: nu}}"}},
+       "a length"},
+      {{{"units", "{length: parsec, force: N}"}}, "parsec"},
+      {{{"require", "{r: {that: depth < x, says: no}}"}}, "unknown name 'x'"},
+      {{{"require", "{r: {that: depth < 1, says: 'a {depth'}}"}}, "is not closed"},
+  });
+}
+
+TEST(WrongCase, Parameters) {
+  const auto k = [](const std::string &text) {
+    return Sections{{"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, k: {" + text +
+                                       "}, nu: {default: 0.3}, young: {default: 15}}"}};
+  };
+  expect_refused({
+      {k("range: [2, 1], default: 1"), "the lower bound comes first"},
+      {k("range: [1, 1], default: 1"), "the lower bound comes first"},
+      {k("range: [1, 2], default: 3"), "lies outside of its range"},
+      {k("range: [1, 2]"), "'default' is missing"},
+      {k("range: 1, default: 1"), "a list of 2 numbers"},
+      {k("range: [1, 2, 3], default: 1"), "a list of 2 numbers"},
+      {k("range: [a, 2], default: 1"), "has the name a"},
+      {k("range: [1, 2], default: one"), "has the name one"},
+      {k("range: [1, 2], default: 1/0"), "is not finite"},
+      {k("range: [1, 2], default: 1.5, limits: [1.6, 3]"), "outside of [1.6, 3]"},
+      {k("range: [1, 2], default: 1.5, spacing: cubic"), "use one of linear, log"},
+      {k("range: [-1, 2], default: 1, spacing: log"), "is not positive"},
+      {{{"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, k: {default: 1}, "
+                       "nu: {range: [0.1, 0.6], default: 0.55}, young: {default: 15}}"}},
+       "parameter nu is 0.55, outside of [-0.99, 0.499]"},
+      {{{"materials", "{rubber: {at: all, E: k, nu: nu}}"},
+        {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, nu: {default: 0.3}, "
+                       "k: {default: -1}}"}},
+       "parameter k is -1, outside of"},
+      {{{"free", "[depth, w]"}}, "there is no parameter 'w'"},
+      {{{"free", "[depth, young]"}}, "needs a range"},
+      {{{"materials", "{rubber: {at: all, E: young, nu: nu}}"}},
+       "nothing depends on the free parameter k"},
+  });
+}
+
+TEST(WrongCase, BodiesAndContact) {
+  const auto floor = [](const std::string &text) {
+    return Sections{{"contact", "{floor: {at: contact, " + text + "}}"}};
+  };
+  const std::string plane = "against: {plane: {normal: [0, -1], position: 0}}";
+  const std::string disk = "against: {disk: {center: [0.5, -1], radius: 1}}";
+  expect_refused({
+      {{{"mesh", "{built_in: one_blokc}"}}, "there is no built-in mesh 'one_blokc'"},
+      {{{"mesh", "{}"}}, "built_in"},
+      {{{"mesh", "{built_in: one_block, file: a.msh}"}}, "'built_in: SHAPE' or 'file: FILE.msh'"},
+      {{{"mesh", "{built_in: one_block, degree: 3}"}}, "degree is '3': use one of 1, 2"},
+      {{{"mesh", "{built_in: one_block, edges: 4}"}}, "edges of one_block is fixed"},
+      {{{"materials", "{rubber: {at: wall, E: 15, nu: 0.3}}"}}, "no region 'wall'"},
+      {{{"materials", "{a: {at: all, E: 15, nu: 0.3}, b: {at: all, E: 1, nu: 0.3}}"}},
+       "several materials"},
+      {{{"imposed", "{top: {at: tpo, ux: 0}}"}}, "no boundary 'tpo': it has sides, top, contact"},
+      {{{"imposed", "{top: {at: top}}"}}, "neither ux nor uy"},
+      {{{"imposed", "{top: {at: top, u: 0}}"}}, "components ux and uy"},
+      {{{"imposed", "{a: {at: top, ux: 0}, b: {at: top, ux: 1}}"}}, "imposed twice on 'top'"},
+      {{{"loads", "{a: {at: all, pressure: 1}}"}}, "act on boundaries"},
+      {{{"loads", "{a: {at: sides, pressure: 1, traction: [1, 0]}}"}}, "a load is a force"},
+      {{{"loads", "{a: {at: sides, traction: [1]}}"}}, "a load of 1 component"},
+      {{{"loads", "{a: {at: sides}}"}}, "a load is a force"},
+      {floor("above: 0"), "no region 'contact'"},
+      {floor("lumped: yes"), "'above: HEIGHT' of a membrane, or 'against:'"},
+      {floor("against: {}"), "against: a boundary"},
+      {floor("against: {wall: {}}"), "unknown key 'wall'"},
+      {floor("against: {plane: {normal: [0, -2], position: 0}}"), "give one of length 1"},
+      {floor("against: {plane: {normal: [0, -1]}}"), "'position' is missing"},
+      {floor(plane + ", kinematics: large"), "not for a plane yet"},
+      {floor(plane + ", gap: ray"), "has no 'gap'"},
+      {floor(plane + ", lumped: maybe"), "use yes or no"},
+      {floor(plane + ", friction: 0.3"), "friction is a table"},
+      {floor(plane + ", friction: {coulomb: 0.3, tresca: 1}"), "'coulomb: COEFFICIENT' or"},
+      {floor(plane + ", formulation: penalty"), "use one of mixed, nitsche"},
+      {floor(plane + ", formulation: nitsche, lumped: yes"), "is for contact by multipliers"},
+      {floor(plane + ", formulation: nitsche, nitsche_gamma0: 0"), "between 0.1 and 2000"},
+      {floor(disk + ", normal: body"), "needs a boundary on a circle"},
+      {floor(disk + ", kinematics: large, gap: ray"), "leave out gap"},
+      {floor(disk + ", normal: deformed"), "use it with kinematics: large"},
+      {floor("against: {disk: {center: [0.5], radius: 1}}"), "center of a disk is [x, y]"},
+      {floor("against: top, friction: {coulomb: 0.3}"), "between bodies has no 'friction'"},
+      {floor("against: tpo"), "no boundary 'tpo'"},
+      {floor("against: top, kinematics: large, integration: direct"), "for small deformations"},
+      {{{"curves", "{contact: {circle: [0, 0, -1]}}"}}, "the radius of a circle is positive"},
+      {{{"curves", "{contact: {circle: [0, 0]}}"}}, "a list of 3 numbers"},
+      {{{"symmetric", "perhaps"}}, "use yes or no"},
+      {{{"choices", "{a: {b: {}}}"}}, "needs a default"},
+      {{{"choices", "{a: {default: c, b: {}}}"}}, "use one of b"},
+      {{{"choices", "{a: {default: b, b: {contact.wall.lumped: yes}}}"}}, "'contact.wall'"},
+      {{{"options", "{pod: {tolerance: 1}}"}}, "options are not nested"},
+  });
+}
+
+TEST(WrongCase, AllDefectsAreToldAtOnceByTheirPlaces) {
+  const std::string message = said("rbvi: 1\n"
+                                   "physics: plane_strain\n"
+                                   "mesh: {built_in: one_block}\n"
+                                   "parameters:\n"
+                                   "  depth: {range: [0.1, 0.01], default: 0.05}\n"
+                                   "materials:\n"
+                                   "  rubber: {at: all, E: yonug, nu: 0.3, rho: 1}\n"
+                                   "imposed:\n"
+                                   "  top: {at: top, ux: 0, uy: -detph}\n"
+                                   "contact:\n"
+                                   "  floor: {at: contact}\n"
+                                   "loads: 3\n");
+  const std::vector<std::string> starts{
+      "x.yaml:5:3: ", "x.yaml:7:21: ", "x.yaml:7:40: ", "x.yaml:9:25: ", "x.yaml:12:1: "};
+  std::size_t from = 0;
+  for (const std::string &start : starts) {
+    const std::size_t at = message.find(start, from);
+    EXPECT_NE(at, std::string::npos) << start << "\n" << message;
+    from = std::min(at, message.size());
+  }
+  EXPECT_EQ(std::ranges::count(message, '\n'), 4) << message;
+}
+
+/// Texts that are damaged at random are right or refused.
+TEST(WrongCase, DamagedTextsAreRefusedOrRead) {
+  const std::string whole = block_case({{"let", "{a: 2}"},
+                                        {"loads", "{own: {at: all, force: [0, -a*k]}}"},
+                                        {"choices", "{c: {default: d, d: {}, e: {let.a: 3}}}"}});
+  const std::string pieces = "{}[]:,'\" \n\t-#&*?|>%@!0e.(^)\xc3\x01~";
+  std::mt19937 random(5);
+  const auto below = [&](std::size_t n) {
+    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
+  };
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = whole;
+    for (std::size_t k = 1 + below(4); k > 0; --k) {
+      const std::size_t at = below(text.size());
+      switch (below(4)) {
+      case 0:
+        text.erase(at, 1 + below(6));
+        break;
+      case 1:
+        text.insert(at, 1, pieces[below(pieces.size())]);
+        break;
+      case 2:
+        text[at] = pieces[below(pieces.size())];
+        break;
+      default:
+        text.insert(at, text.substr(below(text.size()), below(30)));
+        break;
+      }
+    }
+    (void)said(text);
+  }
+}
+
+} // namespace
+} // namespace rbvi::wrong_cases_test
