@@ -211,6 +211,15 @@ SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
 
 } // namespace
 
+std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(const std::string &file,
+                                                                            int dim) {
+  std::pair<std::vector<std::string>, std::vector<std::string>> parts;
+  for (const auto &[group, name] : read_gmsh_file(file).names)
+    if (group.first >= dim - 1 && group.first <= dim)
+      (group.first == dim ? parts.first : parts.second).push_back(name);
+  return parts;
+}
+
 SerialMesh read_gmsh(const std::string &file, const Scene &scene) {
   const GmshFile content = read_gmsh_file(file);
   try {

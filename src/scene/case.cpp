@@ -296,6 +296,11 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
   if (const CaseNode *mesh = root.find("mesh"); mesh != nullptr)
     if (const CaseNode *mesh_file = mesh->find("file"))
       scene_entry.settings.push_back({"mesh", mesh_file->value, mesh_file->line});
+  if (const CaseNode *set = section(reader, "mesh").find("set"))
+    for (const auto &[name, node] : set->entries)
+      defects.collect(node, [&, &own = name, &value = node] {
+        scene_entry.mesh_numbers[own] = number_in(reader, value);
+      });
   if (const CaseNode *all = root.find("variants"))
     for (const auto &[name, node] : all->entries)
       scene_entry.variants.emplace_back(

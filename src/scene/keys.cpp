@@ -41,7 +41,12 @@ const std::vector<CaseKey> all_keys{
     {"units", "temperature", "unit", "default: K"},
     {"mesh", "built_in", "shape",
      "square_with_disc | half_disc | annulus | two_quarter_discs | two_blocks | one_block"},
-    {"mesh", "file", "text", "a Gmsh file, from the folder of the case"},
+    {"mesh", "file", "text",
+     "a Gmsh mesh (.msh), or a geometry (.geo) that the program gmsh meshes; from the folder of "
+     "the "
+     "case"},
+    {"mesh", "set", "table", "numbers of the .geo by name"},
+    {"mesh.set", "*", "number", ""},
     {"mesh", "degree", "1 | 2", "of the displacement; default: 1 of a membrane, else 2"},
     {"mesh", "edges", "number", "built in: edges of the contact boundary; 0: its default"},
     {"mesh", "angle", "22.5 | 45", "half_disc: half of its contact arc, in degrees"},

@@ -5,6 +5,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/io/write_atomically.hpp"
+#include "rbvi/mesh/serial.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/par/collective.hpp"
@@ -18,6 +19,8 @@
 namespace rbvi {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr const char *random_points = "random:20:1";
 
@@ -92,6 +95,14 @@ void check_points(Problem &problem) {
   complaints.throw_all();
 }
 
+/// The physical groups of a mesh as a case in a folder.
+std::string case_of_mesh(const std::string &mesh, const fs::path &folder) {
+  const auto [regions, boundaries] = parts_of_gmsh(mesh, 2);
+  std::error_code failed;
+  const fs::path beside = fs::relative(mesh, folder, failed);
+  return new_case(failed ? fs::absolute(mesh).string() : beside.string(), regions, boundaries);
+}
+
 /// Every variant of the case can be read.
 void check_variants(const ToolOptions &options) {
   const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
@@ -122,12 +133,12 @@ void command_check(const ToolOptions &options) {
   std::printf("no defect was found\n");
 }
 
-void command_new(const std::string &name) {
-  namespace fs = std::filesystem;
+void command_new(const std::string &name, const std::string &mesh) {
   const fs::path file = fs::path(name) / "case.yaml";
   if (fs::exists(file)) throw bad_input(file.string() + " is there already: give another name");
+  const std::string text = mesh.empty() ? new_case() : case_of_mesh(mesh, name);
   make_directory(name);
-  write_atomically(file, new_case());
+  write_atomically(file, text);
   std::printf("wrote %s: rbvi check %s\n", file.c_str(), file.c_str());
 }
 

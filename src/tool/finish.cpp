@@ -56,8 +56,12 @@ std::string take_word(Invocation &result, std::vector<std::string> &given) {
   const std::string &command = result.command;
   const bool word = given.size() > 1 && !is_option(given[1]);
   if (command == "check" && word) given.insert(given.begin() + 1, "-case");
+  if (command == "new" && given.size() == 4 && given[2] == "-mesh") {
+    result.topic = given[3];
+    given.resize(2);
+  }
   if (command == "new" && (given.size() != 2 || !word))
-    return "new takes the name of a folder: rbvi new my_case";
+    return "new takes the name of a folder: rbvi new my_case [-mesh FILE.msh]";
   if (command == "inspect" && given.size() != 2)
     return "inspect takes one model file: rbvi inspect run/obstacle/model.h5";
   if (command == "list" && !word && given.size() == 1) given.emplace_back("cases");

@@ -1,6 +1,7 @@
 #include "rbvi/tool/options.hpp"
 
 #include "database.hpp"
+#include "geo_mesh.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
@@ -151,6 +152,16 @@ std::string described(const std::vector<Foreign> &foreign, const Origin &case_fi
   return text;
 }
 
+/// A geometry becomes its mesh, in the run directory or for the moment.
+void mesh_geometry(MPI_Comm comm, ToolOptions &options) {
+  if (!options.mesh.file.ends_with(".geo")) return;
+  const std::filesystem::path folder = options.out.empty()
+                                           ? std::filesystem::temp_directory_path() / "rbvi_meshes"
+                                           : options.out / "mesh";
+  const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
+  options.mesh.file = meshed(comm, options.mesh.file, entry.mesh_numbers, folder);
+}
+
 /// Everything but where it comes from. `names`: all options that are given.
 ToolOptions read_values(const std::vector<std::string> &names, const GivenCase &given,
                         const std::vector<std::string> &command_line) {
@@ -196,7 +207,9 @@ ToolOptions read_options(MPI_Comm comm, const std::string &command, const Regist
     std::vector<std::string> names = command_line;
     for (const auto &[name, where] : origin)
       names.push_back(name);
-    return read_values(names, given, command_line);
+    ToolOptions options = read_values(names, given, command_line);
+    mesh_geometry(comm, options);
+    return options;
   } catch (const Error &error) {
     if (outside.empty()) throw;
     throw Error(error.status(), error.what() + ("; options from outside: " + outside));

@@ -27,7 +27,7 @@ void run_command(const Invocation &invocation, const Registry &registry) {
     if (rank != 0) return;
     if (command == "list") command_list(invocation.file, registry);
     if (command == "help") print_page(invocation, registry);
-    if (command == "new") command_new(invocation.file);
+    if (command == "new") command_new(invocation.file, invocation.topic);
     if (command == "inspect") command_inspect(invocation.file, registry);
     return;
   }

@@ -1,5 +1,5 @@
-// Contact that follows the displacement, in front of any body: the problem of method/nonlinear.hpp, its
-// condition evaluated on the interfaces at the states of the iteration.
+// Contact that follows the displacement, in front of any body: the problem of method/nonlinear.hpp,
+// its condition evaluated on the interfaces at the states of the iteration.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"

@@ -5,7 +5,8 @@
 
 namespace rbvi {
 
-/// Scenes that are code, with their functions, beside the kinds of contact and the functions of the library.
+/// Scenes that are code, with their functions, beside the kinds of contact and the functions of the
+/// library.
 Registry registry_of(std::vector<SceneEntry> scenes);
 
 /// The contact of a record. Throws bad_input for a kind that the registry does not have, or has in

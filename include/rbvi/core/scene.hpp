@@ -133,6 +133,7 @@ struct SceneEntry {
   FunctionLibrary functions{}; ///< those of its own that files know by name
   std::vector<CaseSetting> settings{};
   std::vector<std::pair<std::string, std::string>> variants{}; ///< of its file, with what they are
+  std::map<std::string, double> mesh_numbers{};                ///< of the .geo that its mesh is
 };
 
 /// What a program knows by name, and finds in model files (contact/registry.hpp).

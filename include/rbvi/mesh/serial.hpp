@@ -13,6 +13,10 @@ namespace rbvi {
 /// the file, nodes of no cell are left out; cells are turned to be positively oriented. Throws
 /// bad_input (see make_mesh).
 SerialMesh read_gmsh(const std::string &file, const Scene &scene);
+/// The names of its physical groups of cells and of facets, in a mesh of that dimension. Throws
+/// bad_input.
+std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(const std::string &file,
+                                                                            int dim);
 
 /// The mesh that make_mesh distributes, built in or read, checked and refined. Leaves in `levels`
 /// those that it was refined from, where they are not known. Throws bad_input (see make_mesh).

@@ -26,6 +26,9 @@ SceneEntry read_case(const std::string &text, const std::string &file,
 
 /// A case to begin with: a block with friction on a floor.
 std::string new_case();
+/// A case whose sections list these parts of a mesh file.
+std::string new_case(const std::string &mesh, const std::vector<std::string> &regions,
+                     const std::vector<std::string> &boundaries);
 
 /// A key of case files.
 struct CaseKey {

@@ -11,7 +11,8 @@
 //               the nodes of both)
 //
 // Where contact follows the displacement (large deformations), active_set solves each linearised
-// problem of Kacanov's or Newton's iteration (method/nonlinear.hpp), which share the columns of A^-1.
+// problem of Kacanov's or Newton's iteration (method/nonlinear.hpp), which share the columns of
+// A^-1.
 //
 // B, G and the multipliers of uzawa, vi and of active sets by elimination are distributed over the
 // ranks; the condensed problem, and with it what reductions need, has them on every rank.

@@ -21,12 +21,12 @@ void command_bench(const ToolOptions &options);
 /// What offline takes on several meshes, by several ranks per solve. Collective on the world.
 void command_growth(const ToolOptions &options);
 
-/// A case: its text and variants, its mesh, its functions, contact over the box, one solve. What was
-/// read is printed, every defect told. Collective on the world.
+/// A case: its text and variants, its mesh, its functions, contact over the box, one solve. What
+/// was read is printed, every defect told. Collective on the world.
 void command_check(const ToolOptions &options);
 
-/// Writes NAME/case.yaml, a case to begin with.
-void command_new(const std::string &name);
+/// Writes NAME/case.yaml, a case to begin with; of a Gmsh mesh, if one is named, with its parts.
+void command_new(const std::string &name, const std::string &mesh);
 
 /// The scenes of the program and the cases FOLDER/*/case.yaml.
 void command_list(const std::string &folder, const Registry &registry);
