@@ -18,9 +18,9 @@ def numbers_in(text):
     """Without the letters of their parts."""
     found = set()
     for line in text.splitlines():
-        if NO_FORMULAS.search(line) or not re.search(r'//|"', line):
+        if NO_FORMULAS.search(line) or not re.search(r'//|"|#', line):
             continue
-        for group in GROUP.findall(line[re.search(r'//|"', line).start():]):
+        for group in GROUP.findall(line[re.search(r'//|"|#', line).start():]):
             found.update(number.rstrip("abcdefgh") for number in group.split(", "))
     return found
 
@@ -42,7 +42,7 @@ def main(root):
     root = root.resolve()
     index, wrong, total = index_of(root), [], set()
     for path in sorted(path for folder in ("src", "include/rbvi", "cases")
-                       for path in (root / folder).rglob("*") if path.suffix in (".cpp", ".hpp")):
+                       for path in (root / folder).rglob("*") if path.suffix in (".cpp", ".hpp", ".yaml")):
         numbers = numbers_in(path.read_text(encoding="utf-8"))
         total |= numbers
         wrong += [f"src/README.md: no ({number}), which {path.relative_to(root)} has"
