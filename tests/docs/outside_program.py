@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""outside_program.py BUILD README CMAKE: the program of "Add a scene" is built and right.
+"""outside_program.py BUILD README CMAKE: the program of "A scene in C++" is built and right.
 
 Installs BUILD into a prefix of its own, writes the files of the page (each begins with its name),
 builds them by find_package, makes a model of few parameters and answers one from it.

@@ -14,10 +14,10 @@ import numpy as np
 RADII = ("0.7", "1", "1.3")
 FRICTION = 0.2
 SHOWN = 0.25  # of the arc: a little more than is ever in contact
-SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("published.yaml", BLUE)}
+SIZES = {"text": ("(30, 20, 20)", ORANGE), "published": ("-variant published", BLUE)}
 MODELS = {  # of the tangential stress
     "as published": ("(30, 20, 20), 20 pairs", ORANGE, "--"),
-    "published": ("published.yaml", BLUE, "-"),
+    "published": ("-variant published", BLUE, "-"),
     "default": ("condensed", GREEN, "-"),
 }
 
