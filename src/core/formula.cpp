@@ -197,8 +197,13 @@ Named<Signature> function_of(const Maker<Signature> &maker, Record record) {
 
 void check_names(const Formula &formula, const std::vector<std::string> &allowed) {
   const Formula own = without_idle(formula);
-  std::vector<std::string> names = own.parameters;
+  std::vector<std::string> names = formula.parameters;
   names.insert(names.end(), allowed.begin(), allowed.end());
+  for (const Expression &value : own.values)
+    for (const std::string &name : value.free_names())
+      if (is_coordinate(name) && std::ranges::find(names, name) == names.end())
+        throw bad_input("unknown name '" + name + "' in '" + value.text() +
+                        "': this number has no place, it may have parameters");
   for (const Let &let : own.lets) {
     (void)bound_to(let.value, names, {});
     names.push_back(let.name);

@@ -1,6 +1,7 @@
 #include "rbvi/fem/check_scene.hpp"
 #include "check_kernels.hpp"
 
+#include "rbvi/core/box.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/element/imposed.hpp"
@@ -273,11 +274,58 @@ void check_exact_kernels(const Scene &scene) {
       });
 }
 
+namespace {
+
+/// Throws bad_input where a vertex of a curved boundary is not on its curve.
+void check_curves(const Problem &problem) {
+  const Scene &scene = problem.scene();
+  const Mesh &mesh = problem.mesh();
+  double extent = 0;
+  for (const Point &x : mesh.points)
+    extent = std::max({extent, std::abs(x[0]), std::abs(x[1])});
+  for (const std::string &name : scene.mesh.curved) {
+    const std::vector<bool> &on = mesh.boundary.at(name);
+    for (std::size_t v = 0; scene.snap && v < on.size(); ++v) {
+      if (!on[v] || mesh.natural_node[v] >= mesh.total_vertices) continue;
+      const Point &x = mesh.points[v];
+      const double away = norm(scene.snap(x) - x);
+      if (!(away <= 1e-6 * extent))
+        throw bad_input("scene " + scene.name + ": the vertex (" + short_number(x[0]) + ", " +
+                        short_number(x[1]) + ") of boundary '" + name + "' is " +
+                        short_number(away) +
+                        " away from its circle: correct the circle, or leave "
+                        "it out");
+    }
+  }
+}
+
+/// Throws bad_input for a material that is none at a corner of the box.
+void check_material(const Problem &problem) {
+  const Scene &scene = problem.scene();
+  const Mesh &mesh = problem.mesh();
+  constexpr std::size_t few = 100;
+  const std::size_t step = std::max<std::size_t>(1, mesh.cells.size() / few);
+  for (const Mu &mu : corners_and_faces(scene.parameters)) {
+    const FullMu all = expand(scene.parameters, mu);
+    for (std::size_t k = 0; scene.material && k < mesh.cells.size(); k += step) {
+      Point centre{};
+      for (int i = 0; i <= mesh.dim; ++i)
+        centre = centre + 1.0 / (mesh.dim + 1) * mesh.points[mesh.cells[k][i]];
+      while_doing("checking the material at " + describe(scene.parameters, mu),
+                  [&] { (void)scene.material(all, centre); });
+    }
+  }
+}
+
+} // namespace
+
 void check_scene(const Problem &problem) {
   const Scene &scene = problem.scene();
   const FullMu mu = generic_point(scene.parameters);
   std::vector<double> outward, inward;
   collectively(problem.comm(), [&] {
+    check_curves(problem);
+    check_material(problem);
     visit_terms(
         scene, [&](const Form &form) { return cells_of(problem.mesh(), form); },
         [&](const SampledTerm &term, bool of_product) { check_term(term, mu, of_product); });

@@ -87,7 +87,8 @@ std::string part_of(const Subject &s, const MeshFact &fact) {
 }
 
 [[noreturn]] void refuse(const Subject &s, const MeshFact &fact, const std::string &found) {
-  throw bad_input(part_of(s, fact) + " is not " + fact.is + ": " + found + "; rbvi -help -case FILE lists what "
+  throw bad_input(part_of(s, fact) + " is not " + fact.is + ": " + found +
+                  "; rbvi -help -case FILE lists what "
                   "the mesh of a case needs");
 }
 

@@ -54,8 +54,13 @@ void apply_variant(CaseNode &root, const std::string &name, Defects &defects) {
     throw bad_input("there is no variant '" + name + "' of this case: it has " +
                     (names.empty() ? "none" : joined(names)));
   const CaseNode variant = *variants->find(name);
-  for (const auto &[path, value] : variant.entries)
-    if (path != "says") apply(root, path, value, defects);
+  for (const auto &[path, value] : variant.entries) {
+    if (path == "says") continue;
+    if (value.is_value() && value.value.empty() && at_path(root, path) == nullptr)
+      defects.add(value, "there is nothing at '" + path +
+                             "' to take away: give it a value (quote a text that has a comma)");
+    apply(root, path, value, defects);
+  }
 }
 
 SceneOption option_of(const Reader &reader, const std::string &name, const CaseNode &choice) {
@@ -187,7 +192,8 @@ void read_free(Reader &reader, Scene &scene, Defects &defects) {
     if (declared != nullptr && !varies)
       defects.add(node, "the free parameter " + name + " needs a range");
     else if (found == scene.parameters.all.end())
-      defects.add(node, varies ? "nothing depends on the free parameter " + name
+      defects.add(node, varies ? "nothing depends on the free parameter " + name +
+                                     ": list the others in 'free:'"
                                : "there is no parameter '" + name + "' that could be free");
     else
       scene.parameters.free.push_back(static_cast<int>(found - scene.parameters.all.begin()));
@@ -266,7 +272,12 @@ std::string name_of(const CaseNode &root, const std::string &file) {
 } // namespace
 
 bool is_scene_file(const std::string &text, const std::string &file) {
-  return parse_document(text, file).find("rbvi") != nullptr;
+  const CaseNode root = parse_document(text, file);
+  return std::ranges::any_of(std::vector{"rbvi", "physics", "contact", "parameters"},
+                             [&](const char *name) {
+                               const CaseNode *found = root.find(name);
+                               return found != nullptr && (found->is_table() || *name != 'p');
+                             });
 }
 
 SceneEntry read_case(const std::string &text, const std::string &file, const CaseChanges &changes) {
@@ -276,9 +287,11 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
   apply_values(root, changes, defects);
   SceneEntry scene_entry{name_of(root, file)};
   if (const CaseNode *says = root.find("says")) scene_entry.summary = says->value;
-  const Reader reader{.root = root};
+  const Reader reader{.root = root, .units = units_of(root, defects)};
   for (const auto &[name, choice] : section(reader, "choices").entries)
     defects.collect(choice, [&, &own = name, &node = choice] {
+      if (section(reader, "parameters").find(own) != nullptr)
+        throw bad_input("there is a parameter '" + own + "' already: call the choice otherwise");
       scene_entry.options.push_back(option_of(reader, own, node));
     });
   for (const auto &[name, node] : section(reader, "parameters").entries)

@@ -68,7 +68,10 @@ public:
       if (any == names.end())
         defects_.add(value, "unknown key '" + name + "'" +
                                 (table.empty() ? std::string() : " of " + in_words(table)) +
-                                ": the nearest is '" + nearest_name(name, names) + "'");
+                                ": the nearest is '" + nearest_name(name, names) + "'" +
+                                (name.find_first_of("(): ?") == std::string::npos
+                                     ? ""
+                                     : " (quote a text or an expression that has a comma)"));
       else
         check(*keys[static_cast<std::size_t>(any - names.begin())], name, value, table);
     }

@@ -67,7 +67,11 @@ bool is_own(const std::string &scene, const Registry &registry) {
 
 /// A scene that the program has by itself.
 GivenCase own_scene(const std::string &scene, const Registry &registry) {
-  (void)entry_of(registry, scene);
+  if (!is_own(scene, registry))
+    throw bad_input("unknown scene '" + scene +
+                    "': -scene names scenes of a program of its own; "
+                    "use -case cases/" +
+                    scene);
   return {std::make_shared<Registry>(registry), scene};
 }
 
@@ -87,9 +91,12 @@ std::vector<std::pair<std::string, std::string>> settings_of(const std::string &
   std::vector<std::pair<std::string, std::string>> settings;
   for (const std::string &part : split(text, ',')) {
     const std::size_t equals = part.find('=');
-    if (equals == 0 || equals == std::string::npos)
+    if (equals != std::string::npos && equals > 0)
+      settings.emplace_back(trimmed(part.substr(0, equals)), trimmed(part.substr(equals + 1)));
+    else if (!settings.empty() && equals == std::string::npos) // of the value before it
+      settings.back().second += "," + part;
+    else
       throw bad_input("-set is '" + text + "': give PATH=VALUE, such as mesh.edges=200");
-    settings.emplace_back(trimmed(part.substr(0, equals)), trimmed(part.substr(equals + 1)));
   }
   return settings;
 }

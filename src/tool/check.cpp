@@ -67,9 +67,9 @@ void print_scene(const Problem &problem) {
   for (const Parameter &p : scene.parameters.all) {
     const bool free = find_free(scene.parameters, p.name).has_value();
     std::printf(
-        "  %-20s %s %s\n", p.name.c_str(),
+        "  %-20s %s%s\n", p.name.c_str(),
         (free ? describe(Range{p.lower, p.upper}) : short_number(p.value) + " (fixed)").c_str(),
-        p.unit.c_str());
+        (p.unit.empty() ? "" : " " + p.unit).c_str());
   }
   std::printf("  %-20s %ld dofs, %ld contact nodes\n", "mesh", long(problem.dofs().total),
               long(problem.contact().nodes()));
@@ -98,18 +98,21 @@ void check_points(Problem &problem) {
 /// The physical groups of a mesh as a case in a folder.
 std::string case_of_mesh(const std::string &mesh, const fs::path &folder) {
   const auto [regions, boundaries] = parts_of_gmsh(mesh, 2);
-  std::error_code failed;
-  const fs::path beside = fs::relative(mesh, folder, failed);
-  return new_case(failed ? fs::absolute(mesh).string() : beside.string(), regions, boundaries);
+  const fs::path beside =
+      fs::absolute(mesh).lexically_normal().lexically_relative(fs::absolute(folder));
+  return new_case(beside.string(), regions, boundaries);
 }
 
 /// Every variant of the case can be read.
 void check_variants(const ToolOptions &options) {
   const SceneEntry &entry = entry_of(*options.registry, options.scene.name);
+  const std::string file =
+      (fs::is_directory(options.case_name) ? options.case_name / "case.yaml" : options.case_name)
+          .string();
   Complaints complaints;
   for (const auto &[variant, says] : entry.variants)
     complaints.collect("variant " + variant, [&, &name = variant] {
-      (void)make_scene(read_case(options.scene_text, options.case_name.string(), {name, {}}));
+      (void)make_scene(read_case(options.scene_text, file, {name, {}}));
     });
   complaints.throw_all();
 }
@@ -119,17 +122,25 @@ void check_variants(const ToolOptions &options) {
 void command_check(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   collectively(world, [&] { check_variants(options); });
+  check_outputs(world, options, files_of_solution(options));
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
   if (rank_of(world) == 0) print_scene(problem);
   check_points(problem);
+  collectively(world, [&] {
+    for (const std::string &set : {options.train, options.valid})
+      if (!set.empty()) check_set(problem.scene(), parse_set(problem.scene().parameters, set));
+  });
   const Mu mu = box_centre(problem.scene().parameters);
   const std::string at = describe(problem.scene().parameters, mu);
   const HfSolution solution =
       while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
+  write_solution(problem, options, mu, solution);
   if (rank_of(world) != 0) return;
   std::printf("at the middle of the box, %s:\n", at.c_str());
   print_outputs(std::cout, solution.outputs);
+  if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
+    std::printf("warning: nothing touches there\n");
   std::printf("no defect was found\n");
 }
 

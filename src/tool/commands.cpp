@@ -14,7 +14,7 @@ struct Use {
 };
 
 constexpr Use uses[] = {{"mu", "solve"},
-                        {"vtu", "solve"},
+                        {"vtu", "solve check"},
                         {"csv", "solve"},
                         {"plan", "offline"},
                         {"bench_growth", "bench"},

@@ -214,7 +214,10 @@ std::string tables_of_keys() {
   std::string text, table = "-";
   for (const CaseKey &key : case_keys()) {
     if (key.table != table)
-      text += "\n" + table_title(key.table) + "\n" + head({"key", "value", ""});
+      text.append("\n")
+          .append(table_title(key.table))
+          .append("\n")
+          .append(head({"key", "value", ""}));
     table = key.table;
     std::string value = key.value;
     for (std::size_t at = value.find('|'); at != std::string::npos; at = value.find('|', at + 3))

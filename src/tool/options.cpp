@@ -73,6 +73,9 @@ void adapt_parameters(Scene &scene, const Registry &registry) {
   for (const std::string &part : split(named, ',')) {
     const std::string name = trimmed(part);
     const std::string needed = what_needs(name, scene, registry);
+    if (scene.options.contains(name))
+      throw bad_input("parameter '" + name + "' is a constant of this case: free it by -" + name +
+                      " LOWER,UPPER");
     if (!needed.empty() && std::ranges::find(space.all, name, &Parameter::name) == space.all.end())
       throw bad_input("parameter '" + name + "' " + needed);
   }

@@ -47,7 +47,7 @@ std::string beside_case(const std::string &name, const std::string &value,
   const bool is_file = name == "case" || is_of(OptionKind::file, name) ||
                        (is_of(OptionKind::set, name) && is_set_file(value));
   if (!is_file || value.empty() || fs::path(value).is_absolute()) return value;
-  const fs::path beside = case_file.parent_path() / value;
+  const fs::path beside = (case_file.parent_path() / value).lexically_normal();
   std::error_code ignored;
   return fs::is_regular_file(beside, ignored) ? beside.string() : value;
 }

@@ -34,6 +34,13 @@ void check_inside(const ParameterSpace &space, const Mu &mu) {
 
 } // namespace
 
+std::vector<NamedFile> files_of_solution(const ToolOptions &options) {
+  std::vector<NamedFile> files{{"-vtu", options.vtu}};
+  for (std::size_t i = 0; i < options.scene.contacts.size() && !options.vtu.empty(); ++i)
+    files.push_back({"-vtu", contact_file(options.vtu, i)});
+  return files;
+}
+
 void command_solve(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   check_eigen_options(options, EigenUse::none);
@@ -41,9 +48,8 @@ void command_solve(const ToolOptions &options) {
   const ParameterSpace &space = options.scene.parameters;
   const Mu mu = parse_mu(space, options.mu, true);
   check_inside(space, mu);
-  std::vector<NamedFile> outputs{{"-csv", options.csv}, {"-vtu", options.vtu}};
-  for (std::size_t i = 0; i < options.scene.contacts.size() && !options.vtu.empty(); ++i)
-    outputs.push_back({"-vtu", contact_file(options.vtu, i)});
+  std::vector<NamedFile> outputs = files_of_solution(options);
+  outputs.push_back({"-csv", options.csv});
   check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
@@ -51,11 +57,6 @@ void command_solve(const ToolOptions &options) {
   HighFidelity solver(problem, options.hf);
   const HfSolution solution =
       while_doing("solving " + describe(space, mu), [&] { return solver.solve(mu); });
-  ReducedModel mesh;
-  if (!options.vtu.empty()) {
-    describe_mesh(problem, mesh);
-    gather_mesh(problem, mesh);
-  }
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
     std::printf("%s\n", describe(space, mu).c_str());
@@ -70,9 +71,21 @@ void command_solve(const ToolOptions &options) {
       write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});
       print_written(std::cout, {options.csv});
     }
-    if (!options.vtu.empty())
-      print_written(std::cout, write_vtu(options.vtu, options.scene, expand(space, mu), mesh,
-                                         solution.u, solution.lambda));
+  });
+  write_solution(problem, options, mu, solution);
+}
+
+void write_solution(Problem &problem, const ToolOptions &options, const Mu &mu,
+                    const HfSolution &solution) {
+  if (options.vtu.empty()) return;
+  ReducedModel mesh;
+  describe_mesh(problem, mesh);
+  gather_mesh(problem, mesh);
+  collectively(problem.comm(), [&] {
+    if (rank_of(problem.comm()) == 0)
+      print_written(std::cout,
+                    write_vtu(options.vtu, options.scene, expand(options.scene.parameters, mu),
+                              mesh, solution.u, solution.lambda));
   });
 }
 

@@ -61,7 +61,7 @@ TEST_P(BadInput, Commands) {
 
 TEST_P(BadInput, ScenesAndOptions) {
   refuse(
-      {{"offline -scene membrane -out run", "unknown scene 'membrane': this build has none"},
+      {{"offline -scene membrane -out run", "use -case cases/membrane"},
        {"offline -case case.yaml -scene membrane -out run", "leave out one of the two"},
        {"offline -case case.yaml -variant big -out run",
         "there is no variant 'big' of this case: it has published"},

@@ -14,7 +14,7 @@ struct CaseChanges {
   std::vector<std::pair<std::string, std::string>> values{};
 };
 
-/// Whether the text is that of a case, with a scene: it has the key rbvi. Throws bad_input for
+/// Whether the text is that of a case, with sections of a scene. Throws bad_input for
 /// text that is no YAML table.
 bool is_scene_file(const std::string &text, const std::string &file);
 

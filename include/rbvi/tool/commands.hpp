@@ -1,6 +1,7 @@
 // The commands of the rbvi tool.
 #pragma once
 
+#include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/tool/options.hpp"
 
 namespace rbvi {
@@ -10,6 +11,11 @@ void command_offline(const ToolOptions &options);
 
 /// One high-fidelity solve. Collective on the world.
 void command_solve(const ToolOptions &options);
+
+/// The files of -vtu, and a high-fidelity answer in them; nothing without that option. Collective.
+std::vector<NamedFile> files_of_solution(const ToolOptions &options);
+void write_solution(Problem &problem, const ToolOptions &options, const Mu &mu,
+                    const HfSolution &solution);
 
 /// Reduced against high-fidelity over the validation set; writes tables and the measured errors
 /// into the model file. Collective on the world.
