@@ -87,7 +87,8 @@ std::function<Surface> disk_function(const std::function<Coefficient> &x,
     const Point p{point[0] - x(mu), point[1] - y(mu), 0};
     const double distance = norm(p);
     if (!(distance > 0)) throw failure("a point of the body is at the centre of a rigid disk");
-    return SurfacePoint{distance - radius(mu), p / distance, 1 / distance};
+    const double inverse = 1 / distance;
+    return SurfacePoint{distance - radius(mu), inverse * p, inverse};
   };
 }
 

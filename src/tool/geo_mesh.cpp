@@ -59,6 +59,9 @@ void run_gmsh(const std::string &geo, const std::string &numbers, const fs::path
 
 std::string meshed(MPI_Comm comm, const std::string &geo,
                    const std::map<std::string, double> &numbers, const fs::path &folder) {
+  collectively(comm, [&] {
+    if (!fs::exists(geo)) throw bad_input("the geometry " + geo + " cannot be read");
+  });
   std::string options;
   for (const auto &[name, value] : numbers)
     options += " -setnumber " + quoted(name) + " " + shortest_number(value);

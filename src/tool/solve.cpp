@@ -49,7 +49,7 @@ void command_solve(const ToolOptions &options) {
   const Mu mu = parse_mu(space, options.mu, true);
   check_inside(space, mu);
   std::vector<NamedFile> outputs = files_of_solution(options);
-  outputs.push_back({"-csv", options.csv});
+  outputs.insert(outputs.begin(), {"-csv", options.csv});
   check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
