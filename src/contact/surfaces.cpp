@@ -43,6 +43,11 @@ Point on_circle(const Circle &circle, const Point &x) {
   return circle.centre + circle.radius / norm(out) * out;
 }
 
+struct OnCircle {
+  Circle circle;
+  Point operator()(const FullMu &, const Point &x) const { return on_circle(circle, x); }
+};
+
 Point normal_of_circle(const Circle &circle, const Point &x) {
   const Point out = x - circle.centre;
   return (circle.hole ? -1 : 1) / norm(out) * out;
@@ -50,10 +55,7 @@ Point normal_of_circle(const Circle &circle, const Point &x) {
 
 const Maker<PointMap> on_circles_maker{
     "on_circles", 1, [](const Record &of) -> std::function<PointMap> {
-      if (numbers(of, "x").size() == 1)
-        return [circle = circles_in(of).front()](const FullMu &, const Point &x) {
-          return on_circle(circle, x);
-        };
+      if (numbers(of, "x").size() == 1) return OnCircle{circles_in(of).front()};
       return [circles = circles_in(of)](const FullMu &, const Point &x) {
         return on_circles(circles, x);
       };
@@ -72,6 +74,12 @@ const Maker<PointMap> circle_normals_maker{
 
 std::function<PointMap> composition(const std::function<PointMap> &outer,
                                     const std::function<PointMap> &inner) {
+  const auto *scaling = outer.target<Scaling>();
+  const auto *circle = inner.target<OnCircle>();
+  if (scaling != nullptr && circle != nullptr)
+    return [scaling = *scaling, circle = *circle](const FullMu &mu, const Point &x) {
+      return scaling(mu, circle(mu, x));
+    };
   return [=](const FullMu &mu, const Point &x) { return outer(mu, inner(mu, x)); };
 }
 
@@ -80,9 +88,8 @@ const Maker<PointMap> composed_maker{"composed", 1, [](const Stored &of) {
                                                           made<PointMap>(part(of, "inner")));
                                      }};
 
-std::function<Surface> disk_function(const std::function<Coefficient> &x,
-                                     const std::function<Coefficient> &y,
-                                     const std::function<Coefficient> &radius) {
+/// Of a disk whose numbers are functions of mu of any one type.
+template <class Number> std::function<Surface> disk_of(Number x, Number y, Number radius) {
   return [=](const FullMu &mu, const Point &point) {
     const Point p{point[0] - x(mu), point[1] - y(mu), 0};
     const double distance = norm(p);
@@ -90,6 +97,16 @@ std::function<Surface> disk_function(const std::function<Coefficient> &x,
     const double inverse = 1 / distance;
     return SurfacePoint{distance - radius(mu), inverse * p, inverse};
   };
+}
+
+std::function<Surface> disk_function(const std::function<Coefficient> &x,
+                                     const std::function<Coefficient> &y,
+                                     const std::function<Coefficient> &radius) {
+  const auto *of_x = x.target<AffineCoefficient>(), *of_y = y.target<AffineCoefficient>(),
+             *of_radius = radius.target<AffineCoefficient>();
+  if (of_x != nullptr && of_y != nullptr && of_radius != nullptr)
+    return disk_of(*of_x, *of_y, *of_radius);
+  return disk_of(x, y, radius);
 }
 
 const Maker<Surface> disk_maker{"disk", 1, [](const Stored &of) {

@@ -18,18 +18,17 @@ const auto exp_to_half_maker =
 
 const Maker<Coefficient> affine_maker{
     "affine", 1, [](const Record &of) -> std::function<Coefficient> {
-      const double value = number(of, "value"), factor = number(of, "factor");
-      const auto index = static_cast<std::size_t>(integer(of, "parameter"));
-      return [=](const FullMu &mu) { return value + factor * mu.at(index); };
+      return AffineCoefficient{number(of, "value"), number(of, "factor"),
+                               static_cast<std::size_t>(integer(of, "parameter"))};
     }};
 
 const Maker<PointMap> identity_maker =
     plain<PointMap>("identity", 1, [](const FullMu &, const Point &x) { return x; });
 
-const Maker<Coefficient> constant_maker{
-    "constant", 1, [](const Record &of) -> std::function<Coefficient> {
-      return [value = number(of, "value")](const FullMu &) { return value; };
-    }};
+const Maker<Coefficient> constant_maker{"constant", 1,
+                                        [](const Record &of) -> std::function<Coefficient> {
+                                          return AffineCoefficient{number(of, "value")};
+                                        }};
 
 const Maker<PointValue> value_maker{
     "everywhere", 1, [](const Record &of) -> std::function<PointValue> {
@@ -45,6 +44,7 @@ const Maker<PointValue> coefficient_maker{
     [](const Stored &of) { return value_of(made<Coefficient>(part(of, "coefficient"))); }};
 
 std::function<PointMap> scaling(const std::function<Coefficient> &scale) {
+  if (const auto *line = scale.target<AffineCoefficient>()) return Scaling{*line};
   return [scale](const FullMu &mu, const Point &x) { return scale(mu) * x; };
 }
 

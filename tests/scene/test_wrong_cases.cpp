@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <ctime>
 #include <random>
 
 namespace rbvi::wrong_cases_test {
@@ -213,7 +215,8 @@ TEST(WrongCase, AllDefectsAreToldAtOnceByTheirPlaces) {
   EXPECT_EQ(std::ranges::count(message, '\n'), 4) << message;
 }
 
-/// Texts that are damaged at random are right or refused.
+/// Texts that are damaged at random are right or refused; RBVI_FUZZ_SECONDS=3600 goes on for an
+/// hour.
 TEST(WrongCase, DamagedTextsAreRefusedOrRead) {
   const std::string whole = block_case({{"let", "{a: 2}"},
                                         {"loads", "{own: {at: all, force: [0, -a*k]}}"},
@@ -223,7 +226,9 @@ TEST(WrongCase, DamagedTextsAreRefusedOrRead) {
   const auto below = [&](std::size_t n) {
     return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
   };
-  for (int i = 0; i < 3000; ++i) {
+  const char *asked = std::getenv("RBVI_FUZZ_SECONDS");
+  const std::time_t end = std::time(nullptr) + (asked == nullptr ? 0 : std::atol(asked));
+  for (int i = 0; i < 3000 || std::time(nullptr) < end; ++i) {
     std::string text = whole;
     for (std::size_t k = 1 + below(4); k > 0; --k) {
       const std::size_t at = below(text.size());

@@ -68,6 +68,15 @@ Named<NumberMap> exponential();
 Named<NumberMap> logarithm_to_half();
 Named<NumberMap> exponential_to_half();
 
+/// What affine, parameter and constant make; functions that are made of them evaluate it directly.
+struct AffineCoefficient {
+  double value = 0, factor = 0;
+  std::size_t index = 0;
+  double operator()(const FullMu &mu) const {
+    return factor == 0 ? value : value + factor * mu.at(index);
+  }
+};
+
 /// value + factor (the parameter of this index in parameters.all).
 Named<Coefficient> affine(double value, double factor, int index);
 /// The value of a parameter, and of none.
@@ -81,7 +90,11 @@ Named<PointMap> everywhere(const Point &vector);
 Named<Material> everywhere(const Lame &material);
 /// The same at all points.
 Named<PointValue> everywhere(const Named<Coefficient> &value);
-/// x -> scale x.
+/// x -> scale x. Of an affine scale it is a Scaling.
+struct Scaling {
+  AffineCoefficient scale;
+  Point operator()(const FullMu &mu, const Point &x) const { return scale(mu) * x; }
+};
 Named<PointMap> scaled(const Named<Coefficient> &scale);
 
 } // namespace rbvi
