@@ -144,8 +144,9 @@ CaseNode with_choices(const CaseNode &root, const SceneOptions &options, Defects
     }
   }
   for (const auto &[name, node] : parameters == nullptr ? CaseNode().entries : parameters->entries)
-    if (const auto given = options.find(name); given != options.end() && !given->second.empty())
-      apply_constant(chosen, name, given->second, defects);
+    if (const auto given = options.find(name); given != options.end() && !given->second.empty() &&
+                                               given->second != entry(node, "default").value)
+      apply_constant(chosen, name, given->second, defects); // alternatives may have set another
   return chosen;
 }
 

@@ -155,6 +155,10 @@ TEST(Case, ChoicesVariantsAndPathsChangeIt) {
   EXPECT_NEAR(shear(make_scene(hard, {{"stiffness", "1"}})), 7.5, 1e-14);
   EXPECT_NEAR(shear(scene_of(chosen, {{"stiffness", "2"}}, {"hard", {{"let.stiff", "8"}}})), 60,
               1e-13);
+  std::map<std::string, std::string> constant = chosen;
+  constant["choices"] = "{metal: {default: no, no: {}, yes: {parameters.young.default: 60}}}";
+  EXPECT_NEAR(shear(scene_of(constant, {{"metal", "yes"}})), 30, 1e-13);
+  EXPECT_NEAR(shear(scene_of(constant, {{"metal", "yes"}, {"young", "30"}})), 15, 1e-14);
   EXPECT_THROW((void)entry_in(chosen, {"soft", {}}), Error);
   EXPECT_THROW((void)entry_in(chosen, {"", {{"contact.wall.lumped", "yes"}}}), Error);
 }
