@@ -54,14 +54,29 @@ void check_text(const std::string &text, const std::string &file) {
   }
 }
 
-/// The one document of a file; undefined: there is none.
+/// Throws bad_input where a second document begins, by its first line.
+void check_one_document(const std::string &text, const std::string &file) {
+  std::istringstream in(text);
+  int number = 0;
+  bool content = false, ended = false;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    const bool idle = first == std::string::npos || line[first] == '#' || line[first] == '%';
+    const bool mark = line.starts_with("---") || line.starts_with("...");
+    if (mark) ended = content;
+    if (idle || mark) continue;
+    if (ended) throw malformed(file, number, "a second document begins: use one table");
+    content = true;
+  }
+}
+
+/// The one document of a file; undefined: there is none. (YAML::LoadAll does not end for some
+/// texts that are damaged.)
 YAML::Node document(const std::string &text, const std::string &file) {
+  check_one_document(text, file);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      throw malformed(file, line_of(documents[1].Mark()),
-                      "a second document begins, or the indentation changes: use one table");
-    return documents.empty() ? YAML::Node() : documents[0];
+    return YAML::Load(text);
   } catch (const YAML::Exception &error) {
     throw malformed(file, line_of(error.mark), error.msg + " ('name: value' is expected)");
   }
