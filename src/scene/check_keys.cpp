@@ -75,10 +75,15 @@ public:
       else
         check(*keys[static_cast<std::size_t>(any - names.begin())], name, value, table);
     }
+    std::string missing; // of one place one defect is told
     for (const CaseKey *key : keys)
       if (key->needed && node.find(key->name) == nullptr)
-        defects_.add(node, "'" + key->name + "' is missing (" + key->value +
-                               (key->says.empty() ? "" : ": " + key->says) + ")");
+        missing.append(missing.empty() ? "'" : "; '")
+            .append(key->name)
+            .append("' is missing (")
+            .append(key->value)
+            .append(key->says.empty() ? ")" : ": " + key->says + ")");
+    if (!missing.empty()) defects_.add(node, missing);
   }
 
 private:
