@@ -27,6 +27,20 @@ const Registry &catalogue() {
   return all;
 }
 
+std::vector<Scene> every_choice() {
+  std::vector<Scene> scenes;
+  for (const SceneEntry &entry : catalogue().scenes) {
+    scenes.push_back(make_scene(entry));
+    for (const SceneOption &option : entry.options)
+      for (const std::string &choice : option.choices)
+        try {
+          scenes.push_back(make_scene(entry, {{option.name, choice}}));
+        } catch (const Error &) { // this choice asks for others beside it
+        }
+  }
+  return scenes;
+}
+
 Scene make_scene(const std::string &name, const SceneOptions &options) {
   return make_scene(entry_of(catalogue(), name), options);
 }

@@ -11,4 +11,7 @@ const Registry &catalogue();
 /// The scene of a case.
 Scene make_scene(const std::string &name, const SceneOptions &options = {});
 
+/// Each of the cases as it is, and with each choice of each of its options that needs no other.
+std::vector<Scene> every_choice();
+
 } // namespace rbvi

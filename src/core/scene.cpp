@@ -79,10 +79,6 @@ bool constant_stiffness(const Scene &scene) {
   return is_constant(scene.a, scene.parameters);
 }
 
-double number_in(const SceneOptions &options, const std::string &name) {
-  return parse_number(options.at(name), "option " + name);
-}
-
 const SceneEntry &entry_of(const Registry &registry, const std::string &scene) {
   std::vector<std::string> names;
   for (const SceneEntry &entry : registry.scenes) {

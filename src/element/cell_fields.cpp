@@ -1,5 +1,6 @@
 #include "rbvi/element/cell_fields.hpp"
 
+#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/lagrange.hpp"
 
 #include <map>
@@ -67,7 +68,8 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
     for (std::size_t i = 0; i < per_cell; ++i)
       gradient += displacement.segment<3>(3 * nodes[i]) *
                   Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
-    const Tensor sigma = stress(scene.material(all_parameters, reference_centre(cell)), gradient);
+    Tensor sigma = stress(scene.material(all_parameters, reference_centre(cell)), gradient);
+    if (is_plane_stress(scene.material)) sigma(2, 2) = 0;
     for (Index c = 0; c < result.cols(); ++c) {
       const auto [i, j] = places[c];
       result(k, c) = sigma(i, j);

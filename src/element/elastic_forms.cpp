@@ -149,6 +149,11 @@ Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue
       {{"young", young.record}, {"poisson", poisson.record}});
 }
 
+bool is_plane_stress(const Named<Material> &material) {
+  const auto found = material.record.numbers.find("plane_stress");
+  return found != material.record.numbers.end() && found->second.front() != 0;
+}
+
 Named<Material> lambda_alone(const Named<PointValue> &factor) {
   return named_alone(factor, false);
 }

@@ -101,7 +101,7 @@ private:
       defects_.add(value, name + " is a list: " + key.value + " belongs here");
       return;
     }
-    if (!key.dimension.empty()) check_units(key, value);
+    defects_.collect(value, [&] { check_unit(reader_, value, key.dimension); });
     if (key.value == "table" && !(value.is_value() && value.value.empty()))
       defects_.add(value, name + " is a table: write 'NAME: value' below it, or {NAME: value}");
     else if (key.value == "expression" ||
@@ -110,21 +110,6 @@ private:
     else if (key.value.starts_with("expressions") || key.value.starts_with("[expression"))
       for (const CaseNode &item : value.items)
         check_names(reader_, item, known_, defects_);
-  }
-
-  /// A number with a unit has the dimension of its key.
-  void check_units(const CaseKey &key, const CaseNode &node) {
-    for (const CaseNode &item : node.items)
-      check_units(key, item);
-    if (node.is_value())
-      defects_.collect(node, [&] {
-        std::optional<Quantity> quantity;
-        try {
-          quantity = parse_quantity(node.value, reader_.units);
-        } catch (const Error &) { // an expression, or told elsewhere
-        }
-        if (quantity) check_dimension(*quantity, dimension_of(key.dimension), node.value);
-      });
   }
 
   void visit_table(const std::string &name, const CaseNode &value, const std::string &table) {

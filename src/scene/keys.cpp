@@ -79,7 +79,8 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "against", "boundary or table", "another body, or something rigid"},
     {"contact.*", "normal", "auto | body | rigid | deformed",
      "of contact: of the body at rest, of what is rigid at the next point, of the deformed body; "
-     "auto: body with small kinematics on circles, else rigid"},
+     "auto: body with small kinematics on circles that the map does not turn or stretch, else "
+     "rigid"},
     {"contact.*", "gap", "closest | ray | vertical",
      "small kinematics: along the normal to the next point, along a ray, to the point below"},
     {"contact.*", "gap_from", "curve | edges",

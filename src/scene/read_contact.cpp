@@ -57,7 +57,7 @@ Side side_of(const Reader &reader, const std::string &boundary, const Scene &sce
   if (found == reader.circles.end()) return side;
   const Named<PointMap> curve = on_circles(found->second);
   side.at = map_of(reader).empty() ? curve : composed(scene.map, curve);
-  side.normal = normals_of_circles(found->second);
+  if (keeps_directions(reader, scene)) side.normal = normals_of_circles(found->second);
   return side;
 }
 
@@ -85,7 +85,9 @@ RigidContact following(const CaseNode &node, const Side &side, const Named<Surfa
   if (choice_or(node, "gap_from", "curve", {"curve", "edges"}) == "curve")
     contact.at_rest = side.at;
   if (normal == "deformed") {
-    if (!side.normal) throw bad_input("normal: deformed needs a boundary on a circle ('curves:')");
+    if (!side.normal)
+      throw bad_input("normal: deformed needs a boundary on a circle ('curves:') and a map "
+                      "that does not turn or stretch it");
     contact.body_normal = side.normal;
   }
   contact.friction = friction;
@@ -99,7 +101,8 @@ RigidContact at_rest(const CaseNode &node, const Side &side, const Named<Surface
   if (choice == "deformed")
     throw bad_input("normal: deformed is that of the deformed body: use it with kinematics: large");
   if (choice == "body" && !side.normal)
-    throw bad_input("normal: body needs a boundary on a circle ('curves:')");
+    throw bad_input("normal: body needs a boundary on a circle ('curves:') and a map that does "
+                    "not turn or stretch it");
   const Named<PointMap> normal = choice == "rigid" || !side.normal
                                      ? normal_of_surface(surface, side.at ? side.at : scene.map)
                                      : side.normal;
@@ -200,6 +203,9 @@ ContactRecipe with_another_body(const CaseNode &node, const std::string &master)
 
 ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
   const CaseNode *above = node.find("above"), *against = node.find("against");
+  const CaseNode &at = entry(node, "at");
+  if (!at.is_value() || at.value == "all")
+    throw bad_input("contact is at one boundary, or one region, with a name: give each its entry");
   if ((above == nullptr) == (against == nullptr))
     throw bad_input("contact is 'above: HEIGHT' of a membrane, or 'against:' something");
   if ((above != nullptr) != (scene.components == 1))

@@ -1,8 +1,6 @@
 #include "reader.hpp"
 
-#include "rbvi/core/places.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/core/validity.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +90,11 @@ std::vector<int> dependence_of_map(Reader &reader) {
   return dependence_of(formula_of(reader, map_of(reader)));
 }
 
-bool is_similarity(Reader &reader, const Scene &scene) {
+namespace {
+
+/// Whether holds(d_x map, d_y map), at random points and parameters.
+template <class Holds>
+bool holds_of_slopes(const Reader &reader, const Scene &scene, const Holds &holds) {
   const std::vector<Expression> map = map_of(reader);
   if (map.empty()) return true;
   std::vector<std::string> names = reader.parameters;
@@ -110,16 +112,37 @@ bool is_similarity(Reader &reader, const Scene &scene) {
     // Bodies are of any size: six decades of it about 1.
     const double size = std::pow(10, 6 * unit(random) - 3), angle = 2 * M_PI * unit(random);
     at.insert(at.end(), {size * std::cos(angle), size * std::sin(angle), 0});
-    std::array<std::array<double, 2>, 2> by{};
+    Point by_x{}, by_y{};
     for (std::size_t c = 0; c < 2; ++c) {
       double value;
-      bound[c].value_and_gradient(at.data(), value, by[c].data());
+      std::array<double, 2> slopes{};
+      bound[c].value_and_gradient(at.data(), value, slopes.data());
+      by_x[c] = slopes[0];
+      by_y[c] = slopes[1];
     }
-    const double one = std::hypot(by[0][0], by[1][0]), two = std::hypot(by[0][1], by[1][1]);
-    const double skew = by[0][0] * by[0][1] + by[1][0] * by[1][1];
-    if (!(std::abs(one - two) <= 1e-10 * one && std::abs(skew) <= 1e-10 * one * two)) return false;
+    if (!holds(by_x, by_y)) return false;
   }
   return true;
+}
+
+constexpr double round_off = 1e-10;
+
+} // namespace
+
+bool is_similarity(const Reader &reader, const Scene &scene) {
+  return holds_of_slopes(reader, scene, [](const Point &by_x, const Point &by_y) {
+    const double size = norm(by_x);
+    return std::abs(size - norm(by_y)) <= round_off * size &&
+           std::abs(dot(by_x, by_y)) <= round_off * size * size;
+  });
+}
+
+bool keeps_directions(const Reader &reader, const Scene &scene) {
+  return holds_of_slopes(reader, scene, [](const Point &by_x, const Point &by_y) {
+    return by_x[0] > 0 && std::abs(by_x[1]) <= round_off * by_x[0] &&
+           std::abs(by_y[0]) <= round_off * by_x[0] &&
+           std::abs(by_y[1] - by_x[0]) <= round_off * by_x[0];
+  });
 }
 
 void read_mesh(Reader &reader, Scene &scene, Defects &defects) {

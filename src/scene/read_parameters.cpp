@@ -24,31 +24,13 @@ bool holds(const Range &range, double value) {
   return value >= range.lower && value <= range.upper;
 }
 
-/// The unit of a parameter is that of all its numbers that have one.
-void check_unit(const Reader &reader, const CaseNode &node, const std::string &unit) {
-  if (!reader.units || unit.empty()) return;
-  const Dimension wanted = dimension_of(unit);
-  for (const char *name : {"range", "default", "limits"}) {
-    const CaseNode *given = node.find(name);
-    if (given == nullptr) continue;
-    std::vector<CaseNode> numbers = given->items;
-    if (given->is_value()) numbers.push_back(*given);
-    for (const CaseNode &number : numbers) {
-      std::optional<Quantity> quantity;
-      try {
-        quantity = parse_quantity(number.value, reader.units);
-      } catch (const Error &) { // an expression
-      }
-      if (quantity) check_dimension(*quantity, wanted, number.value);
-    }
-  }
-}
-
 Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &node) {
   Parameter parameter{name, "", 0, 0, number_in(reader, entry(node, "default"))};
   parameter.lower = parameter.upper = parameter.value;
   if (const CaseNode *unit = node.find("unit")) parameter.unit = unit->value;
-  check_unit(reader, node, parameter.unit);
+  for (const char *name_of_numbers : {"range", "default", "limits"})
+    if (const CaseNode *numbers = node.find(name_of_numbers); numbers != nullptr && reader.units)
+      check_unit(reader, *numbers, parameter.unit);
   if (const CaseNode *limits = node.find("limits")) parameter.valid = range_in(reader, *limits);
   const CaseNode *range = node.find("range");
   if (range != nullptr) {

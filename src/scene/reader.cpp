@@ -32,6 +32,19 @@ Expression expression_in(const Reader &reader, const CaseNode &node) {
   }
 }
 
+void check_unit(const Reader &reader, const CaseNode &node, const std::string &unit) {
+  if (unit.empty()) return;
+  for (const CaseNode &item : node.items)
+    check_unit(reader, item, unit);
+  if (!node.is_value()) return;
+  std::optional<Quantity> quantity;
+  try {
+    quantity = parse_quantity(node.value, reader.units);
+  } catch (const Error &) { // an expression, or told elsewhere
+  }
+  if (quantity) check_dimension(*quantity, dimension_of(unit), node.value);
+}
+
 double number_in(const Reader &reader, const CaseNode &node) {
   const Expression value = expanded(expression_in(reader, node), reader.lets);
   if (!value.constant())

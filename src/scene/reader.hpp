@@ -50,6 +50,10 @@ const CaseNode &entry(const CaseNode &table, const std::string &name);
 /// What is this value by itself, a parameter or a constant, cannot leave the range.
 void limit(Reader &reader, const Expression &value, const Range &range, Scene &scene);
 
+/// Throws bad_input for a number with a unit of another dimension than that unit's; other texts
+/// pass.
+void check_unit(const Reader &reader, const CaseNode &node, const std::string &unit);
+
 /// Of some expressions; the parameters that they depend on count as used.
 Formula formula_of(Reader &reader, std::vector<Expression> values);
 Formula formula_in(Reader &reader, const CaseNode &node);
@@ -84,7 +88,9 @@ std::vector<int> dependence_of_map(Reader &reader);
 /// The components of the map; none: the identity.
 std::vector<Expression> map_of(const Reader &reader);
 /// Whether the map is a similarity wherever it is smooth, at random points and parameters.
-bool is_similarity(Reader &reader, const Scene &scene);
+bool is_similarity(const Reader &reader, const Scene &scene);
+/// Whether it is one without a rotation: normals of the mesh are those of the mapped body.
+bool keeps_directions(const Reader &reader, const Scene &scene);
 
 /// Unknown names, shapes and expressions of the whole file.
 void check_keys(const Reader &reader, Defects &defects);

@@ -119,6 +119,29 @@ TEST(ConstantLoad, OfDegree2HasTheSharesOfTextbooks) {
   }
 }
 
+/// Of a constant force the load of each component; of one that is linear the integral.
+TEST(BodyLoad, IsTheIntegralOfTheForceTimesTheTestFunction) {
+  for_examples([](const Example &e) {
+    const Vertices &x = e.cell.mapped;
+    const auto nodes = static_cast<Index>(nodes_per_cell(e.dim, e.degree));
+    const Vector constant = e.vector(constant_load("", 1, e.degree), e.degree);
+    Vector values(2 * nodes);
+    const Named<PointMap> force = [](const FullMu &, const Point &at) {
+      return Point{-3, 2 + at[0], 0};
+    };
+    body_load("", force, 2, e.degree).kernel({}, e.cell, values.data());
+    Point centre{};
+    for (int v = 0; v <= e.dim; ++v)
+      centre = centre + 1.0 / (e.dim + 1) * x[v];
+    for (Index i = 0; i < nodes; ++i)
+      EXPECT_NEAR(values[2 * i], -3 * constant[i], 1e-13);
+    double second = 0;
+    for (Index i = 0; i < nodes; ++i)
+      second += values[2 * i + 1];
+    EXPECT_NEAR(second, (2 + centre[0]) * simplex(e.dim, x).volume, 1e-13);
+  });
+}
+
 TEST(HatCoupling, IntegratesALinearDualFunctionTimesTheDisplacement) {
   for_examples([](const Example &e) {
     const Vertices &x = e.cell.mapped;

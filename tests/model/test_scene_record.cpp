@@ -13,22 +13,6 @@
 namespace rbvi::scene_record_test {
 namespace {
 
-/// Each scene of the catalogue as it is, and with each choice of each of its options.
-std::vector<Scene> all_scenes() {
-  std::vector<Scene> scenes;
-  for (const SceneEntry &entry : catalogue().scenes) {
-    scenes.push_back(make_scene(entry.name));
-    for (const SceneOption &option : entry.options)
-      for (const std::string &choice : option.choices) {
-        try {
-          scenes.push_back(make_scene(entry.name, {{option.name, choice}}));
-        } catch (const Error &) { // this choice asks for others beside it
-        }
-      }
-  }
-  return scenes;
-}
-
 Scene made_again(const Scene &scene) {
   Scene again = scene_in({record_in(lines_of(record_of(scene))), &catalogue()});
   again.parameters = scene.parameters;
@@ -61,13 +45,13 @@ std::vector<double> values_of(const Scene &scene, const Term &term, const FullMu
 }
 
 TEST(SceneRecord, EveryFunctionOfEverySceneHasAName) {
-  for (const Scene &scene : all_scenes())
+  for (const Scene &scene : every_choice())
     EXPECT_TRUE(is_complete(record_of(scene)))
         << scene.name << ": " << first_unnamed(record_of(scene));
 }
 
 TEST(SceneRecord, LinesHoldTheWholeRecord) {
-  for (const Scene &scene : all_scenes()) {
+  for (const Scene &scene : every_choice()) {
     const auto lines = lines_of(record_of(scene));
     EXPECT_EQ(lines_of(record_in(lines)), lines) << scene.name;
     EXPECT_EQ(lines_of(record_of(made_again(scene))), lines) << scene.name;
@@ -75,7 +59,7 @@ TEST(SceneRecord, LinesHoldTheWholeRecord) {
 }
 
 TEST(SceneRecord, FunctionsMadeAgainAreTheSame) {
-  for (const Scene &scene : all_scenes()) {
+  for (const Scene &scene : every_choice()) {
     const Scene again = made_again(scene);
     const FullMu mu = somewhere(scene);
     const Point x{0.3, 0.51, 0};
@@ -118,7 +102,7 @@ TEST(SceneRecord, CoefficientsAndKernelsMadeAgainAreTheSame) {
               exact_coefficients(again.*sum, split_sum(again.*sum, scene.parameters),
                                  scene.parameters, mu));
   };
-  for (const Scene &scene : all_scenes()) {
+  for (const Scene &scene : every_choice()) {
     const Scene again = made_again(scene);
     expect_same(scene, again, &Scene::a);
     expect_same(scene, again, &Scene::f);

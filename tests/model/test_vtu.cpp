@@ -1,6 +1,7 @@
 // VTU files by a reader of its own, in both formats; stresses and bodies on cells.
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/cell_fields.hpp"
+#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/io/vtu.hpp"
 #include "rbvi/model/solution_vtu.hpp"
 #include "tests/catalogue.hpp"
@@ -276,6 +277,20 @@ TEST(CentreStresses, OfAQuadraticDisplacementAreThoseOfTheCentre) {
     const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
     EXPECT_NEAR(s(0, 0), (OneCell::lambda + 2 * OneCell::shear) * 2 * centre, 1e-12);
     EXPECT_NEAR(s(0, 1), OneCell::lambda * 2 * centre, 1e-12);
+  }
+}
+
+/// In plane stress nothing acts across the plate; in plane strain lambda tr(eps) does.
+TEST(CentreStresses, AcrossAThinPlateThereIsNone) {
+  OneCell cell(2, 1);
+  const FullMu mu{1};
+  Vector u = Vector::Zero(3 * cell.points.rows());
+  u[3] = 0.1; // stretched along x
+  for (const bool thin : {true, false}) {
+    cell.scene.material = isotropic(everywhere(15.0), everywhere(0.3), thin);
+    const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
+    EXPECT_EQ(s(0, 2) == 0, thin);
+    EXPECT_GT(s(0, 0), 0);
   }
 }
 

@@ -1,6 +1,7 @@
 // Case files: what becomes of what they say.
 #include "block_case.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/scene/case.hpp"
 #include "tests/catalogue.hpp"
 
@@ -109,6 +110,39 @@ TEST(Case, AMotionTakesWhatIsImposedWithIt) {
   EXPECT_NEAR(scene.fixed[1].values[0].theta->front().value({0.05, 1, 0.3}) *
                   scene.fixed[1].values[0].value({}, {})[1],
               0.05, 1e-16);
+}
+
+/// A thin plate that is stretched: sigma_xx = E eps, eps_yy = -nu eps, in lambda of plane stress.
+TEST(Case, PlaneStressIsThatOfAThinPlate) {
+  const Scene plate = scene_of({{"physics", "plane_stress"}}), thick = scene_of();
+  const FullMu mu{0.05, 1, 0.3};
+  const auto [lambda, shear] = plate.material(mu, {});
+  const double eps = 1e-3, across = -0.3 * eps;
+  EXPECT_NEAR(lambda * (eps + across) + 2 * shear * eps, 15 * eps, 1e-15);
+  EXPECT_NEAR(lambda * (eps + across) + 2 * shear * across, 0, 1e-15);
+  EXPECT_NEAR(plate.a.front().theta->back().value(mu), lambda / 15, 1e-14);
+  EXPECT_TRUE(is_plane_stress(plate.material));
+  EXPECT_FALSE(is_plane_stress(thick.material));
+}
+
+/// Where the map turns or stretches a circle, its normals are not those of the body.
+TEST(Case, NormalsOfCirclesAreTakenWhereTheMapKeepsThem) {
+  const auto normal = [](const std::string &map, const std::string &choice) {
+    return scene_of({{"mesh", "{built_in: half_disc}"},
+                     {"map", map},
+                     {"contact", "{s: {at: contact, normal: " + choice +
+                                     ", against: {disk: {center: [0, -2.1], radius: 1}}}}"}})
+        .contacts.front()
+        .record.parts.at("normal")
+        .name;
+  };
+  const std::string stretched = "[x, y*k]", turned = "[x*cos(k) - y*sin(k), x*sin(k) + y*cos(k)]";
+  EXPECT_EQ(normal("{scale: k}", "auto"), "normals_of_circles");
+  EXPECT_EQ(normal("[k*x + depth, k*y]", "auto"), "normals_of_circles");
+  for (const std::string &map : {stretched, turned}) {
+    EXPECT_EQ(normal(map, "auto"), "normal_of_surface");
+    EXPECT_THROW(normal(map, "body"), Error);
+  }
 }
 
 TEST(Case, ConstantsMayBeChangedOrFreed) {

@@ -161,9 +161,6 @@ bool is_symmetric(const Scene &scene);
 /// Whether a is the same for all values of the free parameters.
 bool constant_stiffness(const Scene &scene);
 
-/// The number in an option.
-double number_in(const SceneOptions &options, const std::string &name);
-
 /// Throws bad_input for an unknown scene, naming those that exist.
 const SceneEntry &entry_of(const Registry &registry, const std::string &scene);
 

@@ -29,6 +29,9 @@ Form elasticity(const std::string &region, const Named<Material> &material, int 
 Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue> &poisson,
                           bool plane_stress);
 
+/// Whether a material is one of isotropic() in plane stress: sigma_zz is 0 there.
+bool is_plane_stress(const Named<Material> &material);
+
 /// One constant alone, `factor`; the other is 0.
 Named<Material> lambda_alone(const Named<PointValue> &factor);
 Named<Material> shear_alone(const Named<PointValue> &factor);
