@@ -271,4 +271,19 @@ std::vector<Point> dual_points(const Contact &contact) {
   return points;
 }
 
+std::vector<MaterialPoint> material_points(const Contact &contact) {
+  std::vector<MaterialPoint> points;
+  for (const auto &interface : contact.interfaces) {
+    const InterfaceMesh &mesh = interface->mesh();
+    const int vertices = mesh.vertices();
+    for (Index e = 0; e < mesh.count(); ++e) {
+      Point middle{};
+      for (int i = 0; i < vertices; ++i)
+        middle = middle + 1.0 / vertices * mesh.points[mesh.nodes_of(e)[i]];
+      points.push_back({middle, mesh.material_of(e)});
+    }
+  }
+  return points;
+}
+
 } // namespace rbvi

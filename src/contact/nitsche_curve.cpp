@@ -69,8 +69,10 @@ double length_of(const std::array<Point, 4> &vertices, int edge) {
 
 CurveCellAtMu curve_cell_at(const NitscheLayer &layer, const FullMu &mu, const CurveCell &beside) {
   const Scene &scene = layer.scene;
-  CurveCellAtMu result{
-      beside.cell, beside.edge, scene.material(mu, reference_centre(beside.cell)), {}};
+  CurveCellAtMu result{beside.cell,
+                       beside.edge,
+                       scene.materials[beside.material].of_cell(mu, reference_centre(beside.cell)),
+                       {}};
   for (std::size_t v = 0; v < 3; ++v)
     result.cell.mapped[v] = scene.map(mu, beside.cell.reference[v]);
   result.geometry = simplex(2, result.cell.mapped);

@@ -23,6 +23,7 @@ std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
   for (Index e = 0; e < mesh.count(); ++e) {
     const int *nodes = mesh.nodes_of(e);
     CurveCell cell{{2, {}, {}}, mesh.edges[e], {}};
+    cell.material = mesh.material_of(e);
     cell.dofs.fill(-1);
     for (std::size_t v = 0; v < 3; ++v)
       cell.cell.reference[v] = mesh.points[nodes[v]];

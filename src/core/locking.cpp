@@ -7,15 +7,15 @@
 namespace rbvi {
 
 double locking_ratio(const Scene &scene, const FullMu &all_parameters,
-                     const std::vector<Point> &points) {
+                     const std::vector<MaterialPoint> &points) {
   // On the default meshes of the cases roller and rigid_disk forces of degree 1 are too large by 4
   // and 2 % at a ratio of 0.45, 8 and 3 % at 0.48, 13 and 5 % at 0.49, 44 and 15 % at 0.499; the
   // largest pressure of roller is 1.4, 1.9, 2.3 and 4.2 times that of degree 2.
   constexpr double locks_from = 0.48;
-  if (scene.degree != 1 || !scene.material) return 0;
+  if (scene.degree != 1 || scene.materials.empty()) return 0;
   double largest = 0;
-  for (const Point &x : points) {
-    const auto [lambda, shear] = scene.material(all_parameters, x);
+  for (const auto &[x, material] : points) {
+    const auto [lambda, shear] = scene.materials[material].of_cell(all_parameters, x);
     largest = std::max(largest, lambda / (2 * (lambda + shear)));
   }
   return largest < locks_from - 1e-12 ? 0 : largest;

@@ -75,6 +75,11 @@ bool is_symmetric(const Scene &scene) {
          space.all[scene.skewed_by].value == 0;
 }
 
+const Coordinate *coordinate_of(const Scene &scene, int parameter) {
+  const auto found = scene.coordinates.find(parameter);
+  return found == scene.coordinates.end() ? nullptr : &found->second;
+}
+
 bool constant_stiffness(const Scene &scene) {
   return is_constant(scene.a, scene.parameters);
 }

@@ -115,16 +115,6 @@ std::vector<double> values_of_dependence(const Sum &sum, const FullMu &all_param
   return values;
 }
 
-const Coordinate *coordinate_of(const Sum &sum, int parameter) {
-  for (const Term &term : sum)
-    for (std::size_t i = 0; term.theta && i < term.theta->size(); ++i) {
-      const auto &coordinates = (*term.theta)[i].coordinates;
-      const auto found = coordinates.find(parameter);
-      if (found != coordinates.end()) return &found->second;
-    }
-  return nullptr;
-}
-
 void check_coefficients(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters) {
   for (const Term &term : sum)
     for (std::size_t i = 0; term.theta && i < term.theta->size(); ++i)

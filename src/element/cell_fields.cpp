@@ -55,7 +55,8 @@ std::vector<std::string> stress_components(int dim) {
 }
 
 Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
-                       const std::vector<int> &cells, const Vector &displacement) {
+                       const std::vector<int> &cells, const std::vector<int> &materials,
+                       const Vector &displacement) {
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
   const std::vector<double> centre(static_cast<std::size_t>(scene.dim) + 1, 1.0 / (scene.dim + 1));
   std::array<std::array<double, 3>, most_nodes> gradients{};
@@ -68,8 +69,9 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
     for (std::size_t i = 0; i < per_cell; ++i)
       gradient += displacement.segment<3>(3 * nodes[i]) *
                   Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
-    Tensor sigma = stress(scene.material(all_parameters, reference_centre(cell)), gradient);
-    if (is_plane_stress(scene.material)) sigma(2, 2) = 0;
+    const Named<Material> &material = scene.materials[materials.empty() ? 0 : materials[k]].of_cell;
+    Tensor sigma = stress(material(all_parameters, reference_centre(cell)), gradient);
+    if (is_plane_stress(material)) sigma(2, 2) = 0;
     for (Index c = 0; c < result.cols(); ++c) {
       const auto [i, j] = places[c];
       result(k, c) = sigma(i, j);

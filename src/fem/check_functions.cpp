@@ -75,10 +75,6 @@ void check_factor(const Scene &scene, const Factor &factor, const std::string &o
       throw bad_input(what + " depends on the parameter " + scene.parameters.all[i].name +
                       ", which its list of parameters lacks");
   }
-  for (const auto &[parameter, coordinate] : factor.coordinates) {
-    check_positions(scene, {parameter}, what);
-    check_coordinate(coordinate, mu[parameter], "the coordinate of " + what);
-  }
 }
 
 /// Factors of one name are taken for the same function.
@@ -162,6 +158,11 @@ void check_functions(const Scene &scene) {
   for (const auto &[factor, owner] : factors_of(scene))
     check_factor(scene, *factor, owner);
   check_names(scene);
+  for (const auto &[parameter, coordinate] : scene.coordinates) {
+    check_positions(scene, {parameter}, name + ": a coordinate");
+    check_coordinate(coordinate, generic_point(scene.parameters)[parameter],
+                     name + ": the coordinate of " + scene.parameters.all[parameter].name);
+  }
   for (const FixedBoundary &boundary : scene.fixed)
     for (const ImposedTerm &term : boundary.values)
       check_imposed_term(scene, term, boundary.name);

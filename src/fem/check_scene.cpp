@@ -5,6 +5,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/fem/materials.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>
@@ -300,19 +301,17 @@ void check_curves(const Problem &problem) {
 }
 
 /// Throws bad_input for a material that is none at a corner of the box.
-void check_material(const Problem &problem) {
+void check_material(const Problem &problem, const std::vector<int> &of_cells) {
   const Scene &scene = problem.scene();
   const Mesh &mesh = problem.mesh();
   constexpr std::size_t few = 100;
   const std::size_t step = std::max<std::size_t>(1, mesh.cells.size() / few);
   for (const Mu &mu : corners_and_faces(scene.parameters)) {
     const FullMu all = expand(scene.parameters, mu);
-    for (std::size_t k = 0; scene.material && k < mesh.cells.size(); k += step) {
-      Point centre{};
-      for (int i = 0; i <= mesh.dim; ++i)
-        centre = centre + 1.0 / (mesh.dim + 1) * mesh.points[mesh.cells[k][i]];
+    for (std::size_t k = 0; !scene.materials.empty() && k < mesh.cells.size(); k += step) {
+      const BodyMaterial &material = scene.materials[of_cells.empty() ? 0 : of_cells[k]];
       while_doing("checking the material at " + describe(scene.parameters, mu),
-                  [&] { (void)scene.material(all, centre); });
+                  [&] { (void)material.of_cell(all, reference_centre(cell_of(mesh, k))); });
     }
   }
 }
@@ -323,9 +322,10 @@ void check_scene(const Problem &problem) {
   const Scene &scene = problem.scene();
   const FullMu mu = generic_point(scene.parameters);
   std::vector<double> outward, inward;
+  const std::vector<int> materials = materials_of_cells(scene, problem.mesh());
   collectively(problem.comm(), [&] {
     check_curves(problem);
-    check_material(problem);
+    check_material(problem, materials);
     visit_terms(
         scene, [&](const Form &form) { return cells_of(problem.mesh(), form); },
         [&](const SampledTerm &term, bool of_product) { check_term(term, mu, of_product); });

@@ -3,6 +3,7 @@
 #include "curve_nodes.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/fem/materials.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/gather.hpp"
 
@@ -298,6 +299,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       found.mesh.dofs.push_back(at->second);
     }
     found.mesh.imposed_by = imposed_at(mesh, dofs, found.natural);
+    found.mesh.materials = materials_of_entities(scene, mesh, found.mesh, found.natural);
     places.meshes.push_back(std::move(found.mesh));
     places.natural_nodes.push_back(std::move(found.natural));
   }

@@ -16,12 +16,12 @@ double abscissa(int k, int points) {
 double value_at(const Scene &scene, const ChebyshevAxis &axis, int k) {
   const double x =
       (axis.lower + axis.upper) / 2 + (axis.upper - axis.lower) / 2 * abscissa(k, axis.points);
-  const Coordinate *coordinate = coordinate_of(scene.a, axis.parameter);
+  const Coordinate *coordinate = coordinate_of(scene, axis.parameter);
   return coordinate == nullptr ? x : coordinate->back(x);
 }
 
 Vector axis_weights(const Scene &scene, const ChebyshevAxis &axis, double value) {
-  const Coordinate *own = coordinate_of(scene.a, axis.parameter);
+  const Coordinate *own = coordinate_of(scene, axis.parameter);
   const double coordinate = own == nullptr ? value : own->of(value);
   const double x = (2 * coordinate - axis.lower - axis.upper) / (axis.upper - axis.lower);
   Vector weights = Vector::Zero(axis.points);

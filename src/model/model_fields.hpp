@@ -7,6 +7,9 @@
 
 namespace rbvi {
 
+/// Bound of numbers of materials; OnlineSolver asks for those of the scene.
+inline constexpr Index most_materials = 1000;
+
 /// The fields of a mesh; `group`: "", or with a slash.
 template <class Store, class Model>
 void list_mesh(const Store &store, const std::string &group, Model &model) {
@@ -20,6 +23,13 @@ void list_mesh(const Store &store, const std::string &group, Model &model) {
     return std::ssize(model.mesh_cells) % nodes_per_cell(mesh.dim, mesh.degree) == 0;
   });
   store(group + "imposed_by", model.imposed_by);
+  store(group + "materials", model.mesh_materials, Indices{most_materials});
+  store.ask(group + "materials does not fit", [&] {
+    const InterfaceMesh &mesh = model.interfaces.front().mesh;
+    return model.mesh_materials.empty() ||
+           std::ssize(model.mesh_materials) * nodes_per_cell(mesh.dim, mesh.degree) ==
+               std::ssize(model.mesh_cells);
+  });
 }
 
 /// The fields that a model holds in memory.

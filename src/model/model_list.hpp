@@ -2,6 +2,7 @@
 // are.
 #pragma once
 
+#include "model_fields.hpp"
 #include "nitsche_part.hpp"
 #include "rbvi/model/packed.hpp"
 
@@ -154,6 +155,8 @@ void list_interface(const Store &store, const std::string &at, Interface &interf
   store(at + "/imposed_by", mesh.imposed_by);
   store.ask(at + "/imposed_by does not fit",
             [&] { return mesh.imposed_by.empty() || mesh.imposed_by.size() == mesh.dofs.size(); });
+  store(at + "/materials", mesh.materials,
+        Indices{most_materials, mesh.materials.empty() ? 0 : cells});
   store(at + "/nodes", interface.nodes, Indices{mesh_nodes, nodes});
 }
 

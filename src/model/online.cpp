@@ -26,6 +26,16 @@ void check_imposed_by(const ReducedModel &model, const Scene &scene) {
                       "build");
 }
 
+/// Throws bad_input where cells are of materials that the scene does not have.
+void check_materials(const ReducedModel &model, const Scene &scene) {
+  std::vector<const std::vector<int> *> lists{&model.mesh_materials};
+  for (const InterfaceModel &interface : model.interfaces)
+    lists.push_back(&interface.mesh.materials);
+  for (const std::vector<int> *list : lists)
+    if (std::ranges::any_of(*list, [&](int m) { return m >= std::ssize(scene.materials); }))
+      throw bad_input("the materials of the model are not those of its scene in this build");
+}
+
 } // namespace
 
 OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &options)
@@ -38,6 +48,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
   check_terms_of(model.a, scene_.a, scene_.parameters, "a");
   check_terms_of(model.f, scene_.f, scene_.parameters, "f");
   check_imposed_by(model, scene_);
+  check_materials(model, scene_);
   check_terms_of(model.imposed_energy, imposed_energy_, scene_.parameters, "the imposed energy");
   if (contact_.dual_size() != model.dual_basis.rows() ||
       has_multipliers(scene_) != model.has_multipliers() ||

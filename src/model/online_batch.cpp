@@ -73,7 +73,7 @@ private:
 
 /// What is said at the end.
 struct Tally {
-  std::vector<Point> contact_points; ///< where locking is looked for
+  std::vector<MaterialPoint> contact_points; ///< where locking is looked for
   long rows = 0, unanswered = 0, near_failed = 0, not_alone = 0, unvalidated = 0;
   double seconds = 0, residual = 0, violation = 0, locking = 0;
   std::string reason; ///< of the first row without an answer
@@ -229,7 +229,7 @@ void answer_many(const OnlineArguments &arguments, OnlineSolver &solver, std::os
   ParameterReader reader(space, arguments.queries, arguments.extrapolate);
   const bool to_file = !arguments.out.empty() && arguments.out != "-";
   Tally tally;
-  tally.contact_points = dual_points(solver.contact());
+  tally.contact_points = material_points(solver.contact());
   const Outputs like = example(solver, arguments);
   TableFile file(to_file ? arguments.out : "", out);
   {

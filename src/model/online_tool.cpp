@@ -132,7 +132,7 @@ void answer_one(const OnlineArguments &arguments, OnlineSolver &solver, std::ost
   resolution.add(outputs);
   resolution.print(out);
   warn_of_locking(locking_ratio(solver.scene(), expand(solver.scene().parameters, mu),
-                                dual_points(solver.contact())),
+                                material_points(solver.contact())),
                   out);
   warn_of_other_answers(out, solution.to_other > 0 ? 1 : 0, 1);
   if (inside)

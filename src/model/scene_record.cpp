@@ -25,6 +25,9 @@ struct RecordWriter {
     record.numbers[name] = std::vector<double>(values.begin(), values.end());
   }
   void text(const std::string &name, const std::string &value) const { record.texts[name] = value; }
+  void texts(const std::string &name, const std::vector<std::string> &values) const {
+    record.texts[name] = joined(values, ",");
+  }
   template <class Function> void function(const std::string &name, const Function &value) const {
     record.parts[name] = value.record;
   }
@@ -51,6 +54,9 @@ struct RecordReader {
       values.push_back(static_cast<int>(value));
   }
   void text(const std::string &name, std::string &value) const { value = rbvi::text(of, name); }
+  void texts(const std::string &name, std::vector<std::string> &values) const {
+    values = split(rbvi::text(of, name), ',');
+  }
   template <class Signature> void function(const std::string &name, Named<Signature> &value) const {
     value = made<Signature>(part(of, name));
   }
@@ -70,14 +76,6 @@ template <class Store, class Of> void list_factor(const Store &store, Of &factor
   store.integers("parameters", factor.parameters);
   store.text("name", factor.name);
   store.function("value", factor.value);
-  for (const int parameter : factor.parameters) {
-    const std::string own = std::to_string(parameter);
-    if (!store.has("of_" + own, factor.coordinates.contains(parameter))) continue;
-    if constexpr (Store::reads) factor.coordinates.try_emplace(parameter);
-    auto &coordinate = factor.coordinates.at(parameter);
-    store.function("of_" + own, coordinate.of);
-    store.function("back_" + own, coordinate.back);
-  }
 }
 
 /// theta of a term, the product of its factors; without it what else its values depend on.
@@ -112,6 +110,19 @@ template <class Store, class Of> void list_fixed(const Store &store, Of &boundar
   });
 }
 
+template <class Store, class Of> void list_coordinates(const Store &store, Of &scene) {
+  std::vector<int> known;
+  for (const auto &[parameter, coordinate] : scene.coordinates)
+    known.push_back(parameter);
+  store.integers("coordinates", known);
+  for (const int parameter : known) {
+    if constexpr (Store::reads) scene.coordinates.try_emplace(parameter);
+    auto &coordinate = scene.coordinates.at(parameter);
+    store.function("of_" + std::to_string(parameter), coordinate.of);
+    store.function("back_" + std::to_string(parameter), coordinate.back);
+  }
+}
+
 template <class Store, class Of> void list_scene(const Store &store, Of &scene) {
   const auto function_if = [&](const std::string &name, auto &function) {
     if (store.has(name, static_cast<bool>(function))) store.function(name, function);
@@ -124,7 +135,12 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
   store.number("mirror_images", scene.mirror_images);
   store.function("map", scene.map);
   function_if("motion", scene.motion);
-  function_if("material", scene.material);
+  list_coordinates(store, scene);
+  store.items("material", scene.materials, [](const Store &part, auto &material) {
+    name_record(part, "material");
+    part.texts("regions", material.regions);
+    part.function("of_cell", material.of_cell);
+  });
   function_if("check", scene.check_parameters);
   store.items("contact", scene.contacts, [](const Store &part, auto &recipe) {
     if constexpr (Store::reads)

@@ -157,6 +157,12 @@ void Text::add_values(const std::string &name, const Evaluate &evaluate) {
 void add_parameters(const Scene &scene, Text &text) {
   for (const Parameter &p : scene.parameters.all)
     text.add("parameter " + p.name, describe(p.valid));
+  for (const auto &[parameter, coordinate] : scene.coordinates)
+    text.add_values(
+        "coordinate of " + scene.parameters.all.at(parameter).name,
+        [&](const Draw &at, std::vector<double> &values) {
+          values = {coordinate.of(at.mu.at(parameter)), coordinate.back(at.of_parameter)};
+        });
 }
 
 void add_factors(const std::string &name, const std::vector<Factor> &factors, Text &text) {
@@ -165,12 +171,6 @@ void add_factors(const std::string &name, const std::vector<Factor> &factors, Te
     text.add_values(own, [&](const Draw &at, std::vector<double> &values) {
       values.push_back(factor.value(at.mu));
     });
-    for (const auto &[parameter, coordinate] : factor.coordinates)
-      text.add_values(
-          own + ", coordinate " + std::to_string(parameter),
-          [&](const Draw &at, std::vector<double> &values) {
-            values = {coordinate.of(at.mu.at(parameter)), coordinate.back(at.of_parameter)};
-          });
   }
 }
 
@@ -289,11 +289,12 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   text.add("scene", record);
   text.add_values("map", scene.map);
   text.add_values("motion", scene.motion);
-  if (scene.material)
-    text.add_values("material", [&](const Draw &at, std::vector<double> &values) {
-      const auto [lambda, shear] = scene.material(at.mu, at.x);
-      values = {lambda, shear};
-    });
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+    text.add_values("material_" + std::to_string(m),
+                    [&](const Draw &at, std::vector<double> &values) {
+                      const auto [lambda, shear] = scene.materials[m].of_cell(at.mu, at.x);
+                      values = {lambda, shear};
+                    });
   add_fixed(scene, text);
   add_contact(scene, contact, text);
   add_sum("a", scene, scene.a, true, text);

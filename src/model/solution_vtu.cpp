@@ -63,8 +63,9 @@ Grid bodies(const State &state) {
   const int first = model.interfaces.front().nodes.front();
   grid.of_cells = {
       {"body", body_numbers(model.mesh_cells, per_cell, model.mesh_points.rows(), first)}};
-  if (!scene.material) return grid;
-  const Matrix stresses = centre_stresses(scene, mu, model.mesh_points, model.mesh_cells, moved);
+  if (scene.materials.empty()) return grid;
+  const Matrix stresses =
+      centre_stresses(scene, mu, model.mesh_points, model.mesh_cells, model.mesh_materials, moved);
   grid.of_cells.push_back({"von_mises", von_mises(stresses), "Pa"});
   const std::vector<std::string> names = stress_components(scene.dim);
   for (Index c = 0; c < stresses.cols(); ++c)

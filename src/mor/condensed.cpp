@@ -34,7 +34,7 @@ std::vector<ChebyshevAxis> axes_of(const Scene &scene, int points) {
   for (const int i : scene.parameters.free) {
     if (!depends_on(scene.a, i)) continue;
     const Parameter &p = scene.parameters.all[i];
-    const Coordinate *own = coordinate_of(scene.a, i);
+    const Coordinate *own = coordinate_of(scene, i);
     const double lower = own == nullptr ? p.lower : own->of(p.lower);
     const double upper = own == nullptr ? p.upper : own->of(p.upper);
     axes.push_back({i, std::min(lower, upper), std::max(lower, upper), points});

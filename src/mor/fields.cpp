@@ -1,6 +1,7 @@
 #include "rbvi/mor/fields.hpp"
 
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/fem/materials.hpp"
 #include "rbvi/io/checksum.hpp"
 #include "rbvi/model/fields_file.hpp"
 #include "rbvi/par/columns.hpp"
@@ -84,6 +85,18 @@ std::vector<int> gather_cells(const Mesh &mesh) {
   return cells;
 }
 
+/// ReducedModel::mesh_materials.
+std::vector<int> gather_materials(const Problem &problem) {
+  const Mesh &mesh = problem.mesh();
+  const std::vector<int> mine = materials_of_cells(problem.scene(), mesh);
+  if (problem.scene().materials.size() < 2) return {};
+  std::vector<int> materials(mesh.total_cells, -1);
+  for (std::size_t k = 0; k < mine.size(); ++k)
+    materials[mesh.natural_cell[k]] = mine[k];
+  over_ranks(mesh.comm, MPI_MAX, materials);
+  return materials;
+}
+
 /// ReducedModel::imposed_by.
 std::vector<int> gather_imposed(const Problem &problem) {
   const Dofs &dofs = problem.dofs();
@@ -125,6 +138,7 @@ void visit_rows(const Problem &problem, const LinearBasis &basis, Visit &&visit)
 void gather_mesh(const Problem &problem, ReducedModel &model) {
   model.mesh_points = gather_points(problem.mesh());
   model.mesh_cells = gather_cells(problem.mesh());
+  model.mesh_materials = gather_materials(problem);
   model.imposed_by = gather_imposed(problem);
 }
 

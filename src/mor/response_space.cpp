@@ -52,7 +52,7 @@ Mu point_at(const Scene &scene, const std::vector<ChebyshevAxis> &axes, const Mu
   for (std::size_t d = 0; d < axes.size(); ++d) {
     const ChebyshevAxis &axis = axes[d];
     const double x = (axis.lower + axis.upper) / 2 + (axis.upper - axis.lower) / 2 * leja[index[d]];
-    const Coordinate *own = coordinate_of(scene.a, axis.parameter);
+    const Coordinate *own = coordinate_of(scene, axis.parameter);
     all[axis.parameter] = own == nullptr ? x : own->back(x);
   }
   Mu mu;

@@ -21,7 +21,7 @@ const std::vector<CaseKey> all_keys{
     {"", "motion", "expressions",
      "rigid motion of each body at a point of the mesh, which displacements are measured from; "
      "default: of one body that is moved as a whole by what is imposed, that"},
-    {"", "materials", "table", "of an elastic body, by region"},
+    {"", "materials", "table", "of an elastic body; each cell has one"},
     {"", "imposed", "table", "displacements that are given on boundaries"},
     {"", "loads", "table", "forces, pressures, tractions"},
     {"", "contact", "table", "where the body can touch what", true},

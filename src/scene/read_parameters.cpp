@@ -41,13 +41,16 @@ Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &
       throw bad_input("the default of " + name + ", " + short_number(parameter.value) +
                       ", lies outside of its range");
   }
+  return parameter;
+}
+
+bool is_log_spaced(const CaseNode &node, const Parameter &parameter) {
   const bool wide = parameter.lower > 0 && parameter.upper > decade * parameter.lower;
   const std::string spacing =
       choice_or(node, "spacing", wide ? "log" : "linear", {"linear", "log"});
   if (spacing == "log" && !(parameter.lower > 0))
-    throw bad_input("the range of " + name + " is not positive: leave out spacing: log");
-  if (spacing == "log") reader.log_spaced.insert(name);
-  return parameter;
+    throw bad_input("the range of " + parameter.name + " is not positive: leave out spacing: log");
+  return spacing == "log";
 }
 
 bool is_constant(const CaseNode &parameter) {
@@ -128,7 +131,10 @@ void read_parameters(Reader &reader, Scene &scene, Defects &defects) {
     if (std::ranges::find(reader.parameters, name) == reader.parameters.end()) continue;
     defects.collect(node, [&, &own = name, &value = node] {
       if (is_coordinate(own)) throw bad_input("'" + own + "' is the name of a coordinate");
-      scene.parameters.all.push_back(parameter_in(reader, own, value));
+      const Parameter parameter = parameter_in(reader, own, value);
+      if (is_log_spaced(value, parameter))
+        scene.coordinates[int(scene.parameters.all.size())] = {logarithm(), exponential()};
+      scene.parameters.all.push_back(parameter);
     });
   }
 }

@@ -31,14 +31,10 @@ std::vector<int> mapped_dependence(Reader &reader, const Formula &formula) {
   return positions;
 }
 
-/// lambda of a Poisson's ratio that is a parameter varies smoothly in log(1 - 2 nu).
 Factor lambda_factor(Reader &reader, const Expression &nu, bool plane_stress) {
   Factor factor = factor_of(reader, nu);
   factor.name = "lambda of " + factor.name;
   factor.value = lame_lambda(factor.value, plane_stress);
-  if (nu.program().size() == 1)
-    for (const int position : factor.parameters)
-      factor.coordinates[position] = {logarithm_to_half(), exponential_to_half()};
   return factor;
 }
 
@@ -64,6 +60,17 @@ void add_exact_stiffness(Reader &reader, const std::vector<Product> &young, cons
   }
 }
 
+/// Throws bad_input for a region that has a material already.
+void check_new_material(const std::vector<std::string> &regions, const Scene &scene) {
+  for (const BodyMaterial &other : scene.materials) {
+    if (regions.empty() || other.regions.empty())
+      throw bad_input("a material of all cells leaves none for another: name its regions");
+    for (const std::string &region : regions)
+      if (std::ranges::find(other.regions, region) != other.regions.end())
+        throw bad_input("the region '" + region + "' has a material already");
+  }
+}
+
 void read_material(Reader &reader, const CaseNode &node, bool similar, Scene &scene) {
   const bool plane_stress = section(reader, "physics").value == "plane_stress";
   const Expression young = expression_in(reader, entry(node, "E")),
@@ -71,14 +78,18 @@ void read_material(Reader &reader, const CaseNode &node, bool similar, Scene &sc
   limit(reader, young, young_range, scene);
   limit(reader, nu, poisson_range, scene);
   const Formula of_young = formula_of(reader, {young}), of_nu = formula_of(reader, {nu});
+  if (nu.program().size() == 1) // lambda of a ratio that is a parameter is smooth in log(1 - 2 nu)
+    for (const int position : dependence_of(of_nu))
+      scene.coordinates[position] = {logarithm_to_half(), exponential_to_half()};
   const Named<Material> material =
       isotropic(point_value_of(of_young), point_value_of(of_nu), plane_stress);
-  if (scene.material)
-    throw bad_input("bodies of several materials are not possible yet: give one material with an "
-                    "E that depends on x and y");
-  scene.material = material;
+  const std::vector<std::string> regions = regions_in(node);
+  const bool whole = std::ranges::find(regions, "") != regions.end();
+  const BodyMaterial own{whole ? std::vector<std::string>() : regions, material};
+  check_new_material(own.regions, scene);
+  scene.materials.push_back(own);
   const auto products = products_of(reader, young);
-  for (const std::string &region : regions_in(node)) {
+  for (const std::string &region : regions) {
     if (similar && products && !depends_on_point(of_nu)) {
       add_exact_stiffness(reader, *products, nu, region, plane_stress, scene);
       continue;

@@ -131,12 +131,7 @@ std::vector<Expression> components_in(const Reader &reader, const CaseNode &node
 
 Factor factor_of(Reader &reader, const Expression &value) {
   const Formula formula = formula_of(reader, {value});
-  Factor factor{expanded(value, reader.lets).text(), coefficient_of(formula),
-                dependence_of(formula)};
-  for (const int position : factor.parameters)
-    if (reader.log_spaced.contains(reader.parameters[static_cast<std::size_t>(position)]))
-      factor.coordinates[position] = {logarithm(), exponential()};
-  return factor;
+  return {expanded(value, reader.lets).text(), coefficient_of(formula), dependence_of(formula)};
 }
 
 std::optional<std::vector<Product>> products_of(Reader &reader, const Expression &value) {

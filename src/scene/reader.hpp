@@ -19,7 +19,6 @@ struct Reader {
   std::vector<Parameter> constants{}; ///< parameters without a range, the first of the lets
   std::vector<Let> lets{};
   std::vector<std::string> parameters{}; ///< names, in the order of FullMu
-  std::set<std::string> log_spaced{};    ///< parameters
   std::set<std::string> used{};          ///< parameters that some function depends on
   std::map<std::string, std::vector<Circle>> circles{}; ///< by boundary or region
 };
@@ -60,7 +59,7 @@ Formula formula_in(Reader &reader, const CaseNode &node);
 /// The components of a list, or of a single value the first.
 std::vector<Expression> components_in(const Reader &reader, const CaseNode &node);
 
-/// A factor that is an expression in parameters alone, with the coordinates of these.
+/// A factor that is an expression in parameters alone.
 Factor factor_of(Reader &reader, const Expression &value);
 
 /// A function as sum of products: factors in parameters and functions of the point, lets written

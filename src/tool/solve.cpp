@@ -64,8 +64,9 @@ void command_solve(const ToolOptions &options) {
     ResolutionTally resolution;
     resolution.add(solution.outputs);
     resolution.print(std::cout);
-    warn_of_locking(locking_ratio(options.scene, expand(space, mu), dual_points(problem.contact())),
-                    std::cout);
+    warn_of_locking(
+        locking_ratio(options.scene, expand(space, mu), material_points(problem.contact())),
+        std::cout);
     std::printf("stopped: %s\n", solution.reason.c_str());
     if (!options.csv.empty()) {
       write_sample_table(options.csv, space, {{mu, {}, {}, solution.outputs}});

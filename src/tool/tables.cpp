@@ -46,7 +46,7 @@ void tell_of_samples(const Scene &scene, const Contact &contact, const std::vect
   ResolutionTally tally;
   long in_load_steps = 0;
   double locking = 0;
-  const std::vector<Point> points = dual_points(contact);
+  const std::vector<MaterialPoint> points = material_points(contact);
   for (const Sample &sample : samples) {
     tally.add(sample.outputs);
     locking = std::max(locking, locking_ratio(scene, expand(scene.parameters, sample.mu), points));

@@ -58,7 +58,7 @@ inline Vector nodal(const Scene &scene, const FullMu &mu, const Strip &s, const 
 inline SupportScene half_disk(int degree) {
   SupportScene scene = hertz(degree);
   scene.motion = [](const FullMu &, const Point &) { return Point{0.02, -0.1, 0}; };
-  scene.material = [](const FullMu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; };
+  scene.materials = {{{}, [](const FullMu &, const Point &x) { return Lame{9 + 3 * x[0], 4}; }}};
   return scene;
 }
 

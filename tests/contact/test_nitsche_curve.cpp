@@ -248,7 +248,7 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
   const FullMu mu{1.1};
   const Lame material{9, 4};
   SupportScene scene = half_disk(degree);
-  scene.material = [=](const FullMu &, const Point &) { return material; };
+  scene.materials = {{{}, [=](const FullMu &, const Point &) { return material; }}};
   const Curve curve = arc(7, 0.5);
   const Strip s = strip(degree, curve, side);
   Eigen::Matrix2d m;
@@ -282,9 +282,9 @@ TEST_P(NitscheFieldsOf, ALinearFieldHasItsStress) {
 /// Where the material jumps.
 TEST(NitscheFields, StressAndGammaAreMeansOfTheTwoEdges) {
   SupportScene scene = half_disk(2);
-  scene.material = [](const FullMu &, const Point &x) {
-    return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
-  };
+  scene.materials = {{{}, [](const FullMu &, const Point &x) {
+                        return x[0] < 0 ? Lame{9, 4} : Lame{18, 8};
+                      }}};
   const Strip s = strip(2, line(2, -0.5, 0.5, -1));
   scene.support.normal = scene.support.body_normal = [](const FullMu &, const Point &) {
     return Point{0, -1, 0};

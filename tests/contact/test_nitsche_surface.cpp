@@ -128,7 +128,7 @@ TEST(NitscheSurface, APlaneIsASupport) {
 TEST(NitscheSurface, TheTangentHasWhatTheAxesTurnBy) {
   SupportScene scene = scene_of(2);
   const OnOneCell on;
-  scene.material = [&](const FullMu &, const Point &) { return on.material; };
+  scene.materials = {{{}, [&](const FullMu &, const Point &) { return on.material; }}};
   const NitscheLayer layer{scene, {{{}, faced(disk_at), 1}}, {}};
   CurveCell beside{on.cell, 0, {}};
   for (int i = 0; i < 12; ++i)

@@ -13,14 +13,14 @@ namespace {
 Scene scene_of(double poisson, int degree) {
   Scene scene;
   scene.degree = degree;
-  scene.material = [poisson](const FullMu &mu, const Point &x) {
-    const double nu = x[0] > 0 ? poisson : 0.3, shear = mu[0];
-    return Lame{2 * shear * nu / (1 - 2 * nu), shear};
-  };
+  scene.materials = {{{}, [poisson](const FullMu &mu, const Point &x) {
+                        const double nu = x[0] > 0 ? poisson : 0.3, shear = mu[0];
+                        return Lame{2 * shear * nu / (1 - 2 * nu), shear};
+                      }}};
   return scene;
 }
 
-const std::vector<Point> left{{-1, 0, 0}}, both{{-1, 0, 0}, {1, 0, 0}};
+const std::vector<MaterialPoint> left{{{-1, 0, 0}}}, both{{{-1, 0, 0}}, {{1, 0, 0}}};
 
 TEST(Locking, BeginsAtAPoissonRatioOfFortyNineHundredths) {
   for (const double poisson : {0.48, 0.49, 0.499, 0.4999})

@@ -15,12 +15,9 @@ enum Position { kappa, nu };
 
 /// lambda A_0 + shear A_1 + kappa lambda A_2 + kappa shear A_3.
 Sum four_terms() {
-  const Coordinate logarithm{[](double x) { return std::log(x); },
-                             [](double y) { return std::exp(y); }};
   const Factor lambda{"lambda", [](const FullMu &mu) { return 1 / (1 - 2 * mu[nu]); }, {nu}};
   const Factor shear{"shear", [](const FullMu &mu) { return 1 / (1 + mu[nu]); }, {nu}};
-  const Factor scale{
-      "kappa", [](const FullMu &mu) { return mu[kappa]; }, {kappa}, {{kappa, logarithm}}};
+  const Factor scale{"kappa", [](const FullMu &mu) { return mu[kappa]; }, {kappa}};
   return {exact_term({}, {lambda}), exact_term({}, {shear}), exact_term({}, {scale, lambda}),
           exact_term({}, {shear, scale})};
 }
@@ -105,13 +102,6 @@ TEST(Sum, KnowsTheParametersThatItDependsOn) {
   EXPECT_EQ(values_of_dependence(sum, {0.7, 0.3}), (std::vector<double>{0.7, 0.3}));
   EXPECT_TRUE(is_constant({mapped_term({}, std::vector<int>{kappa})}, space({nu})));
   EXPECT_FALSE(is_constant({mapped_term({})}, space({nu})));
-}
-
-TEST(Sum, GivesAParameterItsCoordinate) {
-  const Sum sum = four_terms();
-  ASSERT_NE(coordinate_of(sum, kappa), nullptr);
-  EXPECT_NEAR(coordinate_of(sum, kappa)->of(2.0), std::log(2.0), 1e-15);
-  EXPECT_EQ(coordinate_of(sum, nu), nullptr);
 }
 
 TEST(Sum, ACoefficientThatIsNotFiniteIsNamed) {

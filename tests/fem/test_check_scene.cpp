@@ -142,7 +142,7 @@ TEST(CheckScene, FactorsOfOneNameAreOneFunctionAndCoordinatesHaveInverses) {
   EXPECT_TRUE(refused(disk(), "give each function a name of its own",
                       [](Scene &s) { s.a[2].theta->back().name = s.a[1].theta->back().name; }));
   EXPECT_TRUE(refused(disk(), "inverse to each other", [](Scene &s) {
-    s.a[2].theta->front().coordinates = {{3, {logarithm(), logarithm()}}};
+    s.coordinates = {{3, {logarithm(), logarithm()}}};
   }));
 }
 

@@ -46,7 +46,7 @@ TEST(Summed, IsTheStiffnessOfTheMappedBodyForEveryMaterial) {
         {"poisson_ratio", {{0.2}, {0.44}}, 2},
         {"radius", {{0.8}, {1.2}}, 1}}) {
     Scene whole = disk(free);
-    whole.a = {mapped_term(elasticity("", whole.material, 2))};
+    whole.a = {mapped_term(elasticity("", whole.materials[0].of_cell, 2))};
     Problem terms(PETSC_COMM_WORLD, disk(free), {}), anew(PETSC_COMM_WORLD, whole, {});
     EXPECT_EQ(std::ssize(terms.a_terms().exact), groups) << free;
     expect_same(terms, anew, set);

@@ -38,7 +38,7 @@ double difference(Mat a, Mat b) {
 /// the same, however large the lower disk is.
 TEST(TwoBodyProblem, TheStiffnessDoesNotDependOnTheRadius) {
   Scene every_time = discs();
-  every_time.a = {mapped_term(elasticity("", every_time.material, every_time.degree))};
+  every_time.a = {mapped_term(elasticity("", every_time.materials[0].of_cell, every_time.degree))};
   Problem problem(PETSC_COMM_WORLD, every_time, {}), once(PETSC_COMM_WORLD, discs(), {});
   Mat reference = once.assemble({1}).a;
   for (const double radius : {0.7, 0.9, 1.0, 1.3})

@@ -15,8 +15,7 @@ Scene two_parameters() {
   scene.parameters = all_free({{"x", "", -1, 2, 0}, {"y", "", 0.2, 5, 1}});
   const Coordinate logarithm{[](double y) { return std::log(y); },
                              [](double t) { return std::exp(t); }};
-  scene.a = {
-      exact_term({}, {{"y", [](const FullMu &mu) { return mu[1]; }, {1}, {{1, logarithm}}}})};
+  scene.coordinates = {{1, logarithm}};
   return scene;
 }
 

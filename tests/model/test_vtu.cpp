@@ -208,9 +208,9 @@ struct OneCell {
     scene.map = [](const FullMu &mu, const Point &x) -> Point {
       return {mu[0] * x[0] + 0.3 * x[1], x[1] - 0.1 * x[2], 1.1 * x[2]};
     };
-    scene.material = [](const FullMu &mu, const Point &centre) {
-      return centre[0] < 1 ? Lame{mu[0] * lambda, mu[0] * shear} : Lame{0, 0};
-    };
+    scene.materials = {{{}, [](const FullMu &mu, const Point &centre) {
+                          return centre[0] < 1 ? Lame{mu[0] * lambda, mu[0] * shear} : Lame{0, 0};
+                        }}};
     points = Matrix::Zero(dim + 1, dim);
     points.bottomRows(dim).setIdentity();
     if (degree == 2) {
@@ -252,7 +252,7 @@ TEST(CentreStresses, OfALinearDisplacementAreExact) {
       });
       const double lambda = 1.7 * OneCell::lambda, shear = 1.7 * OneCell::shear;
       const double trace = lambda * m.trace();
-      const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
+      const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, {}, u);
       ASSERT_EQ(s.cols(), dim == 2 ? 4 : 6);
       EXPECT_NEAR(s(0, 0), trace + 2 * shear * m(0, 0), 1e-12);
       EXPECT_NEAR(s(0, 1), trace + 2 * shear * m(1, 1), 1e-12);
@@ -274,7 +274,7 @@ TEST(CentreStresses, OfAQuadraticDisplacementAreThoseOfTheCentre) {
       return {x[0] * x[0], 0, 0};
     });
     const double centre = (1 + 0.3) / (dim + 1); // of the mapped vertices
-    const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
+    const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, {}, u);
     EXPECT_NEAR(s(0, 0), (OneCell::lambda + 2 * OneCell::shear) * 2 * centre, 1e-12);
     EXPECT_NEAR(s(0, 1), OneCell::lambda * 2 * centre, 1e-12);
   }
@@ -287,8 +287,8 @@ TEST(CentreStresses, AcrossAThinPlateThereIsNone) {
   Vector u = Vector::Zero(3 * cell.points.rows());
   u[3] = 0.1; // stretched along x
   for (const bool thin : {true, false}) {
-    cell.scene.material = isotropic(everywhere(15.0), everywhere(0.3), thin);
-    const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, u);
+    cell.scene.materials = {{{}, isotropic(everywhere(15.0), everywhere(0.3), thin)}};
+    const Matrix s = centre_stresses(cell.scene, mu, cell.points, cell.cells, {}, u);
     EXPECT_EQ(s(0, 2) == 0, thin);
     EXPECT_GT(s(0, 0), 0);
   }
@@ -296,17 +296,17 @@ TEST(CentreStresses, AcrossAThinPlateThereIsNone) {
 
 /// Every elastic scene has a material; the core of the half-disk is stiffer.
 TEST(CentreStresses, MaterialsAreThoseOfTheScenes) {
-  EXPECT_FALSE(make_scene("membrane_obstacle").material);
+  EXPECT_TRUE(make_scene("membrane_obstacle").materials.empty());
   for (const char *name : {"two_disks", "patch"}) {
     const Scene scene = make_scene(name, {{"young", "15"}});
-    const Lame material = scene.material(expand(scene.parameters, {1}), {0.1, 0.1, 0});
+    const Lame material = scene.materials[0].of_cell(expand(scene.parameters, {1}), {0.1, 0.1, 0});
     EXPECT_NEAR(material.shear, 15 / (2 * 1.35), 1e-13) << name;
     EXPECT_NEAR(material.lambda, 15 * 0.35 / (1.35 * 0.3), 1e-13) << name;
   }
   const Scene disk = make_scene("rigid_disk");
   const FullMu mu = expand(free_only(disk.parameters, "core_stiffness"), {3});
-  EXPECT_NEAR(disk.material(mu, {0, -0.3, 0}).shear, 3 * disk.material(mu, {0, -0.9, 0}).shear,
-              1e-12);
+  EXPECT_NEAR(disk.materials[0].of_cell(mu, {0, -0.3, 0}).shear,
+              3 * disk.materials[0].of_cell(mu, {0, -0.9, 0}).shear, 1e-12);
 }
 
 TEST(VonMises, IsThatOfThePrincipalStresses) {

@@ -41,7 +41,7 @@ TEST(Case, IsAScene) {
   ASSERT_EQ(scene.fixed.size(), 1U);
   EXPECT_TRUE(scene.fixed[0].values.empty()) << "the block moves as a whole";
   EXPECT_EQ(scene.motion({0.07, 1, 0.3}, {}), (Point{0, -0.07, 0}));
-  const auto [lambda, shear] = scene.material({0.05, 2, 0.25}, {});
+  const auto [lambda, shear] = scene.materials[0].of_cell({0.05, 2, 0.25}, {});
   EXPECT_NEAR(shear, 30 / 2.5, 1e-14);
   EXPECT_NEAR(lambda, 30 * 0.25 / (1.25 * 0.5), 1e-14);
 }
@@ -54,7 +54,9 @@ TEST(Case, AStiffnessIsExactWhereItSeparates) {
   const Term &first = scene.a.front();
   ASSERT_EQ(first.theta->size(), 2U);
   EXPECT_EQ(first.theta->front().parameters, std::vector<int>{1});
-  EXPECT_EQ(first.theta->front().coordinates.count(1), 1U) << "more than a decade: logarithmic";
+  EXPECT_EQ(scene.coordinates.count(1), 1U) << "more than a decade: logarithmic";
+  EXPECT_EQ(scene.coordinates.count(2), 1U) << "a Poisson's ratio";
+  EXPECT_EQ(scene.coordinates.count(0), 0U);
   EXPECT_EQ(first.theta->back().parameters, std::vector<int>{2});
   const Scene by_place =
       scene_of({{"materials", "{rubber: {at: all, E: 'young * (x < 0.5 ? k : 1)', nu: nu}}"}});
@@ -116,13 +118,13 @@ TEST(Case, AMotionTakesWhatIsImposedWithIt) {
 TEST(Case, PlaneStressIsThatOfAThinPlate) {
   const Scene plate = scene_of({{"physics", "plane_stress"}}), thick = scene_of();
   const FullMu mu{0.05, 1, 0.3};
-  const auto [lambda, shear] = plate.material(mu, {});
+  const auto [lambda, shear] = plate.materials[0].of_cell(mu, {});
   const double eps = 1e-3, across = -0.3 * eps;
   EXPECT_NEAR(lambda * (eps + across) + 2 * shear * eps, 15 * eps, 1e-15);
   EXPECT_NEAR(lambda * (eps + across) + 2 * shear * across, 0, 1e-15);
   EXPECT_NEAR(plate.a.front().theta->back().value(mu), lambda / 15, 1e-14);
-  EXPECT_TRUE(is_plane_stress(plate.material));
-  EXPECT_FALSE(is_plane_stress(thick.material));
+  EXPECT_TRUE(is_plane_stress(plate.materials[0].of_cell));
+  EXPECT_FALSE(is_plane_stress(thick.materials[0].of_cell));
 }
 
 /// Where the map turns or stretches a circle, its normals are not those of the body.
@@ -146,7 +148,8 @@ TEST(Case, NormalsOfCirclesAreTakenWhereTheMapKeepsThem) {
 }
 
 TEST(Case, ConstantsMayBeChangedOrFreed) {
-  EXPECT_NEAR(scene_of({}, {{"young", "30"}}).material({0.05, 1, 0}, {}).shear, 15, 1e-14);
+  EXPECT_NEAR(scene_of({}, {{"young", "30"}}).materials[0].of_cell({0.05, 1, 0}, {}).shear, 15,
+              1e-14);
   const Scene freed = scene_of({}, {{"young", "10,30"}});
   EXPECT_EQ(names_in(freed), (Names{"depth", "k", "nu", "young"}));
   EXPECT_EQ(freed.parameters.all[3].upper, 30);
@@ -161,7 +164,7 @@ TEST(Case, UnitsAreThoseOfTheSystem) {
                                 {"materials", "{steel: {at: all, E: 205 GPa, nu: 0.25}}"}});
   EXPECT_NEAR(scene.parameters.all[0].lower, 0.01, 1e-17);
   EXPECT_NEAR(scene.parameters.all[0].value, 0.5, 1e-15);
-  EXPECT_NEAR(scene.material({0.5}, {}).shear, 205000 / 2.5, 1e-9);
+  EXPECT_NEAR(scene.materials[0].of_cell({0.5}, {}).shear, 205000 / 2.5, 1e-9);
 }
 
 const std::map<std::string, std::string> chosen{
@@ -177,7 +180,9 @@ TEST(Case, ChoicesVariantsAndPathsChangeIt) {
   EXPECT_FALSE(has_friction(scene_of(chosen)));
   EXPECT_TRUE(has_friction(scene_of(chosen, {{"law", "coulomb"}})));
   EXPECT_THROW((void)scene_of(chosen, {{"law", "glue"}}), Error);
-  const auto shear = [](const Scene &scene) { return scene.material({0, 1, 0}, {}).shear; };
+  const auto shear = [](const Scene &scene) {
+    return scene.materials[0].of_cell({0, 1, 0}, {}).shear;
+  };
   EXPECT_NEAR(shear(scene_of(chosen, {{"stiffness", "2"}})), 15, 1e-14);
   const SceneEntry hard = entry_in(chosen, {"hard", {}});
   EXPECT_EQ(hard.variants.front().second, "harder");

@@ -116,8 +116,8 @@ TEST_P(CompliancePerSpace, TheCondensedOperatorIsSymmetric) {
 /// A sweep with the kept operator finds what single solves find, at far fewer solves.
 TEST(ComplianceOfASweep, ChangesNoAnswer) {
   Scene every_time = make_scene("two_disks");
-  every_time.a = {
-      mapped_term(elasticity("", every_time.material, every_time.degree))}; // nothing is kept
+  every_time.a = {mapped_term(
+      elasticity("", every_time.materials[0].of_cell, every_time.degree))}; // nothing is kept
   Problem with(PETSC_COMM_WORLD, make_scene("two_disks"), {}),
       without(PETSC_COMM_WORLD, every_time, {});
   HighFidelity keeps(with, {}), forgets(without, {});

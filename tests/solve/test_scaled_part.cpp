@@ -82,7 +82,8 @@ TEST(ScaledPart, MayReachWhereContactIs) {
 /// The first solve factorises, the others use the part: all as single solves find them.
 TEST(ScaledPart, ChangesNoAnswerOfASweep) {
   Scene every_time = disk("radius,core_stiffness");
-  every_time.a = {mapped_term(elasticity("", every_time.material, 2))}; // from the mapped mesh
+  every_time.a = {
+      mapped_term(elasticity("", every_time.materials[0].of_cell, 2))}; // from the mapped mesh
   Problem with(PETSC_COMM_WORLD, disk("radius,core_stiffness"), {}),
       without(PETSC_COMM_WORLD, every_time, {});
   HighFidelity eliminates(with, {}), factorises(without, {});

@@ -137,7 +137,7 @@ TEST(TwoDisks, PressureScalesWithYoungsModulus) {
 double reaction(const Problem &problem, const FullMu &mu, const HfSolution &s, double side) {
   const Mesh &mesh = problem.mesh();
   const MappedVertices mapped = map_vertices(problem.scene(), mu, mesh);
-  const Form form = elasticity("", problem.scene().material, problem.scene().degree);
+  const Form form = elasticity("", problem.scene().materials[0].of_cell, problem.scene().degree);
   double sum = 0;
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
     Eigen::Matrix<double, 6, 6, Eigen::RowMajor> stiffness;

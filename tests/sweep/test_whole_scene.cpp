@@ -94,13 +94,13 @@ TEST(WholeScene, EveryChangeOfAMembraneIsNoticed) {
 TEST(WholeScene, EveryChangeOfARollerIsNoticed) {
   const Scene scene = make_scene("roller", {{"arc_edges", "8"}});
   expect_noticed(
-      scene, {{"material values",
+      scene, {{"material_0 values",
                [](Scene &s) {
-                 s.material = disguised(s.material,
-                                        [material = s.material](const FullMu &mu, const Point &x) {
-                                          const Lame at = material(mu, x);
-                                          return Lame{at.lambda, slightly * at.shear};
-                                        });
+                 Named<Material> &own = s.materials[0].of_cell;
+                 own = disguised(own, [own](const FullMu &mu, const Point &x) {
+                   const Lame at = own(mu, x);
+                   return Lame{at.lambda, slightly * at.shear};
+                 });
                }},
               {"a_0 values",
                [](Scene &s) { s.a[0].form.kernel = scaled(s.a[0].form.kernel, slightly, 144); }},

@@ -75,4 +75,7 @@ Matrix by_node(const Contact &contact, const Vector &lambda);
 /// Reference points of the dual nodes.
 std::vector<Point> dual_points(const Contact &contact);
 
+/// The middle of each entity, with the material there.
+std::vector<MaterialPoint> material_points(const Contact &contact);
+
 } // namespace rbvi

@@ -10,8 +10,9 @@
 #pragma once
 
 #include "rbvi/core/dense.hpp"
+#include "rbvi/core/locking.hpp"
 #include "rbvi/core/outputs.hpp"
-#include "rbvi/core/scene.hpp"
+#include "rbvi/element/lagrange.hpp"
 #include "rbvi/io/vtu.hpp"
 #include "rbvi/method/nodal.hpp"
 #include "rbvi/method/node_laws.hpp"
@@ -38,9 +39,13 @@ struct InterfaceMesh {
   /// Like `dofs`: the fixed boundary that imposes a value (Cell::imposed_by), -1 elsewhere; empty
   /// where none does.
   std::vector<int> imposed_by = {};
+  std::vector<int> materials = {}; ///< of the cell of each entity, or beside it; empty: the first
 
   Index nodes() const { return static_cast<Index>(points.size()); }
   Index count() const { return static_cast<Index>(entities.size()) / per_entity; }
+  /// Of each entity, a cell or a facet; the first of its nodes.
+  int vertices() const { return per_entity == nodes_per_cell(dim, degree) ? dim + 1 : dim; }
+  int material_of(Index entity) const { return materials.empty() ? 0 : materials[entity]; }
   const int *nodes_of(Index entity) const { return entities.data() + entity * per_entity; }
 };
 

@@ -27,7 +27,8 @@ struct CurveCell {
   Cell cell; ///< reference; mapped alike
   int edge = 0;
   std::array<int, 12> dofs;
-  int curve = 0; ///< of the layer's
+  int curve = 0;    ///< of the layer's
+  int material = 0; ///< of the scene's
 };
 
 /// Friction::law with its threshold or coefficient at one mu.

@@ -8,10 +8,16 @@
 
 namespace rbvi {
 
-/// The largest Poisson's ratio of the material at some points of the reference domain, where the
-/// displacement is of degree 1 and locks, from 0.49 on; else 0. `all_parameters`: their values.
+/// A point of the reference domain in a material of the scene, by its number.
+struct MaterialPoint {
+  Point x;
+  int material = 0;
+};
+
+/// The largest Poisson's ratio at some points, where the displacement is of degree 1 and locks,
+/// from 0.48 on; else 0. `all_parameters`: their values.
 double locking_ratio(const Scene &scene, const FullMu &all_parameters,
-                     const std::vector<Point> &points);
+                     const std::vector<MaterialPoint> &points);
 
 /// A line of warning with the remedy, unless the ratio is 0.
 void warn_of_locking(double ratio, std::ostream &out);

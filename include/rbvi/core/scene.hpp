@@ -76,6 +76,19 @@ struct FixedBoundary {
   std::vector<ImposedTerm> values = {};
 };
 
+/// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
+/// decreasing, value = back(x).
+struct Coordinate {
+  Named<NumberMap> of, back;
+};
+
+/// A material of an elastic body: Lame's constants at the centre of a reference cell, constant on
+/// the cell; in 2D plane strain.
+struct BodyMaterial {
+  std::vector<std::string> regions; ///< of this material; none: the whole mesh
+  Named<Material> of_cell;
+};
+
 struct Scene {
   std::string name;
   std::string summary; ///< one line
@@ -84,6 +97,7 @@ struct Scene {
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
   SceneOptions options;
   ParameterSpace parameters;
+  std::map<int, Coordinate> coordinates; ///< of some of parameters.all; the others: themselves
   /// Throws bad_input where values of all parameters that are valid one by one make no sense
   /// together; empty: they always do.
   Named<Check> check_parameters;
@@ -111,9 +125,8 @@ struct Scene {
   /// Where the body can touch: at least one.
   std::vector<ContactRecipe> contacts;
 
-  /// The material of an elastic body at the centre of a reference cell, constant on the cell; in 2D
-  /// plane strain. Empty: not elastic (a membrane), then there are no stresses.
-  Named<Material> material;
+  /// Each cell of the mesh has one. Empty: not elastic (a membrane), then there are no stresses.
+  std::vector<BodyMaterial> materials;
 
   Sum a;         ///< symmetric
   Sum f;         ///< empty: no load
@@ -157,6 +170,9 @@ bool bounds_nodes(const Scene &scene);
 
 /// Whether data and solutions are symmetric about x = 0 for all free parameters.
 bool is_symmetric(const Scene &scene);
+
+/// The coordinate of a parameter; null: the parameter itself.
+const Coordinate *coordinate_of(const Scene &scene, int parameter);
 
 /// Whether a is the same for all values of the free parameters.
 bool constant_stiffness(const Scene &scene);

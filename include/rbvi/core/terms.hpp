@@ -28,18 +28,11 @@ struct Form {
   explicit operator bool() const { return static_cast<bool>(kernel); }
 };
 
-/// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
-/// decreasing, value = back(x).
-struct Coordinate {
-  Named<NumberMap> of, back;
-};
-
 /// A factor of a coefficient.
 struct Factor {
   std::string name; ///< two factors of one name are the same function
   Named<Coefficient> value;
-  std::vector<int> parameters;                ///< indices into parameters.all that it depends on
-  std::map<int, Coordinate> coordinates = {}; ///< of some of these; the others: themselves
+  std::vector<int> parameters; ///< indices into parameters.all that it depends on
 };
 
 struct Term {
@@ -90,9 +83,6 @@ bool is_constant(const Sum &sum, const ParameterSpace &space);
 
 /// Values of the parameters that some term depends on.
 std::vector<double> values_of_dependence(const Sum &sum, const FullMu &all_parameters);
-
-/// The coordinate that some factor gives a parameter; null: the parameter itself.
-const Coordinate *coordinate_of(const Sum &sum, int parameter);
 
 /// Throws bad_input where a factor is not finite.
 void check_coefficients(const Sum &sum, const ParameterSpace &space, const FullMu &all_parameters);

@@ -14,10 +14,11 @@ std::vector<std::string> stress_components(int dim);
 
 /// Cauchy stress (Pa) at the centre of each cell: cells x stress_components(scene.dim). `points`:
 /// nodes x dim, reference coordinates; `cells`: nodes_per_cell(dim, degree) node numbers each;
-/// `displacement`: three components per node. Needs scene.material. Throws failure for a cell that
-/// the map inverts.
+/// `displacement`: three components per node; `materials`: of each cell its number in
+/// scene.materials, empty: all of the first. Throws failure for a cell that the map inverts.
 Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
-                       const std::vector<int> &cells, const Vector &displacement);
+                       const std::vector<int> &cells, const std::vector<int> &materials,
+                       const Vector &displacement);
 
 /// sqrt(3/2 s : s), s the deviator, of each row of centre_stresses().
 Vector von_mises(const Matrix &stresses);

@@ -206,11 +206,12 @@ struct ReducedModel {
   bool has_multipliers() const { return !nitsche; }
 
   // Full order, for reconstruction; may stay in a file of their own, which may be large.
-  std::string fields_key;      ///< of that file, where they are not here
-  Matrix primal_basis;         ///< dofs x n, fixed dofs included
-  Matrix mesh_points;          ///< nodes x dim, reference coordinates
-  std::vector<int> mesh_cells; ///< node numbers of each cell, nodes_per_cell of them
-  std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty where nothing is imposed
+  std::string fields_key;          ///< of that file, where they are not here
+  Matrix primal_basis;             ///< dofs x n, fixed dofs included
+  Matrix mesh_points;              ///< nodes x dim, reference coordinates
+  std::vector<int> mesh_cells;     ///< node numbers of each cell, nodes_per_cell of them
+  std::vector<int> mesh_materials; ///< of each cell (Scene::materials); empty: the first
+  std::vector<int> imposed_by;     ///< Cell::imposed_by of each dof; empty where nothing is imposed
 
   ValidationErrors validation_enriched, validation_decorrelated;
   Matrix validated_mu; ///< free parameters x P, where these were measured
@@ -221,7 +222,7 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
-inline constexpr int model_schema = 17;
+inline constexpr int model_schema = 18;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (members that reconstruction alone needs may all be empty).
