@@ -78,6 +78,17 @@ TEST_F(Cases, AGeometryIsMeshed) {
   expect_all_refused({{"check plate.yaml", "gmsh cannot mesh 'plate.geo'"}});
 }
 
+/// In what is printed, in files and in what they hold.
+TEST_F(Cases, ContactsHaveTheirNames) {
+  const std::string says = output_of(
+      rbvi(2, "solve -case " RBVI_CASES "/roller -set mesh.edges=24 -mu 0.04,0.1 -vtu u.vtu"));
+  EXPECT_EQ(lines_with(says, "upper plate: normal_force "), 1) << says;
+  EXPECT_EQ(lines_with(says, "lower plate: normal_force "), 1) << says;
+  EXPECT_TRUE(contains(says, "wrote u.vtu, u_contact_upper_plate.vtu, u_contact_lower_plate.vtu"))
+      << says;
+  expect_fields("u_contact_lower_plate.vtu", {"contacts", "pressure", "tangential_stress"});
+}
+
 /// The command line, its paths, a variant, choices and the file.
 TEST_F(Cases, WhatARunChangesOfACaseIsKept) {
   const std::string disk =

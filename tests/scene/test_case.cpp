@@ -197,6 +197,13 @@ TEST(Case, ChoicesVariantsAndPathsChangeIt) {
   EXPECT_THROW((void)entry_in(chosen, {"", {{"contact.wall.lumped", "yes"}}}), Error);
 }
 
+TEST(Case, NamesOfContactAreKept) {
+  EXPECT_EQ(scene_of().contacts.front().name, "floor");
+  const Scene roller = make_scene("roller");
+  EXPECT_EQ(contact_name(roller, 1), "lower plate");
+  EXPECT_EQ(described(roller.contacts[0]), "contact 'upper plate' on 'top'");
+}
+
 TEST(Case, ParametersThatNothingUsesAreLeftOut) {
   const std::map<std::string, std::string> other{
       {"materials", "{rubber: {at: all, E: young, nu: nu}}"}};

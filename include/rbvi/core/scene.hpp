@@ -155,6 +155,10 @@ bool keeps_nodes(const Scene &scene);
 /// Whether every interface bounds single nodes, without friction.
 bool bounds_nodes(const Scene &scene);
 
+/// What a contact of the scene is called: its name; without one "contact", of several "contact 1",
+/// "contact 2", ...
+std::string contact_name(const Scene &scene, std::size_t number);
+
 /// Whether data and solutions are symmetric about x = 0 for all free parameters.
 bool is_symmetric(const Scene &scene);
 
