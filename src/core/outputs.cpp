@@ -141,8 +141,12 @@ const OutputColumn &output_column(const std::string &name) {
   const std::vector<OutputColumn> &columns = output_columns();
   const auto found = std::find_if(columns.begin(), columns.end(),
                                   [&](const OutputColumn &column) { return name == column.name; });
-  if (found == columns.end()) throw bad_input("there is no output '" + name + "'");
-  return *found;
+  if (found != columns.end()) return *found;
+  std::vector<std::string> names;
+  for (const OutputColumn &column : columns)
+    names.emplace_back(column.name);
+  throw bad_input("there is no output '" + name + "': the nearest is '" +
+                  nearest_name(name, names) + "'");
 }
 
 namespace {

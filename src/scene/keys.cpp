@@ -35,6 +35,7 @@ const std::vector<CaseKey> all_keys{
     {"", "options", "table", "options of rbvi by their names"},
     {"", "choices", "table", "options of this case, each with its alternatives"},
     {"", "variants", "table", "values at paths of this file that replace others (-variant NAME)"},
+    {"", "tests", "table", "answers that are known: rbvi check -run proves them"},
     {"units", "length", "unit", "m, mm, ..."},
     {"units", "force", "unit", "N, kN, ..."},
     {"units", "time", "unit", "default: s"},
@@ -124,6 +125,11 @@ const std::vector<CaseKey> all_keys{
     {"choices.*", "*", "table", "an alternative: paths of this file and what they become"},
     {"variants.*", "says", "text", "the variant in one line"},
     {"variants.*", "*", "anything", "a path of this file and what it becomes"},
+    {"tests.*", "at", "table", "parameters by name; default: each as it is while fixed"},
+    {"tests.*", "expect", "table", "outputs by name (OUTPUTS.md) and their values", true},
+    {"tests.*", "tolerance", "number", "relative; of an output that is 0 absolute", true},
+    {"tests.*.at", "*", "number", "of a parameter that has a range"},
+    {"tests.*.expect", "*", "number", ""},
 };
 
 } // namespace

@@ -76,6 +76,14 @@ struct FixedBoundary {
   std::vector<ImposedTerm> values = {};
 };
 
+/// Outputs of one full solve that are known.
+struct SceneTest {
+  std::string name;
+  std::map<std::string, double> at{};       ///< parameters; the others keep their values
+  std::map<std::string, double> expected{}; ///< outputs (core/outputs.hpp)
+  double tolerance = 0;                     ///< relative; of an output that is 0 absolute
+};
+
 struct Scene {
   std::string name;
   std::string summary; ///< one line
@@ -118,6 +126,8 @@ struct Scene {
   Sum a;         ///< symmetric
   Sum f;         ///< empty: no load
   Sum v_product; ///< inner product of V, exact terms; mu is empty there
+
+  std::vector<SceneTest> tests{};
 };
 
 /// An option of the program that a case file sets.
