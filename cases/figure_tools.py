@@ -2,6 +2,7 @@
 
 import base64
 import csv
+import re
 import xml.etree.ElementTree as xml
 from typing import NamedTuple
 
@@ -60,12 +61,24 @@ def history(run, name):
         raise Missing(f"{path} cannot be read: {error}") from None
 
 
+def texts_in(model, name):
+    """A data set of texts."""
+    return [text.decode() if isinstance(text, bytes) else str(text) for text in model[name][()]]
+
+
 def free_parameters(run):
     """Names and units of the free parameters of the model; "" is without dimension."""
     with h5py.File(model_of(run), "r") as model:
-        names, units = ([text.decode() if isinstance(text, bytes) else str(text)
-                         for text in model["parameters/" + what][()]] for what in ("names", "units"))
+        names, units = (texts_in(model, "parameters/" + what) for what in ("names", "units"))
         return [(names[i], units[i]) for i in np.ravel(model["parameters/free"][()]).astype(int)]
+
+
+def contact_names(run):
+    """Number, from 1, -> name of the contacts of the model that have one."""
+    with h5py.File(model_of(run), "r") as model:
+        lines = dict(zip(*(texts_in(model, "scene/functions/" + what) for what in ("names", "values"))))
+    ends = re.compile(r"contact_(\d+)=name")
+    return {int(found[1]) + 1: lines[found[0]] for found in map(ends.fullmatch, lines) if found}
 
 
 def with_unit(name, unit):

@@ -14,8 +14,8 @@ import h5py
 import numpy as np
 
 from bench_figures import bench
-from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, free_parameters, history,
-                          model_of, plt, table, with_unit)
+from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
+                          history, model_of, plt, table, with_unit)
 from panels import Curve, Lines, Triangles, save_panels
 from solution_figures import solution
 
@@ -154,9 +154,11 @@ def pressure_curves(data, which):
 def pressure_panels(run, data):
     cells = contact_cells(run)
     if len(cells) == 0:
-        numbers = np.unique(data["interface"])
+        numbers = np.unique(data["interface"]).astype(int)
+        names = contact_names(run)
         return [panel for number in numbers for panel in pressure_curves(
-            data[data["interface"] == number], f" {number:.0f}" if len(numbers) > 1 else "")]
+            data[data["interface"] == number],
+            ", " + names.get(number, f"contact {number}") if len(numbers) > 1 else "")]
     points = np.column_stack([data["x"], data["y"]])
     error = data["reduced"] - data["high_fidelity"]
     bound = np.abs(error).max() or 1

@@ -30,16 +30,19 @@ def parameters_of(grid):
 
 
 def contact_grids(run, grid):
-    """The contact files beside u.vtu, one for each interface of which some part can touch: u_contact,
-    u_contact_2, ..."""
-    numbers = sorted([int(path.stem.removeprefix("u_contact_")), path]
-                     for path in run.glob("u_contact_*.vtu"))
-    paths = [run / "u_contact.vtu", *(path for _, path in numbers)]
-    grids = [read_grid(path) for path in paths if path.is_file()]
-    for path, contact in zip(filter(lambda path: path.is_file(), paths), grids):
-        if parameters_of(contact) != parameters_of(grid):
+    """The contact files beside u.vtu, of the interfaces of which some part can touch, by their names:
+    u_contact, or u_contact_NAME of several."""
+    if "contacts" not in grid.of_all:
+        raise Missing(f"{run}/u.vtu does not name its contacts: write it again")
+    of_name = {}
+    for path in run.glob("u_contact*.vtu"):
+        contact = read_grid(path)
+        name = contact.of_all.get("contacts", [""])[0]
+        if name in grid.of_all["contacts"]:
+            of_name[name] = contact
+        if name not in grid.of_all["contacts"] or parameters_of(contact) != parameters_of(grid):
             raise Missing(f"{path} is of another answer than {run}/u.vtu: remove it")
-    return grids
+    return {name: of_name[name] for name in grid.of_all["contacts"] if name in of_name}
 
 
 def draw_membrane(circle, grid, figure, axis):
@@ -60,7 +63,7 @@ def draw_membrane(circle, grid, figure, axis):
 
 
 def membrane_panels(grid, contacts):
-    contact = contacts[0]
+    contact = next(iter(contacts.values()))
     circle = outline(contact.points, contact.cells)
     pressure = contact.of_nodes["pressure"]
     return [Drawn("membrane, below it the rim of the obstacle", partial(draw_membrane, circle, grid),
@@ -164,7 +167,7 @@ def along(grid, name):
     return x, grid.of_nodes[name]
 
 
-def contact_panel(curve, which):
+def contact_panel(curve, title):
     """Pressure, with friction the tangential stress, and the gap along a contact curve."""
     curves = [Curve(*along(curve, "pressure"), "pressure")]
     if "tangential_stress" in curve.of_nodes:
@@ -172,18 +175,20 @@ def contact_panel(curve, which):
     x, gap = along(curve, "gap")
     closed = np.abs(gap) < GAP_ROUND_OFF
     curves.append(Curve(x, np.where(closed, 0, gap), "gap (right)", ORANGE, right=True))
-    return Lines("stress and gap along the contact curve" + which, "x, undeformed (m)", "stress (Pa)",
-                 curves, right="gap (m)")
+    return Lines(title, "x, undeformed (m)", "stress (Pa)", curves, right="gap (m)")
 
 
 def body_panels(grid, contacts):
-    frames = [frame_of(grid, curve) for curve in contacts]
+    frames = [frame_of(grid, curve) for curve in contacts.values()]
     panels = [Drawn("deformed bodies" if grid.of_cells["body"].max() > 1 else "deformed body",
                     partial(draw_deformed, frames, grid))]
-    names = [f" {k + 1}" if len(contacts) > 1 else "" for k in range(len(contacts))]
-    for frame, curve, which in zip(frames, contacts, names):
-        panels.append(Drawn("stress at the contact" + which, partial(draw_zoom, frame, curve, grid)))
-    return panels + [contact_panel(curve, which) for curve, which in zip(contacts, names)]
+    several = len(contacts) > 1
+    for frame, (name, curve) in zip(frames, contacts.items()):
+        panels.append(Drawn(f"stress, {name}" if several else "stress at the contact",
+                            partial(draw_zoom, frame, curve, grid)))
+    return panels + [contact_panel(curve, f"stress and gap, {name}" if several else
+                                   "stress and gap along the contact curve")
+                     for name, curve in contacts.items()]
 
 
 def solution_panels(run):

@@ -63,10 +63,8 @@ void stack_nodal(const std::vector<ContactOperators> &all, ContactOperators &ope
 void check_imposed(const ContactRecipe &recipe, const InterfaceMesh &mesh) {
   if (recipe.formulation == Formulation::nitsche &&
       std::ranges::any_of(mesh.imposed_by, [](int boundary) { return boundary >= 0; }))
-    throw bad_input(
-        "displacements are imposed on a cell beside the contact curve '" +
-        recipe.entities.parts.front() +
-        "', which Nitsche's method does not take: use multipliers (-formulation mixed)");
+    throw bad_input("displacements are imposed on a cell beside " + described(recipe) +
+                    ", which Nitsche's method does not take: use multipliers (-formulation mixed)");
 }
 
 /// Throws bad_input for Nitsche's method beside multipliers.
@@ -76,9 +74,9 @@ void check_formulations(const Scene &scene) {
   };
   const auto nitsche = of(Formulation::nitsche), mixed = of(Formulation::mixed);
   if (nitsche == scene.contacts.end() || mixed == scene.contacts.end()) return;
-  throw bad_input("scene " + scene.name + " has contact by Nitsche's method on '" +
-                  nitsche->entities.parts.front() + "' and by multipliers on '" +
-                  mixed->entities.parts.front() + "': use one of them on both");
+  throw bad_input("scene " + scene.name + " has " + described(*nitsche) +
+                  " by Nitsche's method and " + described(*mixed) +
+                  " by multipliers: use one of them on both");
 }
 
 } // namespace
@@ -100,6 +98,7 @@ Contact make_contact(const Scene &scene, std::vector<InterfaceMesh> meshes) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     check_imposed(scene.contacts[i], meshes[i]);
     contact.interfaces.push_back(scene.contacts[i].make(scene, std::move(meshes[i])));
+    contact.names.push_back(contact_name(scene, i));
     const DualSpace &dual = contact.interfaces.back()->dual();
     contact.first_row.push_back(contact.first_row.back() + dual.size());
   }
@@ -234,6 +233,7 @@ void contact_outputs(const Contact &contact, const FullMu &mu, const ContactOper
     part.state = operators.state;
     node += interface.dual().nodes();
     Outputs one;
+    one.name = contact.names[i];
     interface.outputs(mu, part, lambda.segment(contact.first_row[i], interface.dual().size()),
                       least, one);
     add_contact(one, outputs);

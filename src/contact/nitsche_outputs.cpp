@@ -127,7 +127,10 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
     nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
     const std::array<bool, 2> closed = layer.curves[k].facing.closed_ends;
     if (!closed[0] || !closed[1]) one.ends_in_contact = ends_in_contact(fields, closed);
-    if (&one == &part) add_contact(part, outputs);
+    if (&one == &part) {
+      part.name = contact_name(layer.scene, k);
+      add_contact(part, outputs);
+    }
     errors.add(fields, own.front().law);
     first += count;
   }

@@ -117,12 +117,12 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
           << "(largest error " << formatted("%.1e", error->second) << ')';
     out << '\n';
   }
-  for (std::size_t i = 0; i < outputs.interfaces.size(); ++i) {
-    out << "contact " << i + 1 << ':';
+  for (const Outputs &one : outputs.interfaces) {
+    out << one.name << ':';
     for (const auto member :
          {&Outputs::normal_force, &Outputs::tangential_force, &Outputs::contact_measure,
           &Outputs::peak_pressure, &Outputs::contact_nodes, &Outputs::stick_nodes})
-      if (const std::optional<double> value = outputs.interfaces[i].*member)
+      if (const std::optional<double> value = one.*member)
         out << ' ' << name_of(member) << ' ' << formatted("%.10g", *value);
     out << '\n';
   }
@@ -141,19 +141,27 @@ const OutputColumn &output_column(const std::string &name) {
   const std::vector<OutputColumn> &columns = output_columns();
   const auto found = std::find_if(columns.begin(), columns.end(),
                                   [&](const OutputColumn &column) { return name == column.name; });
-  if (found == columns.end()) throw bad_input("there is no output '" + name + "'");
-  return *found;
+  if (found != columns.end()) return *found;
+  std::vector<std::string> names;
+  for (const OutputColumn &column : columns)
+    names.emplace_back(column.name);
+  throw bad_input("there is no output '" + name + "': the nearest is '" +
+                  nearest_name(name, names) + "'");
 }
 
 namespace {
 
-/// Of so many answers.
-std::string end_warning(long at_ends, long all, const char *answers) {
-  const std::string who = all == 1 ? "contact reaches the end of its boundary"
-                                   : std::to_string(at_ends) + " of " + std::to_string(all) + ' ' +
-                                         answers + " touch an end of the contact boundary";
+std::string end_warning(const std::string &who) {
   return who + ", beside which the body would touch too: a smaller indentation, offset or "
                "load, or a scene with a wider contact boundary";
+}
+
+/// Of one answer that has such ends: "contact reaches ...", of several interfaces with the name.
+std::string end_of(const Outputs &outputs) {
+  const auto at_end = std::ranges::find_if(
+      outputs.interfaces, [](const Outputs &one) { return one.ends_in_contact.value_or(0) > 0; });
+  return (at_end == outputs.interfaces.end() ? "" : at_end->name + ": ") +
+         "contact reaches the end of its boundary";
 }
 
 /// Of one interface.
@@ -188,29 +196,33 @@ std::string zone_warning(const Outputs &outputs) {
 } // namespace
 
 std::string resolution_warning(const Outputs &outputs) {
-  if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(1, 1, "");
+  if (outputs.ends_in_contact.value_or(0) > 0) return end_warning(end_of(outputs));
   if (outputs.overlap && outputs.contact_nodes == 0)
     return "the bodies overlap by " + short_number(*outputs.overlap) +
            " between nodes, and no multiplier carries a pressure: contact is narrower than the "
            "mesh "
            "sees, and the forces of this answer are zero; a finer mesh tells (-mesh_refine)";
-  for (std::size_t i = 0; i < outputs.interfaces.size(); ++i)
-    if (const std::string warning = zone_warning(outputs.interfaces[i]); !warning.empty())
-      return "contact " + std::to_string(i + 1) + ": " + warning;
+  for (const Outputs &one : outputs.interfaces)
+    if (const std::string warning = zone_warning(one); !warning.empty())
+      return one.name + ": " + warning;
   return outputs.interfaces.empty() ? zone_warning(outputs) : "";
 }
 
 void ResolutionTally::add(const Outputs &outputs) {
   const std::string warning = resolution_warning(outputs);
   ++all;
-  if (outputs.ends_in_contact.value_or(0) > 0)
-    ++at_ends;
-  else if (!warning.empty() && coarse++ == 0)
-    first = warning;
+  const bool at_end = outputs.ends_in_contact.value_or(0) > 0;
+  if (warning.empty() || (at_end ? at_ends : coarse)++ > 0) return;
+  (at_end ? first_end : first) = warning;
 }
 
 void ResolutionTally::print(std::ostream &out, const char *answers) const {
-  if (at_ends > 0) out << "warning: " << end_warning(at_ends, all, answers) << '\n';
+  if (at_ends > 0)
+    out << "warning: "
+        << (all == 1 ? first_end
+                     : end_warning(std::to_string(at_ends) + " of " + std::to_string(all) + ' ' +
+                                   answers + " touch an end of the contact boundary"))
+        << '\n';
   if (coarse == 0) return;
   out << "warning: " << first;
   if (coarse > 1) out << " (the first of " << coarse << " such " << answers << ')';

@@ -68,6 +68,18 @@ bool bounds_nodes(const Scene &scene) {
   return std::ranges::all_of(scene.contacts, &ContactRecipe::nodal) && !has_friction(scene);
 }
 
+std::string contact_name(const Scene &scene, std::size_t number) {
+  const std::string &name = scene.contacts.at(number).name;
+  if (!name.empty()) return name;
+  return scene.contacts.size() == 1 ? "contact" : "contact " + std::to_string(number + 1);
+}
+
+std::string described(const ContactRecipe &contact) {
+  std::string words = "contact ";
+  if (!contact.name.empty()) words.append("'").append(contact.name).append("' ");
+  return words.append("on '").append(contact.entities.parts.front()).append("'");
+}
+
 bool is_symmetric(const Scene &scene) {
   if (!scene.symmetric || scene.skewed_by < 0) return scene.symmetric;
   const ParameterSpace &space = scene.parameters;

@@ -53,8 +53,8 @@ void check_contacts(const Scene &scene, const FullMu &all) {
   for (const ContactRecipe &contact : scene.contacts)
     for (const ContactCoefficient &coefficient : contact.coefficients)
       if (!std::isfinite(coefficient.value(all)))
-        throw bad_input("the " + coefficient.name + " on '" + contact.entities.parts.front() +
-                        "' is not finite at " + describe(scene.parameters, all));
+        throw bad_input("the " + coefficient.name + " of " + described(contact) +
+                        " is not finite at " + describe(scene.parameters, all));
 }
 
 void check_together(const Scene &scene, const FullMu &all) {

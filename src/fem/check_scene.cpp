@@ -254,7 +254,7 @@ Nearest nearest_of(const Problem &problem, std::size_t i) {
   Nearest nearest;
   if (entities.kind == InterfaceEntities::Kind::cells || entities.parts.size() != 1) return nearest;
   const FullMu mu = generic_point(scene.parameters);
-  const std::string what = "scene " + scene.name + ": contact on '" + entities.parts.front() + "'";
+  const std::string what = "scene " + scene.name + ": " + described(scene.contacts[i]);
   for (const auto &[cell, facet] : some_of(problem.mesh().facets.at(entities.parts.front())))
     check_normal(*problem.contact().interfaces[i], mu,
                  mapped_at(scene, mu, facet_cell(cell_of(problem.mesh(), cell), facet)), what,
@@ -340,9 +340,8 @@ void check_scene(const Problem &problem) {
   // Points far from a small rigid body may face it from behind, those next to it do not.
   for (std::size_t i = 0; i < inward.size(); ++i)
     if (inward[i] < outward[i])
-      throw bad_input("scene " + scene.name + ": contact on '" +
-                      scene.contacts[i].entities.parts.front() +
-                      "' has normals that point into the body: they must point out of it");
+      throw bad_input("scene " + scene.name + ": " + described(scene.contacts[i]) +
+                      " has normals that point into the body: they must point out of it");
 }
 
 } // namespace rbvi

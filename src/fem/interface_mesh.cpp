@@ -231,10 +231,9 @@ bool constrains(const ContactRecipe &contact) {
   return contact.entities.kind != InterfaceEntities::Kind::cells_beside;
 }
 
-/// "the contact interfaces on 'slave' and 'master' ".
+/// "contact on 'slave' and contact on 'master' ".
 std::string both(const ContactRecipe &one, const ContactRecipe &other) {
-  return "the contact interfaces on '" + one.entities.parts.front() + "' and '" +
-         other.entities.parts.front() + "' ";
+  return described(one) + " and " + described(other) + " ";
 }
 
 std::string place(const Point &x) {

@@ -30,9 +30,8 @@ void check_finite(const Scene &scene, const Contact &contact, const Operators &o
     std::string where;
     for (int k = 0; k < scene.dim; ++k)
       where += short_number(x[k]) + ' ';
-    throw bad_input("the gap or the normal of contact on '" +
-                    scene.contacts[of.interface].entities.parts.front() +
-                    "' is not finite at the point " + where + "of the reference domain, " +
+    throw bad_input("the gap or the normal of " + described(scene.contacts[of.interface]) +
+                    " is not finite at the point " + where + "of the reference domain, " +
                     describe(scene.parameters, operators.mu));
   }
 }

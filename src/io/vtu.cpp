@@ -165,6 +165,7 @@ void write_field_data(Writer &out, const Grid &grid) {
     }
   out.line("<FieldData>");
   if (!grid.scene.empty()) out.texts("scene", {grid.scene});
+  if (!grid.contacts.empty()) out.texts("contacts", grid.contacts);
   out.texts("units", units);
   for (const Field &field : grid.of_all)
     out.numbers(field);

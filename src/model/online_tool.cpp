@@ -75,7 +75,8 @@ const std::vector<OnlineOption> &online_options() {
       {"precision", "DIGITS", "of the outputs in the table: 1 to 17, 10 without it",
        &Arguments::precision},
       {"vtu", "FILE",
-       "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact",
+       "with --mu: the field, and the contact region (of two bodies the curve) in FILE_contact, of "
+       "several contacts each in FILE_contact_NAME",
        &Arguments::vtu},
       {"full", "", "reconstruct the field: adds min_u", nullptr, &Arguments::full},
       {"decorrelated", "", "without the supremizers or responses beside the modes", nullptr,
@@ -178,13 +179,14 @@ OnlineArguments parse_online_arguments(const std::vector<std::string> &arguments
 namespace {
 
 /// No file that is read is written.
-void check_files(const OnlineArguments &arguments) {
+void check_files(const OnlineArguments &arguments, const Scene &scene) {
   const std::vector<NamedFile> inputs{{"the file of queries", arguments.queries},
                                       {"the model", arguments.model}};
   if (arguments.out != "-") check_overwriting({"--out", arguments.out}, inputs);
   if (arguments.vtu.empty()) return;
-  for (const std::filesystem::path &vtu :
-       {std::filesystem::path(arguments.vtu), contact_file(arguments.vtu)}) {
+  std::vector<std::filesystem::path> files = contact_files(arguments.vtu, scene);
+  files.emplace_back(arguments.vtu);
+  for (const std::filesystem::path &vtu : files) {
     check_overwriting({"--vtu", vtu}, inputs);
     check_overwriting({"--vtu", vtu}, {{"--out", arguments.out}});
   }
@@ -200,7 +202,6 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     out << "rbvi-online " RBVI_VERSION "\n";
     return;
   }
-  check_files(arguments);
   const bool fields = arguments.full || !arguments.vtu.empty();
   ReducedModel model = read_model(arguments.model, registry, fields);
   if (arguments.decorrelated) model = leading(model, model.modes, model.generators);
@@ -209,6 +210,7 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
     return;
   }
   OnlineSolver solver(model, QueryOptions{.warm = arguments.warm});
+  check_files(arguments, solver.scene());
   if (!arguments.mu.empty())
     answer_one(arguments, solver, out);
   else

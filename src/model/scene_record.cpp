@@ -43,7 +43,8 @@ struct RecordReader {
   Stored of;
 
   bool has(const std::string &name, bool) const {
-    return of.record.parts.contains(name) || of.record.numbers.contains(name);
+    return of.record.parts.contains(name) || of.record.numbers.contains(name) ||
+           of.record.texts.contains(name);
   }
   void number(const std::string &name, double &value) const { value = rbvi::number(of, name); }
   template <class Integer> void number(const std::string &name, Integer &value) const {
@@ -147,6 +148,7 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
       recipe = contact_in(part.of);
     else
       part.record = recipe.record;
+    if (part.has("name", !recipe.name.empty())) part.text("name", recipe.name);
   });
   // Loads of imposed values are made again from these values and the kernels of a.
   const bool imposes = imposes_values(scene);

@@ -286,6 +286,8 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   add_parameters(scene, text);
   Record record = record_of(scene);
   record.parts.erase("check"); // refuses parameters, and changes no answer
+  for (auto &[name, part] : record.parts)
+    if (name.starts_with("contact_")) part.texts.erase("name"); // nor does what it is called
   text.add("scene", record);
   text.add_values("map", scene.map);
   text.add_values("motion", scene.motion);

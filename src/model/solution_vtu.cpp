@@ -5,7 +5,12 @@
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/io/vtu.hpp"
 
+#include <algorithm>
+#include <cctype>
+
 namespace rbvi {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -60,6 +65,8 @@ Grid bodies(const State &state) {
   if (model.mesh_cells.empty())
     throw failure("the model was read without its fields: no full field can be written");
   grid.of_nodes = {{"u", moved, "m"}};
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+    grid.contacts.push_back(contact_name(scene, i));
   const int first = model.interfaces.front().nodes.front();
   grid.of_cells = {
       {"body", body_numbers(model.mesh_cells, per_cell, model.mesh_points.rows(), first)}};
@@ -85,19 +92,38 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
   Grid grid = interface.fields(
       state.mu, u, state.lambda.segment(contact.first_row[number], interface.dual().size()));
   describe(state, grid);
+  grid.contacts = {contact.names[number]};
   return grid;
+}
+
+/// Letters of other alphabets stay.
+std::string file_safe(std::string name) {
+  for (char &letter : name) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (byte < 0x80 && std::isalnum(byte) == 0 && letter != '-') letter = '_';
+  }
+  return name;
 }
 
 } // namespace
 
-std::filesystem::path contact_file(const std::filesystem::path &path, std::size_t number) {
-  const std::string suffix = number == 0 ? "_contact" : "_contact_" + std::to_string(number + 1);
-  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+std::vector<fs::path> contact_files(const fs::path &path, const Scene &scene) {
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i) {
+    const std::string &own = scene.contacts[i].name;
+    std::string name = path.stem().string() + "_contact";
+    if (scene.contacts.size() > 1)
+      name.append("_").append(own.empty() ? std::to_string(i + 1) : file_safe(own));
+    const auto file = [&] { return path.parent_path() / (name + path.extension().string()); };
+    while (std::ranges::find(files, file()) != files.end()) // "a b" and "a_b"
+      name += "_";
+    files.push_back(file());
+  }
+  return files;
 }
 
-std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,
-                                             const FullMu &all, const ReducedModel &model,
-                                             const Vector &u, const Vector &lambda) {
+std::vector<fs::path> write_vtu(const fs::path &path, const Scene &scene, const FullMu &all,
+                                const ReducedModel &model, const Vector &u, const Vector &lambda) {
   const State state{scene, all, model, u, lambda, displacement(scene, all, model.mesh_points, u)};
   const Grid whole = bodies(state);
   const Contact contact = contact_of(model, scene);
@@ -105,15 +131,15 @@ std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, 
   for (std::size_t i = 0; i < contact.interfaces.size(); ++i)
     interfaces.push_back(interface_grid(state, contact, i));
   write_vtu(path, whole, vtu_format(whole));
-  std::vector<std::filesystem::path> written{path};
+  std::vector<fs::path> written{path};
+  const std::vector<fs::path> files = contact_files(path, scene);
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
-    const std::filesystem::path file = contact_file(path, i);
     if (interfaces[i].cells.empty()) {
-      std::filesystem::remove(file);
+      fs::remove(files[i]);
       continue;
     }
-    write_vtu(file, interfaces[i], vtu_format(interfaces[i]));
-    written.push_back(file);
+    write_vtu(files[i], interfaces[i], vtu_format(interfaces[i]));
+    written.push_back(files[i]);
   }
   return written;
 }

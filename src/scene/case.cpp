@@ -257,6 +257,7 @@ Scene scene_of(const CaseNode &root, Defects &defects) {
   read_sections(again, scene, defects);
   check_limits(again, scene, defects);
   read_free(again, scene, defects);
+  read_tests(again, scene, defects);
   defects.throw_all();
   scene.training = section(again, "train").value;
   scene.validation = section(again, "validate").value;

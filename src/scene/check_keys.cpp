@@ -42,9 +42,10 @@ std::string in_words(const std::string &table) {
 }
 
 bool may_be_list(const CaseKey &key) {
-  for (const char *part : {"[", "expressions", "names", "regions", "boundar", "anything", "table"})
+  for (const char *part :
+       {"[", "expressions", "names", "regions", "boundar", "list", "anything", "table"})
     if (key.value.find(part) != std::string::npos) return true;
-  return key.table == "options";
+  return false;
 }
 
 class Walk {

@@ -35,16 +35,17 @@ const std::vector<CaseKey> all_keys{
     {"", "options", "table", "options of rbvi by their names"},
     {"", "choices", "table", "options of this case, each with its alternatives"},
     {"", "variants", "table", "values at paths of this file that replace others (-variant NAME)"},
+    {"", "tests", "table", "answers that are known: rbvi check -run proves them"},
     {"units", "length", "unit", "m, mm, ..."},
     {"units", "force", "unit", "N, kN, ..."},
     {"units", "time", "unit", "default: s"},
     {"units", "temperature", "unit", "default: K"},
-    {"mesh", "built_in", "shape",
-     "square_with_disc | half_disc | annulus | two_quarter_discs | two_blocks | one_block"},
+    {"mesh", "built_in",
+     "square_with_disc | half_disc | annulus | two_quarter_discs | two_blocks | one_block",
+     "a shape"},
     {"mesh", "file", "text",
      "a Gmsh mesh (.msh), or a geometry (.geo) that the program gmsh meshes; from the folder of "
-     "the "
-     "case"},
+     "the case"},
     {"mesh", "set", "table", "numbers of the .geo by name"},
     {"mesh.set", "*", "number", ""},
     {"mesh", "degree", "1 | 2", "of the displacement; default: 1 of a membrane, else 2"},
@@ -116,7 +117,7 @@ const std::vector<CaseKey> all_keys{
     {"require.*", "says", "text", "what to tell where it does not", true},
     {"curves.*", "circle", "[x, y, radius]", "in the mesh", true, "m"},
     {"curves.*", "hole", "no | yes", "whether the body is outside of it"},
-    {"options", "*", "text", "see OPTIONS.md"},
+    {"options", "*", "text or list", "see OPTIONS.md"},
     {"choices.*", "default", "text", "the alternative that is taken"},
     {"choices.*", "says", "text", "what is chosen"},
     {"choices.*", "sets", "path", "a number that the option puts there, in place of alternatives"},
@@ -124,6 +125,11 @@ const std::vector<CaseKey> all_keys{
     {"choices.*", "*", "table", "an alternative: paths of this file and what they become"},
     {"variants.*", "says", "text", "the variant in one line"},
     {"variants.*", "*", "anything", "a path of this file and what it becomes"},
+    {"tests.*", "at", "table", "parameters by name; default: each as it is while fixed"},
+    {"tests.*", "expect", "table", "outputs by name (OUTPUTS.md) and their values", true},
+    {"tests.*", "tolerance", "number", "relative; of an output that is 0 absolute", true},
+    {"tests.*.at", "*", "number", "of a parameter that has a range"},
+    {"tests.*.expect", "*", "number", ""},
 };
 
 } // namespace

@@ -226,8 +226,10 @@ void read_contact(Reader &reader, Scene &scene, Defects &defects) {
   const CaseNode &contacts = section(reader, "contact");
   if (contacts.entries.empty()) defects.add(contacts, "no contact is named");
   for (const auto &[name, node] : contacts.entries)
-    defects.collect(
-        node, [&, &value = node] { scene.contacts.push_back(contact_in(reader, value, scene)); });
+    defects.collect(node, [&, &own = name, &value = node] {
+      scene.contacts.push_back(contact_in(reader, value, scene));
+      scene.contacts.back().name = own;
+    });
 }
 
 } // namespace rbvi

@@ -82,6 +82,9 @@ void read_contact(Reader &reader, Scene &scene, Defects &defects);
 /// all sections.
 void check_limits(const Reader &reader, const Scene &scene, Defects &defects);
 
+/// Known answers. After all limits.
+void read_tests(const Reader &reader, Scene &scene, Defects &defects);
+
 /// Positions of the parameters that the map depends on.
 std::vector<int> dependence_of_map(Reader &reader);
 /// The components of the map; none: the identity.

@@ -121,6 +121,8 @@ void check_variants(const ToolOptions &options) {
 
 void command_check(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
+  if (options.run_tests && options.scene.tests.empty())
+    throw bad_input("this case has no 'tests:' that -run could prove (cases/README.md)");
   collectively(world, [&] { check_variants(options); });
   check_outputs(world, options, files_of_solution(options));
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
@@ -136,12 +138,14 @@ void command_check(const ToolOptions &options) {
   const HfSolution solution =
       while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
   write_solution(problem, options, mu, solution);
-  if (rank_of(world) != 0) return;
-  std::printf("at the middle of the box, %s:\n", at.c_str());
-  print_outputs(std::cout, solution.outputs);
-  if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
-    std::printf("warning: nothing touches there\n");
-  std::printf("no defect was found\n");
+  if (rank_of(world) == 0) {
+    std::printf("at the middle of the box, %s:\n", at.c_str());
+    print_outputs(std::cout, solution.outputs);
+    if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
+      std::printf("warning: nothing touches there\n");
+    std::printf("no defect was found\n");
+  }
+  if (options.run_tests) run_tests(options);
 }
 
 void command_new(const std::string &name, const std::string &mesh) {

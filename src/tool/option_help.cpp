@@ -76,7 +76,8 @@ void print_help(const Registry &registry, const std::string &scene, const std::s
     std::printf("  %-21s %s\n", known.name.c_str(), known.does.c_str());
   std::printf("  COMMAND -help         usage and options of a command\n"
               "  -help -case FILE      options, parameters and mesh of a case\n"
-              "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n\n");
+              "  -help -markdown       all options, explained: the page cases/OPTIONS.md\n"
+              "  -help -schema         a JSON Schema of case files, for editors\n\n");
   print_options();
   for (const SceneEntry &entry : registry.scenes)
     print_scene(entry);

@@ -83,7 +83,8 @@ constexpr const char *of_cases = R"(
 
 A case file (YAML) is a scene: the body, what holds, loads and touches it, and the parameters of all
 that. `rbvi new NAME` writes one to begin with, `rbvi check FILE` tells every defect of one with its
-line and column, and which terms are exact.
+line and column, and which terms are exact; with `-run` it proves the answers below `tests:`. `rbvi
+-help -schema` prints these keys as a JSON Schema, for editors.
 
 **Numbers are expressions** in parameters, in the names of `let:` and, where a point is meant, in x, y
 (and nx, ny, the normal, in tractions): `+ - * / ^`, comparisons, `and or not`, `condition ? a : b`, pi,

@@ -4,6 +4,7 @@
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/interrupt.hpp"
 #include "rbvi/par/session.hpp"
+#include "rbvi/scene/case.hpp"
 #include "rbvi/tool/commands.hpp"
 #include "rbvi/tool/finish.hpp"
 
@@ -14,8 +15,10 @@ namespace rbvi {
 namespace {
 
 void print_page(const Invocation &invocation, const Registry &registry) {
-  if (invocation.markdown)
+  if (invocation.page == "markdown")
     std::fputs(options_page(registry).c_str(), stdout);
+  else if (invocation.page == "schema")
+    std::fputs(case_schema().c_str(), stdout);
   else
     print_help(registry, invocation.file, invocation.topic);
 }

@@ -36,8 +36,9 @@ void check_inside(const ParameterSpace &space, const Mu &mu) {
 
 std::vector<NamedFile> files_of_solution(const ToolOptions &options) {
   std::vector<NamedFile> files{{"-vtu", options.vtu}};
-  for (std::size_t i = 0; i < options.scene.contacts.size() && !options.vtu.empty(); ++i)
-    files.push_back({"-vtu", contact_file(options.vtu, i)});
+  if (options.vtu.empty()) return files;
+  for (const std::filesystem::path &file : contact_files(options.vtu, options.scene))
+    files.push_back({"-vtu", file});
   return files;
 }
 

@@ -59,7 +59,7 @@ std::vector<Option> of_runs() {
       of_command(
           text("vtu", OptionKind::text, "file", RBVI_AT(vtu),
                "file to which solve, and check, write displacement and stresses; contact goes to "
-               "FILE_contact")),
+               "FILE_contact, of several contacts each to FILE_contact_NAME")),
       of_command(text("csv", OptionKind::text, "file", RBVI_AT(csv),
                       "file to which solve writes its outputs as a table")),
       flag("verify_stability", RBVI_AT(stability),
@@ -69,7 +69,9 @@ std::vector<Option> of_runs() {
                  "bench: measure what offline costs, stage by stage, on the meshes with these "
                  "-mesh_refine, with every number of ranks per solve that divides the ranks or "
                  "with that of the command line; run time against error is then not measured")),
-      of_command(flag("plan", RBVI_AT(plan), "print which stages would run, and stop"))};
+      of_command(flag("plan", RBVI_AT(plan), "print which stages would run, and stop")),
+      of_command(flag("run", RBVI_AT(run_tests),
+                      "check: solve at the tests of the case, and compare what they expect"))};
 }
 
 std::vector<Option> of_meshes() {

@@ -78,6 +78,36 @@ TEST_F(Cases, AGeometryIsMeshed) {
   expect_all_refused({{"check plate.yaml", "gmsh cannot mesh 'plate.geo'"}});
 }
 
+/// Those of the case, at parameters that are free and that are not.
+TEST_F(Cases, TestsAreProved) {
+  const std::string one = "check " RBVI_CASES "/patch -bodies one ";
+  const std::string says = output_of(rbvi(2, one + "-run"));
+  EXPECT_EQ(lines_with(says, "  sticking "), 2) << says;
+  EXPECT_EQ(lines_with(says, "  slipping "), 2) << says;
+  EXPECT_TRUE(contains(says, "passed") && !contains(says, "FAILED")) << says;
+  EXPECT_FALSE(contains(output_of(rbvi(1, one)), "sticking"));
+  const Finished wrong =
+      shell(rbvi(2, "check " RBVI_CASES "/patch -run -set tests.strain.expect.energy=0.031"));
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_TRUE(contains(wrong.err, "rbvi: 1 of 1 test of the case failed: 'strain'")) << wrong.err;
+  EXPECT_TRUE(contains(wrong.out, "energy                0.03009259259 expected          0.031, "
+                                  "off by 2.9e-02 of 1.0e-09: FAILED"))
+      << wrong.out;
+  expect_all_refused({{"check " RBVI_CASES "/patch -run -set tests=", "this case has no 'tests:'"},
+                      {"solve -case " RBVI_CASES "/patch -mu 0.05 -run", "-run has no effect"}});
+}
+
+/// In what is printed, in files and in what they hold.
+TEST_F(Cases, ContactsHaveTheirNames) {
+  const std::string says = output_of(
+      rbvi(2, "solve -case " RBVI_CASES "/roller -set mesh.edges=24 -mu 0.04,0.1 -vtu u.vtu"));
+  EXPECT_EQ(lines_with(says, "upper plate: normal_force "), 1) << says;
+  EXPECT_EQ(lines_with(says, "lower plate: normal_force "), 1) << says;
+  EXPECT_TRUE(contains(says, "wrote u.vtu, u_contact_upper_plate.vtu, u_contact_lower_plate.vtu"))
+      << says;
+  expect_fields("u_contact_lower_plate.vtu", {"contacts", "pressure", "tangential_stress"});
+}
+
 /// The command line, its paths, a variant, choices and the file.
 TEST_F(Cases, WhatARunChangesOfACaseIsKept) {
   const std::string disk =

@@ -114,6 +114,7 @@ TEST(Contact, OperatorsMayBeUsedAgain) {
 TEST(Contact, OutputsAreSumsAndMaxima) {
   const Stack stack;
   const Contact contact = make_contact(stack.scene, stack.meshes);
+  EXPECT_EQ(contact.names, (std::vector<std::string>{"contact 1", "contact 2"}));
   const FullMu mu{1};
   ContactOperators all;
   assemble(contact, mu, {}, all);
@@ -131,6 +132,8 @@ TEST(Contact, OutputsAreSumsAndMaxima) {
   EXPECT_FALSE(out.contact_half_width) << "neither a sum nor a maximum";
   EXPECT_FALSE(out.centre_pressure);
   EXPECT_FALSE(out.friction_violation);
+  ASSERT_EQ(out.interfaces.size(), 2U);
+  EXPECT_EQ(out.interfaces[1].name, "contact 2");
 }
 
 /// Of one interface all is as the interface says it, friction and half-widths too.
@@ -198,10 +201,12 @@ TEST(Contact, MultipliersByNodeAreThoseOfTheRows) {
 TEST(Contact, NitschesMethodIsNotBesideMultipliers) {
   Stack stack;
   stack.scene.contacts[0] = by_nitsche(rigid_contact(Support{"above", {}, {}}), 10);
+  stack.scene.contacts[0].name = "ceiling";
   const auto refused = [&](const std::string &says) {
     return refuses(says, [&] { make_contact(stack.scene, stack.meshes); });
   };
-  EXPECT_TRUE(refused("by Nitsche's method on 'above' and by multipliers on 'slave'"));
+  EXPECT_TRUE(refused(
+      "contact 'ceiling' on 'above' by Nitsche's method and contact on 'slave' by multipliers"));
 }
 
 TEST(Contact, NeedsAMeshForEveryRecipe) {

@@ -1,11 +1,11 @@
 // Contact with a rigid half-plane that moves and tilts: operators in closed form, the condition at
 // single nodes, friction, what files store, and planes that cannot be.
 #include "../core/refuses.hpp"
-#include "tests/catalogue.hpp"
 #include "rbvi/contact/registry.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/validity.hpp"
 #include "support_scenes.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -220,13 +220,13 @@ TEST(HalfPlane, RefusesFunctionsThatAreNotFinite) {
     Scene scene = scene_of(1);
     scene.contacts = {half_plane(plane)};
     const std::string says =
-        "the " + name + " on 'foot' is not finite at push=0.6 tilt=0 friction=0.3";
+        "the " + name + " of contact on 'foot' is not finite at push=0.6 tilt=0 friction=0.3";
     EXPECT_NO_THROW(check_set(scene, {{0.5, 0, 0.3}}));
     EXPECT_NO_THROW(check_query(scene, {0.5, 0, 0.3}, false));
     EXPECT_TRUE(refuses(says, [&] { check_set(scene, {{0.5, 0, 0.3}, {0.6, 0, 0.3}}); }));
     EXPECT_TRUE(refuses(says, [&] { check_query(scene, {0.6, 0, 0.3}, false); }));
     EXPECT_TRUE(refuses(says, [&] { check_query(scene, {0.6, 0, 0.3}, true); }));
-    EXPECT_TRUE(refuses("the " + name + " on 'foot'", [&] { check_box(scene); }));
+    EXPECT_TRUE(refuses("the " + name + " of contact on 'foot'", [&] { check_box(scene); }));
   };
   HalfPlane plane = tilted_plane();
   plane.position = broken;

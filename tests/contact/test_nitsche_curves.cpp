@@ -23,6 +23,8 @@ struct TwoCurves {
   Vector u, v; ///< of the two curves
 
   TwoCurves(const Friction &of_first, const Friction &of_second) {
+    scene.contacts.resize(2);
+    scene.contacts[1].name = "lower";
     one.curves.front().law = both.curves.front().law = of_first;
     other.curves.front().law = of_second;
     both.curves.push_back(other.curves.front());
@@ -93,6 +95,9 @@ TEST(NitscheCurves, OutputsAreSumsAndMaxima) {
   EXPECT_EQ(*both.tangential_force, *other.tangential_force);
   EXPECT_FALSE(one.tangential_force);
   EXPECT_FALSE(both.contact_half_width) << "there is no such thing of two curves";
+  ASSERT_EQ(both.interfaces.size(), 2U);
+  EXPECT_EQ(both.interfaces[0].name, "contact 1");
+  EXPECT_EQ(both.interfaces[1].name, "lower");
 }
 
 /// A curve that nothing touches has no stress but what its free edge is off by.

@@ -121,17 +121,29 @@ TEST(ResolutionWarning, IsEmptyWhereNoZoneEnds) {
 
 /// An interface that barely touches is not hidden by one that touches widely.
 TEST(ResolutionWarning, IsThatOfEachInterface) {
-  Outputs both;
-  add_contact(zones(40, 30, 1), both);
+  Outputs both, upper = zones(40, 30, 1), lower = zones(3, 3, 1e-3);
+  upper.name = "upper plate";
+  lower.name = "lower plate";
+  add_contact(upper, both);
   EXPECT_EQ(resolution_warning(both), "");
-  add_contact(zones(3, 3, 1e-3), both);
+  add_contact(lower, both);
   EXPECT_EQ(both.contact_nodes, 43);
-  EXPECT_EQ(resolution_warning(both), "contact 2: " + resolution_warning(zones(3, 3, 1e-3)));
+  EXPECT_EQ(resolution_warning(both), "lower plate: " + resolution_warning(zones(3, 3, 1e-3)));
   std::ostringstream out;
   print_outputs(out, both);
-  EXPECT_NE(out.str().find("\ncontact 2: tangential_force 0.001 contact_nodes 3 stick_nodes 3\n"),
+  EXPECT_NE(out.str().find("\nlower plate: tangential_force 0.001 contact_nodes 3 stick_nodes 3\n"),
             std::string::npos)
       << out.str();
+  lower.ends_in_contact = 1;
+  Outputs at_end;
+  add_contact(upper, at_end);
+  add_contact(lower, at_end);
+  ResolutionTally tally;
+  tally.add(at_end);
+  std::ostringstream told;
+  tally.print(told);
+  EXPECT_TRUE(told.str().starts_with("warning: lower plate: contact reaches the end of its"))
+      << told.str();
 }
 
 /// Bodies that overlap between nodes without a pressure are no bodies apart.

@@ -153,24 +153,27 @@ TEST(InterfaceMesh, IsTheSameOnAnyNumberOfRanks) {
 TEST(InterfaceMesh, TwoCurvesOfCellsDoNotShareAnEdge) {
   Scene scene = make_scene("rigid_disk", {{"arc_edges", "8"}, {"formulation", "nitsche"}});
   scene.contacts.push_back(scene.contacts.front());
-  EXPECT_TRUE(refuses("on 'contact' and 'contact' share the edge from (",
-                      [&] { Placed(scene, scene.fixed); }));
+  scene.contacts.back().name = "other";
+  EXPECT_TRUE(refuses(
+      "contact 'support' on 'contact' and contact 'other' on 'contact' share the edge from (",
+      [&] { Placed(scene, scene.fixed); }));
 }
 
 TEST(InterfaceMesh, TwoInterfacesDoNotConstrainTheSameDisplacement) {
   Scene scene = make_scene("membrane_obstacle");
   scene.contacts.push_back(scene.contacts.front());
-  EXPECT_TRUE(
-      refuses("on 'obstacle' and 'obstacle' both constrain the displacement along x at (", [&] {
-        Placed(scene, {{"boundary", {}}});
-      }));
+  EXPECT_TRUE(refuses("contact 'obstacle' on 'obstacle' and contact 'obstacle' on 'obstacle' both "
+                      "constrain the displacement along x at (",
+                      [&] {
+                        Placed(scene, {{"boundary", {}}});
+                      }));
   scene = two_supports();
   scene.contacts.push_back(flat_support("slave again"));
   Placed placed(two_supports(), held_above_and_below);
   placed.mesh.boundary["slave again"] = placed.mesh.boundary.at("slave");
-  EXPECT_TRUE(refuses(
-      "on 'slave' and 'slave again' both constrain the displacement along x at (0, 0.25, 0)",
-      [&] { (void)place_interfaces(placed.mesh, placed.dofs, scene); }));
+  EXPECT_TRUE(refuses("on 'slave' and contact on 'slave again' both constrain the displacement "
+                      "along x at (0, 0.25, 0)",
+                      [&] { (void)place_interfaces(placed.mesh, placed.dofs, scene); }));
 }
 
 TEST(InterfaceMesh, ARegionNeedsACell) {

@@ -58,6 +58,19 @@ TEST(SceneRecord, LinesHoldTheWholeRecord) {
   }
 }
 
+/// Records of before have none.
+TEST(SceneRecord, ContactsKeepTheirNames) {
+  Record record = record_of(make_scene("roller"));
+  EXPECT_EQ(contact_name(scene_in({record, &catalogue()}), 1), "lower plate");
+  for (const char *contact : {"contact_0", "contact_1"})
+    record.parts.at(contact).texts.erase("name");
+  EXPECT_EQ(contact_name(scene_in({record, &catalogue()}), 1), "contact 2");
+  EXPECT_EQ(contact_name(make_scene("patch"), 0), "blocks");
+  record = record_of(make_scene("patch"));
+  record.parts.at("contact_0").texts.erase("name");
+  EXPECT_EQ(contact_name(scene_in({record, &catalogue()}), 0), "contact");
+}
+
 TEST(SceneRecord, FunctionsMadeAgainAreTheSame) {
   for (const Scene &scene : every_choice()) {
     const Scene again = made_again(scene);

@@ -104,7 +104,9 @@ TEST(SelfCheck, CountsBadInputAmongWhatHasNoAnswer) {
   const SelfCheck check = self_check(model, scene, 10);
   EXPECT_EQ(check.unanswered, 1);
   EXPECT_EQ(check.unanswered_at, second);
-  EXPECT_TRUE(contains(check.reason, "the height on 'obstacle' is not finite at")) << check.reason;
+  EXPECT_TRUE(
+      contains(check.reason, "the height of contact 'obstacle' on 'obstacle' is not finite at"))
+      << check.reason;
   EXPECT_LE(check.residual.value, 1e-10);
 }
 

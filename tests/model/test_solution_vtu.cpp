@@ -204,6 +204,21 @@ TEST_F(PairVtu, TheLastMacroEdgeMayHaveThreeEdges) {
   EXPECT_EQ(pressure[7], file.lambda[3]);
 }
 
+TEST_F(ModelVtu, ContactFilesHaveTheNamesOfSeveralContacts) {
+  Scene scene = make_scene("roller");
+  using Paths = std::vector<std::filesystem::path>;
+  EXPECT_EQ(contact_files("run/u.vtu", scene),
+            (Paths{"run/u_contact_upper_plate.vtu", "run/u_contact_lower_plate.vtu"}));
+  scene.contacts[0].name = "a/b";
+  scene.contacts[1].name = "a b";
+  EXPECT_EQ(contact_files("u.vtu", scene), (Paths{"u_contact_a_b.vtu", "u_contact_a_b_.vtu"}));
+  for (ContactRecipe &contact : scene.contacts)
+    contact.name.clear();
+  EXPECT_EQ(contact_files("u.vtu", scene), (Paths{"u_contact_1.vtu", "u_contact_2.vtu"}));
+  scene.contacts.pop_back();
+  EXPECT_EQ(contact_files("u.vtu", scene), Paths{"u_contact.vtu"});
+}
+
 TEST_F(PairVtu, WithoutFieldsNothingIsWritten) {
   ReducedModel model = synthetic::random_pair_model({}, 13, p0());
   OnlineSolver solver(model, p0());

@@ -202,6 +202,46 @@ TEST(Case, ChoicesVariantsAndPathsChangeIt) {
   EXPECT_THROW((void)entry_in(chosen, {"", {{"contact.wall.lumped", "yes"}}}), Error);
 }
 
+TEST(Case, TestsAreThoseOfTheChoicesAndVariant) {
+  std::map<std::string, std::string> with = chosen;
+  with["tests"] = "{pressed: {at: {depth: 0.05}, expect: {energy: 2 - 1, reaction: 0}, "
+                  "tolerance: 1e-3}}";
+  with["choices"] = "{law: {default: none, none: {}, "
+                    "coulomb: {contact.floor.friction: {coulomb: 0.3}, tests: }}}";
+  with["variants"] = "{hard: {let.stiff: 4, tests.pressed.expect.energy: 4}}";
+  const std::vector<SceneTest> tests = scene_of(with).tests;
+  ASSERT_EQ(tests.size(), 1U);
+  EXPECT_EQ(tests[0].name, "pressed");
+  EXPECT_EQ(tests[0].at, (std::map<std::string, double>{{"depth", 0.05}}));
+  EXPECT_EQ(tests[0].expected, (std::map<std::string, double>{{"energy", 1}, {"reaction", 0}}));
+  EXPECT_EQ(tests[0].tolerance, 1e-3);
+  EXPECT_TRUE(scene_of(with, {{"law", "coulomb"}}).tests.empty());
+  EXPECT_EQ(scene_of(with, {}, {"hard", {}}).tests.at(0).expected.at("energy"), 4);
+  with["materials"] = "{rubber: {at: all, E: young*stiff, nu: nu}}";
+  with["free"] = "depth";
+  with["tests"] = "{pressed: {at: {k: 2}, expect: {energy: 1}, tolerance: 1e-3}}";
+  EXPECT_TRUE(scene_of(with).tests.at(0).at.empty()) << "nothing depends on k";
+}
+
+TEST(Case, TestsHaveUnits) {
+  const Scene scene = scene_of({{"units", "{length: mm, force: N}"},
+                                {"parameters", "{depth: {range: [10 um, 1 mm], default: 0.5, "
+                                               "limits: [0, 2], unit: mm}}"},
+                                {"materials", "{steel: {at: all, E: 205 GPa, nu: 0.25}}"},
+                                {"tests", "{deep: {at: {depth: 0.15 cm}, "
+                                          "expect: {peak_pressure: 2 GPa}, tolerance: 1e-2}}"}});
+  ASSERT_EQ(scene.tests.size(), 1U);
+  EXPECT_NEAR(scene.tests[0].at.at("depth"), 1.5, 1e-15) << "within its limits";
+  EXPECT_NEAR(scene.tests[0].expected.at("peak_pressure"), 2000, 1e-12);
+}
+
+TEST(Case, NamesOfContactAreKept) {
+  EXPECT_EQ(scene_of().contacts.front().name, "floor");
+  const Scene roller = make_scene("roller");
+  EXPECT_EQ(contact_name(roller, 1), "lower plate");
+  EXPECT_EQ(described(roller.contacts[0]), "contact 'upper plate' on 'top'");
+}
+
 TEST(Case, ParametersThatNothingUsesAreLeftOut) {
   const std::map<std::string, std::string> other{
       {"materials", "{rubber: {at: all, E: young, nu: nu}}"}};

@@ -197,6 +197,41 @@ TEST(WrongCase, BodiesAndContact) {
   });
 }
 
+TEST(WrongCase, Tests) {
+  const auto test = [](const std::string &at, const std::string &more) {
+    return Sections{{"tests", "{known: {at: {" + at + "}, " + more + "}}"}};
+  };
+  const std::string rest = "expect: {energy: 1}, tolerance: 1e-3";
+  const auto expects = [&](const std::string &what) {
+    return test("depth: 0.05", "tolerance: 1e-3, expect: " + what);
+  };
+  EXPECT_EQ(said(block_case(test("depth: 0.05, k: 2", rest))), "");
+  expect_refused({
+      {test("dept: 0.05", rest), "there is no parameter 'dept': the nearest is 'depth'"},
+      {test("young: 15", rest), "young is a constant"},
+      {test("depth: deep", rest), "'deep' has the name deep"},
+      {test("depth: 0.2", rest), "depth is 0.2: its range of validity is [0.01, 0.1]"},
+      {test("nu: 0.5", rest), "nu is 0.5: its range of validity is"},
+      {test("depth: [0.05]", rest), "depth is a list"},
+      {test("depth: 0.05 mm", rest), "no units are declared"},
+      {expects("{enrgy: 1}"), "there is no output 'enrgy': the nearest is 'energy'"},
+      {expects("{energy: 1/0}"), "is not finite"},
+      {expects("{energy: {is: 1}}"), "energy is no table"},
+      {expects("{}"), "a test expects an output"},
+      {expects("energy"), "expect is a table"},
+      {test("depth: 0.05", "tolerance: 1"), "'expect' is missing"},
+      {test("depth: 0.05", "expect: {energy: 1}"), "'tolerance' is missing"},
+      {test("depth: 0.05", "expect: {energy: 1}, tolerance: 0"), "is positive"},
+      {test("depth: 0.05", rest + ", mesh: {}"), "unknown key 'mesh' of tests: the nearest is"},
+      {{{"tests", "{known: 1}"}}, "known is a table"},
+      {{{"units", "{length: mm, force: N}"},
+        {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05, unit: mm}}"},
+        {"materials", "{rubber: {at: all, E: 15, nu: 0.3}}"},
+        {"tests", "{known: {at: {depth: 2 N}, " + rest + "}}"}},
+       "a length"},
+  });
+}
+
 TEST(WrongCase, AllDefectsAreToldAtOnceByTheirPlaces) {
   const std::string message = said("rbvi: 1\n"
                                    "physics: plane_strain\n"
@@ -226,7 +261,9 @@ TEST(WrongCase, AllDefectsAreToldAtOnceByTheirPlaces) {
 TEST(WrongCase, DamagedTextsAreRefusedOrRead) {
   const std::string whole = block_case({{"let", "{a: 2}"},
                                         {"loads", "{own: {at: all, force: [0, -a*k]}}"},
-                                        {"choices", "{c: {default: d, d: {}, e: {let.a: 3}}}"}});
+                                        {"choices", "{c: {default: d, d: {}, e: {let.a: 3}}}"},
+                                        {"tests", "{t: {at: {depth: 0.05}, expect: {energy: 1}, "
+                                                  "tolerance: 1e-3}}"}});
   const std::string pieces = "{}[]:,'\" \n\t-#&*?|>%@!0e.(^)\xc3\x01~";
   std::mt19937 random(5);
   const auto below = [&](std::size_t n) {

@@ -91,6 +91,14 @@ TEST(WholeScene, EveryChangeOfAMembraneIsNoticed) {
               {"parameter radius", [](Scene &s) { s.parameters.all[0].valid.upper = 0.37; }}});
 }
 
+/// Samples and models of another name for a contact serve on.
+TEST(WholeScene, NamesOfContactDoNotCount) {
+  Scene scene = make_scene("roller", {{"arc_edges", "8"}});
+  const std::string before = text_of(scene);
+  scene.contacts[0].name = "ceiling";
+  EXPECT_EQ(text_of(scene), before);
+}
+
 TEST(WholeScene, EveryChangeOfARollerIsNoticed) {
   const Scene scene = make_scene("roller", {{"arc_edges", "8"}});
   expect_noticed(

@@ -87,6 +87,8 @@ TEST(ReadInvocation, CommandFileAndOptions) {
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).command, "help");
   EXPECT_EQ(invocation({"rbvi", "solve", "--help"}).topic, "solve");
   EXPECT_EQ(invocation({"rbvi"}).command, "help");
+  EXPECT_EQ(invocation({"rbvi", "-help"}).page, "");
+  EXPECT_EQ(invocation({"rbvi", "--help", "--schema"}).page, "schema");
   EXPECT_EQ(invocation({"rbvi", "--version"}).status, 0);
 }
 

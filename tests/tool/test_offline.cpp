@@ -89,7 +89,8 @@ TEST_F(Offline, CountsQueriesAtWhichAHalfPlaneIsNowhere) {
   HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, {}};
   plane.position = [](const FullMu &mu) { return between_samples(mu, nan, 0); };
   options.scene.contacts = {half_plane(plane)};
-  expect_unanswered("the position of the half-plane on 'contact' is not finite at down=0.03");
+  expect_unanswered(
+      "the position of the half-plane of contact on 'contact' is not finite at down=0.03");
 }
 
 TEST_F(Offline, RefusesTrainingParametersAtWhichSomethingIsNotFinite) {
@@ -102,7 +103,7 @@ TEST_F(Offline, RefusesTrainingParametersAtWhichSomethingIsNotFinite) {
   HalfPlane plane{"contact", {0, -1, 0}, {0, 0, 0}, constant(0)};
   plane.friction = {FrictionLaw::coulomb, broken};
   options.scene.contacts = {half_plane(plane)};
-  expect_refused("the coefficient of friction on 'contact'" + where);
+  expect_refused("the coefficient of friction of contact on 'contact'" + where);
   options.scene = pushed_block();
   options.scene.fixed.front().values = {{[broken](const FullMu &mu, const Point &) {
     return Point{0, -broken(mu), 0};

@@ -8,8 +8,9 @@ namespace rbvi {
 
 struct Contact {
   std::vector<std::unique_ptr<ContactInterface>> interfaces;
-  std::vector<Index> first_row; ///< interfaces + 1
-  SparseMatrix stacked_gram;    ///< of W, with several interfaces
+  std::vector<std::string> names; ///< contact_name of each
+  std::vector<Index> first_row;   ///< interfaces + 1
+  SparseMatrix stacked_gram;      ///< of W, with several interfaces
 
   Index dual_size() const { return first_row.back(); }
   /// All normal multipliers, over the interfaces.

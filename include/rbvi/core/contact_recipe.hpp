@@ -62,7 +62,11 @@ struct ContactRecipe {
   std::function<std::unique_ptr<ContactInterface>(const Scene &scene, InterfaceMesh mesh)> make;
   /// What files store of it, without its entities: they have its mesh.
   Record record{};
+  std::string name{}; ///< of its entry in the case; "": it has none (contact_name)
 };
+
+/// "contact 'floor' on 'foot'", or "contact on 'foot'": for messages.
+std::string described(const ContactRecipe &contact);
 
 /// A kind of contact that files know by name.
 struct ContactKind {

@@ -54,6 +54,7 @@ struct Outputs {
   /// Large deformations: the change in the last step over that in the one before.
   std::optional<double> contraction;
   std::optional<double> seconds;
+  std::string name{};                ///< of the contact interface, where they are of one alone
   std::vector<Outputs> interfaces{}; ///< of contact, each apart; empty: there is one
 };
 
@@ -104,10 +105,10 @@ std::string resolution_warning(const Outputs &outputs);
 
 /// The warnings of several answers.
 struct ResolutionTally {
-  long all = 0;     ///< answers
-  long at_ends = 0; ///< where contact reaches the end of its boundary
-  long coarse = 0;  ///< others with a warning
-  std::string first;
+  long all = 0;                 ///< answers
+  long at_ends = 0;             ///< where contact reaches the end of its boundary
+  long coarse = 0;              ///< others with a warning
+  std::string first_end, first; ///< the first warning of each
   void add(const Outputs &outputs);
   /// One line for those at the ends, one for the others, where there are any. `answers`: what they
   /// are called.

@@ -89,6 +89,14 @@ struct BodyMaterial {
   Named<Material> of_cell;
 };
 
+/// Outputs of one full solve that are known.
+struct SceneTest {
+  std::string name;
+  std::map<std::string, double> at{};       ///< parameters; the others keep their values
+  std::map<std::string, double> expected{}; ///< outputs (core/outputs.hpp)
+  double tolerance = 0;                     ///< relative; of an output that is 0 absolute
+};
+
 struct Scene {
   std::string name;
   std::string summary; ///< one line
@@ -131,6 +139,8 @@ struct Scene {
   Sum a;         ///< symmetric
   Sum f;         ///< empty: no load
   Sum v_product; ///< inner product of V, exact terms; mu is empty there
+
+  std::vector<SceneTest> tests{};
 };
 
 /// An option of the program that a case file sets.
@@ -167,6 +177,10 @@ bool follows_state(const Scene &scene);
 bool keeps_nodes(const Scene &scene);
 /// Whether every interface bounds single nodes, without friction.
 bool bounds_nodes(const Scene &scene);
+
+/// What a contact of the scene is called: its name; without one "contact", of several "contact 1",
+/// "contact 2", ...
+std::string contact_name(const Scene &scene, std::size_t number);
 
 /// Whether data and solutions are symmetric about x = 0 for all free parameters.
 bool is_symmetric(const Scene &scene);

@@ -21,7 +21,8 @@ struct Grid {
   std::vector<int> cells; ///< `per_cell` node numbers each
   int per_cell = 3;       ///< 2 lines, 3 triangles, 4 tetrahedra, 6 and 10 quadratic ones
   std::vector<Field> of_nodes, of_cells, of_all;
-  std::string scene = ""; ///< its name
+  std::string scene = "";              ///< its name
+  std::vector<std::string> contacts{}; ///< of its interfaces; of a grid of one, of that one
 };
 
 enum class VtuFormat {
@@ -32,7 +33,7 @@ enum class VtuFormat {
 /// ASCII up to 2000 nodes.
 VtuFormat vtu_format(const Grid &grid);
 
-/// `of_all`, the scene and the units of all fields become field data. Written atomically. Throws
+/// `of_all`, the names and the units of all fields become field data. Written atomically. Throws
 /// failure: sizes that do not fit, directory not writable.
 void write_vtu(const std::filesystem::path &path, const Grid &grid, VtuFormat format);
 

@@ -5,17 +5,20 @@
 
 namespace rbvi {
 
-/// Of the interface of this number: "u.vtu" -> "u_contact.vtu", "u_contact_2.vtu", ...
-std::filesystem::path contact_file(const std::filesystem::path &path, std::size_t number = 0);
+/// Of the interfaces of a scene: "u.vtu" -> "u_contact.vtu"; of several by their names,
+/// "u_contact_upper_plate.vtu", or "u_contact_1.vtu" where they have none.
+std::vector<std::filesystem::path> contact_files(const std::filesystem::path &path,
+                                                 const Scene &scene);
 
 /// One solution, full or reduced: `u` at all dofs (the motion of the scene is added), `lambda` at
 /// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields and interfaces alone are
 /// read). The displacement goes to `path`, with the number of the body on each cell
-/// and, of elastic bodies, the stresses at its centre; to its contact_file each interface
+/// and, of elastic bodies, the stresses at its centre; to its contact_files each interface
 /// with pressure, gap and (curves) displacement; of two bodies the part of the slave curve that
 /// faces the master. A pressure that is constant on edges is also given at the nodes, as the mean
-/// of the edges beside them weighted by length. Field data: "mu_NAME" of every parameter. Returns
-/// the files written. Throws failure if the model was read without its fields.
+/// of the edges beside them weighted by length. Field data: "mu_NAME" of every parameter, the names
+/// of the interfaces. Returns the files written. Throws failure if the model was read without its
+/// fields.
 std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,
                                              const FullMu &all_parameters,
                                              const ReducedModel &model, const Vector &u,

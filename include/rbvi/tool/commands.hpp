@@ -28,8 +28,13 @@ void command_bench(const ToolOptions &options);
 void command_growth(const ToolOptions &options);
 
 /// A case: its text and variants, its mesh, its functions, contact over the box, one solve. What
-/// was read is printed, every defect told. Collective on the world.
+/// was read is printed, every defect told; and its tests, where they are asked for. Collective on
+/// the world.
 void command_check(const ToolOptions &options);
+
+/// Solves at the tests of the scene, and prints what is expected, found, and how far it is off.
+/// Throws failure if one does not pass. Collective on the world.
+void run_tests(const ToolOptions &options);
 
 /// Writes NAME/case.yaml, a case to begin with; of a Gmsh mesh, if one is named, with its parts.
 void command_new(const std::string &name, const std::string &mesh);

@@ -13,8 +13,8 @@ namespace rbvi {
 /// The command line: command, its file (inspect) or scene (help), and what PETSc is to see.
 struct Invocation {
   std::string command, file;
-  std::string topic;     ///< help: the command that is asked about; new: the mesh
-  bool markdown = false; ///< help: as a page
+  std::string topic; ///< help: the command that is asked about; new: the mesh
+  std::string page;  ///< help: "markdown", all options; "schema", that of case files; else ""
   mutable std::vector<std::string> arguments; ///< program name and options, dashes normalised
   std::optional<int> status;                  ///< set: nothing to run, exit with this
   std::string message;                        ///< printed then

@@ -32,6 +32,7 @@ struct ToolOptions {
   std::map<std::string, std::string> set_files; ///< option -> the file that holds its set
   std::string mu, vtu, csv;
   bool plan = false;
+  bool run_tests = false;  ///< check: those of the case
   bool stability = true;   ///< verify: inf-sup constants and bounds too
   std::vector<int> growth; ///< bench: refinements whose cost is measured; empty: time against error
 };

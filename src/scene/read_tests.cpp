@@ -1,0 +1,69 @@
+#include "reader.hpp"
+
+#include "rbvi/core/outputs.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/core/validity.hpp"
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// Throws bad_input where there is none.
+const CaseNode &declaration_of(const Reader &reader, const std::string &parameter) {
+  const CaseNode &all = section(reader, "parameters");
+  std::vector<std::string> names;
+  for (const auto &[name, node] : all.entries)
+    names.push_back(name);
+  const CaseNode *found = all.find(parameter);
+  if (found == nullptr)
+    throw bad_input("there is no parameter '" + parameter + "': the nearest is '" +
+                    nearest_name(parameter, names) + "'");
+  return *found;
+}
+
+/// A parameter that only other choices use has no value here.
+void read_place(const Reader &reader, const std::string &name, const CaseNode &node,
+                const Scene &scene, SceneTest &test) {
+  const CaseNode &declared = declaration_of(reader, name);
+  if (declared.find("range") == nullptr)
+    throw bad_input(name + " is a constant: a test is at parameters that have a range");
+  const double value = number_in(reader, node);
+  const auto used = std::ranges::find(scene.parameters.all, name, &Parameter::name);
+  if (used == scene.parameters.all.end()) return;
+  if (reader.units) check_unit(reader, node, used->unit);
+  check_range(used->valid, value, name);
+  if (declared.find("limits") == nullptr) check_range({used->lower, used->upper}, value, name);
+  test.at[name] = value;
+}
+
+SceneTest test_in(const Reader &reader, const std::string &name, const CaseNode &node,
+                  const Scene &scene, Defects &defects) {
+  SceneTest test{name};
+  if (const CaseNode *at = node.find("at"))
+    for (const auto &[parameter, value] : at->entries)
+      defects.collect(value, [&, &own = parameter, &number = value] {
+        read_place(reader, own, number, scene, test);
+      });
+  const CaseNode &expect = entry(node, "expect");
+  if (expect.entries.empty()) throw bad_input("a test expects an output: {normal_force: 1.5}");
+  for (const auto &[output, value] : expect.entries)
+    defects.collect(value, [&, &own = output, &number = value] {
+      test.expected[output_column(own).name] = number_in(reader, number);
+    });
+  test.tolerance = number_in(reader, entry(node, "tolerance"));
+  if (!(test.tolerance > 0)) throw bad_input("the tolerance of a test is positive");
+  return test;
+}
+
+} // namespace
+
+void read_tests(const Reader &reader, Scene &scene, Defects &defects) {
+  for (const auto &[name, node] : section(reader, "tests").entries)
+    defects.collect(node, [&, &own = name, &value = node] {
+      scene.tests.push_back(test_in(reader, own, value, scene, defects));
+    });
+}
+
+} // namespace rbvi
