@@ -99,11 +99,11 @@ Vector contact_coefficients(const AffineTerms &terms, Part part, const Contact &
 }
 
 void stiffness_of(const ReducedModel &model, const Vector &theta, Matrix &lower) {
-  const StiffnessChange &change = model.a_change;
+  const StiffnessChange &change = model.body.a_change;
   const Index n = model.primal_size(), r = change.rank();
   lower.resize(n, n);
-  if (r == 0) return unpack(model.a.reduced * theta, lower);
-  unpack(model.a.reduced.col(0) * change.scales.dot(theta), lower);
+  if (r == 0) return unpack(model.body.a.reduced * theta, lower);
+  unpack(model.body.a.reduced.col(0) * change.scales.dot(theta), lower);
   lower.triangularView<Eigen::Lower>() +=
       change.range * unpacked(change.cores * theta, r) * change.range.transpose();
 }

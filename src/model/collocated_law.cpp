@@ -41,11 +41,11 @@ CollocatedSolver::CollocatedSolver(const ReducedModel &model, const Scene &scene
                                    const Contact &contact, const QueryOptions &options)
     : model_(model), scene_(scene), options_(options),
       at_nodes_(model, scene, contact, options, false),
-      starts_(scene.parameters, model.law->starts_mu) {}
+      starts_(scene.parameters, model.contact.law->starts_mu) {}
 
 CollocatedResult CollocatedSolver::solve_functions(const LawAtMu &law, const Vector &start) {
   CollocatedResult found = solve_collocated(
-      collocated_problem(model_.law->basis, law, at_nodes_.problem().body()), start);
+      collocated_problem(model_.contact.law->basis, law, at_nodes_.problem().body()), start);
   if (!found.converged)
     throw failure("the reduced law of contact is not solved: " + found.reason +
                   "; reduce again with -multiplier_reduction condensed, or with more functions");
@@ -55,7 +55,7 @@ CollocatedResult CollocatedSolver::solve_functions(const LawAtMu &law, const Vec
 Vector CollocatedSolver::start(const FullMu &mu) {
   if (options_.warm) return last_;
   return starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
-    const Vector there = model_.law->starts_mu.col(sample);
+    const Vector there = model_.contact.law->starts_mu.col(sample);
     ReducedAnswer unused;
     const LawAtMu law =
         at_nodes_.problem().at(expand(scene_.parameters, {there.begin(), there.end()}), unused);
@@ -65,11 +65,11 @@ Vector CollocatedSolver::start(const FullMu &mu) {
 
 bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &start,
                                            ReducedAnswer &answer) {
-  const bool checks = model_.law->condensed.terms.size() > 0;
-  const bool mends = model_.law->mended && checks;
+  const bool checks = model_.contact.law->condensed.terms.size() > 0;
+  const bool mends = model_.contact.law->mended && checks;
   try {
     CollocatedResult reduced = solve_functions(law, start);
-    const Matrix functions = multiplier_coefficients(model_.law->basis);
+    const Matrix functions = multiplier_coefficients(model_.contact.law->basis);
     answer.lambda = functions * reduced.x;
     if (options_.looks_for_others)
       answer.to_other = distance_of_answers(answer.lambda, functions * solve_functions(law, {}).x);

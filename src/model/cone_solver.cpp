@@ -18,8 +18,8 @@ constexpr double active_fraction = 1e-6; ///< of the peak: below it a node count
 
 /// Number of primal functions of one query.
 Index solved_size(const ReducedModel &model) {
-  if (!model.online_enriched) return model.primal_size();
-  return model.modes + std::min(model.supremizers, model.generators);
+  if (!model.body.online_enriched) return model.primal_size();
+  return model.body.modes + std::min(model.body.supremizers, model.contact.generators);
 }
 
 } // namespace
@@ -27,10 +27,11 @@ Index solved_size(const ReducedModel &model) {
 ConeSolver::ConeSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                        const QueryOptions &options)
     : model_(model), scene_(scene), contact_(contact), options_(options), body_(model, scene),
-      positive_(model.free_modes == 0 && (model.dual_basis.array() >= 0).all()),
-      starts_(model.scene.parameters, model.trained_mu), at_mu_(body_),
-      qp_(solved_size(model), model.free_modes), g_(Vector::Zero(model.generators)) {
-  const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
+      positive_(model.contact.free_modes == 0 && (model.contact.dual_basis.array() >= 0).all()),
+      starts_(model.scene.parameters, model.made.trained_mu), at_mu_(body_),
+      qp_(solved_size(model), model.contact.free_modes),
+      g_(Vector::Zero(model.contact.generators)) {
+  const Vector rows = model.contact.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
   Index end = rows.size();
   while (end > 0 && rows[end - 1] == 0)
     --end;
@@ -42,8 +43,8 @@ ConeSolver::ConeSolver(const ReducedModel &model, const Scene &scene, const Cont
 void ConeSolver::evaluate_contact(const Vector &state, ReducedAnswer &answer) {
   ContactOperators &op = answer.contact;
   assemble(contact_, answer.mu, {state}, op);
-  const auto basis = model_.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
-  const Matrix traces = op.b.middleRows(first_dual_, dual_rows_) * model_.contact_trace;
+  const auto basis = model_.contact.dual_basis.middleRows(first_dual_, dual_rows_).transpose();
+  const Matrix traces = op.b.middleRows(first_dual_, dual_rows_) * model_.contact.trace;
   b_.noalias() = basis * traces;
   g_.noalias() = basis * op.g.segment(first_dual_, dual_rows_);
   turned_b_ = body_.turned(b_.transpose());
@@ -58,14 +59,15 @@ void ConeSolver::set_b(const Vector &theta_b) {
     return;
   }
   b_scale_ = 1;
-  b_ = (model_.b.reduced * theta_b).reshaped(model_.generators, model_.primal_size());
+  b_ = (model_.contact.b.reduced * theta_b)
+           .reshaped(model_.contact.generators, model_.primal_size());
   theta_b_ = theta_b;
   turned_b_ = body_.turned(b_.transpose());
   root_of_y_ = 0;
 }
 
 void ConeSolver::set_y() {
-  if (model_.online_enriched) at_mu_.restrict_to(enriched_subspace(b_, model_.modes));
+  if (model_.body.online_enriched) at_mu_.restrict_to(enriched_subspace(b_, model_.body.modes));
   if (root_of_y_ == at_mu_.root_number()) return;
   y_ = std::sqrt(at_mu_.scale()) * at_mu_.half_response_of_turned(turned_b_);
   root_of_y_ = at_mu_.root_number();
@@ -93,12 +95,13 @@ void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
   if (model_.evaluates_contact())
     evaluate_contact(state, answer);
   else
-    set_b(answer.theta_b = contact_coefficients(model_.b, Part::b, contact_, scene_, answer.mu));
+    set_b(answer.theta_b =
+              contact_coefficients(model_.contact.b, Part::b, contact_, scene_, answer.mu));
   set_y();
   f_ = at_mu_.load();
-  if (model_.g.size() > 0)
-    g_.noalias() =
-        model_.g.reduced * contact_coefficients(model_.g, Part::g, contact_, scene_, answer.mu);
+  if (model_.contact.g.size() > 0)
+    g_.noalias() = model_.contact.g.reduced *
+                   contact_coefficients(model_.contact.g, Part::g, contact_, scene_, answer.mu);
   solve_dual(answer);
 }
 
@@ -109,7 +112,7 @@ void ConeSolver::finish(ReducedAnswer &answer) {
   answer.energy = 0.5 * answer.u.dot(au) - f_.dot(answer.u);
   answer.residual =
       kkt_residual(at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
-                   answer.lambda, model_.free_modes, terms);
+                   answer.lambda, model_.contact.free_modes, terms);
   answer.least_pressure = active_fraction;
   if (!(answer.residual <= largest_left))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
@@ -119,7 +122,7 @@ void ConeSolver::finish(ReducedAnswer &answer) {
 }
 
 void ConeSolver::check_pull(const ReducedAnswer &answer) const {
-  const Vector pressure = model_.dual_basis * answer.lambda;
+  const Vector pressure = model_.contact.dual_basis * answer.lambda;
   Index node = 0;
   if (pressure.minCoeff(&node) >= -largest_pull * pressure.maxCoeff()) return;
   const Point at = dual_points(contact_)[node];
@@ -144,7 +147,7 @@ void ConeSolver::solve_following(ReducedAnswer &answer) {
   for (int k = 0; k < most_steps; ++k) {
     solve_pair(state, answer);
     iterations += answer.iterations;
-    images.push_back(model_.contact_trace * answer.u);
+    images.push_back(model_.contact.trace * answer.u);
     const Vector change = images.back() - state;
     const bool settled = change.norm() <= tolerance * images.back().norm() && last_x.size() > 0 &&
                          (answer.lambda - last_x).norm() <= tolerance * answer.lambda.norm();
@@ -177,13 +180,13 @@ void ConeSolver::solve_from_start(ReducedAnswer &answer) {
 
 void ConeSolver::start(const FullMu &mu) {
   const Start &start = starts_.nearest(parts_of_box(scene_.parameters, mu), [&](Index sample) {
-    const Vector there = model_.trained_mu.col(sample);
+    const Vector there = model_.made.trained_mu.col(sample);
     ReducedAnswer unused;
     unused.mu = expand(scene_.parameters, {there.begin(), there.end()});
     qp_.start_from({});
     solve_from_start(unused);
     Start found{qp_.active(), {}, y_number_};
-    if (model_.a.size() == 1 && model_.b.size() == 1) found.qp = qp_; // Y stays
+    if (model_.body.a.size() == 1 && model_.contact.b.size() == 1) found.qp = qp_; // Y stays
     return found;
   });
   if (start.qp && start.y_number == y_number_)

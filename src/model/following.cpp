@@ -25,8 +25,9 @@ FollowingSolver::FollowingSolver(const ReducedModel &model, const Scene &scene,
                                  const Contact &contact, const QueryOptions &options, bool by_rule)
     : model_(model), scene_(scene), contact_(contact), by_rule_(by_rule),
       looks_for_others_(options.looks_for_others || by_rule), warm_(options.warm),
-      columns_(laws_of_columns(contact, model.dual_basis)), body_(model, scene), at_mu_(body_),
-      evaluated_(model, scene, contact, body_), rows_are_identity_(model.dual_basis.isIdentity(0)),
+      columns_(laws_of_columns(contact, model.contact.dual_basis)), body_(model, scene),
+      at_mu_(body_), evaluated_(model, scene, contact, body_),
+      rows_are_identity_(model.contact.dual_basis.isIdentity(0)),
       w_product_(evaluated_.rows() * contact.w_product() * evaluated_.rows().transpose()),
       starts_(model, scene, options.warm) {
   const ContactInterface *nodal = nodal_interface(contact);
@@ -42,7 +43,7 @@ NonlinearStart FollowingSolver::start(const FullMu &mu) const {
   else if (last_state_.size() > 0)
     start.state = last_state_;
   else
-    start.state = starts_.predicted(model_.law->states, mu);
+    start.state = starts_.predicted(model_.contact.law->states, mu);
   return start;
 }
 
@@ -58,7 +59,7 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu) {
                            .w_product = w_product_};
   if (at_mu_.has_load()) {
     load = at_mu_.half_response(at_mu_.load());
-    problem.free = model_.contact_trace * at_mu_.transposed_half_response(load);
+    problem.free = model_.contact.trace * at_mu_.transposed_half_response(load);
   }
   NonlinearOptions options{.economical = true};
   if (!nodal_ && has_curvature(contact_) && !problem.laws.has_tangents())

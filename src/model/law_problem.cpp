@@ -12,7 +12,7 @@ namespace rbvi {
 namespace {
 
 const ReducedModel &with_law(const ReducedModel &model) {
-  if (!model.law) throw bad_input("the model has no law of contact at nodes");
+  if (!model.contact.law) throw bad_input("the model has no law of contact at nodes");
   return model;
 }
 
@@ -20,8 +20,8 @@ const ReducedModel &with_law(const ReducedModel &model) {
 
 LawProblem::LawProblem(const ReducedModel &model, const Scene &scene, const Contact &contact)
     : model_(with_law(model)), interfaces_(contact),
-      columns_(laws_of_columns(contact, model.dual_basis)),
-      edge_(edge_of_nodes(contact, model.dual_basis)), body_(model, scene), at_mu_(body_),
+      columns_(laws_of_columns(contact, model.contact.dual_basis)),
+      edge_(edge_of_nodes(contact, model.contact.dual_basis)), body_(model, scene), at_mu_(body_),
       contact_(reduced_contact(model, scene, contact, body_)) {}
 
 LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &state) {
@@ -29,11 +29,11 @@ LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &st
   contact_->set(mu, state, answer);
   at_mu_.set(mu);
   LawAtMu law{contact_->g(), {}, {}, laws_at(columns_, interfaces_, mu)};
-  const MultiplierBasis &functions = model_.law->basis;
+  const MultiplierBasis &functions = model_.contact.law->basis;
   if (functions.normal.size() > 0 || at_mu_.has_load()) law.b = contact_->b();
-  if (model_.online_enriched)
-    at_mu_.restrict_to(
-        enriched_subspace(multiplier_coefficients(functions).transpose() * law.b, model_.modes));
+  if (model_.body.online_enriched)
+    at_mu_.restrict_to(enriched_subspace(multiplier_coefficients(functions).transpose() * law.b,
+                                         model_.body.modes));
   if (at_mu_.has_load()) {
     law.load = at_mu_.half_response(at_mu_.load());
     law.q -= law.b * at_mu_.transposed_half_response(law.load);
@@ -42,7 +42,7 @@ LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &st
 }
 
 AtAllNodes LawProblem::at_all_nodes(const LawAtMu &law, const Vector &x) {
-  std::vector<Index> all(model_.generators);
+  std::vector<Index> all(model_.contact.generators);
   std::iota(all.begin(), all.end(), 0);
   const Matrix h = contact_->condensed_columns(all);
   // A multiplier that faces no partner has no row.
@@ -62,7 +62,7 @@ void LawProblem::finish(const LawAtMu &law, ReducedAnswer &answer) const {
 
 LawStarts::LawStarts(const ReducedModel &model, const Scene &scene, bool warm)
     : model_(model), scene_(scene), warm_(warm),
-      samples_(parts_of_box(scene.parameters, model.law->starts_mu)) {}
+      samples_(parts_of_box(scene.parameters, model.contact.law->starts_mu)) {}
 
 Vector LawStarts::predicted(const Matrix &of_samples, const FullMu &mu) const {
   return local_fit(of_samples, samples_, parts_of_box(scene_.parameters, mu));
@@ -71,7 +71,7 @@ Vector LawStarts::predicted(const Matrix &of_samples, const FullMu &mu) const {
 Vector LawStarts::at(const FullMu &mu) const {
   if (last_.size() > 0) return last_;
   if (samples_.cols() == 0) return {};
-  return predicted(model_.law->starts, mu);
+  return predicted(model_.contact.law->starts, mu);
 }
 
 void LawStarts::keep(const Vector &start) {

@@ -15,7 +15,7 @@ constexpr double least_distance = 1e-6;
 } // namespace
 
 bool has_several_answers(const ReducedModel &model) {
-  return model.histories.contains("self_check/other");
+  return model.made.histories.contains("self_check/other");
 }
 
 NodeLawSolver::NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
@@ -56,8 +56,9 @@ ReducedAnswer NodeLawSolver::solve(const FullMu &mu) {
 
 std::unique_ptr<QueryMethod> law_solver(const ReducedModel &model, const Scene &scene,
                                         const Contact &contact, const QueryOptions &options) {
-  if (!model.law) throw bad_input("the model has no law of contact at nodes");
-  const bool follows = follows_state(contact), on_functions = model.law->basis.normal.size() > 0;
+  if (!model.contact.law) throw bad_input("the model has no law of contact at nodes");
+  const bool follows = follows_state(contact),
+             on_functions = model.contact.law->basis.normal.size() > 0;
   if (follows && on_functions)
     throw bad_input("contact that follows the displacement is reduced to a law at all nodes");
   if (on_functions) return std::make_unique<CollocatedSolver>(model, scene, contact, options);

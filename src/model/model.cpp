@@ -22,13 +22,13 @@ Matrix leading_block(const Matrix &packed, Index rows, Index r, Index n) {
 } // namespace
 
 void check_model(const ReducedModel &model) {
-  require(!model.interfaces.empty(), "it has no contact interface");
-  const int dim = model.interfaces.front().mesh.dim;
+  require(!model.contact.interfaces.empty(), "it has no contact interface");
+  const int dim = model.contact.interfaces.front().mesh.dim;
   require(dim == 2 || dim == 3, "interfaces have neither 2 nor 3 dimensions");
   const FieldChecker checker;
   StoredBeside none;
   list_model(checker, model, none);
-  if (model.mesh_points.rows() > 0 || model.primal_basis.rows() > 0)
+  if (model.fields.points.rows() > 0 || model.fields.basis.rows() > 0)
     list_fields(checker, "fields/", model);
 }
 
@@ -38,38 +38,46 @@ const std::vector<std::string> &multiplier_reduction_names() {
 }
 
 ReducedModel leading(const ReducedModel &model, int n, int r) {
-  if (n < 1 || n > model.primal_size() || r < std::min(1, model.generators) || r > model.generators)
+  if (n < 1 || n > model.primal_size() || r < std::min(1, model.contact.generators) ||
+      r > model.contact.generators)
     throw bad_input("no leading part of " + std::to_string(n) + " primal and " + std::to_string(r) +
                     " dual functions in a model of " + std::to_string(model.primal_size()) +
-                    " and " + std::to_string(model.generators));
-  if (model.law && r != model.generators)
+                    " and " + std::to_string(model.contact.generators));
+  if (model.contact.law && r != model.contact.generators)
     throw bad_input("a model of contact with a support has no part with fewer multipliers");
   ReducedModel result = model;
-  result.modes = std::min(n, model.modes);
-  result.supremizers = n - result.modes;
-  result.online_enriched = model.online_enriched && result.supremizers > 0;
-  result.generators = r;
-  result.free_modes = std::max(0, r - (model.generators - model.free_modes));
-  if (model.a_change.rank() > 0) result.a_change.range = model.a_change.range.topRows(n);
-  result.a.reduced = leading_triangles(model.a.reduced, model.primal_size(), n);
-  if (model.b.size() > 0) result.b.reduced = leading_block(model.b.reduced, model.generators, r, n);
-  if (model.f.size() > 0) result.f.reduced = model.f.reduced.topRows(n);
-  if (model.g.size() > 0) result.g.reduced = model.g.reduced.topRows(r);
-  result.dual_basis = model.dual_basis.leftCols(r);
-  result.contact_trace = model.contact_trace.leftCols(n);
+  result.body.modes = std::min(n, model.body.modes);
+  result.body.supremizers = n - result.body.modes;
+  result.body.online_enriched = model.body.online_enriched && result.body.supremizers > 0;
+  result.contact.generators = r;
+  result.contact.free_modes =
+      std::max(0, r - (model.contact.generators - model.contact.free_modes));
+  if (model.body.a_change.rank() > 0)
+    result.body.a_change.range = model.body.a_change.range.topRows(n);
+  result.body.a.reduced = leading_triangles(model.body.a.reduced, model.primal_size(), n);
+  if (model.contact.b.size() > 0)
+    result.contact.b.reduced =
+        leading_block(model.contact.b.reduced, model.contact.generators, r, n);
+  if (model.body.f.size() > 0) result.body.f.reduced = model.body.f.reduced.topRows(n);
+  if (model.contact.g.size() > 0) result.contact.g.reduced = model.contact.g.reduced.topRows(r);
+  result.contact.dual_basis = model.contact.dual_basis.leftCols(r);
+  result.contact.trace = model.contact.trace.leftCols(n);
   keep_leading_nitsche(model.primal_size(), n, result);
-  if (model.primal_basis.size() > 0) result.primal_basis = model.primal_basis.leftCols(n);
-  if (n != model.primal_size()) result.fields_key.clear();
-  if (r != model.generators || n != model.primal_size()) result.validation_enriched = {};
-  if (r != model.generators || n != model.primal_size()) result.self_check = {};
-  if (r != model.generators || result.modes != model.modes) result.validation_decorrelated = {};
+  if (model.fields.basis.size() > 0) result.fields.basis = model.fields.basis.leftCols(n);
+  if (n != model.primal_size()) result.fields.key.clear();
+  if (r != model.contact.generators || n != model.primal_size())
+    result.made.validation_enriched = {};
+  if (r != model.contact.generators || n != model.primal_size()) result.made.self_check = {};
+  if (r != model.contact.generators || result.body.modes != model.body.modes)
+    result.made.validation_decorrelated = {};
   return result;
 }
 
 const ValidationErrors &expected_errors(const ReducedModel &model) {
-  const ValidationErrors &plain = model.validation_decorrelated;
-  return model.supremizers == 0 && plain.count + plain.unanswered > 0 ? plain
-                                                                      : model.validation_enriched;
+  const ValidationErrors &plain = model.made.validation_decorrelated;
+  return model.body.supremizers == 0 && plain.count + plain.unanswered > 0
+             ? plain
+             : model.made.validation_enriched;
 }
 
 ErrorOfOutput errors_of_outputs(const ReducedModel &model) {
@@ -88,7 +96,7 @@ Point point_of(const Matrix &points, Index i) {
 
 Contact contact_of(const ReducedModel &model, const Scene &scene) {
   std::vector<InterfaceMesh> meshes;
-  for (const InterfaceModel &interface : model.interfaces)
+  for (const InterfaceModel &interface : model.contact.interfaces)
     meshes.push_back(interface.mesh);
   return make_contact(scene, std::move(meshes));
 }

@@ -22,13 +22,13 @@ bool holds_fields(const std::filesystem::path &path, const std::string &key) {
 } // namespace
 
 std::string key_of_fields(const ReducedModel &model) {
-  if (model.primal_basis.size() == 0) return model.fields_key;
+  if (model.fields.basis.size() == 0) return model.fields.key;
   const auto hash = [](const auto *data, auto size) {
     return std::to_string(fnv1a(data, static_cast<std::size_t>(size) * sizeof(*data)));
   };
-  return hash(model.primal_basis.data(), model.primal_basis.size()) + "-" +
-         hash(model.mesh_points.data(), model.mesh_points.size()) + "-" +
-         hash(model.mesh_cells.data(), std::ssize(model.mesh_cells));
+  return hash(model.fields.basis.data(), model.fields.basis.size()) + "-" +
+         hash(model.fields.points.data(), model.fields.points.size()) + "-" +
+         hash(model.fields.cells.data(), std::ssize(model.fields.cells));
 }
 
 FieldsFile::FieldsFile(const std::filesystem::path &model_path, const std::string &key)
@@ -55,11 +55,11 @@ void FieldsFile::commit() {
 
 void write_fields(const ReducedModel &model, const std::filesystem::path &model_path) {
   const std::string key = key_of_fields(model);
-  if (model.primal_basis.size() == 0 || holds_fields(fields_file(model_path), key)) return;
+  if (model.fields.basis.size() == 0 || holds_fields(fields_file(model_path), key)) return;
   FieldsFile file(model_path, key);
   file.write_mesh(model);
-  file.begin_basis(model.primal_basis.rows(), model.primal_basis.cols());
-  file.write_basis(0, model.primal_basis);
+  file.begin_basis(model.fields.basis.rows(), model.fields.basis.cols());
+  file.write_basis(0, model.fields.basis);
   file.commit();
 }
 

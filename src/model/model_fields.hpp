@@ -13,35 +13,36 @@ inline constexpr Index most_materials = 1000;
 /// The fields of a mesh; `group`: "", or with a slash.
 template <class Store, class Model>
 void list_mesh(const Store &store, const std::string &group, Model &model) {
-  const bool known = !model.interfaces.empty();
-  const Index nodes = model.mesh_points.rows();
-  store(group + "points", model.mesh_points,
-        Shape{any_size, known ? model.interfaces.front().mesh.dim : any_size});
-  store(group + "cells", model.mesh_cells, Indices{nodes});
+  const bool known = !model.contact.interfaces.empty();
+  const Index nodes = model.fields.points.rows();
+  store(group + "points", model.fields.points,
+        Shape{any_size, known ? model.contact.interfaces.front().mesh.dim : any_size});
+  store(group + "cells", model.fields.cells, Indices{nodes});
   store.ask(group + "cells is not a list of cells", [&] {
-    const InterfaceMesh &mesh = model.interfaces.front().mesh;
-    return std::ssize(model.mesh_cells) % nodes_per_cell(mesh.dim, mesh.degree) == 0;
+    const InterfaceMesh &mesh = model.contact.interfaces.front().mesh;
+    return std::ssize(model.fields.cells) % nodes_per_cell(mesh.dim, mesh.degree) == 0;
   });
-  store(group + "imposed_by", model.imposed_by);
-  store(group + "materials", model.mesh_materials, Indices{most_materials});
+  store(group + "imposed_by", model.fields.imposed_by);
+  store(group + "materials", model.fields.materials, Indices{most_materials});
   store.ask(group + "materials does not fit", [&] {
-    const InterfaceMesh &mesh = model.interfaces.front().mesh;
-    return model.mesh_materials.empty() ||
-           std::ssize(model.mesh_materials) * nodes_per_cell(mesh.dim, mesh.degree) ==
-               std::ssize(model.mesh_cells);
+    const InterfaceMesh &mesh = model.contact.interfaces.front().mesh;
+    return model.fields.materials.empty() ||
+           std::ssize(model.fields.materials) * nodes_per_cell(mesh.dim, mesh.degree) ==
+               std::ssize(model.fields.cells);
   });
 }
 
 /// The fields that a model holds in memory.
 template <class Store, class Model>
 void list_fields(const Store &store, const std::string &group, Model &model) {
-  const Index nodes = model.mesh_points.rows(), dofs = model.primal_basis.rows();
+  const Index nodes = model.fields.points.rows(), dofs = model.fields.basis.rows();
   list_mesh(store, group, model);
-  store(group + "primal_basis", model.primal_basis, Shape{any_size, model.primal_size()});
+  store(group + "primal_basis", model.fields.basis, Shape{any_size, model.primal_size()});
   store.ask(group + "primal_basis has no whole number of rows per node",
             [&] { return nodes > 0 && dofs % nodes == 0; });
-  store.ask(group + "imposed_by does not fit",
-            [&] { return model.imposed_by.empty() || std::ssize(model.imposed_by) == dofs; });
+  store.ask(group + "imposed_by does not fit", [&] {
+    return model.fields.imposed_by.empty() || std::ssize(model.fields.imposed_by) == dofs;
+  });
 }
 
 /// Tells the fields of one model from those of another; "" for a model without.

@@ -28,8 +28,8 @@ Scene scene_of_record(const Scene &stored, const Record &record, const Registry 
 void check_functions_of(const ReducedModel &model) {
   const Scene &scene = model.scene;
   check_box(scene);
-  const auto text = model.settings.find(whole_scene);
-  if (text == model.settings.end()) return;
+  const auto text = model.made.settings.find(whole_scene);
+  if (text == model.made.settings.end()) return;
   const std::string difference =
       scene_difference(text->second, scene_text(scene, contact_of(model, scene)), Further::allowed);
   if (!difference.empty())
@@ -59,8 +59,8 @@ ReducedModel read_model(const std::filesystem::path &path, const Registry &regis
     FieldReader reader{file};
     list_model(reader, model, beside);
     model.scene = scene_of_record(model.scene, record_in(beside.functions), registry);
-    model.fields_key = beside.fields_key;
-    if (with_fields) read_fields(path, model.fields_key, model);
+    model.fields.key = beside.fields_key;
+    if (with_fields) read_fields(path, model.fields.key, model);
     check_model(model);
     check_functions_of(model);
     return model;

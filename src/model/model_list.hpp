@@ -86,10 +86,11 @@ void list_terms(const Store &store, const std::string &name, Terms &terms, Shape
 }
 
 template <class Store, class Model> void list_change(const Store &store, Model &model) {
-  auto &change = model.a_change;
-  const Index rank = change.rank(), terms = rank > 0 ? model.a.size() : 0;
+  auto &change = model.body.a_change;
+  const Index rank = change.rank(), terms = rank > 0 ? model.body.a.size() : 0;
   store.ask("a/range is for a pair of spaces", [&] {
-    return rank == 0 || !(model.law || !model.has_multipliers() || model.online_enriched);
+    return rank == 0 ||
+           !(model.contact.law || !model.has_multipliers() || model.body.online_enriched);
   });
   store("a/scales", change.scales, Shape{terms, 1});
   store("a/range", change.range, Shape{rank > 0 ? model.primal_size() : any_size, rank});
@@ -98,18 +99,19 @@ template <class Store, class Model> void list_change(const Store &store, Model &
 
 /// The separated operators.
 template <class Store, class Model> void list_operators(const Store &store, Model &model, int dim) {
-  const Index n = model.primal_size(), r = model.generators,
-              interfaces = std::ssize(model.interfaces);
-  const Index of_a = model.a_change.rank() > 0 ? 1 : model.a.size();
-  store.ask("a has no terms", [&] { return model.a.size() > 0; });
-  store.ask("g has terms and b has not, or Nitsche's method has some",
-            [&] { return model.b.size() > 0 ? model.has_multipliers() : model.g.size() == 0; });
-  list_terms(store, "a", model.a, Shape{n * (n + 1) / 2, of_a}, dim, 1);
+  const Index n = model.primal_size(), r = model.contact.generators,
+              interfaces = std::ssize(model.contact.interfaces);
+  const Index of_a = model.body.a_change.rank() > 0 ? 1 : model.body.a.size();
+  store.ask("a has no terms", [&] { return model.body.a.size() > 0; });
+  store.ask("g has terms and b has not, or Nitsche's method has some", [&] {
+    return model.contact.b.size() > 0 ? model.has_multipliers() : model.contact.g.size() == 0;
+  });
+  list_terms(store, "a", model.body.a, Shape{n * (n + 1) / 2, of_a}, dim, 1);
   list_change(store, model);
-  list_terms(store, "b", model.b, Shape{r * n, model.b.size()}, dim, interfaces);
-  list_terms(store, "f", model.f, Shape{n, model.f.size()}, dim, 1);
-  list_terms(store, "g", model.g, Shape{r, model.g.size()}, dim, interfaces);
-  auto &energy = model.imposed_energy;
+  list_terms(store, "b", model.contact.b, Shape{r * n, model.contact.b.size()}, dim, interfaces);
+  list_terms(store, "f", model.body.f, Shape{n, model.body.f.size()}, dim, 1);
+  list_terms(store, "g", model.contact.g, Shape{r, model.contact.g.size()}, dim, interfaces);
+  auto &energy = model.body.imposed_energy;
   list_terms(store, "imposed_energy", energy, Shape{1, energy.size()}, dim, 1);
 }
 
@@ -161,10 +163,10 @@ void list_interface(const Store &store, const std::string &at, Interface &interf
 }
 
 template <class Store, class Model> void list_contact(const Store &store, Model &model, int dim) {
-  int contact = model.interfaces.empty() ? 0 : static_cast<int>(model.contact_dofs());
-  const Index rows = model.mesh_points.rows();
+  int contact = model.contact.interfaces.empty() ? 0 : static_cast<int>(model.contact_dofs());
+  const Index rows = model.fields.points.rows();
   store("contact/dofs", contact);
-  list_elements(store, "interfaces/count", "interfaces", model.interfaces,
+  list_elements(store, "interfaces/count", "interfaces", model.contact.interfaces,
                 [&](const std::string &at, auto &interface) {
                   if constexpr (Store::reads) interface.mesh.columns = contact;
                   store.ask(at + "/dofs are of other columns",
@@ -172,16 +174,17 @@ template <class Store, class Model> void list_contact(const Store &store, Model 
                   list_interface(store, at, interface, dim,
                                  rows > 0 ? rows : std::numeric_limits<int>::max());
                 });
-  store("contact/dual_basis", model.dual_basis, Shape{any_size, model.generators});
-  const bool partial = !model.trace_dofs.empty();
-  store("contact/trace_dofs", model.trace_dofs, Indices{contact});
+  store("contact/dual_basis", model.contact.dual_basis, Shape{any_size, model.contact.generators});
+  const bool partial = !model.contact.trace_dofs.empty();
+  store("contact/trace_dofs", model.contact.trace_dofs, Indices{contact});
   store.ask("contact/trace_dofs is for a pair of spaces", [&] {
-    return !partial || !(model.law || !model.has_multipliers() || model.evaluates_contact());
+    return !partial ||
+           !(model.contact.law || !model.has_multipliers() || model.evaluates_contact());
   });
   store.ask("contact/trace_dofs does not rise",
-            [&] { return std::ranges::is_sorted(model.trace_dofs); });
-  store("contact/trace", model.contact_trace,
-        Shape{partial ? std::ssize(model.trace_dofs) : contact, model.primal_size()});
+            [&] { return std::ranges::is_sorted(model.contact.trace_dofs); });
+  store("contact/trace", model.contact.trace,
+        Shape{partial ? std::ssize(model.contact.trace_dofs) : contact, model.primal_size()});
 }
 
 /// `size`: the order of the terms; `blocks`: of how many blocks they come; `contact`: dofs.
@@ -210,12 +213,13 @@ void list_condensed(const Store &store, Operator &condensed, Index size, Index b
 }
 
 template <class Store, class Model> void list_law(const Store &store, Model &model) {
-  const Index m = model.generators, b = model.b.size(), contact = model.contact_trace.rows();
-  int normal = model.law ? model.law->normal : 0;
-  store("law/normal", normal, Between{model.law ? 1 : 0, m});
+  const Index m = model.contact.generators, b = model.contact.b.size(),
+              contact = model.contact.trace.rows();
+  int normal = model.contact.law ? model.contact.law->normal : 0;
+  store("law/normal", normal, Between{model.contact.law ? 1 : 0, m});
   if (normal == 0) return;
-  if constexpr (Store::reads) model.law.emplace().normal = normal;
-  auto &law = *model.law;
+  if constexpr (Store::reads) model.contact.law.emplace().normal = normal;
+  auto &law = *model.contact.law;
   const bool evaluates = model.evaluates_contact();
   list_condensed(store, law.condensed, evaluates ? std::ssize(law.condensed.dofs) : m,
                  evaluates ? 1 : b * (b + 1) / 2, contact);
@@ -243,7 +247,7 @@ template <class Store, class Model> void list_law(const Store &store, Model &mod
     return apart.normal == 0 || (apart.normal > 0 && apart.normal < b && m > normal);
   });
   store.ask("b/interpolation mixes terms of B^n and of B^tau", [&] {
-    return model.b.interpolation.bottomLeftCorner(b - apart.normal, apart.normal).isZero(0);
+    return model.contact.b.interpolation.bottomLeftCorner(b - apart.normal, apart.normal).isZero(0);
   });
   const Index starts = law.starts.cols();
   store("law/starts", law.starts, Shape{m, any_size});
@@ -299,28 +303,28 @@ template <class Store, class Check> void list_self_check(const Store &store, Che
 /// How the model was made, and what was measured of it.
 template <class Store, class Model> void list_history(const Store &store, Model &model) {
   std::vector<std::string> names;
-  for (const auto &[name, values] : model.histories)
+  for (const auto &[name, values] : model.made.histories)
     names.push_back(name);
   store("histories/names", names);
   for (const std::string &name : names) {
-    if constexpr (Store::reads) model.histories.try_emplace(name);
-    store("histories/values/" + name, model.histories.at(name));
+    if constexpr (Store::reads) model.made.histories.try_emplace(name);
+    store("histories/values/" + name, model.made.histories.at(name));
   }
-  list_map(store, "stages/names", "stages/seconds", model.stage_seconds);
+  list_map(store, "stages/names", "stages/seconds", model.made.stage_seconds);
   const auto parameters = [&](const std::string &name, auto &mu) {
     store(name, mu, Shape{mu.cols() == 0 ? any_size : model.scene.parameters.size(), any_size});
   };
-  parameters("training/mu", model.trained_mu);
-  parameters("training/failed", model.failed_mu);
-  list_validation(store, "validation/enriched", model.validation_enriched);
-  list_validation(store, "validation/decorrelated", model.validation_decorrelated);
-  parameters("validation/mu", model.validated_mu);
-  list_self_check(store, model.self_check);
+  parameters("training/mu", model.made.trained_mu);
+  parameters("training/failed", model.made.failed_mu);
+  list_validation(store, "validation/enriched", model.made.validation_enriched);
+  list_validation(store, "validation/decorrelated", model.made.validation_decorrelated);
+  parameters("validation/mu", model.made.validated_mu);
+  list_self_check(store, model.made.self_check);
 }
 
 template <class Store, class Model>
 void list_model(const Store &store, Model &model, StoredBeside &beside) {
-  const int dim = model.interfaces.empty() ? 2 : model.interfaces.front().mesh.dim;
+  const int dim = model.contact.interfaces.empty() ? 2 : model.contact.interfaces.front().mesh.dim;
   const auto texts = [&](const std::string &group, auto &map) {
     list_map(store, group + "/names", group + "/values", map);
   };
@@ -328,16 +332,16 @@ void list_model(const Store &store, Model &model, StoredBeside &beside) {
   texts("scene/options", model.scene.options);
   texts("scene/functions", beside.functions);
   list_parameters(store, model.scene.parameters);
-  texts("settings", model.settings);
-  store("mesh/fingerprint", model.mesh_fingerprint);
-  store("size/modes", model.modes);
-  store("size/supremizers", model.supremizers);
-  store("size/generators", model.generators);
-  store("size/free_modes", model.free_modes, Between{0, model.generators});
-  list_integer(store, "size/online_enriched", model.online_enriched);
+  texts("settings", model.made.settings);
+  store("mesh/fingerprint", model.made.mesh_fingerprint);
+  store("size/modes", model.body.modes);
+  store("size/supremizers", model.body.supremizers);
+  store("size/generators", model.contact.generators);
+  store("size/free_modes", model.contact.free_modes, Between{0, model.contact.generators});
+  list_integer(store, "size/online_enriched", model.body.online_enriched);
   store.ask("it has no modes or no generators", [&] {
-    return model.modes > 0 && model.supremizers >= 0 &&
-           (model.generators > 0 || !model.has_multipliers());
+    return model.body.modes > 0 && model.body.supremizers >= 0 &&
+           (model.contact.generators > 0 || !model.has_multipliers());
   });
   store("fields/key", beside.fields_key);
   list_nitsche(store, model);

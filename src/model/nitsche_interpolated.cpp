@@ -32,11 +32,9 @@ std::vector<CurveCell> touched(const NitscheModel &model, const std::vector<Curv
 } // namespace
 
 ReducedNitsche::Interpolated::Interpolated(const ReducedModel &of, const NitscheLayer &whole)
-    : trace(of.contact_trace), layer(whole),
-      cells(touched(*of.nitsche, whole.cells)), parts{part(of.nitsche->contact_matrix,
-                                                           of.nitsche->contact_vector),
-                                                      part(of.nitsche->friction_matrix,
-                                                           of.nitsche->friction_vector)} {}
+    : trace(of.contact.trace), layer(whole), cells(touched(*of.contact.nitsche, whole.cells)),
+      parts{part(of.contact.nitsche->contact_matrix, of.contact.nitsche->contact_vector),
+            part(of.contact.nitsche->friction_matrix, of.contact.nitsche->friction_vector)} {}
 
 ReducedNitsche::Interpolated::Terms
 ReducedNitsche::Interpolated::terms(const std::vector<NitscheFace> &faces, const System &system,

@@ -19,14 +19,14 @@ LayerTerms leading_terms(const LayerTerms &terms, Index n, Index size) {
 
 Index curve_cells(const ReducedModel &model) {
   Index count = 0;
-  for (const InterfaceModel &interface : model.interfaces)
+  for (const InterfaceModel &interface : model.contact.interfaces)
     count += interface.mesh.count();
   return count;
 }
 
 void keep_leading_nitsche(Index n, Index size, ReducedModel &model) {
-  if (!model.nitsche) return;
-  NitscheModel &kept = *model.nitsche;
+  if (!model.contact.nitsche) return;
+  NitscheModel &kept = *model.contact.nitsche;
   if (kept.rule == CurveRule::interpolated) kept.starts = Matrix(kept.starts.topRows(size));
   if (kept.states.size() > 0) kept.states = Matrix(kept.states.topRows(size));
   for (LayerTerms *terms : {&kept.consistency, &kept.contact_matrix, &kept.contact_vector,
@@ -40,7 +40,7 @@ const std::vector<std::string> &curve_rule_names() {
 }
 
 std::string describe_curve(const ReducedModel &model) {
-  const NitscheModel &nitsche = *model.nitsche;
+  const NitscheModel &nitsche = *model.contact.nitsche;
   const auto number = [](auto size) { return std::to_string(size); };
   if (nitsche.rule == CurveRule::interpolated)
     return "terms: B^n " + number(nitsche.contact_matrix.size()) + ", Theta^n " +
@@ -53,11 +53,11 @@ std::string describe_curve(const ReducedModel &model) {
 }
 
 Index consistency_terms(const ReducedModel &model) {
-  return model.nitsche->consistency.size();
+  return model.contact.nitsche->consistency.size();
 }
 
 std::string nitsche_name(const ReducedModel &model) {
-  return "nitsche " + curve_rule_names()[static_cast<std::size_t>(model.nitsche->rule)];
+  return "nitsche " + curve_rule_names()[static_cast<std::size_t>(model.contact.nitsche->rule)];
 }
 
 } // namespace rbvi

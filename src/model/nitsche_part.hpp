@@ -28,13 +28,13 @@ void list_layer_terms(const Store &store, const std::string &name, Terms &terms,
 
 /// The fields of model.h5 (model_list.hpp).
 template <class Store, class Model> void list_nitsche(const Store &store, Model &model) {
-  int rule = model.nitsche ? static_cast<int>(model.nitsche->rule) : -1;
+  int rule = model.contact.nitsche ? static_cast<int>(model.contact.nitsche->rule) : -1;
   store("nitsche/rule", rule,
-        Between{model.nitsche ? 0 : -1, static_cast<int>(CurveRule::interpolated)});
+        Between{model.contact.nitsche ? 0 : -1, static_cast<int>(CurveRule::interpolated)});
   if (rule < 0) return;
-  if constexpr (Store::reads) model.nitsche.emplace().rule = static_cast<CurveRule>(rule);
-  auto &nitsche = *model.nitsche;
-  const Index n = model.primal_size(), packed = n * (n + 1) / 2, dofs = model.contact_trace.rows(),
+  if constexpr (Store::reads) model.contact.nitsche.emplace().rule = static_cast<CurveRule>(rule);
+  auto &nitsche = *model.contact.nitsche;
+  const Index n = model.primal_size(), packed = n * (n + 1) / 2, dofs = model.contact.trace.rows(),
               starts = nitsche.starts.cols();
   const bool interpolated = nitsche.rule == CurveRule::interpolated;
   store("nitsche/points", nitsche.points, Indices{4 * curve_cells(model)});

@@ -42,9 +42,10 @@ ChosenPoints whole_curve(const NitscheModel &nitsche, const NitscheLayer &layer)
 
 ReducedNitsche::ReducedNitsche(const ReducedModel &model, NitscheLayer layer)
     : model_(model), layer_(std::move(layer)), body_(model, layer_.scene),
-      consistency_(model.nitsche->consistency, layer_.cells) {
-  system_ = std::make_unique<System>(model, layer_.cells, points_of(*model.nitsche, layer_));
-  if (model.nitsche->rule == CurveRule::interpolated)
+      consistency_(model.contact.nitsche->consistency, layer_.cells) {
+  system_ =
+      std::make_unique<System>(model, layer_.cells, points_of(*model.contact.nitsche, layer_));
+  if (model.contact.nitsche->rule == CurveRule::interpolated)
     interpolated_ = std::make_unique<Interpolated>(model, layer_);
 }
 
@@ -57,21 +58,21 @@ ReducedNitsche::Quadratic ReducedNitsche::quadratic_at(const FullMu &all_paramet
   const std::vector<NitscheFace> faces =
       nitsche_faces(layer_, all_parameters, selected(layer_.cells, consistency_.cells()));
   const Vector theta = consistency_.of_blocks(nitsche_consistency(faces));
-  result.a_gamma =
-      result.a + unpacked(model_.nitsche->consistency.reduced * theta, model_.primal_size());
+  result.a_gamma = result.a + unpacked(model_.contact.nitsche->consistency.reduced * theta,
+                                       model_.primal_size());
   return result;
 }
 
 Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_parameters) const {
   if (of_samples.cols() == 0) return {};
   const ParameterSpace &space = layer_.scene.parameters;
-  return local_fit(of_samples, parts_of_box(space, model_.nitsche->starts_mu),
+  return local_fit(of_samples, parts_of_box(space, model_.contact.nitsche->starts_mu),
                    parts_of_box(space, all_parameters));
 }
 
 ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
-  const NitscheModel &nitsche = *model_.nitsche;
+  const NitscheModel &nitsche = *model_.contact.nitsche;
   system.quadratic = quadratic_at(all_parameters);
   ReducedAnswer answer;
   answer.mu = all_parameters;
@@ -106,14 +107,15 @@ Matrix ReducedNitsche::tangent() const {
 }
 
 Vector ReducedNitsche::multiplier(const FullMu &all_parameters, const Vector &u) const {
-  return nitsche_multiplier(layer_, all_parameters, model_.contact_trace * u);
+  return nitsche_multiplier(layer_, all_parameters, model_.contact.trace * u);
 }
 
 Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vector &u,
                                         Outputs &outputs) const {
-  if (model_.nitsche->rule == CurveRule::full) return u;
+  if (model_.contact.nitsche->rule == CurveRule::full) return u;
   if (!whole_)
-    whole_ = std::make_unique<System>(model_, layer_.cells, whole_curve(*model_.nitsche, layer_));
+    whole_ = std::make_unique<System>(model_, layer_.cells,
+                                      whole_curve(*model_.contact.nitsche, layer_));
   whole_->quadratic = quadratic_at(all_parameters);
   whole_->set_points(layer_, all_parameters);
   whole_->set(u);
@@ -126,7 +128,7 @@ Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vect
 
 void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
                              Outputs &outputs) const {
-  const Vector on_layer = model_.contact_trace * over_whole_curve(all_parameters, u, outputs);
+  const Vector on_layer = model_.contact.trace * over_whole_curve(all_parameters, u, outputs);
   const std::vector<NitscheFace> faces =
       nitsche_faces(layer_, all_parameters, layer_.cells, on_layer);
   nitsche_outputs(layer_, all_parameters, faces, on_layer, nitsche_pressures(faces, on_layer),

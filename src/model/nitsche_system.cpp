@@ -34,7 +34,7 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
   for (const auto &[number, factor] : chosen) {
     const int cell = number / 4;
     if (parts.empty() || parts.back().cell != cell)
-      parts.push_back({cell, {}, basis_on(cells[cell], model.contact_trace).transpose()});
+      parts.push_back({cell, {}, basis_on(cells[cell], model.contact.trace).transpose()});
     parts.back().points.emplace_back(number % 4, factor);
   }
   points = static_cast<Index>(chosen.size());

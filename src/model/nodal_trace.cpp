@@ -26,12 +26,12 @@ std::vector<Index> nodal_dofs(const Contact &contact) {
 
 /// NodalTrace::held_.
 std::vector<bool> held_by(const ReducedModel &model, const Contact &contact) {
-  const Vector rows = model.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
-  if (!model.law || rows.minCoeff() > 0) return {};
+  const Vector rows = model.contact.dual_basis.rowwise().lpNorm<Eigen::Infinity>();
+  if (!model.contact.law || rows.minCoeff() > 0) return {};
   std::vector<bool> held;
   if (model.evaluates_contact()) {
     held.assign(model.contact_dofs(), false);
-    for (const int dof : model.law->condensed.dofs)
+    for (const int dof : model.contact.law->condensed.dofs)
       held[dof] = true;
     return held;
   }
@@ -45,20 +45,20 @@ std::vector<bool> held_by(const ReducedModel &model, const Contact &contact) {
 
 NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact)
     : model_(model), held_(held_by(model, contact)) {
-  if (model.trace_dofs.empty()) {
+  if (model.contact.trace_dofs.empty()) {
     dofs_ = nodal_dofs(contact);
     trace_ = model.contact_trace(dofs_, Eigen::all);
     return;
   }
-  dofs_.assign(model.trace_dofs.begin(), model.trace_dofs.end());
-  trace_ = model.contact_trace;
+  dofs_.assign(model.contact.trace_dofs.begin(), model.contact.trace_dofs.end());
+  trace_ = model.contact.trace;
   unknown_.assign(model.contact_dofs(), true);
   for (const Index dof : dofs_)
     unknown_[dof] = false;
 }
 
 Vector NodalTrace::gap_left(const ContactOperators &operators, const Vector &u) const {
-  if (dofs_.empty()) return operators.nodal_gap - operators.nodal_b * (model_.contact_trace * u);
+  if (dofs_.empty()) return operators.nodal_gap - operators.nodal_b * (model_.contact.trace * u);
   Vector at_contact = Vector::Zero(model_.contact_dofs());
   at_contact(dofs_) = trace_ * u;
   Vector gap = operators.nodal_gap - operators.nodal_b * at_contact;

@@ -14,10 +14,10 @@ namespace {
 
 /// Throws bad_input where displacements are imposed by boundaries that the scene does not have.
 void check_imposed_by(const ReducedModel &model, const Scene &scene) {
-  std::vector<const std::vector<int> *> lists{&model.imposed_by};
-  for (const InterfaceModel &interface : model.interfaces)
+  std::vector<const std::vector<int> *> lists{&model.fields.imposed_by};
+  for (const InterfaceModel &interface : model.contact.interfaces)
     lists.push_back(&interface.mesh.imposed_by);
-  for (const AffineTerms *terms : {&model.f, &model.g, &model.imposed_energy})
+  for (const AffineTerms *terms : {&model.body.f, &model.contact.g, &model.body.imposed_energy})
     for (const SampleMesh &sample : terms->samples)
       lists.push_back(&sample.imposed_by);
   for (const std::vector<int> *list : lists)
@@ -28,8 +28,8 @@ void check_imposed_by(const ReducedModel &model, const Scene &scene) {
 
 /// Throws bad_input where cells are of materials that the scene does not have.
 void check_materials(const ReducedModel &model, const Scene &scene) {
-  std::vector<const std::vector<int> *> lists{&model.mesh_materials};
-  for (const InterfaceModel &interface : model.interfaces)
+  std::vector<const std::vector<int> *> lists{&model.fields.materials};
+  for (const InterfaceModel &interface : model.contact.interfaces)
     lists.push_back(&interface.mesh.materials);
   for (const std::vector<int> *list : lists)
     if (std::ranges::any_of(*list, [&](int m) { return m >= std::ssize(scene.materials); }))
@@ -44,13 +44,14 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, const QueryOptions &option
 OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOptions &options)
     : model_(model), scene_(with_imposed_loads(std::move(scene))),
       imposed_energy_(rbvi::imposed_energy(scene_)), contact_(contact_of(model, scene_)),
-      dual_basis_(model.dual_basis.sparseView()) {
-  check_terms_of(model.a, scene_.a, scene_.parameters, "a");
-  check_terms_of(model.f, scene_.f, scene_.parameters, "f");
+      dual_basis_(model.contact.dual_basis.sparseView()) {
+  check_terms_of(model.body.a, scene_.a, scene_.parameters, "a");
+  check_terms_of(model.body.f, scene_.f, scene_.parameters, "f");
   check_imposed_by(model, scene_);
   check_materials(model, scene_);
-  check_terms_of(model.imposed_energy, imposed_energy_, scene_.parameters, "the imposed energy");
-  if (contact_.dual_size() != model.dual_basis.rows() ||
+  check_terms_of(model.body.imposed_energy, imposed_energy_, scene_.parameters,
+                 "the imposed energy");
+  if (contact_.dual_size() != model.contact.dual_basis.rows() ||
       has_multipliers(scene_) != model.has_multipliers() ||
       (model.evaluates_contact() == separable_contact(scene_) && model.has_multipliers()))
     throw bad_input("the contact of the model does not fit its scene in this build");
@@ -61,7 +62,7 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
     return;
   }
   trace_.emplace(model, contact_);
-  if (model.law)
+  if (model.contact.law)
     method_ = law_solver(model, scene_, contact_, options);
   else
     method_ = std::make_unique<ConeSolver>(model, scene_, contact_, options);
@@ -71,7 +72,7 @@ ReducedAnswer OnlineSolver::solve(const Mu &mu, bool extrapolate) {
   check_query(scene_, mu, extrapolate);
   return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu), [&] {
     ReducedAnswer solution = method_->solve(expand(scene_.parameters, mu));
-    if (const AffineTerms &imposed = model_.imposed_energy; imposed.size() > 0)
+    if (const AffineTerms &imposed = model_.body.imposed_energy; imposed.size() > 0)
       solution.energy += imposed.reduced.row(0).dot(
           affine_coefficients(imposed, imposed_energy_, scene_, solution.mu));
     return solution;
@@ -97,14 +98,14 @@ Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
 }
 
 Vector OnlineSolver::field(const ReducedAnswer &solution) const {
-  if (model_.primal_basis.rows() == 0)
+  if (model_.fields.basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
-  Vector field = model_.primal_basis * solution.u;
-  if (model_.imposed_by.empty()) return field;
+  Vector field = model_.fields.basis * solution.u;
+  if (model_.fields.imposed_by.empty()) return field;
   std::vector<Point> nodes;
-  for (Index i = 0; i < model_.mesh_points.rows(); ++i)
-    nodes.push_back(point_of(model_.mesh_points, i));
-  return field + imposed_values(scene_, solution.mu, nodes, model_.imposed_by);
+  for (Index i = 0; i < model_.fields.points.rows(); ++i)
+    nodes.push_back(point_of(model_.fields.points, i));
+  return field + imposed_values(scene_, solution.mu, nodes, model_.fields.imposed_by);
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {

@@ -128,7 +128,7 @@ long count_queries(const OnlineArguments &arguments, const ParameterSpace &space
 /// Which outputs this model has: those of the first of its training parameters, or of some random
 /// ones, that it answers.
 Outputs example(OnlineSolver &solver, const OnlineArguments &arguments) {
-  const Matrix &trained = solver.model().trained_mu;
+  const Matrix &trained = solver.model().made.trained_mu;
   std::vector<Mu> candidates = parse_set(solver.scene().parameters, "random:100:1");
   for (Index p = trained.cols(); p-- > 0;)
     candidates.insert(candidates.begin(), Mu(trained.col(p).begin(), trained.col(p).end()));
@@ -203,7 +203,7 @@ double violation(const Outputs &outputs) {
 
 void warn_of_violation(const ReducedModel &model, double violation, std::ostream &out) {
   constexpr double tolerated = 1e-6;
-  if (!model.law || violation <= tolerated) return;
+  if (!model.contact.law || violation <= tolerated) return;
   out << "warning: the laws of contact and friction are violated by " << violation
       << " of the largest pressure at some node: reduce again with -multiplier_exact yes, which "
          "mends such answers\n";

@@ -204,7 +204,7 @@ void run(const OnlineArguments &arguments, const Registry &registry, std::ostrea
   }
   const bool fields = arguments.full || !arguments.vtu.empty();
   ReducedModel model = read_model(arguments.model, registry, fields);
-  if (arguments.decorrelated) model = leading(model, model.modes, model.generators);
+  if (arguments.decorrelated) model = leading(model, model.body.modes, model.contact.generators);
   if (arguments.mu.empty() && arguments.queries.empty()) {
     print_model(out, model);
     return;

@@ -93,7 +93,7 @@ void print_nitsche(std::ostream &out, const ReducedModel &model) {
 /// "140", of each boundary: "281 + 281".
 std::string nodes_of_interfaces(const ReducedModel &model) {
   std::string text;
-  for (const InterfaceModel &interface : model.interfaces)
+  for (const InterfaceModel &interface : model.contact.interfaces)
     for (const int nodes : interface.mesh.parts)
       text += (text.empty() ? "" : " + ") + std::to_string(nodes);
   return text;
@@ -102,10 +102,11 @@ std::string nodes_of_interfaces(const ReducedModel &model) {
 /// Where the model has no sample, though it was to have one.
 void print_failed(std::ostream &out, const ReducedModel &model) {
   constexpr std::size_t most = 10;
-  const std::vector<Mu> failed = from_columns(model.failed_mu);
+  const std::vector<Mu> failed = from_columns(model.made.failed_mu);
   if (failed.empty()) return;
   label(out, "failed samples") << failed.size() << " of "
-                               << failed.size() + static_cast<std::size_t>(model.trained_mu.cols())
+                               << failed.size() +
+                                      static_cast<std::size_t>(model.made.trained_mu.cols())
                                << ", without a high-fidelity answer at\n";
   for (std::size_t k = 0; k < std::min(most, failed.size()); ++k)
     label(out, "") << describe(model.scene.parameters, failed[k]) << '\n';
@@ -125,49 +126,51 @@ void print_model(std::ostream &out, const ReducedModel &model) {
   label(out, "options") << names_and_values(model.scene.options) << '\n';
   print_parameters(out, model.scene.parameters);
   print_failed(out, model);
-  label(out, "modes") << model.modes << '\n';
-  const bool joined = model.law && model.law->reduction == MultiplierReduction::condensed;
+  label(out, "modes") << model.body.modes << '\n';
+  const bool joined =
+      model.contact.law && model.contact.law->reduction == MultiplierReduction::condensed;
   label(out, joined ? "responses" : "supremizers")
-      << model.supremizers << (model.online_enriched ? " (the space is made online)" : "") << '\n';
+      << model.body.supremizers << (model.body.online_enriched ? " (the space is made online)" : "")
+      << '\n';
   if (!model.has_multipliers())
     print_nitsche(out, model);
-  else if (model.law)
-    print_law(out, *model.law, model.generators);
+  else if (model.contact.law)
+    print_law(out, *model.contact.law, model.contact.generators);
   else
-    label(out, "cone generators") << model.generators - model.free_modes << '\n';
-  if (model.free_modes > 0) label(out, "free modes") << model.free_modes << '\n';
-  print_terms(out, "a", model.a);
-  print_terms(out, "f", model.f);
+    label(out, "cone generators") << model.contact.generators - model.contact.free_modes << '\n';
+  if (model.contact.free_modes > 0) label(out, "free modes") << model.contact.free_modes << '\n';
+  print_terms(out, "a", model.body.a);
+  print_terms(out, "f", model.body.f);
   if (!model.has_multipliers()) {
     label(out, "b, g") << "none: Nitsche's method\n";
   } else if (model.evaluates_contact()) {
     label(out, "b, g") << "assembled for each mu on " << nodes_of_interfaces(model)
                        << " contact nodes\n";
   } else {
-    if (model.law && model.law->apart.normal > 0)
-      print_terms_of_rows(out, model.b.size(), model.law->apart);
+    if (model.contact.law && model.contact.law->apart.normal > 0)
+      print_terms_of_rows(out, model.contact.b.size(), model.contact.law->apart);
     else
-      print_terms(out, "b", model.b);
-    print_terms(out, "g", model.g);
+      print_terms(out, "b", model.contact.b);
+    print_terms(out, "g", model.contact.g);
   }
-  label(out, "multipliers") << model.dual_basis.rows() << '\n';
-  label(out, "mesh") << model.mesh_fingerprint << '\n';
-  for (const auto &[name, value] : model.settings)
+  label(out, "multipliers") << model.contact.dual_basis.rows() << '\n';
+  label(out, "mesh") << model.made.mesh_fingerprint << '\n';
+  for (const auto &[name, value] : model.made.settings)
     if (name != whole_scene) label(out, name) << value << '\n';
   print_expected_errors(out, model);
   label(out, "self-check");
-  print_self_check(out, model.self_check, model.scene.parameters);
+  print_self_check(out, model.made.self_check, model.scene.parameters);
   print_several_answers(out, model);
-  if (model.supremizers > 0)
-    label(out, "  decorrelated") << validation(model.validation_decorrelated) << '\n';
+  if (model.body.supremizers > 0)
+    label(out, "  decorrelated") << validation(model.made.validation_decorrelated) << '\n';
 }
 
 void print_several_answers(std::ostream &out, const ReducedModel &model) {
   if (!has_several_answers(model)) return;
-  std::vector<double> known = model.histories.at("self_check/other");
+  std::vector<double> known = model.made.histories.at("self_check/other");
   for (double &value : known)
     value = parse_number(short_number(value), "parameter");
-  const bool reduced = model.law->reduction == MultiplierReduction::collocated;
+  const bool reduced = model.contact.law->reduction == MultiplierReduction::collocated;
   out << "  the " << (reduced ? "reduced " : "") << "law of friction has several answers, "
       << short_number(known.front()) << " of the largest multiplier apart at "
       << describe(model.scene.parameters, Mu(known.begin() + 1, known.end())) << ": a query takes "

@@ -36,29 +36,31 @@ Matrix enriched_subspace(const Matrix &b, Index modes) {
 
 ReducedBody::ReducedBody(const ReducedModel &model, const Scene &scene)
     : model_(model), scene_(scene) {
-  if (model.a_change.rank() > 0)
+  if (model.body.a_change.rank() > 0)
     find_change();
-  else if (model.a.size() <= 2 && !model.online_enriched)
+  else if (model.body.a.size() <= 2 && !model.body.online_enriched)
     find_common_eigenvectors();
-  turned_b_.resize(model.primal_size(), model.generators * model.b.size());
-  for (Index p = 0; p < model.b.size(); ++p)
-    turned_b_.middleCols(p * model.generators, model.generators) =
-        turned(model.b.reduced.col(p).reshaped(model.generators, model.primal_size()).transpose());
+  turned_b_.resize(model.primal_size(), model.contact.generators * model.contact.b.size());
+  for (Index p = 0; p < model.contact.b.size(); ++p)
+    turned_b_.middleCols(p * model.contact.generators, model.contact.generators) =
+        turned(model.contact.b.reduced.col(p)
+                   .reshaped(model.contact.generators, model.primal_size())
+                   .transpose());
 }
 
 void ReducedBody::find_change() {
   a_.resize(model_.primal_size(), model_.primal_size());
-  unpack(model_.a.reduced.col(0), a_);
+  unpack(model_.body.a.reduced.col(0), a_);
   l_ = a_;
   if (!cholesky_in_place(l_)) throw stiffness_not_definite();
-  ThinQr qr = thin_qr(turned(model_.a_change.range));
+  ThinQr qr = thin_qr(turned(model_.body.a_change.range));
   u_ = std::move(qr.q);
   along_ = std::move(qr.r);
 }
 
 /// The common eigenvectors of A_N at two corners of the box, or of its only term.
 void ReducedBody::find_common_eigenvectors() {
-  const AffineTerms &a = model_.a;
+  const AffineTerms &a = model_.body.a;
   const Index n = model_.primal_size();
   const auto stiffness_at = [&](const FullMu &mu) {
     return unpacked(a.reduced * affine_coefficients(a, scene_.a, scene_, mu), n);
@@ -95,7 +97,7 @@ Matrix ReducedBody::prepared(const Matrix &loads) const {
 
 void BodyAtMu::set(const FullMu &mu) {
   mu_ = mu;
-  if (body_.model_.online_enriched) {
+  if (body_.model_.body.online_enriched) {
     subspace_.resize(0, 0);
     lower_.resize(0, 0);
     ++root_number_;
@@ -103,7 +105,7 @@ void BodyAtMu::set(const FullMu &mu) {
   std::vector<double> values = values_of_dependence(body_.scene_.a, mu);
   if (at_ == values) return;
   at_.reset();
-  theta_ = affine_coefficients(body_.model_.a, body_.scene_.a, body_.scene_, mu);
+  theta_ = affine_coefficients(body_.model_.body.a, body_.scene_.a, body_.scene_, mu);
   a_.resize(0, 0);
   lower_.resize(0, 0);
   const Matrix &eigenvalues = body_.eigenvalues_;
@@ -120,7 +122,7 @@ void BodyAtMu::set(const FullMu &mu) {
 }
 
 void BodyAtMu::set_change() {
-  const StiffnessChange &change = body_.model_.a_change;
+  const StiffnessChange &change = body_.model_.body.a_change;
   scale_ = change.scales.dot(theta_);
   if (!(scale_ > 0)) throw stiffness_not_definite();
   core_ = unpacked(change.cores * theta_, change.rank());
@@ -144,7 +146,7 @@ Vector BodyAtMu::restricted(const Vector &load) const {
 }
 
 Vector BodyAtMu::load() const {
-  const AffineTerms &f = body_.model_.f;
+  const AffineTerms &f = body_.model_.body.f;
   if (!has_load()) return Vector::Zero(body_.model_.primal_size());
   return f.reduced * affine_coefficients(f, body_.scene_.f, body_.scene_, mu_);
 }
@@ -172,7 +174,7 @@ Matrix BodyAtMu::stiffness() const {
 
 Vector BodyAtMu::times(const Vector &u) const {
   if (body_.l_.size() == 0) return lower_triangle().selfadjointView<Eigen::Lower>() * u;
-  const Matrix &q = body_.model_.a_change.range;
+  const Matrix &q = body_.model_.body.a_change.range;
   return scale_ * (body_.a_.selfadjointView<Eigen::Lower>() * u) +
          q * (core_ * (q.transpose() * u));
 }

@@ -23,10 +23,11 @@ public:
       : model_(model), scene_(scene), contact_(contact) {}
 
   void set(const FullMu &mu, const Vector &, ReducedAnswer &answer) override {
-    theta_ = contact_coefficients(model_.b, Part::b, contact_, scene_, mu);
-    g_ = model_.g.reduced * contact_coefficients(model_.g, Part::g, contact_, scene_, mu);
+    theta_ = contact_coefficients(model_.contact.b, Part::b, contact_, scene_, mu);
+    g_ = model_.contact.g.reduced *
+         contact_coefficients(model_.contact.g, Part::g, contact_, scene_, mu);
     answer.theta_b = theta_;
-    const CondensedOperator &condensed = model_.law->condensed;
+    const CondensedOperator &condensed = model_.contact.law->condensed;
     coefficients_.resize(condensed.terms.cols());
     if (coefficients_.size() == 0) return;
     const Vector of_block = block_coefficients(condensed, scene_, mu);
@@ -37,15 +38,16 @@ public:
   }
 
   Matrix b() const override {
-    return (model_.b.reduced * theta_).reshaped(model_.generators, model_.primal_size());
+    return (model_.contact.b.reduced * theta_)
+        .reshaped(model_.contact.generators, model_.primal_size());
   }
 
   Matrix condensed_columns(const std::vector<Index> &which) override {
-    const Index m = model_.generators;
+    const Index m = model_.contact.generators;
     Matrix result(m, std::ssize(which));
     for (Index k = 0; k < result.cols(); ++k)
       result.col(k).noalias() =
-          model_.law->condensed.terms.middleRows(which[k] * m, m) * coefficients_;
+          model_.contact.law->condensed.terms.middleRows(which[k] * m, m) * coefficients_;
     return result;
   }
 
@@ -96,14 +98,14 @@ private:
 EvaluatedContact::EvaluatedContact(const ReducedModel &model, const Scene &scene,
                                    const Contact &contact, const ReducedBody &body)
     : model_(model), scene_(scene), contact_(contact),
-      rows_(Matrix(model.dual_basis.transpose()).sparseView()),
-      place_(model.contact_trace.rows(), -1) {
-  const std::vector<int> &dofs = model.law->condensed.dofs;
-  trace_ = dofs.empty() ? model.contact_trace : Matrix(model.contact_trace(dofs, Eigen::all));
+      rows_(Matrix(model.contact.dual_basis.transpose()).sparseView()),
+      place_(model.contact.trace.rows(), -1) {
+  const std::vector<int> &dofs = model.contact.law->condensed.dofs;
+  trace_ = dofs.empty() ? model.contact.trace : Matrix(model.contact_trace(dofs, Eigen::all));
   unit_loads_ = body.prepared(trace_.transpose());
   for (std::size_t k = 0; k < dofs.size(); ++k)
     place_[dofs[k]] = static_cast<int>(k);
-  if (!dofs.empty()) compliance_ = std::make_unique<OfModel>(model.law->condensed);
+  if (!dofs.empty()) compliance_ = std::make_unique<OfModel>(model.contact.law->condensed);
 }
 
 EvaluatedContact::~EvaluatedContact() = default;
@@ -113,7 +115,8 @@ Compliance &EvaluatedContact::compliance() {
 }
 
 bool EvaluatedContact::set_compliance(const FullMu &mu) {
-  return compliance_ && compliance_->set(block_coefficients(model_.law->condensed, scene_, mu));
+  return compliance_ &&
+         compliance_->set(block_coefficients(model_.contact.law->condensed, scene_, mu));
 }
 
 void EvaluatedContact::set(const FullMu &mu, const Vector &state, ReducedAnswer &answer) {

@@ -57,7 +57,7 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries)
         raise(check.friction, *outputs.friction_violation, mu);
       peak = std::max(peak, outputs.peak_pressure.value_or(0));
       check.scale =
-          std::max(check.scale, (model.contact_trace * solution.u).lpNorm<Eigen::Infinity>());
+          std::max(check.scale, (model.contact.trace * solution.u).lpNorm<Eigen::Infinity>());
     } catch (const Error &error) {
       if (check.unanswered++ > 0) continue;
       check.unanswered_at = mu;
@@ -69,7 +69,7 @@ SelfCheck self_check(const ReducedModel &model, const Scene &scene, int queries)
 }
 
 void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector<Mu> set) {
-  if (!has_friction(scene) || !model.law) return;
+  if (!has_friction(scene) || !model.contact.law) return;
   if (set.empty()) set = set_of_check(model.scene.parameters, queries_of_check(model));
   OnlineSolver solver(model, scene, {.looks_for_others = true});
   Worst farthest;
@@ -82,7 +82,7 @@ void look_for_other_answers(ReducedModel &model, const Scene &scene, std::vector
     }
   }
   if (!(farthest.value > 0)) return;
-  std::vector<double> &known = model.histories["self_check/other"];
+  std::vector<double> &known = model.made.histories["self_check/other"];
   known.assign(1, farthest.value);
   known.insert(known.end(), farthest.at.begin(), farthest.at.end());
 }

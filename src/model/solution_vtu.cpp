@@ -30,7 +30,7 @@ Matrix mapped(const State &state, const Matrix &points) {
     for (Index k = 0; k < points.cols(); ++k)
       result(i, k) = image[k];
   }
-  straighten_edges(state.model.mesh_cells, state.scene.dim, state.scene.degree, result);
+  straighten_edges(state.model.fields.cells, state.scene.dim, state.scene.degree, result);
   return result;
 }
 
@@ -60,19 +60,19 @@ void describe(const State &state, Grid &grid) {
 Grid bodies(const State &state) {
   const auto &[scene, mu, model, u, lambda, moved] = state;
   const int per_cell = nodes_per_cell(scene.dim, scene.degree);
-  Grid grid{mapped(state, model.mesh_points), model.mesh_cells, per_cell, {}, {}, {}};
+  Grid grid{mapped(state, model.fields.points), model.fields.cells, per_cell, {}, {}, {}};
   describe(state, grid);
-  if (model.mesh_cells.empty())
+  if (model.fields.cells.empty())
     throw failure("the model was read without its fields: no full field can be written");
   grid.of_nodes = {{"u", moved, "m"}};
   for (std::size_t i = 0; i < scene.contacts.size(); ++i)
     grid.contacts.push_back(contact_name(scene, i));
-  const int first = model.interfaces.front().nodes.front();
+  const int first = model.contact.interfaces.front().nodes.front();
   grid.of_cells = {
-      {"body", body_numbers(model.mesh_cells, per_cell, model.mesh_points.rows(), first)}};
+      {"body", body_numbers(model.fields.cells, per_cell, model.fields.points.rows(), first)}};
   if (scene.materials.empty()) return grid;
-  const Matrix stresses =
-      centre_stresses(scene, mu, model.mesh_points, model.mesh_cells, model.mesh_materials, moved);
+  const Matrix stresses = centre_stresses(scene, mu, model.fields.points, model.fields.cells,
+                                          model.fields.materials, moved);
   grid.of_cells.push_back({"von_mises", von_mises(stresses), "Pa"});
   const std::vector<std::string> names = stress_components(scene.dim);
   for (Index c = 0; c < stresses.cols(); ++c)
@@ -83,7 +83,7 @@ Grid bodies(const State &state) {
 /// An interface with its share of the multipliers.
 Grid interface_grid(const State &state, const Contact &contact, std::size_t number) {
   ContactInterface &interface = *contact.interfaces[number];
-  const std::vector<int> &nodes = state.model.interfaces[number].nodes;
+  const std::vector<int> &nodes = state.model.contact.interfaces[number].nodes;
   const Index components = state.scene.components;
   Vector u(std::ssize(nodes) * components);
   for (std::size_t k = 0; k < nodes.size(); ++k)
@@ -124,7 +124,7 @@ std::vector<fs::path> contact_files(const fs::path &path, const Scene &scene) {
 
 std::vector<fs::path> write_vtu(const fs::path &path, const Scene &scene, const FullMu &all,
                                 const ReducedModel &model, const Vector &u, const Vector &lambda) {
-  const State state{scene, all, model, u, lambda, displacement(scene, all, model.mesh_points, u)};
+  const State state{scene, all, model, u, lambda, displacement(scene, all, model.fields.points, u)};
   const Grid whole = bodies(state);
   const Contact contact = contact_of(model, scene);
   std::vector<Grid> interfaces;

@@ -39,13 +39,13 @@ std::vector<Mu> from_columns(const Matrix &columns) {
 }
 
 bool nearest_sample_failed(const ReducedModel &model, const Mu &free) {
-  return distance_to(model.failed_mu, model.scene.parameters, free) <
-         distance_to(model.trained_mu, model.scene.parameters, free);
+  return distance_to(model.made.failed_mu, model.scene.parameters, free) <
+         distance_to(model.made.trained_mu, model.scene.parameters, free);
 }
 
 bool beyond_validation(const ReducedModel &model, const Mu &free) {
-  return model.validated_mu.cols() > 0 && expected_errors(model).count > 0 &&
-         nearer_to_boundary(model.scene.parameters, model.validated_mu, free);
+  return model.made.validated_mu.cols() > 0 && expected_errors(model).count > 0 &&
+         nearer_to_boundary(model.scene.parameters, model.made.validated_mu, free);
 }
 
 } // namespace rbvi

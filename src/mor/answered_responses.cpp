@@ -86,11 +86,11 @@ Matrix ResponseDirections::coefficients(double tolerance) const {
 
 int append_answered_responses(Problem &problem, const CondensedLoads &loads,
                               const ReducedModel &model, double tolerance, LinearBasis &modes) {
-  const CondensedOperator &condensed = model.law->condensed;
+  const CondensedOperator &condensed = model.contact.law->condensed;
   const Index size = loads.columns.cols();
   ResponseDirections directions((condensed.terms * condensed.shape).reshaped(size, size));
   std::vector<Mu> set;
-  for (const auto &training : model.law->starts_mu.colwise())
+  for (const auto &training : model.contact.law->starts_mu.colwise())
     set.emplace_back(training.begin(), training.end());
   const Mu any = set.front();
   const auto solver = law_solver(model, problem.scene(), problem.contact());

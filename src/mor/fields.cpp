@@ -85,7 +85,7 @@ std::vector<int> gather_cells(const Mesh &mesh) {
   return cells;
 }
 
-/// ReducedModel::mesh_materials.
+/// ModelFields::materials.
 std::vector<int> gather_materials(const Problem &problem) {
   const Mesh &mesh = problem.mesh();
   const std::vector<int> mine = materials_of_cells(problem.scene(), mesh);
@@ -97,7 +97,7 @@ std::vector<int> gather_materials(const Problem &problem) {
   return materials;
 }
 
-/// ReducedModel::imposed_by.
+/// ModelFields::imposed_by.
 std::vector<int> gather_imposed(const Problem &problem) {
   const Dofs &dofs = problem.dofs();
   const Mesh &mesh = problem.mesh();
@@ -136,10 +136,10 @@ void visit_rows(const Problem &problem, const LinearBasis &basis, Visit &&visit)
 } // namespace
 
 void gather_mesh(const Problem &problem, ReducedModel &model) {
-  model.mesh_points = gather_points(problem.mesh());
-  model.mesh_cells = gather_cells(problem.mesh());
-  model.mesh_materials = gather_materials(problem);
-  model.imposed_by = gather_imposed(problem);
+  model.fields.points = gather_points(problem.mesh());
+  model.fields.cells = gather_cells(problem.mesh());
+  model.fields.materials = gather_materials(problem);
+  model.fields.imposed_by = gather_imposed(problem);
 }
 
 std::string key_of_fields(const Problem &problem, const LinearBasis &basis) {
@@ -164,7 +164,7 @@ void write_fields(const Problem &problem, const LinearBasis &basis, const Reduce
   std::unique_ptr<FieldsFile> file;
   collectively(comm, [&] {
     if (!writes) return;
-    file = std::make_unique<FieldsFile>(model_path, model.fields_key);
+    file = std::make_unique<FieldsFile>(model_path, model.fields.key);
     file->write_mesh(mesh);
     file->begin_basis(problem.dofs().total, basis.size());
   });
@@ -185,18 +185,18 @@ void gather_fields(const Problem &problem, const LinearBasis &basis, ReducedMode
     MPI_Bcast(values.data(), static_cast<int>(values.size()), type, 0, comm);
   };
   const Mesh &mesh = problem.mesh();
-  model.mesh_points.resize(mesh.total_nodes, mesh.dim); // on the first rank they are there
-  model.mesh_cells.resize(
+  model.fields.points.resize(mesh.total_nodes, mesh.dim); // on the first rank they are there
+  model.fields.cells.resize(
       static_cast<std::size_t>(mesh.total_cells * nodes_per_cell(mesh.dim, mesh.degree)));
-  if (imposes_values(problem.scene())) model.imposed_by.resize(problem.dofs().total);
-  share(model.mesh_points, MPI_DOUBLE);
-  share(model.mesh_cells, MPI_INT);
-  share(model.imposed_by, MPI_INT);
-  model.primal_basis.resize(problem.dofs().total, basis.size());
+  if (imposes_values(problem.scene())) model.fields.imposed_by.resize(problem.dofs().total);
+  share(model.fields.points, MPI_DOUBLE);
+  share(model.fields.cells, MPI_INT);
+  share(model.fields.imposed_by, MPI_INT);
+  model.fields.basis.resize(problem.dofs().total, basis.size());
   visit_rows(problem, basis, [&](Index first, Index count, Matrix rows) {
     rows.resize(count, basis.size());
     share(rows, MPI_DOUBLE);
-    model.primal_basis.middleRows(first, count) = rows;
+    model.fields.basis.middleRows(first, count) = rows;
   });
 }
 

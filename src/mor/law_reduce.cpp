@@ -87,17 +87,17 @@ ReducedBases build_law_bases(Problem &problem, const std::vector<Sample> &sample
 }
 
 void add_starts(ReducedModel &model, const Problem &problem) {
-  Matrix starts = model.law->starts;
+  Matrix starts = model.contact.law->starts;
   LawProblem of_model(model, problem.scene(), problem.contact());
   for (Index p = 0; p < starts.cols(); ++p) {
-    const Vector mu = model.law->starts_mu.col(p);
+    const Vector mu = model.contact.law->starts_mu.col(p);
     ReducedAnswer unused;
-    const LawAtMu law =
-        of_model.at(expand(problem.scene().parameters, {mu.begin(), mu.end()}), unused,
-                    model.law->states.size() > 0 ? Vector(model.law->states.col(p)) : Vector());
+    const LawAtMu law = of_model.at(
+        expand(problem.scene().parameters, {mu.begin(), mu.end()}), unused,
+        model.contact.law->states.size() > 0 ? Vector(model.contact.law->states.col(p)) : Vector());
     starts.col(p) = of_model.at_all_nodes(law, starts.col(p)).start;
   }
-  model.law->starts = std::move(starts);
+  model.contact.law->starts = std::move(starts);
 }
 
 void compress_responses(Problem &problem, const std::vector<Sample> &samples,
@@ -110,20 +110,20 @@ void compress_responses(Problem &problem, const std::vector<Sample> &samples,
   });
   bases.awaiting.reset();
   const Stage stage(stages, stage::projection);
-  Matrix starts = std::move(model.law->starts);
+  Matrix starts = std::move(model.contact.law->starts);
   model = project(problem, samples, affine, bases);
-  model.law->starts = std::move(starts);
+  model.contact.law->starts = std::move(starts);
 }
 
 Gcns collocate(ReducedModel &model, const Problem &problem, const std::vector<Sample> &samples,
                const GcnsOptions &options) {
   const Scene &scene = problem.scene();
-  NodalLaw &law = *model.law;
+  NodalLaw &law = *model.contact.law;
   LawProblem of_model(model, problem.scene(), problem.contact());
-  const Index normal = law.normal, tangential = model.generators - normal;
+  const Index normal = law.normal, tangential = model.contact.generators - normal;
   const std::vector<Index> nodes =
-      nodes_with_tangent(laws_of_columns(problem.contact(), model.dual_basis).laws);
-  const Matrix &nodal = model.dual_basis;
+      nodes_with_tangent(laws_of_columns(problem.contact(), model.contact.dual_basis).laws);
+  const Matrix &nodal = model.contact.dual_basis;
   const Matrix coefficients = nodal_coefficients(nodal, multipliers_of(samples));
   std::vector<GcnsSample> problems;
   for (std::size_t p = 0; p < samples.size(); ++p) {

@@ -163,8 +163,8 @@ LayerTerms interpolate_consistency(const NitscheLayer &layer, const std::vector<
 
 void interpolate_terms(Problem &problem, const std::vector<Sample> &samples,
                        const CurveOptions &options, ReducedModel &model, CurveReport &report) {
-  NitscheModel &nitsche = *model.nitsche;
-  const Matrix &trace = model.contact_trace;
+  NitscheModel &nitsche = *model.contact.nitsche;
+  const Matrix &trace = model.contact.trace;
   // The steps as printed; with friction they can cycle without line search.
   const NitscheLayer layer = layer_of(problem.contact());
   const bool friction = layer.friction();

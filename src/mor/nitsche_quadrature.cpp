@@ -153,7 +153,7 @@ Vector errors_of_points(const ReducedModel &model, const NitscheLayer &layer,
 void choose_curve_points(AllPoints &all, double tolerance, const NitscheLayer &layer,
                          const std::vector<Sample> &samples, ReducedModel &model,
                          CurveReport &report) {
-  const Matrix pressures = model.nitsche->starts;
+  const Matrix pressures = model.contact.nitsche->starts;
   constexpr Index few = 64;
   const auto count = std::ssize(samples);
   std::vector<char> taken(samples.size(), 0);
@@ -171,10 +171,10 @@ void choose_curve_points(AllPoints &all, double tolerance, const NitscheLayer &l
   fit.add(first, all.answers().rows());
   for (double first_order = tolerance;;) {
     fit.improve(first_order);
-    set_points(all, fit.factors(), pressures, *model.nitsche);
+    set_points(all, fit.factors(), pressures, *model.contact.nitsche);
     const Vector errors = errors_of_points(model, layer, samples, all.answers());
     Index worst = 0;
-    report.points.push_back(static_cast<int>(model.nitsche->points.size()));
+    report.points.push_back(static_cast<int>(model.contact.nitsche->points.size()));
     report.error.push_back(errors.maxCoeff(&worst));
     if (report.error.back() <= tolerance) return;
     if (taken[worst] == 0)
@@ -210,9 +210,9 @@ CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
     throw bad_input("-nitsche_quadrature interpolated is for contact at rest: leave it out, or use "
                     "-kinematics small");
   CurveReport report;
-  model.nitsche = NitscheModel{};
-  NitscheModel &nitsche = *model.nitsche;
-  nitsche.consistency = interpolate_consistency(layer, samples, model.contact_trace);
+  model.contact.nitsche = NitscheModel{};
+  NitscheModel &nitsche = *model.contact.nitsche;
+  nitsche.consistency = interpolate_consistency(layer, samples, model.contact.trace);
   nitsche.starts_mu.resize(model.scene.parameters.size(), std::ssize(samples));
   for (std::size_t p = 0; p < samples.size(); ++p)
     std::copy(samples[p].mu.begin(), samples[p].mu.end(), nitsche.starts_mu.col(p).begin());

@@ -49,7 +49,7 @@ void reduce_nitsche(Problem &problem, const std::vector<Sample> &samples,
   if (options.curve.rule == CurveRule::interpolated || layer_of(problem.contact()).follows_state())
     coefficients = coefficients_of(problem, samples, result.bases.pod.basis);
   result.curve = reduce_curve(problem, samples, coefficients, left, options.curve, result.model);
-  add_histories(result.curve, result.model.histories);
+  add_histories(result.curve, result.model.made.histories);
 }
 
 } // namespace rbvi

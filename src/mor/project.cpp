@@ -91,11 +91,11 @@ AffineTerms start_terms_of_b(const AffineOperators &affine, Index entries) {
 } // namespace
 
 void describe_mesh(const Problem &problem, ReducedModel &model) {
-  model.mesh_fingerprint = problem.mesh().fingerprint;
+  model.made.mesh_fingerprint = problem.mesh().fingerprint;
   const auto &interfaces = problem.contact().interfaces;
   for (std::size_t i = 0; i < interfaces.size(); ++i) {
     const std::vector<PetscInt> &nodes = problem.places().natural_nodes[i];
-    model.interfaces.push_back({interfaces[i]->mesh(), {nodes.begin(), nodes.end()}});
+    model.contact.interfaces.push_back({interfaces[i]->mesh(), {nodes.begin(), nodes.end()}});
   }
 }
 
@@ -115,9 +115,10 @@ void accumulate_b(const Problem &problem, const AffineOperators &affine, int sna
   for (const auto &[eim, row, rows] : rows_of_b(affine, problem)) {
     const Index begin = std::exchange(first, first + eim.size());
     if (!uses(eim, snapshot)) continue;
-    const Matrix reduced =
-        sandwiched(model.dual_basis.middleRows(row, rows), op.b.middleRows(row, rows), trace);
-    accumulate(eim, snapshot, reduced.reshaped(), model.b.reduced.middleCols(begin, eim.size()));
+    const Matrix reduced = sandwiched(model.contact.dual_basis.middleRows(row, rows),
+                                      op.b.middleRows(row, rows), trace);
+    accumulate(eim, snapshot, reduced.reshaped(),
+               model.contact.b.reduced.middleCols(begin, eim.size()));
   }
 }
 
@@ -152,15 +153,15 @@ ReducedModel start_model(const Problem &problem, const ReducedBases &bases) {
   const Scene &scene = problem.scene();
   ReducedModel model;
   model.scene = scene;
-  model.settings[whole_scene] = scene_text(scene, problem.contact());
-  model.modes = bases.modes;
-  model.supremizers = bases.supremizers + bases.responses;
-  model.online_enriched = bases.online_enriched;
-  model.dual_basis = !has_multipliers(scene)       ? Matrix(problem.dual_size(), 0)
-                     : bases.nodal_dual.size() > 0 ? bases.nodal_dual
-                                                   : bases.cone.all();
-  model.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
-  model.generators = static_cast<int>(model.dual_basis.cols());
+  model.made.settings[whole_scene] = scene_text(scene, problem.contact());
+  model.body.modes = bases.modes;
+  model.body.supremizers = bases.supremizers + bases.responses;
+  model.body.online_enriched = bases.online_enriched;
+  model.contact.dual_basis = !has_multipliers(scene)       ? Matrix(problem.dual_size(), 0)
+                             : bases.nodal_dual.size() > 0 ? bases.nodal_dual
+                                                           : bases.cone.all();
+  model.contact.free_modes = static_cast<int>(bases.cone.modes.columns.cols());
+  model.contact.generators = static_cast<int>(model.contact.dual_basis.cols());
   return model;
 }
 
@@ -168,9 +169,9 @@ NodalLaw start_law(const Problem &problem, const std::vector<Sample> &samples,
                    const AffineOperators &affine, const ReducedBases &bases,
                    const ReducedModel &model) {
   NodalLaw law;
-  for (Index column = 0; column < model.generators; ++column) {
+  for (Index column = 0; column < model.contact.generators; ++column) {
     Index row = 0;
-    model.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
+    model.contact.dual_basis.col(column).cwiseAbs().maxCoeff(&row);
     if (dual_row(problem.contact(), row).normal) ++law.normal;
   }
   law.reduction = bases.reduction;
@@ -179,7 +180,7 @@ NodalLaw start_law(const Problem &problem, const std::vector<Sample> &samples,
   law.condensed = bases.condensed;
   if (affine.b_tangential.size() > 0)
     law.apart = {affine.b.size(), error_of(affine.b), error_of(affine.b_tangential)};
-  store_multipliers(problem, samples, model.dual_basis, law);
+  store_multipliers(problem, samples, model.contact.dual_basis, law);
   return law;
 }
 
@@ -187,29 +188,30 @@ NodalLaw start_law(const Problem &problem, const std::vector<Sample> &samples,
 void start_operators(const Problem &problem, const std::vector<Sample> &samples,
                      const AffineOperators &affine, const ReducedBases &bases,
                      ReducedModel &model) {
-  const Index n = model.primal_size(), generators = model.generators;
-  model.a = start_terms(affine.a, affine.sample_a, 0, std::ssize(problem.a_terms().exact));
-  model.b = start_terms_of_b(affine, generators * n);
-  model.f = start_terms(affine.f, affine.sample_f, n, std::ssize(problem.f_terms().exact));
-  model.g = start_terms(affine.g, affine.sample_g, generators);
-  if (bases.nodal_dual.size() > 0) model.law = start_law(problem, samples, affine, bases, model);
+  const Index n = model.primal_size(), generators = model.contact.generators;
+  model.body.a = start_terms(affine.a, affine.sample_a, 0, std::ssize(problem.a_terms().exact));
+  model.contact.b = start_terms_of_b(affine, generators * n);
+  model.body.f = start_terms(affine.f, affine.sample_f, n, std::ssize(problem.f_terms().exact));
+  model.contact.g = start_terms(affine.g, affine.sample_g, generators);
+  if (bases.nodal_dual.size() > 0)
+    model.contact.law = start_law(problem, samples, affine, bases, model);
 }
 
 /// Adds the operators of the snapshots that the terms are made of. Collective.
 void project_snapshots(Problem &problem, const std::vector<Sample> &samples,
                        const AffineOperators &affine, Mat basis, ReducedModel &model) {
-  const bool with_a = model.a_change.rank() == 0;
+  const bool with_a = model.body.a_change.rank() == 0;
   for (const int p : sampled_snapshots(affine, with_a)) {
     const Operators &op = problem.assemble(samples[p].mu);
     if (with_a && uses(affine.a, p))
       accumulate(affine.a, p, project_stiffness(problem.a_terms().mapped.get(), basis),
-                 model.a.reduced.rightCols(affine.a.size()));
-    if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, model.contact_trace, model);
+                 model.body.a.reduced.rightCols(affine.a.size()));
+    if (affine.b_size() > 0) accumulate_b(problem, affine, p, op, model.contact.trace, model);
     if (uses(affine.g, p))
-      accumulate(affine.g, p, model.dual_basis.transpose() * op.g, model.g.reduced);
+      accumulate(affine.g, p, model.contact.dual_basis.transpose() * op.g, model.contact.g.reduced);
     if (uses(affine.f, p))
       accumulate(affine.f, p, project_load(problem.comm(), problem.f_terms().mapped.get(), basis),
-                 model.f.reduced.rightCols(affine.f.size()));
+                 model.body.f.reduced.rightCols(affine.f.size()));
   }
 }
 
@@ -221,19 +223,20 @@ void project_exact(Problem &problem, const std::vector<Sample> &samples,
   std::vector<Mu> set;
   for (const int p : affine.a.snapshots)
     set.push_back(samples[p].mu);
-  if (model.generators > 0 && !model.law && !model.online_enriched)
-    model.a_change = stiffness_change(problem, affine.a, set, basis);
-  model.a.reduced.setZero(n * (n + 1) / 2, model.a_change.rank() > 0 ? 1 : model.a.size());
-  if (model.a_change.rank() > 0) {
+  if (model.contact.generators > 0 && !model.contact.law && !model.body.online_enriched)
+    model.body.a_change = stiffness_change(problem, affine.a, set, basis);
+  model.body.a.reduced.setZero(n * (n + 1) / 2,
+                               model.body.a_change.rank() > 0 ? 1 : model.body.a.size());
+  if (model.body.a_change.rank() > 0) {
     problem.assemble(set.front());
-    model.a.reduced.col(0) = project_stiffness(problem.a_terms().mapped.get(), basis);
+    model.body.a.reduced.col(0) = project_stiffness(problem.a_terms().mapped.get(), basis);
   }
   Index q = 0;
   for (const Handle<Mat> &term : problem.a_terms().exact)
-    model.a.reduced.col(q++) = project_stiffness(term.get(), basis);
+    model.body.a.reduced.col(q++) = project_stiffness(term.get(), basis);
   q = 0;
   for (const Handle<Vec> &term : problem.f_terms().exact)
-    model.f.reduced.col(q++) = project_load(problem.comm(), term.get(), basis);
+    model.body.f.reduced.col(q++) = project_load(problem.comm(), term.get(), basis);
 }
 
 /// Leaves in the trace of a large pair of spaces the nodes over which contact moves, those that
@@ -241,23 +244,25 @@ void project_exact(Problem &problem, const std::vector<Sample> &samples,
 void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
   constexpr Index large = 100000;
   constexpr int layers = 2;
-  if (model.law || model.b.size() == 0 || model.contact_trace.size() < large) return;
+  if (model.contact.law || model.contact.b.size() == 0 || model.contact.trace.size() < large)
+    return;
   const auto nonzero = [](const auto &row) { return (row.array() != 0).any(); };
-  std::vector<bool> near(model.dual_basis.rows());
-  for (Index row = 0; row < model.dual_basis.rows(); ++row)
-    near[row] = nonzero(model.dual_basis.row(row).head(model.generators - model.free_modes)) &&
-                !nonzero(model.dual_basis.row(row).tail(model.free_modes));
+  std::vector<bool> near(model.contact.dual_basis.rows());
+  for (Index row = 0; row < model.contact.dual_basis.rows(); ++row)
+    near[row] = nonzero(model.contact.dual_basis.row(row).head(model.contact.generators -
+                                                               model.contact.free_modes)) &&
+                !nonzero(model.contact.dual_basis.row(row).tail(model.contact.free_modes));
   for (int layer = 0; layer < layers; ++layer)
     add_neighbours(near, problem.w_product());
   Operators op;
   problem.assemble_contact(any, op);
-  std::vector<bool> known(model.contact_trace.rows(), false);
+  std::vector<bool> known(model.contact.trace.rows(), false);
   for (Index row = 0; row < op.b.rows(); ++row)
     for (SparseMatrix::InnerIterator entry(op.b, row); entry; ++entry)
       if (near[row]) known[entry.col()] = true;
   for (std::size_t dof = 0; dof < known.size(); ++dof)
-    if (known[dof]) model.trace_dofs.push_back(static_cast<int>(dof));
-  model.contact_trace = model.contact_trace(model.trace_dofs, Eigen::all).eval();
+    if (known[dof]) model.contact.trace_dofs.push_back(static_cast<int>(dof));
+  model.contact.trace = model.contact_trace(model.contact.trace_dofs, Eigen::all).eval();
 }
 
 void store_histories(const AffineOperators &affine, const ReducedBases &bases,
@@ -283,16 +288,16 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   ReducedModel model = start_model(problem, bases);
   describe_mesh(problem, model);
   start_operators(problem, samples, affine, bases, model);
-  model.imposed_energy = separate_imposed_energy(problem);
+  model.body.imposed_energy = separate_imposed_energy(problem);
   {
     const BorrowedColumns basis(bases.pod.basis.columns.get());
     project_exact(problem, samples, affine, basis.get(), model);
-    model.contact_trace = restrict_to(problem.trace(), basis.get());
+    model.contact.trace = restrict_to(problem.trace(), basis.get());
     project_snapshots(problem, samples, affine, basis.get(), model);
   }
   restrict_trace(problem, samples.front().mu, model);
-  model.fields_key = key_of_fields(problem, bases.pod.basis);
-  store_histories(affine, bases, model.histories);
+  model.fields.key = key_of_fields(problem, bases.pod.basis);
+  store_histories(affine, bases, model.made.histories);
   return model;
 }
 

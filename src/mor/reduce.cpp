@@ -201,8 +201,8 @@ Checked check_answers(const Problem &problem, ReducedModel &model, StageTable &s
   collectively(problem.comm(), [&] {
     if (rank_of(problem.comm()) != 0) return;
     look_for_other_answers(model, problem.scene());
-    model.self_check = self_check(model, problem.scene(), queries_of_check(model));
-    found = {model.self_check.unanswered, model.self_check.answered() ? 1 : 0};
+    model.made.self_check = self_check(model, problem.scene(), queries_of_check(model));
+    found = {model.made.self_check.unanswered, model.made.self_check.answered() ? 1 : 0};
   });
   MPI_Bcast(found.data(), 2, MPI_INT, 0, problem.comm());
   return {found[0], found[1] != 0};
@@ -213,9 +213,9 @@ void add_collocation(Problem &problem, const std::vector<Sample> &samples,
   const Stage stage(result.stages, stage::collocation);
   result.collocation = collocate(result.model, problem, samples, options);
   const Gcns &nodes = result.collocation;
-  result.model.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
-  result.model.histories["gcns/error"] = nodes.error;
-  result.model.histories["gcns/violation"] = nodes.violation;
+  result.model.made.histories["gcns/nodes"] = {nodes.count.begin(), nodes.count.end()};
+  result.model.made.histories["gcns/error"] = nodes.error;
+  result.model.made.histories["gcns/violation"] = nodes.violation;
 }
 
 struct CheckedPair {

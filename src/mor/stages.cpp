@@ -216,7 +216,7 @@ void add_curve_rows(const ReduceOptions &options, const Reduction *made, StageTa
 
 std::string self_check_text(const Reduction *made) {
   if (made == nullptr) return "queries of the model just made, random and at corners and faces";
-  const SelfCheck &check = made->model.self_check;
+  const SelfCheck &check = made->model.made.self_check;
   return counted(check.queries - check.unanswered, "answer") + " to " +
          std::to_string(check.queries) + " queries, residual " +
          short_number(check.residual.value) + ", penetration " +

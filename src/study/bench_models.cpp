@@ -13,8 +13,9 @@ constexpr int passes = 5; ///< over the whole set: a query is much shorter than 
 
 BenchRow named_row(const ReducedModel &model) {
   BenchRow row;
-  row.method = "reduced (" + std::to_string(model.modes) + "+" + std::to_string(model.supremizers) +
-               ", " + std::to_string(model.generators) + ")";
+  row.method = "reduced (" + std::to_string(model.body.modes) + "+" +
+               std::to_string(model.body.supremizers) + ", " +
+               std::to_string(model.contact.generators) + ")";
   return row;
 }
 
@@ -51,9 +52,9 @@ void store(const ModelErrors &errors, BenchRow &row) {
 std::vector<std::pair<int, int>> pairs_of(const ReducedModel &model) {
   std::vector<std::pair<int, int>> pairs;
   for (const auto &[n, r] : {std::pair{5, 10}, {10, 20}, {19, 50}, {51, 70}}) {
-    const bool whole = model.free_modes > 0 || model.law;
-    const int generators = whole ? model.generators : std::min(r, model.generators);
-    if (n < model.modes) pairs.emplace_back(n, generators);
+    const bool whole = model.contact.free_modes > 0 || model.contact.law;
+    const int generators = whole ? model.contact.generators : std::min(r, model.contact.generators);
+    if (n < model.body.modes) pairs.emplace_back(n, generators);
   }
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
@@ -86,7 +87,8 @@ std::vector<BenchRow> bench_models(Problem &problem, const ReducedModel &model,
     }
     add(leading(model, n, r), {});
   }
-  if (model.supremizers > 0) add(leading(model, model.modes, model.generators), {});
+  if (model.body.supremizers > 0)
+    add(leading(model, model.body.modes, model.contact.generators), {});
   add(model, {});
   const BenchRow whole = rows.back();
   const auto with = [&](const std::string &includes, const auto &answer) {

@@ -30,19 +30,21 @@ Vector congruence(const Eigen::Ref<const Vector> &packed, const Matrix &c) {
 /// The reduced operators in the basis V C.
 ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   ReducedModel result = model;
-  const Index k = c.cols(), r = model.generators;
-  result.modes = modes;
-  result.supremizers = static_cast<int>(k) - modes;
-  result.a.reduced.resize(k * (k + 1) / 2, model.a.reduced.cols());
-  for (Index q = 0; q < model.a.reduced.cols(); ++q)
-    result.a.reduced.col(q) = congruence(model.a.reduced.col(q), c);
-  if (model.a_change.rank() > 0) result.a_change.range = c.transpose() * model.a_change.range;
-  result.b.reduced.resize(r * k, model.b.size());
-  for (Index q = 0; q < model.b.size(); ++q)
-    result.b.reduced.col(q) = (model.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
-  result.f.reduced = c.transpose() * model.f.reduced;
-  result.contact_trace = model.contact_trace * c;
-  result.primal_basis.resize(0, 0);
+  const Index k = c.cols(), r = model.contact.generators;
+  result.body.modes = modes;
+  result.body.supremizers = static_cast<int>(k) - modes;
+  result.body.a.reduced.resize(k * (k + 1) / 2, model.body.a.reduced.cols());
+  for (Index q = 0; q < model.body.a.reduced.cols(); ++q)
+    result.body.a.reduced.col(q) = congruence(model.body.a.reduced.col(q), c);
+  if (model.body.a_change.rank() > 0)
+    result.body.a_change.range = c.transpose() * model.body.a_change.range;
+  result.contact.b.reduced.resize(r * k, model.contact.b.size());
+  for (Index q = 0; q < model.contact.b.size(); ++q)
+    result.contact.b.reduced.col(q) =
+        (model.contact.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
+  result.body.f.reduced = c.transpose() * model.body.f.reduced;
+  result.contact.trace = model.contact.trace * c;
+  result.fields.basis.resize(0, 0);
   return result;
 }
 
@@ -86,11 +88,12 @@ void add_stress_floors(const ReducedModel &model, const Matrix &projections, con
 
 /// Relative distances of the true multipliers to what the dual basis spans.
 Vector multiplier_floor(const ReducedModel &model, const Truths &truths, const SparseMatrix &w) {
-  if (model.law) return Vector::Zero(truths.lambda_norm.size());
-  const Index bounded = model.generators - model.free_modes;
-  const Vector distance = distances_to_cone(truths.lambda, {model.dual_basis.leftCols(bounded)}, w,
-                                            {model.dual_basis.rightCols(model.free_modes)}) *
-                          truths.lambda_norm.maxCoeff();
+  if (model.contact.law) return Vector::Zero(truths.lambda_norm.size());
+  const Index bounded = model.contact.generators - model.contact.free_modes;
+  const Vector distance =
+      distances_to_cone(truths.lambda, {model.contact.dual_basis.leftCols(bounded)}, w,
+                        {model.contact.dual_basis.rightCols(model.contact.free_modes)}) *
+      truths.lambda_norm.maxCoeff();
   return distance.binaryExpr(truths.lambda_norm, [&](double d, double size) {
     return relative(d, size, truths.largest_lambda);
   });
@@ -140,13 +143,13 @@ double displacement_norm(Problem &problem, const Mu &mu, const Vector &u) {
 Truths make_truths(Problem &problem, const ReducedModel &model,
                    const std::vector<Sample> &samples) {
   const Index n = model.primal_size(), count = std::ssize(samples);
-  if (model.primal_basis.rows() != problem.dofs().total)
+  if (model.fields.basis.rows() != problem.dofs().total)
     throw failure("errors of the displacement need the fields of the model");
   Mat v = problem.v_product();
   std::vector<Handle<Vec>> basis;
   std::vector<Vec> raw;
   for (Index j = 0; j < n; ++j) {
-    basis.push_back(from_natural(problem.dofs(), model.primal_basis.col(j)));
+    basis.push_back(from_natural(problem.dofs(), model.fields.basis.col(j)));
     raw.push_back(basis.back().get());
   }
   const Handle<Vec> scratch = make_vector(problem.dofs());
@@ -154,7 +157,7 @@ Truths make_truths(Problem &problem, const ReducedModel &model,
                 Matrix(n, count),
                 Vector(count),
                 Vector(count),
-                Matrix(model.dual_basis.rows(), count),
+                Matrix(model.contact.dual_basis.rows(), count),
                 Vector(count),
                 {},
                 {}};
@@ -242,16 +245,16 @@ ModelErrors model_errors(const ReducedModel &model, const Matrix &embedding, con
 }
 
 bool knows_enriched_pairs(const ReducedModel &model) {
-  const auto product = model.settings.find("pga_product");
-  const bool energy = product != model.settings.end() && product->second == "energy";
-  return model.b.size() == 1 && model.supremizers > 0 && !energy;
+  const auto product = model.made.settings.find("pga_product");
+  const bool energy = product != model.made.settings.end() && product->second == "energy";
+  return model.contact.b.size() == 1 && model.body.supremizers > 0 && !energy;
 }
 
 SubModel enriched_pair(const ReducedModel &model, int n, int r) {
   ReducedModel part = leading(model, model.primal_size(), r);
   Matrix vectors = Matrix::Zero(model.primal_size(), n + r);
   vectors.leftCols(n).setIdentity();
-  vectors.rightCols(r) = part.b.reduced.col(0).reshaped(r, model.primal_size()).transpose();
+  vectors.rightCols(r) = part.contact.b.reduced.col(0).reshaped(r, model.primal_size()).transpose();
   // Modes first, kept as they are; the supremizers orthonormalised against them.
   vectors.rightCols(r).topRows(n).setZero();
   const Matrix rest = orthonormal_range(vectors.rightCols(r));

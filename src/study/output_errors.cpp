@@ -62,7 +62,7 @@ bool has(const std::vector<Outputs> &rows, Member member) {
 Outputs outputs_with_field(const OnlineSolver &solver, const Mu &mu,
                            const ReducedAnswer &solution) {
   Outputs outputs = solver.outputs(mu, solution);
-  if (solver.scene().components == 1 && solver.model().primal_basis.rows() > 0)
+  if (solver.scene().components == 1 && solver.model().fields.basis.rows() > 0)
     outputs.min_u = solver.field(solution).minCoeff();
   return outputs;
 }

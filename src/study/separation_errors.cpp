@@ -26,18 +26,18 @@ struct Separated {
 /// values.
 void add_contact(const ReducedModel &model, const Problem &problem, std::vector<Separated> &parts) {
   const auto theta = [&](const FullMu &all) {
-    return contact_coefficients(model.b, Part::b, problem.contact(), problem.scene(), all);
+    return contact_coefficients(model.contact.b, Part::b, problem.contact(), problem.scene(), all);
   };
-  const Index normal = model.law ? model.law->apart.normal : 0;
+  const Index normal = model.contact.law ? model.contact.law->apart.normal : 0;
   if (normal == 0) {
-    parts.push_back(
-        {"b", model.b.size(), [](const Operators &op) { return nonzero_values(op.b); }, theta});
+    parts.push_back({"b", model.contact.b.size(),
+                     [](const Operators &op) { return nonzero_values(op.b); }, theta});
     return;
   }
   const auto entries_of_normal = [](const Operators &op) {
     return Index{op.b.outerIndexPtr()[op.laws.nodes()]};
   };
-  const Index tangential = model.b.size() - normal;
+  const Index tangential = model.contact.b.size() - normal;
   parts.push_back({"b_normal", normal,
                    [=](const Operators &op) -> Vector {
                      return nonzero_values(op.b).head(entries_of_normal(op));
@@ -61,25 +61,26 @@ std::vector<Separated> separated(const LowerTriangle &triangle, const Problem &p
     };
   };
   parts.push_back(
-      {"a", model.a.size() - model.a.exact,
+      {"a", model.body.a.size() - model.body.a.exact,
        [&](const Operators &) { return triangle.values(problem.a_terms().mapped.get()); },
-       theta(model.a, scene.a)});
+       theta(model.body.a, scene.a)});
   add_contact(model, problem, parts);
   parts.push_back(
-      {"f", model.f.size() - model.f.exact,
+      {"f", model.body.f.size() - model.body.f.exact,
        [&problem](const Operators &) { return local_values(problem.f_terms().mapped.get()); },
-       theta(model.f, scene.f)});
-  parts.push_back({"g", model.g.size(), [](const Operators &op) { return op.g; },
+       theta(model.body.f, scene.f)});
+  parts.push_back({"g", model.contact.g.size(), [](const Operators &op) { return op.g; },
                    [&](const FullMu &all) {
-                     return contact_coefficients(model.g, Part::g, problem.contact(), scene, all);
+                     return contact_coefficients(model.contact.g, Part::g, problem.contact(), scene,
+                                                 all);
                    }});
   std::erase_if(parts, [](const Separated &part) { return part.terms == 0; });
   return parts;
 }
 
 const std::vector<double> &history(const ReducedModel &model, const std::string &name) {
-  const auto found = model.histories.find(name);
-  if (found == model.histories.end())
+  const auto found = model.made.histories.find(name);
+  if (found == model.made.histories.end())
     throw failure("the model has no history " + name + ": reduce again");
   return found->second;
 }
@@ -93,9 +94,9 @@ Matrix functions_of(Problem &problem, const ReducedModel &model, const Separated
   Matrix functions;
   for (Index i = 0; i < part.terms; ++i) {
     const auto number = static_cast<Index>(selected[i]);
-    if (number < 0 || number >= model.trained_mu.cols())
+    if (number < 0 || number >= model.made.trained_mu.cols())
       throw failure("the terms of " + part.name + " are from no training parameter of the model");
-    const Vector column = model.trained_mu.col(number);
+    const Vector column = model.made.trained_mu.col(number);
     const Operators &op = problem.assemble({column.begin(), column.end()});
     const Vector values = part.values(op), theta = part.theta(op.mu);
     if (i == 0) functions.resize(values.size(), part.terms);

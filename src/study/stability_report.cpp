@@ -31,11 +31,12 @@ LinearBasis basis_of(Problem &problem, const Matrix &natural_columns) {
 
 StabilityCheck make_stability_check(Problem &problem, const ReducedModel &model) {
   StabilityCheck check;
-  check.modes = model.modes;
+  check.modes = model.body.modes;
   check.space = make_riesz_space(problem.v_product(), problem.trace());
-  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.primal_basis));
+  check.coordinates = mode_coordinates(check.space, basis_of(problem, model.fields.basis));
   check.dual = orthonormal_dual_basis(
-      model.law ? multiplier_functions(model.dual_basis, model.law->basis) : model.dual_basis,
+      model.contact.law ? multiplier_functions(model.contact.dual_basis, model.contact.law->basis)
+                        : model.contact.dual_basis,
       problem.w_product());
   return check;
 }

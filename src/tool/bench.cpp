@@ -87,7 +87,7 @@ double offline_seconds(const ReducedModel &model, const std::vector<Sample> &sna
   double sum = 0;
   for (const Sample &snapshot : snapshots)
     sum += snapshot.outputs.seconds.value_or(0);
-  for (const auto &[stage, seconds] : model.stage_seconds)
+  for (const auto &[stage, seconds] : model.made.stage_seconds)
     if (stage != "snapshots") sum += seconds;
   return sum;
 }
@@ -136,7 +136,7 @@ void bench(const ToolOptions &options, const ReducedModel &model, int ranks) {
   check_scene(problem);
   check_problem(problem, model, options);
   const std::vector<Sample> snapshots =
-      samples_at(problem, options, from_columns(model.trained_mu), "training").samples;
+      samples_at(problem, options, from_columns(model.made.trained_mu), "training").samples;
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   check_set(options.scene, validation);
   const Sweep sweep = samples_at(problem, options, validation, "validation");

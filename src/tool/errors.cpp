@@ -76,12 +76,12 @@ void write_summary(const fs::path &path, const Rows &rows, const ReducedModel &m
        << "model,N,S,R,free_modes,u_mean,u_max,u_floor_mean,u_floor_max,lambda_mean,lambda_max,"
           "lambda_floor_mean,lambda_floor_max,seconds,kkt_residual,failed\n";
   for (const auto &[name, e] : rows)
-    text << name << ',' << model.modes << ',' << (name == "decorrelated" ? 0 : model.supremizers)
-         << ',' << model.generators << ',' << model.free_modes << ',' << e.u.mean() << ','
-         << e.u.maxCoeff() << ',' << e.u_floor.mean() << ',' << e.u_floor.maxCoeff() << ','
-         << e.lambda.mean() << ',' << e.lambda.maxCoeff() << ',' << e.lambda_floor.mean() << ','
-         << e.lambda_floor.maxCoeff() << ',' << e.seconds << ',' << e.kkt_residual << ','
-         << e.failed << '\n';
+    text << name << ',' << model.body.modes << ','
+         << (name == "decorrelated" ? 0 : model.body.supremizers) << ',' << model.contact.generators
+         << ',' << model.contact.free_modes << ',' << e.u.mean() << ',' << e.u.maxCoeff() << ','
+         << e.u_floor.mean() << ',' << e.u_floor.maxCoeff() << ',' << e.lambda.mean() << ','
+         << e.lambda.maxCoeff() << ',' << e.lambda_floor.mean() << ',' << e.lambda_floor.maxCoeff()
+         << ',' << e.seconds << ',' << e.kkt_residual << ',' << e.failed << '\n';
   write_atomically(path, text.str());
 }
 
@@ -134,19 +134,20 @@ void print_output_errors(const std::vector<OutputError> &errors) {
 }
 
 std::string name_of(const ReducedModel &model) {
-  return !model.has_multipliers() ? nitsche_name(model)
-         : model.law              ? reduction_name(*model.law)
-         : model.supremizers == 0 ? "decorrelated"
-         : model.online_enriched  ? "online-enriched"
-                                  : "offline-enriched";
+  return !model.has_multipliers()      ? nitsche_name(model)
+         : model.contact.law           ? reduction_name(*model.contact.law)
+         : model.body.supremizers == 0 ? "decorrelated"
+         : model.body.online_enriched  ? "online-enriched"
+                                       : "offline-enriched";
 }
 
 /// Of the model, and of its modes alone where it has more.
 Rows rows_of(const ReducedModel &model, const Truths &truths, const SparseMatrix &w) {
   Rows rows{{name_of(model), model_errors(model, {}, truths, w)}};
-  if (model.supremizers > 0)
-    rows.emplace_back("decorrelated",
-                      model_errors(leading(model, model.modes, model.generators), {}, truths, w));
+  if (model.body.supremizers > 0)
+    rows.emplace_back(
+        "decorrelated",
+        model_errors(leading(model, model.body.modes, model.contact.generators), {}, truths, w));
   return rows;
 }
 
@@ -206,13 +207,13 @@ void check_errors(ReducedModel &model, const SparseMatrix &w, const Truths &vali
     if (!at_boundary.empty()) sets.push_back(&at_boundary[k].second);
     return summary(sets);
   };
-  model.validation_enriched = model.supremizers > 0 ? summary_of(0) : ValidationErrors{};
-  model.validation_decorrelated = summary_of(rows.size() - 1);
-  (model.supremizers > 0 ? model.validation_enriched : model.validation_decorrelated).outputs =
-      check_outputs(model, validation, boundary, out);
+  model.made.validation_enriched = model.body.supremizers > 0 ? summary_of(0) : ValidationErrors{};
+  model.made.validation_decorrelated = summary_of(rows.size() - 1);
+  (model.body.supremizers > 0 ? model.made.validation_enriched : model.made.validation_decorrelated)
+      .outputs = check_outputs(model, validation, boundary, out);
   std::vector<Mu> all = validation.mu;
   all.insert(all.end(), boundary.mu.begin(), boundary.mu.end());
-  model.validated_mu = as_columns(all, model.scene.parameters.size());
+  model.made.validated_mu = as_columns(all, model.scene.parameters.size());
 }
 
 } // namespace rbvi

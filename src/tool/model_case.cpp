@@ -35,15 +35,15 @@ bool same_range(const ParameterSpace &one, const ParameterSpace &two, std::size_
 }
 
 std::string setting(const ReducedModel &model, const std::string &name) {
-  const auto found = model.settings.find(name);
-  return found == model.settings.end() ? "" : found->second;
+  const auto found = model.made.settings.find(name);
+  return found == model.made.settings.end() ? "" : found->second;
 }
 
 /// Whether the case trains at other parameters. A set that cannot be read is not needed.
 bool other_training(const ToolOptions &options, const ReducedModel &model) {
   if (options.train == setting(model, "training")) return false;
-  std::vector<Mu> own = from_columns(model.trained_mu);
-  for (Mu &mu : from_columns(model.failed_mu))
+  std::vector<Mu> own = from_columns(model.made.trained_mu);
+  for (Mu &mu : from_columns(model.made.failed_mu))
     own.push_back(std::move(mu));
   try {
     std::vector<Mu> given = parse_set(options.scene.parameters, options.train);
@@ -123,7 +123,7 @@ ToolOptions adopt_model(ToolOptions options, const ReducedModel &model) {
 void check_problem(const Problem &problem, const ReducedModel &model, const ToolOptions &options) {
   const std::string its = "the model in " + options.out.string();
   const std::string file = setting(model, "mesh_file");
-  if (problem.mesh().fingerprint != model.mesh_fingerprint)
+  if (problem.mesh().fingerprint != model.made.mesh_fingerprint)
     throw bad_input(its + " was made on another mesh" +
                     (file.empty() ? "" : ", that of " + file + " then: give it by -mesh"));
   const std::string again = ": make it again by rbvi offline with another -out";

@@ -52,8 +52,8 @@ void name_training(const Sweep &sweep, ReducedModel &model) {
   std::vector<Mu> failed;
   for (const auto &[mu, reason] : sweep.report.failed)
     failed.push_back(mu);
-  model.trained_mu = as_columns(parameters_of(sweep.samples), model.scene.parameters.size());
-  model.failed_mu = as_columns(failed, model.scene.parameters.size());
+  model.made.trained_mu = as_columns(parameters_of(sweep.samples), model.scene.parameters.size());
+  model.made.failed_mu = as_columns(failed, model.scene.parameters.size());
 }
 
 /// That nobody knows the errors of a new model; and where it has so few samples that it cannot even
@@ -62,7 +62,7 @@ void tell_of_errors(const ReducedModel &model, const std::filesystem::path &run)
   std::printf("Its errors are not measured: rbvi verify -out %s compares it with high-fidelity "
               "answers\n",
               run.c_str());
-  const std::vector<Mu> trained = from_columns(model.trained_mu);
+  const std::vector<Mu> trained = from_columns(model.made.trained_mu);
   const auto distinct = std::ssize(std::set<Mu>(trained.begin(), trained.end()));
   if (distinct > model.scene.parameters.size()) return;
   std::printf(
@@ -102,13 +102,14 @@ OfflineRun run_offline(MPI_Comm world, const Groups &groups, const ToolOptions &
   Problem &problem = work.world_problem();
   Reduction made = reduce(problem, sweep.samples, options.reduce);
   ReducedModel model = std::move(made.model);
-  model.settings.merge(kept_settings(options)); // beside the whole scene
-  model.settings["samples"] = std::to_string(sweep.samples.size());
-  if (model.settings.contains("cone_ring")) model.settings["cone_ring"] = std::to_string(made.ring);
+  model.made.settings.merge(kept_settings(options)); // beside the whole scene
+  model.made.settings["samples"] = std::to_string(sweep.samples.size());
+  if (model.made.settings.contains("cone_ring"))
+    model.made.settings["cone_ring"] = std::to_string(made.ring);
   name_training(sweep, model);
   for (const StageTable &table : {before, made.stages})
     for (const StageRow &row : table)
-      if (row.seconds) model.stage_seconds[row.stage.text] = *row.seconds;
+      if (row.seconds) model.made.stage_seconds[row.stage.text] = *row.seconds;
   timed(after, stage::writing, [&] {
     write_fields(work.world_problem(), made.bases.pod.basis, model, options.out / "model.h5");
     collectively(world, [&] {
@@ -146,7 +147,7 @@ void command_offline(const ToolOptions &options) {
   if (rank == 0) {
     print_stages(run.stages);
     std::cout << "Self-check: ";
-    print_self_check(std::cout, run.model.self_check, run.model.scene.parameters);
+    print_self_check(std::cout, run.model.made.self_check, run.model.scene.parameters);
     tell_of_errors(run.model, options.out);
     print_several_answers(std::cout, run.model);
     tell_of_samples(options.scene, contact_of(run.model, options.scene), run.sweep.samples,

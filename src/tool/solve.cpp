@@ -107,7 +107,7 @@ void command_inspect(const std::string &file, const Registry &registry) {
   const ReducedModel model = read_model(file, registry, false);
   print_model(std::cout, model);
   std::printf("Stage times of the offline run (s)\n");
-  for (const auto &[stage, seconds] : model.stage_seconds)
+  for (const auto &[stage, seconds] : model.made.stage_seconds)
     std::printf("  %-22s %8.3f\n", stage.c_str(), seconds);
 }
 

@@ -124,15 +124,16 @@ constexpr int most_steps = 200, most_steps_at_mu = 4000;
 } // namespace
 
 std::string no_constants(const ReducedModel &model) {
-  if (model.generators == 0) return "Nitsche's method has no multipliers";
-  if (!model.law || model.law->reduction == MultiplierReduction::collocated) return "";
+  if (model.contact.generators == 0) return "Nitsche's method has no multipliers";
+  if (!model.contact.law || model.contact.law->reduction == MultiplierReduction::collocated)
+    return "";
   return "-multiplier_reduction condensed has no reduced pair of spaces (collocated has one)";
 }
 
 void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model,
                      const std::vector<ContactPoint> &training,
                      const std::vector<ContactPoint> &validation, const fs::path &out) {
-  const bool scaled = model.b.size() == 1;
+  const bool scaled = model.contact.b.size() == 1;
   const StabilityCheck check = make_stability_check(problem, model);
   const std::vector<InfSup> constants = infsup_over(world, problem, check, validation, scaled);
   std::vector<ContactPoint> all = training;
@@ -145,10 +146,10 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
   // Where b is only scaled every mu has the same ratios.
   const std::vector<ContactPoint> different =
       scaled ? std::vector<ContactPoint>{weakest_form(problem, all)} : all;
-  const int steps = std::min(model.supremizers, most_steps);
+  const int steps = std::min(model.body.supremizers, most_steps);
   const std::vector<StabilityRow> rows =
       stability_along(world, problem, check, subset(different, most_steps_at_mu / (1 + steps)),
-                      spread(model.supremizers, steps));
+                      spread(model.body.supremizers, steps));
   const int fewest = fewest_supremizers(world, problem, check, different, 0.9);
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
@@ -169,11 +170,11 @@ void check_stability(MPI_Comm world, Problem &problem, const ReducedModel &model
                 bound.smallest, bound.exceptions, all.size(), kind_of(all));
     if (fewest >= 0)
       std::printf("  fewest supremizers with beta_off >= 0.9 beta_on at all of them: %d of %d\n",
-                  fewest, model.supremizers);
+                  fewest, model.body.supremizers);
     else
       std::printf("  all %d supremizers leave beta_off < 0.9 beta_on somewhere: lower "
                   "-pga_tolerance\n",
-                  model.supremizers);
+                  model.body.supremizers);
   });
 }
 

@@ -47,19 +47,20 @@ std::vector<int> sizes_up_to(int last, const std::vector<int> &wanted) {
 
 /// The N of the error map: without multipliers there is no second size.
 std::vector<int> mode_counts(const ReducedModel &model) {
-  if (model.generators == 0) return {5, 10, 15, 20, 30, 40, 50};
+  if (model.contact.generators == 0) return {5, 10, 15, 20, 30, 40, 50};
   return {10, 19, 51};
 }
 
 /// The R at which the model's dual basis means something on its own.
 std::vector<int> generator_counts(const ReducedModel &model) {
-  const auto type = model.settings.find("cone_type");
-  if (type != model.settings.end() && (type->second == "nodal" || type->second == "nmf"))
-    return {model.generators};
-  const int cone = model.generators - model.free_modes;
-  if (model.law) return {model.generators};
-  if (model.free_modes > 0) return sizes_up_to(model.generators, {cone, cone + 4, cone + 8});
-  return sizes_up_to(model.generators, {20, 50, 70, 100});
+  const auto type = model.made.settings.find("cone_type");
+  if (type != model.made.settings.end() && (type->second == "nodal" || type->second == "nmf"))
+    return {model.contact.generators};
+  const int cone = model.contact.generators - model.contact.free_modes;
+  if (model.contact.law) return {model.contact.generators};
+  if (model.contact.free_modes > 0)
+    return sizes_up_to(model.contact.generators, {cone, cone + 4, cone + 8});
+  return sizes_up_to(model.contact.generators, {20, 50, 70, 100});
 }
 
 /// Errors of the pairs (N, R), decorrelated and, where that is known, as enriched_pair makes
@@ -71,7 +72,7 @@ void write_error_map(const fs::path &path, MPI_Comm world, const ReducedModel &m
   };
   std::vector<Pair> pairs;
   for (int kind = 0; kind <= (knows_enriched_pairs(model) ? 1 : 0); ++kind)
-    for (const int n : sizes_up_to(model.modes, mode_counts(model)))
+    for (const int n : sizes_up_to(model.body.modes, mode_counts(model)))
       for (const int r : generator_counts(model))
         pairs.push_back({kind, n, r});
   const int rank = rank_of(world), ranks = ranks_of(world);
@@ -165,7 +166,7 @@ void write_separation(const fs::path &path, Problem &problem, const ReducedModel
         line += (line.empty() ? "" : ", ") + name + ' ' + short_number(errors.back());
     }
     write_atomically(path, text.str());
-    for (const auto &[name, terms] : {std::pair{"a", &model.a}, {"f", &model.f}})
+    for (const auto &[name, terms] : {std::pair{"a", &model.body.a}, {"f", &model.body.f}})
       if (terms->exact > 0)
         line += (line.empty() ? "" : ", ") + std::string(name) + ": " +
                 counted(terms->exact, "exact term");
@@ -210,7 +211,7 @@ void command_verify(const ToolOptions &given) {
   check_eigen_options(options, EigenUse::constants);
   const std::vector<Mu> validation = parse_set(options.scene.parameters, options.valid);
   check_set(options.scene, validation);
-  const std::vector<Mu> training = from_columns(model.trained_mu);
+  const std::vector<Mu> training = from_columns(model.made.trained_mu);
   const Grouping grouping =
       group_ranks(world, options.scene, options.mesh, validation.size(), options.ranks_per_solve);
   const Groups groups(world, grouping.ranks_per_solve);
@@ -234,7 +235,7 @@ void command_verify(const ToolOptions &given) {
     for (const char *of_another_model : {"infsup.csv", "infsup_training.csv", "stability.csv"})
       fs::remove(out / of_another_model);
     check_errors(model, problem.w_product(), truths, boundary, out);
-    look_for_other_answers(model, problem.scene(), from_columns(model.validated_mu));
+    look_for_other_answers(model, problem.scene(), from_columns(model.made.validated_mu));
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);

@@ -50,13 +50,13 @@ struct Runs : InDirectory {
 
 /// Expects the same training parameters chosen for the supremizers, the same primal space to 1e-8.
 void expect_same_greedy(const ReducedModel &model, const ReducedModel &expected) {
-  EXPECT_EQ(model.histories.at("pga/selected"), expected.histories.at("pga/selected"));
+  EXPECT_EQ(model.made.histories.at("pga/selected"), expected.made.histories.at("pga/selected"));
   ASSERT_EQ(model.primal_size(), expected.primal_size());
   const auto orthonormal = [](const Matrix &basis) -> Matrix {
     return Eigen::HouseholderQR<Matrix>(basis).householderQ() *
            Matrix::Identity(basis.rows(), basis.cols());
   };
-  const Matrix one = orthonormal(model.primal_basis), other = orthonormal(expected.primal_basis);
+  const Matrix one = orthonormal(model.fields.basis), other = orthonormal(expected.fields.basis);
   EXPECT_LE((one - other * (other.transpose() * one)).norm(), 1e-8);
 }
 
@@ -163,14 +163,14 @@ TEST_F(Runs, ManyHatFunctionsAndThoseOfACoarserMesh) {
   offline(2, "-cone_level 1 -out coarse");
   const ReducedModel fine = read_model("fine/model.h5", catalogue()),
                      coarse = read_model("coarse/model.h5", catalogue());
-  EXPECT_GT(fine.a_change.rank(), 0);
-  EXPECT_LT(fine.a_change.rank(), fine.primal_size() / 3);
-  EXPECT_FALSE(fine.trace_dofs.empty());
+  EXPECT_GT(fine.body.a_change.rank(), 0);
+  EXPECT_LT(fine.body.a_change.rank(), fine.primal_size() / 3);
+  EXPECT_FALSE(fine.contact.trace_dofs.empty());
   EXPECT_EQ(coarse.settings.at("cone_level"), "1");
-  EXPECT_LT(2 * coarse.generators, fine.generators);
+  EXPECT_LT(2 * coarse.generators, fine.contact.generators);
   output_of(rbvi(1, "solve -case case.yaml -mu 0.19,0.01,-0.02 -csv truth.csv"));
   for (const std::string run : {"fine", "coarse"}) {
-    EXPECT_TRUE(read_model(run + "/model.h5", catalogue()).self_check.clean());
+    EXPECT_TRUE(read_model(run + "/model.h5", catalogue()).made.self_check.clean());
     output_of(rbvi_online(run + "/model.h5 --mu 0.19,0.01,-0.02 --out " + run + ".csv"));
     for (const char *output : {"energy", "normal_force"}) {
       const double truth = in_table("truth.csv", output);

@@ -1,8 +1,8 @@
 // A program of others, on the serial library alone and without its flags: with the address
 // sanitizer, which sees what is freed. embedded MODEL...: answers the middle of the box of each.
-#include "tests/catalogue.hpp"
 #include "rbvi/model/model.hpp"
 #include "rbvi/model/online.hpp"
+#include "tests/catalogue.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -21,9 +21,10 @@ int main(int count, char **arguments) {
     // Memory of either side, freed or made larger by the other.
     solution.lambda.conservativeResize(2 * solution.lambda.size() + 1);
     solution.u = Vector::Ones(2 * solution.u.size() + 1);
-    model.trained_mu = Matrix::Zero(7, 9);
-    const ReducedModel smaller = leading(model, model.modes, model.generators);
-    if (!std::isfinite(energy) || field.size() == 0 || smaller.modes != model.modes) return 1;
+    model.made.trained_mu = Matrix::Zero(7, 9);
+    const ReducedModel smaller = leading(model, model.body.modes, model.contact.generators);
+    if (!std::isfinite(energy) || field.size() == 0 || smaller.body.modes != model.body.modes)
+      return 1;
     std::printf("%s: energy %.10g\n", arguments[i], energy);
   }
   return count > 1 ? 0 : 2;

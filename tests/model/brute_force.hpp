@@ -33,16 +33,16 @@ inline Vector combine(const AffineTerms &terms, int form, double (*value)(int, i
 inline Operators assemble(const ReducedModel &model, double (*value)(int, int, const FullMu &),
                           const Mu &free) {
   const FullMu mu = expand(model.scene.parameters, free);
-  const Index n = model.primal_size(), r = model.generators;
+  const Index n = model.primal_size(), r = model.contact.generators;
   Operators result;
-  const Vector a = combine(model.a, 0, value, mu), b = combine(model.b, 1, value, mu);
+  const Vector a = combine(model.body.a, 0, value, mu), b = combine(model.contact.b, 1, value, mu);
   result.a.resize(n, n);
   for (Index j = 0, at = 0; j < n; ++j)
     for (Index i = j; i < n; ++i, ++at)
       result.a(i, j) = result.a(j, i) = a[at];
   result.b = Eigen::Map<const Matrix>(b.data(), r, n);
-  result.f = combine(model.f, 2, value, mu);
-  result.g = combine(model.g, 3, value, mu);
+  result.f = combine(model.body.f, 2, value, mu);
+  result.g = combine(model.contact.g, 3, value, mu);
   return result;
 }
 

@@ -54,23 +54,23 @@ inline AffineTerms random_terms(std::mt19937 &random, Index rows, int size, int 
 
 /// Sets what outputs and reconstruction need: a square of four triangles and `generators` hats.
 inline void add_fields(std::mt19937 &random, ReducedModel &model) {
-  const Index n = model.primal_size(), r = model.generators;
-  model.mesh_points.resize(5, 2);
-  model.mesh_points << -0.1, -0.1, 0.1, -0.1, 0.1, 0.1, -0.1, 0.1, 0, 0;
-  model.mesh_cells = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
-  model.primal_basis = random_matrix(random, 5, n);
-  model.dual_basis = random_matrix(random, 3, r).cwiseAbs();
+  const Index n = model.primal_size(), r = model.contact.generators;
+  model.fields.points.resize(5, 2);
+  model.fields.points << -0.1, -0.1, 0.1, -0.1, 0.1, 0.1, -0.1, 0.1, 0, 0;
+  model.fields.cells = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4};
+  model.fields.basis = random_matrix(random, 5, n);
+  model.contact.dual_basis = random_matrix(random, 3, r).cwiseAbs();
   InterfaceModel contact;
   contact.nodes = {0, 1, 4};
   InterfaceMesh &triangle = contact.mesh;
   for (const int node : contact.nodes)
-    triangle.points.push_back(point_of(model.mesh_points, node));
+    triangle.points.push_back(point_of(model.fields.points, node));
   triangle.entities = triangle.dofs = {0, 1, 2};
   triangle.per_entity = 3;
   triangle.parts = {3};
   triangle.columns = 3;
-  model.contact_trace = model.primal_basis(contact.nodes, Eigen::all);
-  model.interfaces = {contact};
+  model.contact.trace = model.primal_basis(contact.nodes, Eigen::all);
+  model.contact.interfaces = {contact};
 }
 
 inline bool same(const std::vector<InterfaceModel> &a, const std::vector<InterfaceModel> &b) {
@@ -110,9 +110,9 @@ inline void scale_terms(AffineTerms &terms, const Vector &theta_in_the_middle) {
 template <class Sizes> ReducedModel named_model(const Scene &scene, const Sizes &sizes) {
   ReducedModel model;
   model.scene = scene;
-  model.modes = sizes.modes;
-  model.supremizers = sizes.supremizers;
-  model.generators = sizes.generators;
+  model.body.modes = sizes.modes;
+  model.body.supremizers = sizes.supremizers;
+  model.contact.generators = sizes.generators;
   return model;
 }
 
@@ -123,31 +123,32 @@ inline ReducedModel random_model(const Sizes &sizes, unsigned seed, const Scene 
   std::mt19937 random(seed);
   ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size(), r = sizes.generators;
-  model.a = random_terms(random, n * (n + 1) / 2, sizes.a, 4);
+  model.body.a = random_terms(random, n * (n + 1) / 2, sizes.a, 4);
   Matrix a = Matrix::Zero(n, n);
   for (int q = 0; q < sizes.a; ++q) {
     const Matrix term = random_spd(random, n);
     a += term;
-    model.a.reduced.col(q) = pack(term);
+    model.body.a.reduced.col(q) = pack(term);
   }
-  model.b = random_terms(random, r * n, sizes.b, 1);
-  model.f = random_terms(random, n, sizes.f, 1);
-  model.g = random_terms(random, r, sizes.g, 1);
-  const Vector b = model.b.reduced.rowwise().sum();
-  const Vector u = a.llt().solve(model.f.reduced.rowwise().sum());
+  model.contact.b = random_terms(random, r * n, sizes.b, 1);
+  model.body.f = random_terms(random, n, sizes.f, 1);
+  model.contact.g = random_terms(random, r, sizes.g, 1);
+  const Vector b = model.contact.b.reduced.rowwise().sum();
+  const Vector u = a.llt().solve(model.body.f.reduced.rowwise().sum());
   const double violation = (Eigen::Map<const Matrix>(b.data(), r, n) * u).norm();
-  model.g.reduced = model.g.reduced.cwiseAbs();
-  if (violation > 0) model.g.reduced *= violation / (3 * model.g.reduced.rowwise().sum().norm());
+  model.contact.g.reduced = model.contact.g.reduced.cwiseAbs();
+  if (violation > 0)
+    model.contact.g.reduced *= violation / (3 * model.contact.g.reduced.rowwise().sum().norm());
   if (one_cell)
-    for (AffineTerms *terms : {&model.a, &model.b, &model.f, &model.g})
+    for (AffineTerms *terms : {&model.body.a, &model.contact.b, &model.body.f, &model.contact.g})
       sample_one_cell(*terms);
   add_fields(random, model);
   const FullMu mu = middle_of_box(scene);
   const Contact contact = contact_of(model, scene);
-  scale_terms(model.a, affine_coefficients(model.a, scene.a, scene, mu));
-  scale_terms(model.b, contact_coefficients(model.b, Part::b, contact, scene, mu));
-  scale_terms(model.f, affine_coefficients(model.f, scene.f, scene, mu));
-  scale_terms(model.g, contact_coefficients(model.g, Part::g, contact, scene, mu));
+  scale_terms(model.body.a, affine_coefficients(model.body.a, scene.a, scene, mu));
+  scale_terms(model.contact.b, contact_coefficients(model.contact.b, Part::b, contact, scene, mu));
+  scale_terms(model.body.f, affine_coefficients(model.body.f, scene.f, scene, mu));
+  scale_terms(model.contact.g, contact_coefficients(model.contact.g, Part::g, contact, scene, mu));
   return model;
 }
 

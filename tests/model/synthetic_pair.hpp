@@ -50,19 +50,19 @@ inline std::vector<Point> arc_points(std::mt19937 &random, Index nodes, double s
 /// Two fans of triangles between the curves and the centres of the disks.
 inline void add_fans(const PairSizes &sizes, ReducedModel &model) {
   const auto slave = static_cast<int>(sizes.slave), master = static_cast<int>(sizes.master);
-  model.mesh_points.resize(sizes.slave + sizes.master + 2, 2);
-  model.mesh_points.topRows(2) << 0, 1.5, 0, -1.5;
-  InterfaceModel &contact = model.interfaces.front();
+  model.fields.points.resize(sizes.slave + sizes.master + 2, 2);
+  model.fields.points.topRows(2) << 0, 1.5, 0, -1.5;
+  InterfaceModel &contact = model.contact.interfaces.front();
   for (int i = 0; i < slave + master; ++i) {
     contact.nodes.push_back(2 + i);
     const Point &x = contact.mesh.points[i];
-    model.mesh_points.row(2 + i) << x[0], x[1];
+    model.fields.points.row(2 + i) << x[0], x[1];
   }
-  model.mesh_cells.clear();
+  model.fields.cells.clear();
   for (int i = 0; i + 1 < slave; ++i)
-    model.mesh_cells.insert(model.mesh_cells.end(), {0, 2 + i, 3 + i});
+    model.fields.cells.insert(model.fields.cells.end(), {0, 2 + i, 3 + i});
   for (int i = slave; i + 1 < slave + master; ++i)
-    model.mesh_cells.insert(model.mesh_cells.end(), {1, 3 + i, 2 + i});
+    model.fields.cells.insert(model.fields.cells.end(), {1, 3 + i, 2 + i});
 }
 
 /// Two curves of degree 1; the pair sees the vertical displacement of node i as column i.
@@ -95,28 +95,28 @@ inline ReducedModel random_pair_model(const PairSizes &sizes, unsigned seed, con
   std::mt19937 random(seed);
   ReducedModel model = named_model(scene, sizes);
   const Index n = model.primal_size();
-  model.a = random_terms(random, n * (n + 1) / 2, 1, 1);
-  model.a.interpolation.resize(0, 0); // one exact term
-  model.a.samples.clear();
-  model.a.exact = 1;
-  model.a.reduced = pack(random_spd(random, n));
+  model.body.a = random_terms(random, n * (n + 1) / 2, 1, 1);
+  model.body.a.interpolation.resize(0, 0); // one exact term
+  model.body.a.samples.clear();
+  model.body.a.exact = 1;
+  model.body.a.reduced = pack(random_spd(random, n));
 
   const std::vector<Point> slave = arc_points(random, sizes.slave, 1),
                            master = arc_points(random, sizes.master, -1);
-  model.interfaces = {{pair_mesh(slave, master), {}}};
+  model.contact.interfaces = {{pair_mesh(slave, master), {}}};
   add_fans(sizes, model);
-  model.primal_basis = random_matrix(random, 2 * model.mesh_points.rows(), n);
-  model.contact_trace.resize(sizes.slave + sizes.master, n);
-  for (Index i = 0; i < model.contact_trace.rows(); ++i)
-    model.contact_trace.row(i) = model.primal_basis.row(2 * (2 + i) + 1);
+  model.fields.basis = random_matrix(random, 2 * model.fields.points.rows(), n);
+  model.contact.trace.resize(sizes.slave + sizes.master, n);
+  for (Index i = 0; i < model.contact.trace.rows(); ++i)
+    model.contact.trace.row(i) = model.fields.basis.row(2 * (2 + i) + 1);
   const Index dual = multiplier_count(sizes.slave, discretisation_of(scene).multiplier);
-  model.dual_basis = random_matrix(random, dual, sizes.generators).cwiseAbs();
+  model.contact.dual_basis = random_matrix(random, dual, sizes.generators).cwiseAbs();
   return model;
 }
 
 /// The operators of the curves mapped here, without the motion.
 inline PairOperators mapped_pair(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
-  const InterfaceMesh &curves = model.interfaces.front().mesh;
+  const InterfaceMesh &curves = model.contact.interfaces.front().mesh;
   std::vector<Point> slave, master;
   for (std::size_t i = 0; i < curves.points.size(); ++i)
     (static_cast<int>(i) < curves.parts[0] ? slave : master)
@@ -129,22 +129,22 @@ inline PairOperators mapped_pair(const ReducedModel &model, const Scene &scene, 
 inline brute::Operators pair_operators(const ReducedModel &model, const Scene &scene,
                                        const Mu &free) {
   const FullMu mu = expand(scene.parameters, free);
-  const InterfaceMesh &curves = model.interfaces.front().mesh;
+  const InterfaceMesh &curves = model.contact.interfaces.front().mesh;
   Vector motion(curves.nodes());
   for (Index i = 0; i < motion.size(); ++i)
     motion[i] = scene.motion ? scene.motion(mu, curves.points[i])[1] : 0;
   const PairOperators pair = mapped_pair(model, scene, mu);
   const Matrix b = pair.b;
   const Index n = model.primal_size();
-  const Vector packed = model.a.reduced.col(0);
+  const Vector packed = model.body.a.reduced.col(0);
   brute::Operators result;
   result.a.resize(n, n);
   for (Index j = 0, at = 0; j < n; ++j)
     for (Index i = j; i < n; ++i, ++at)
       result.a(i, j) = result.a(j, i) = packed[at];
-  result.b = model.dual_basis.transpose() * b * model.contact_trace;
+  result.b = model.contact.dual_basis.transpose() * b * model.contact.trace;
   result.f = Vector::Zero(n);
-  result.g = model.dual_basis.transpose() * (pair.g - b * motion);
+  result.g = model.contact.dual_basis.transpose() * (pair.g - b * motion);
   return result;
 }
 

@@ -15,14 +15,14 @@ namespace {
 
 ReducedModel model_with_imposed() {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 2, 2}, 11);
-  model.imposed_energy = {
-      Matrix::Constant(1, 1, 3), Matrix::Identity(1, 1), {model.f.samples.front()}};
-  model.imposed_energy.samples.front().contributions = {{0, 0, 0}};
-  const Index cells = model.f.samples.front().vertices.rows() / 3;
-  for (AffineTerms *terms : {&model.f, &model.imposed_energy})
+  model.body.imposed_energy = {
+      Matrix::Constant(1, 1, 3), Matrix::Identity(1, 1), {model.body.f.samples.front()}};
+  model.body.imposed_energy.samples.front().contributions = {{0, 0, 0}};
+  const Index cells = model.body.f.samples.front().vertices.rows() / 3;
+  for (AffineTerms *terms : {&model.body.f, &model.body.imposed_energy})
     terms->samples.front().imposed_by.assign(3 * cells, 2);
-  model.interfaces.front().mesh.imposed_by = {-1, 0, 1};
-  model.imposed_by.assign(model.primal_basis.rows(), -1);
+  model.contact.interfaces.front().mesh.imposed_by = {-1, 0, 1};
+  model.fields.imposed_by.assign(model.fields.basis.rows(), -1);
   return model;
 }
 
@@ -34,28 +34,29 @@ TEST(ImposedInModelFile, ComesBack) {
   const ReducedModel copy = read_model(path, catalogue()),
                      answers = read_model(path, catalogue(), false);
   std::filesystem::remove(path);
-  EXPECT_EQ(copy.imposed_energy.reduced, model.imposed_energy.reduced);
-  EXPECT_EQ(copy.imposed_energy.interpolation, model.imposed_energy.interpolation);
-  for (const auto member : {&ReducedModel::f, &ReducedModel::imposed_energy}) {
-    EXPECT_EQ((copy.*member).samples.front().imposed_by,
-              (model.*member).samples.front().imposed_by);
-    EXPECT_EQ((copy.*member).samples.front().vertices, (model.*member).samples.front().vertices);
+  EXPECT_EQ(copy.body.imposed_energy.reduced, model.body.imposed_energy.reduced);
+  EXPECT_EQ(copy.body.imposed_energy.interpolation, model.body.imposed_energy.interpolation);
+  for (const auto member : {&BodyModel::f, &BodyModel::imposed_energy}) {
+    EXPECT_EQ((copy.body.*member).samples.front().imposed_by,
+              (model.body.*member).samples.front().imposed_by);
+    EXPECT_EQ((copy.body.*member).samples.front().vertices,
+              (model.body.*member).samples.front().vertices);
   }
-  EXPECT_EQ(copy.interfaces.front().mesh.imposed_by, (std::vector{-1, 0, 1}));
-  EXPECT_EQ(copy.imposed_by, model.imposed_by);
-  EXPECT_TRUE(answers.imposed_by.empty()) << "a field";
+  EXPECT_EQ(copy.contact.interfaces.front().mesh.imposed_by, (std::vector{-1, 0, 1}));
+  EXPECT_EQ(copy.fields.imposed_by, model.fields.imposed_by);
+  EXPECT_TRUE(answers.fields.imposed_by.empty()) << "a field";
 }
 
 TEST(ImposedInModelFile, SizesThatDoNotFitAreRefused) {
   ReducedModel model = model_with_imposed();
   EXPECT_NO_THROW(check_model(model));
-  model.imposed_by.pop_back();
+  model.fields.imposed_by.pop_back();
   EXPECT_THROW(check_model(model), Error);
   model = model_with_imposed();
-  model.interfaces.front().mesh.imposed_by.pop_back();
+  model.contact.interfaces.front().mesh.imposed_by.pop_back();
   EXPECT_THROW(check_model(model), Error);
   model = model_with_imposed();
-  model.f.samples.front().imposed_by.pop_back();
+  model.body.f.samples.front().imposed_by.pop_back();
   EXPECT_THROW(check_model(model), Error);
 }
 

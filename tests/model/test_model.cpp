@@ -68,11 +68,11 @@ TEST_F(ModelFile, ABoxOutsideTheRangesOfItsSceneIsRefused) {
 TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
   ReducedModel model = full_model();
   const Scene scene = model.scene;
-  model.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
+  model.made.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
   write_model(model, path);
-  EXPECT_EQ(read_model(path, catalogue()).settings, model.settings);
+  EXPECT_EQ(read_model(path, catalogue()).settings, model.made.settings);
   const std::string line = "map values: ";
-  std::string &text = model.settings[whole_scene];
+  std::string &text = model.made.settings[whole_scene];
   const std::size_t digit = text.find(line) + line.size() + 5;
   text[digit] = text[digit] == '5' ? '6' : '5';
   write_model(model, path);
@@ -89,59 +89,59 @@ TEST_F(ModelFile, ReturnsTheModel) {
   EXPECT_EQ(copy.scene.parameters.free, model.scene.parameters.free);
   EXPECT_EQ(copy.scene.parameters.all[1].value, 0.01);
   EXPECT_EQ(copy.scene.parameters.all[2].unit, "m");
-  EXPECT_EQ(copy.settings, model.settings);
-  EXPECT_EQ(copy.mesh_fingerprint, model.mesh_fingerprint);
+  EXPECT_EQ(copy.made.settings, model.made.settings);
+  EXPECT_EQ(copy.made.mesh_fingerprint, model.made.mesh_fingerprint);
   EXPECT_EQ(copy.primal_size(), 5);
-  EXPECT_EQ(copy.modes, 3);
-  EXPECT_EQ(copy.generators, 4);
-  EXPECT_EQ(copy.free_modes, 1);
-  EXPECT_FALSE(copy.online_enriched);
-  expect_same(copy.a, model.a);
-  expect_same(copy.b, model.b);
-  expect_same(copy.f, model.f);
-  expect_same(copy.g, model.g);
-  EXPECT_EQ(copy.dual_basis, model.dual_basis);
-  EXPECT_EQ(copy.contact_trace, model.contact_trace);
-  EXPECT_TRUE(synthetic::same(copy.interfaces, model.interfaces));
-  EXPECT_EQ(copy.primal_basis, model.primal_basis);
-  EXPECT_EQ(copy.mesh_points, model.mesh_points);
-  EXPECT_EQ(copy.mesh_cells, model.mesh_cells);
-  EXPECT_EQ(copy.histories, model.histories);
-  EXPECT_EQ(copy.stage_seconds, model.stage_seconds);
-  EXPECT_EQ(copy.validation_enriched.lambda_max, 4e-4);
-  EXPECT_EQ(copy.validation_decorrelated.count, 0);
-  ASSERT_EQ(copy.validation_enriched.outputs.size(), 2U);
-  EXPECT_EQ(copy.validation_enriched.outputs[0].name, "energy");
-  EXPECT_EQ(copy.validation_enriched.outputs[0].max_of_value, 6);
+  EXPECT_EQ(copy.body.modes, 3);
+  EXPECT_EQ(copy.contact.generators, 4);
+  EXPECT_EQ(copy.contact.free_modes, 1);
+  EXPECT_FALSE(copy.body.online_enriched);
+  expect_same(copy.body.a, model.body.a);
+  expect_same(copy.contact.b, model.contact.b);
+  expect_same(copy.body.f, model.body.f);
+  expect_same(copy.contact.g, model.contact.g);
+  EXPECT_EQ(copy.contact.dual_basis, model.contact.dual_basis);
+  EXPECT_EQ(copy.contact.trace, model.contact.trace);
+  EXPECT_TRUE(synthetic::same(copy.contact.interfaces, model.contact.interfaces));
+  EXPECT_EQ(copy.fields.basis, model.fields.basis);
+  EXPECT_EQ(copy.fields.points, model.fields.points);
+  EXPECT_EQ(copy.fields.cells, model.fields.cells);
+  EXPECT_EQ(copy.made.histories, model.made.histories);
+  EXPECT_EQ(copy.made.stage_seconds, model.made.stage_seconds);
+  EXPECT_EQ(copy.made.validation_enriched.lambda_max, 4e-4);
+  EXPECT_EQ(copy.made.validation_decorrelated.count, 0);
+  ASSERT_EQ(copy.made.validation_enriched.outputs.size(), 2U);
+  EXPECT_EQ(copy.made.validation_enriched.outputs[0].name, "energy");
+  EXPECT_EQ(copy.made.validation_enriched.outputs[0].max_of_value, 6);
   EXPECT_EQ(errors_of_outputs(copy), (ErrorOfOutput{{"energy", 2}}));
-  EXPECT_EQ(copy.self_check.queries, 200);
-  EXPECT_EQ(copy.self_check.unanswered, 3);
-  EXPECT_EQ(copy.self_check.at_boundary, 8);
-  EXPECT_EQ(copy.self_check.scale, 0.25);
-  EXPECT_EQ(copy.validation_enriched.unanswered, 2);
-  EXPECT_EQ(copy.validated_mu, model.validated_mu);
-  EXPECT_EQ(copy.self_check.unanswered_at, (Mu{0.2, 0.01}));
-  EXPECT_EQ(copy.self_check.reason, "contact opens");
-  EXPECT_EQ(copy.self_check.residual.at, (Mu{0.17, 0}));
-  EXPECT_EQ(copy.self_check.penetration.value, 1e-3);
-  EXPECT_TRUE(copy.self_check.friction.at.empty());
+  EXPECT_EQ(copy.made.self_check.queries, 200);
+  EXPECT_EQ(copy.made.self_check.unanswered, 3);
+  EXPECT_EQ(copy.made.self_check.at_boundary, 8);
+  EXPECT_EQ(copy.made.self_check.scale, 0.25);
+  EXPECT_EQ(copy.made.validation_enriched.unanswered, 2);
+  EXPECT_EQ(copy.made.validated_mu, model.made.validated_mu);
+  EXPECT_EQ(copy.made.self_check.unanswered_at, (Mu{0.2, 0.01}));
+  EXPECT_EQ(copy.made.self_check.reason, "contact opens");
+  EXPECT_EQ(copy.made.self_check.residual.at, (Mu{0.17, 0}));
+  EXPECT_EQ(copy.made.self_check.penetration.value, 1e-3);
+  EXPECT_TRUE(copy.made.self_check.friction.at.empty());
 }
 
 TEST_F(ModelFile, ReturnsWhatLargeModelsHave) {
   ReducedModel model = full_model();
-  const Index n = model.primal_size(), terms = model.a.size();
-  model.a.reduced = model.a.reduced.leftCols(1).eval();
-  model.a_change = {Vector::Ones(terms), Matrix::Ones(n, 2), Matrix::Ones(3, terms)};
-  model.trace_dofs = {0, 2};
-  model.contact_trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  const Index n = model.primal_size(), terms = model.body.a.size();
+  model.body.a.reduced = model.body.a.reduced.leftCols(1).eval();
+  model.body.a_change = {Vector::Ones(terms), Matrix::Ones(n, 2), Matrix::Ones(3, terms)};
+  model.contact.trace_dofs = {0, 2};
+  model.contact.trace = model.contact_trace({0, 2}, Eigen::all).eval();
   write_model(model, path);
   const ReducedModel copy = read_model(path, catalogue());
-  EXPECT_EQ(copy.a.reduced, model.a.reduced);
-  EXPECT_EQ(copy.a_change.scales, model.a_change.scales);
-  EXPECT_EQ(copy.a_change.range, model.a_change.range);
-  EXPECT_EQ(copy.a_change.cores, model.a_change.cores);
-  EXPECT_EQ(copy.trace_dofs, model.trace_dofs);
-  EXPECT_EQ(copy.contact_trace, model.contact_trace);
+  EXPECT_EQ(copy.body.a.reduced, model.body.a.reduced);
+  EXPECT_EQ(copy.body.a_change.scales, model.body.a_change.scales);
+  EXPECT_EQ(copy.body.a_change.range, model.body.a_change.range);
+  EXPECT_EQ(copy.body.a_change.cores, model.body.a_change.cores);
+  EXPECT_EQ(copy.contact.trace_dofs, model.contact.trace_dofs);
+  EXPECT_EQ(copy.contact.trace, model.contact.trace);
   EXPECT_EQ(copy.contact_dofs(), model.contact_dofs());
 }
 
@@ -149,7 +149,7 @@ TEST_F(ModelFile, WithoutFieldsAnswersTheSame) {
   write_model(full_model(), path);
   const ReducedModel with = read_model(path, catalogue()),
                      without = read_model(path, catalogue(), false);
-  EXPECT_EQ(without.primal_basis.size(), 0);
+  EXPECT_EQ(without.fields.basis.size(), 0);
   OnlineSolver a(with), b(without);
   const Mu mu{0.2, 0.01};
   const ReducedAnswer solution = a.solve(mu);
@@ -165,10 +165,10 @@ TEST_F(ModelFile, FieldsHaveAFileOfTheirOwn) {
   write_model(model, path);
   const auto written = std::filesystem::last_write_time(fields);
   ReducedModel again = read_model(path, catalogue());
-  again.settings["verified"] = "yes";
+  again.made.settings["verified"] = "yes";
   write_model(again, path);
   EXPECT_EQ(std::filesystem::last_write_time(fields), written) << "the same fields stay";
-  EXPECT_EQ(read_model(path, catalogue()).settings, again.settings);
+  EXPECT_EQ(read_model(path, catalogue()).settings, again.made.settings);
 
   const auto refusal = [&]() -> std::string {
     EXPECT_NO_THROW(read_model(path, catalogue(), false));
@@ -197,21 +197,21 @@ TEST_F(ModelFile, FieldsHaveAFileOfTheirOwn) {
 
 TEST_F(ModelFile, NoLoadAndNoGapAreModels) {
   ReducedModel model = synthetic::random_model({3, 2, 4, 2, 1, 1, 1}, 12);
-  model.f = model.g = {};
+  model.body.f = model.contact.g = {};
   write_model(model, path);
   const ReducedModel copy = read_model(path, catalogue());
   OnlineSolver solver(copy);
   EXPECT_EQ(solver.solve({0.2, 0, 0}).u.norm(), 0);
-  EXPECT_EQ(leading(copy, 2, 3).f.size(), 0);
+  EXPECT_EQ(leading(copy, 2, 3).body.f.size(), 0);
 }
 
 TEST_F(ModelFile, OnlineEnrichedModelsAnswerTheSame) {
   ReducedModel model = full_model();
-  model.online_enriched = true;
-  model.supremizers = 2;
+  model.body.online_enriched = true;
+  model.body.supremizers = 2;
   write_model(model, path);
   const ReducedModel copy = read_model(path, catalogue());
-  EXPECT_TRUE(copy.online_enriched);
+  EXPECT_TRUE(copy.body.online_enriched);
   const Mu mu{0.2, 0.01};
   EXPECT_EQ(OnlineSolver(copy).solve(mu).u, OnlineSolver(model).solve(mu).u);
 }

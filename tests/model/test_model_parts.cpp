@@ -29,28 +29,29 @@ TEST(CheckModel, NamesWhatDoesNotFit) {
   EXPECT_FALSE(refused([](M &m) { m.dual_basis(0, 0) = -1; }));
   EXPECT_FALSE(refused([](M &m) {
     m.dual_basis(0, 0) = -1;
-    m.free_modes = 0;
+    m.contact.free_modes = 0;
   }));
-  EXPECT_TRUE(refused([](M &m) { m.modes = 4; }));
-  EXPECT_TRUE(refused([](M &m) { m.a.reduced(0, 0) = std::nan(""); }));
+  EXPECT_TRUE(refused([](M &m) { m.body.modes = 4; }));
+  EXPECT_TRUE(refused([](M &m) { m.body.a.reduced(0, 0) = std::nan(""); }));
   EXPECT_TRUE(refused([](M &m) { m.dual_basis(0, 0) = std::nan(""); }));
-  EXPECT_TRUE(refused([](M &m) { m.free_modes = -1; }));
-  EXPECT_TRUE(refused([](M &m) { m.free_modes = 5; }));
-  EXPECT_TRUE(refused([](M &m) { m.mesh_cells[0] = 5; }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces.clear(); }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces[0].nodes[0] = -1; }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces[0].mesh.entities[0] = 3; }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces[0].mesh.entities.push_back(0); }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples[0].contributions[0].cell = 99; }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples[0].contributions.back().entry = 2; }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples[0].corners = 6; }));
-  EXPECT_TRUE(refused([](M &m) { m.b.samples.clear(); }));
-  EXPECT_TRUE(refused([](M &m) { m.g.samples.push_back(m.g.samples[0]); }));
-  EXPECT_TRUE(refused([](M &m) { m.interfaces.push_back(m.interfaces[0]); })) << "b has samples";
-  EXPECT_TRUE(refused([](M &m) { m.a = {}; }));
-  EXPECT_TRUE(refused([](M &m) { m.trace_dofs = {0, 1, 3}; })) << "there are three";
-  EXPECT_TRUE(refused([](M &m) { m.trace_dofs = {1, 0, 2}; })) << "does not rise";
-  EXPECT_TRUE(refused([](M &m) { m.a_change.range = Matrix::Ones(m.primal_size(), 1); }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.free_modes = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.free_modes = 5; }));
+  EXPECT_TRUE(refused([](M &m) { m.fields.cells[0] = 5; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.interfaces.clear(); }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.interfaces[0].nodes[0] = -1; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.interfaces[0].mesh.entities[0] = 3; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.interfaces[0].mesh.entities.push_back(0); }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.b.samples[0].contributions[0].cell = 99; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.b.samples[0].contributions.back().entry = 2; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.b.samples[0].corners = 6; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.b.samples.clear(); }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.g.samples.push_back(m.contact.g.samples[0]); }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.interfaces.push_back(m.contact.interfaces[0]); }))
+      << "b has samples";
+  EXPECT_TRUE(refused([](M &m) { m.body.a = {}; }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.trace_dofs = {0, 1, 3}; })) << "there are three";
+  EXPECT_TRUE(refused([](M &m) { m.contact.trace_dofs = {1, 0, 2}; })) << "does not rise";
+  EXPECT_TRUE(refused([](M &m) { m.body.a_change.range = Matrix::Ones(m.primal_size(), 1); }));
 }
 
 /// The leading part of A, B, F, G as dense matrices is the top left corner of the whole.
@@ -58,19 +59,20 @@ TEST(Leading, IsTheTopLeftCorner) {
   const ReducedModel model = full_model();
   const ReducedModel part = leading(model, 4, 3);
   check_model(part);
-  EXPECT_EQ(part.modes, 3);
-  EXPECT_EQ(part.supremizers, 1);
-  for (int q = 0; q < model.a.size(); ++q)
+  EXPECT_EQ(part.body.modes, 3);
+  EXPECT_EQ(part.body.supremizers, 1);
+  for (int q = 0; q < model.body.a.size(); ++q)
     for (Index j = 0, at = 0; j < 4; ++j)
       for (Index i = j; i < 4; ++i, ++at)
-        EXPECT_EQ(part.a.reduced(at, q), model.a.reduced(5 * j - j * (j - 1) / 2 + i - j, q));
+        EXPECT_EQ(part.body.a.reduced(at, q),
+                  model.body.a.reduced(5 * j - j * (j - 1) / 2 + i - j, q));
   for (Index i = 0; i < 3; ++i)
     for (Index j = 0; j < 4; ++j)
-      EXPECT_EQ(part.b.reduced(j * 3 + i, 1), model.b.reduced(j * 4 + i, 1));
-  EXPECT_EQ(part.f.reduced, model.f.reduced.topRows(4));
-  EXPECT_EQ(part.g.reduced, model.g.reduced.topRows(3));
-  EXPECT_EQ(part.validation_enriched.count, 0);
-  EXPECT_EQ(leading(model, 5, 4).validation_enriched.count, 64);
+      EXPECT_EQ(part.contact.b.reduced(j * 3 + i, 1), model.contact.b.reduced(j * 4 + i, 1));
+  EXPECT_EQ(part.body.f.reduced, model.body.f.reduced.topRows(4));
+  EXPECT_EQ(part.contact.g.reduced, model.contact.g.reduced.topRows(3));
+  EXPECT_EQ(part.made.validation_enriched.count, 0);
+  EXPECT_EQ(leading(model, 5, 4).made.validation_enriched.count, 64);
   EXPECT_THROW(leading(model, 6, 4), Error);
   EXPECT_THROW(leading(model, 0, 4), Error);
   EXPECT_THROW(leading(model, 5, 5), Error);
@@ -78,22 +80,22 @@ TEST(Leading, IsTheTopLeftCorner) {
 
 TEST(Leading, CutsTheModesFirst) {
   ReducedModel model = full_model();
-  model.free_modes = 2;
-  EXPECT_EQ(leading(model, 5, 4).free_modes, 2);
-  EXPECT_EQ(leading(model, 5, 3).free_modes, 1);
-  EXPECT_EQ(leading(model, 5, 2).free_modes, 0);
-  EXPECT_EQ(leading(model, 5, 1).free_modes, 0);
+  model.contact.free_modes = 2;
+  EXPECT_EQ(leading(model, 5, 4).contact.free_modes, 2);
+  EXPECT_EQ(leading(model, 5, 3).contact.free_modes, 1);
+  EXPECT_EQ(leading(model, 5, 2).contact.free_modes, 0);
+  EXPECT_EQ(leading(model, 5, 1).contact.free_modes, 0);
 }
 
 TEST(Leading, WithoutSupremizersNothingIsMadeOnline) {
   ReducedModel model = full_model();
-  model.online_enriched = true;
-  EXPECT_TRUE(leading(model, 5, 4).online_enriched);
-  EXPECT_TRUE(leading(model, 4, 4).online_enriched);
-  EXPECT_FALSE(leading(model, 3, 4).online_enriched);
-  EXPECT_FALSE(leading(model, 2, 4).online_enriched);
+  model.body.online_enriched = true;
+  EXPECT_TRUE(leading(model, 5, 4).body.online_enriched);
+  EXPECT_TRUE(leading(model, 4, 4).body.online_enriched);
+  EXPECT_FALSE(leading(model, 3, 4).body.online_enriched);
+  EXPECT_FALSE(leading(model, 2, 4).body.online_enriched);
   ReducedModel plain = model;
-  plain.online_enriched = false;
+  plain.body.online_enriched = false;
   const ReducedModel cut = leading(model, 3, 4), same = leading(plain, 3, 4);
   const Mu mu{0.2, 0.01};
   EXPECT_EQ(OnlineSolver(cut).solve(mu).u, OnlineSolver(same).solve(mu).u);
@@ -101,7 +103,7 @@ TEST(Leading, WithoutSupremizersNothingIsMadeOnline) {
 
 TEST(Leading, DecorrelatedKeepsItsOwnErrors) {
   ReducedModel model = full_model();
-  model.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
+  model.made.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
   EXPECT_EQ(expected_errors(model).u_max, 2e-4);
   EXPECT_EQ(expected_errors(leading(model, 3, 4)).u_max, 0.2);
   EXPECT_EQ(expected_errors(leading(model, 3, 3)).count, 0);
@@ -125,8 +127,8 @@ TEST(PrintModel, ShowsModesAndOnlineEnrichmentWhereTheyAre) {
   ReducedModel model = full_model(); // 3 generators and a mode
   EXPECT_NE(printed(model).find("free modes"), std::string::npos) << printed(model);
   EXPECT_EQ(printed(model).find("made online"), std::string::npos);
-  model.free_modes = 0;
-  model.online_enriched = true;
+  model.contact.free_modes = 0;
+  model.body.online_enriched = true;
   EXPECT_EQ(printed(model).find("free modes"), std::string::npos);
   EXPECT_NE(printed(model).find("made online"), std::string::npos);
 }

@@ -59,8 +59,8 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     ReducedModel model = toy_model(sizes, seed), changed = model;
     std::mt19937 random(seed);
-    changed.a.reduced = pack(synthetic::random_spd(random, n));
-    StiffnessChange &change = changed.a_change;
+    changed.body.a.reduced = pack(synthetic::random_spd(random, n));
+    StiffnessChange &change = changed.body.a_change;
     change.range = synthetic::random_matrix(random, n, r);
     change.scales = Vector::LinSpaced(3, 0.4, 0.9);
     change.cores.resize(r * (r + 1) / 2, 3);
@@ -68,7 +68,7 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
       change.cores.col(q) = pack(synthetic::random_spd(random, r));
       Matrix lower(n, n);
       stiffness_of(changed, Vector::Unit(3, q), lower);
-      model.a.reduced.col(q) = pack(lower);
+      model.body.a.reduced.col(q) = pack(lower);
     }
     check_model(changed);
     OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
@@ -86,7 +86,7 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
       const Vector u = part_solver.solve(mu).u;
       EXPECT_LE((other_part.solve(mu).u - u).norm(), 1e-11 * u.norm());
     }
-    changed.a_change.cores *= -1e3;
+    changed.body.a_change.cores *= -1e3;
     EXPECT_THROW(OnlineSolver(changed, synthetic::toy_scene<smooth>()).solve({0.2, 0, 0}), Error);
   }
 }
@@ -95,8 +95,8 @@ TEST(OnlineSolver, StiffnessThatChangesOnFewFunctions) {
 TEST(OnlineSolver, TraceOfSomeNodes) {
   const ReducedModel model = toy_model({3, 3, 3, 2, 2, 2, 2}, 5);
   ReducedModel partial = model;
-  partial.trace_dofs = {0, 2};
-  partial.contact_trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  partial.contact.trace_dofs = {0, 2};
+  partial.contact.trace = model.contact_trace({0, 2}, Eigen::all).eval();
   check_model(partial);
   OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
       other(partial, synthetic::toy_scene<smooth>());
@@ -118,9 +118,9 @@ TEST(OnlineSolver, NoLoad) {
 
 TEST(OnlineSolver, MoreConstraintsThanUnknowns) {
   ReducedModel model = toy_model({2, 0, 8, 2, 1, 2, 1}, 3);
-  model.b.reduced(4, 0) = model.b.reduced(0, 0); // two equal generators
-  model.b.reduced(8 + 4, 0) = model.b.reduced(8, 0);
-  model.g.reduced(4, 0) = model.g.reduced(0, 0);
+  model.contact.b.reduced(4, 0) = model.contact.b.reduced(0, 0); // two equal generators
+  model.contact.b.reduced(8 + 4, 0) = model.contact.b.reduced(8, 0);
+  model.contact.g.reduced(4, 0) = model.contact.g.reduced(0, 0);
   OnlineSolver solver(model, synthetic::toy_scene<smooth>());
   for (const Mu &mu : parse_set(model.scene.parameters, "grid:5,5,1")) {
     const Vector u = brute_force(assemble(model, smooth, mu));
@@ -131,8 +131,8 @@ TEST(OnlineSolver, MoreConstraintsThanUnknowns) {
 TEST(OnlineSolver, ContradictingConstraintsAreAFailure) {
   ReducedModel model = toy_model({3, 0, 2, 1, 1, 1, 1}, 2);
   for (int j = 0; j < 3; ++j)
-    model.b.reduced(2 * j + 1, 0) = -model.b.reduced(2 * j, 0);
-  model.g.reduced.setConstant(-1); // b u <= -1 and -b u <= -1
+    model.contact.b.reduced(2 * j + 1, 0) = -model.contact.b.reduced(2 * j, 0);
+  model.contact.g.reduced.setConstant(-1); // b u <= -1 and -b u <= -1
   OnlineSolver solver(model, synthetic::toy_scene<smooth>());
   try {
     solver.solve({0.2, 0, 0});
@@ -222,18 +222,18 @@ TEST(KktResidual, IsNoNumberWhereAnOperatorIsNone) {
 
 TEST(Outputs, AreIntegralsOverTheContactRegion) {
   ReducedModel model = synthetic::random_model({}, 8);
-  model.validation_enriched = {10, 1e-3, 2e-3, 3e-3, 4e-3};
+  model.made.validation_enriched = {10, 1e-3, 2e-3, 3e-3, 4e-3};
   OnlineSolver solver(model);
   const Mu mu{0.19, 0.01, 0.02};
   ReducedAnswer solution = solver.solve(mu);
   solution.lambda << 1, 0, 2, 0;
   const Outputs outputs = solver.outputs(mu, solution);
-  const Vector lambda = model.dual_basis.col(0) + 2 * model.dual_basis.col(2);
+  const Vector lambda = model.contact.dual_basis.col(0) + 2 * model.contact.dual_basis.col(2);
   // A triangle of area 0.01, scaled from radius 0.2 to 0.19.
   const Vector weights = Vector::Constant(3, 0.01 / 3 * std::pow(0.19 / 0.2, 2));
   EXPECT_NEAR(*outputs.normal_force, lambda.dot(weights), 1e-13 * std::abs(lambda.dot(weights)));
   EXPECT_NEAR(*outputs.peak_pressure, lambda.maxCoeff(), 1e-13 * lambda.maxCoeff());
-  const InterfaceModel &contact = model.interfaces.front();
+  const InterfaceModel &contact = model.contact.interfaces.front();
   const double area = contact_area(weights, lambda, contact.mesh.entities, 3);
   EXPECT_LT(std::abs(area), std::abs(weights.sum()));
   EXPECT_NEAR(*outputs.contact_measure, area, 1e-13 * std::abs(area));
@@ -242,7 +242,7 @@ TEST(Outputs, AreIntegralsOverTheContactRegion) {
   for (const int node : contact.nodes) {
     // psi = -1.25 |x - c|^2 / r^2 on the mapped disc is -1.25 |xhat|^2 / 0.2^2 on the reference
     // one.
-    const double psi = -1.25 * model.mesh_points.row(node).squaredNorm() / 0.04;
+    const double psi = -1.25 * model.fields.points.row(node).squaredNorm() / 0.04;
     deepest = std::max(deepest, psi - field[node]);
   }
   EXPECT_NEAR(*outputs.max_penetration, deepest, 1e-12);

@@ -17,8 +17,8 @@ using namespace brute;
 /// so that the check of its sign stays out of the way.
 ReducedModel model_with_modes(const synthetic::Sizes &sizes, unsigned seed, int free) {
   ReducedModel model = toy_model(sizes, seed);
-  model.free_modes = free;
-  model.dual_basis.rightCols(free).setZero();
+  model.contact.free_modes = free;
+  model.contact.dual_basis.rightCols(free).setZero();
   return model;
 }
 
@@ -87,8 +87,8 @@ TEST(FreeModes, KktResidualSeesAnOpenGap) {
 
 /// Node 0 takes the pressure of the first generator, node 1 that of the last function.
 Matrix two_nodes(const ReducedModel &model) {
-  Matrix basis = Matrix::Zero(model.dual_basis.rows(), model.generators);
-  basis(0, 0) = basis(1, model.generators - 1) = 1;
+  Matrix basis = Matrix::Zero(model.contact.dual_basis.rows(), model.contact.generators);
+  basis(0, 0) = basis(1, model.contact.generators - 1) = 1;
   return basis;
 }
 
@@ -96,11 +96,11 @@ TEST(FreeModes, APulledNodeIsAFailureThatNamesTheRing) {
   int pulled = 0, pushed = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
     ReducedModel model = model_with_modes({4, 3, 4, 2, 1, 1, 1}, seed, 1);
-    model.dual_basis = two_nodes(model);
+    model.contact.dual_basis = two_nodes(model);
     OnlineSolver solver(model, synthetic::toy_scene<smooth>());
     const Mu mu{0.19, 0.01, 0};
     const PairAnswer exact = brute_force_pair(assemble(model, smooth, mu), 1);
-    const Vector pressure = model.dual_basis * exact.x;
+    const Vector pressure = model.contact.dual_basis * exact.x;
     try {
       solver.solve(mu);
       EXPECT_GE(pressure.minCoeff(), -1.01e-2 * pressure.maxCoeff());
@@ -122,12 +122,12 @@ TEST(FreeModes, APulledNodeIsAFailureThatNamesTheRing) {
 /// A generator that is negative somewhere is watched as well: a hybrid cone can do without modes.
 TEST(FreeModes, ANegativeGeneratorIsWatchedWithoutModes) {
   ReducedModel model = toy_model({4, 3, 4, 2, 1, 1, 1}, 2);
-  model.dual_basis = Matrix::Zero(3, 4);
-  model.dual_basis.row(0).setOnes();
+  model.contact.dual_basis = Matrix::Zero(3, 4);
+  model.contact.dual_basis.row(0).setOnes();
   OnlineSolver good(model, synthetic::toy_scene<smooth>());
   const Mu mu{0.19, 0.01, 0};
   ASSERT_GT(good.solve(mu).lambda.sum(), 0) << "nothing is in contact";
-  model.dual_basis.row(1).setConstant(-0.5);
+  model.contact.dual_basis.row(1).setConstant(-0.5);
   OnlineSolver bad(model, synthetic::toy_scene<smooth>());
   EXPECT_THROW(bad.solve(mu), Error);
 }
@@ -151,7 +151,7 @@ template <synthetic::Value value> void expect_enriched(const synthetic::Sizes &s
     ReducedModel model = model_with_modes(sizes, seed, free);
     OnlineSolver plain(model, synthetic::toy_scene<value>());
     ReducedModel online = model;
-    online.online_enriched = true;
+    online.body.online_enriched = true;
     OnlineSolver solver(online, synthetic::toy_scene<value>());
     double changed = 0;
     for (const Mu &mu : parse_set(model.scene.parameters, "random:12:" + std::to_string(seed))) {

@@ -72,8 +72,8 @@ struct OnlineBinary : testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(directory);
     std::filesystem::current_path(directory);
-    model.validation_enriched = {64, 1e-4, 2e-4, 3e-4, 4e-4};
-    model.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
+    model.made.validation_enriched = {64, 1e-4, 2e-4, 3e-4, 4e-4};
+    model.made.validation_decorrelated = {64, 0.1, 0.2, 0.3, 0.4};
     write_model(model, "model.h5");
   }
   void TearDown() override {
@@ -202,7 +202,7 @@ TEST_F(OnlineBinary, FailsWithStatusOne) {
   EXPECT_EQ(online("model.h5 --queries grid:2,2,2 --out model.h5/out.csv").status, 1);
   EXPECT_EQ(online("model.h5 --queries grid:2,2,2 --out /dev/full").status, 1);
   EXPECT_EQ(online("model.h5 --queries grid:2,2,2 > /dev/full").status, 1);
-  model.a.reduced *= -1;
+  model.body.a.reduced *= -1;
   write_model(model, "model.h5");
   const Finished run = online("model.h5 --queries grid:2,2,2 --out out.csv");
   EXPECT_EQ(run.status, 1);
@@ -230,11 +230,11 @@ std::vector<std::map<std::string, std::string>> rows_of(const std::string &table
 
 TEST_F(OnlineBinary, ARowWithoutAnAnswerSaysWhyAndTheOthersAreAnswered) {
   // The last generator takes either sign and pulls at a node, the less the smaller its share is.
-  model.free_modes = 1;
+  model.contact.free_modes = 1;
   std::vector<bool> answered;
   std::ptrdiff_t missing = 40;
   for (double share = 10; missing == 40 && share > 1e-6; share /= 2) {
-    model.dual_basis.col(3) << share, -share, share;
+    model.contact.dual_basis.col(3) << share, -share, share;
     answered.clear();
     OnlineSolver solver(model);
     for (const Mu &mu : parse_set(solver.scene().parameters, "random:40:3")) {
@@ -312,10 +312,10 @@ TEST_F(OnlineBinary, IdsAreHandedOnAndDigitsAreChosen) {
 }
 
 TEST_F(OnlineBinary, WarnsNextToAFailedTrainingSample) {
-  model.trained_mu.resize(3, 1);
-  model.trained_mu << 0.23, 0, 0;
-  model.failed_mu.resize(3, 1);
-  model.failed_mu << 0.17, 0, 0;
+  model.made.trained_mu.resize(3, 1);
+  model.made.trained_mu << 0.23, 0, 0;
+  model.made.failed_mu.resize(3, 1);
+  model.made.failed_mu << 0.17, 0, 0;
   write_model(model, "model.h5");
   const std::string warning = "1 answer lies nearest to a training parameter that has no";
   EXPECT_TRUE(contains(online("model.h5 --mu 0.18,0,0").out, warning));
@@ -372,8 +372,8 @@ TEST_F(OnlineBinary, ALongBatchLosesOnlyTheRowsWithoutAnAnswerAndTakesNoMemory) 
 }
 
 TEST_F(OnlineBinary, ReadsItsOwnTablesAgain) {
-  model.validation_enriched.outputs = {{"energy", 1e-5, 2e-5, 1e-4, 2e-4, 1e-4, 2e-4},
-                                       {"kkt_residual", 1e-15, 1e-15, 1, 1, 1, 1}};
+  model.made.validation_enriched.outputs = {{"energy", 1e-5, 2e-5, 1e-4, 2e-4, 1e-4, 2e-4},
+                                            {"kkt_residual", 1e-15, 1e-15, 1, 1, 1, 1}};
   write_model(model, "model.h5");
   ASSERT_EQ(online("model.h5 --queries random:7:5 --out out.csv").status, 0);
   const Finished again = online("model.h5 --queries out.csv --out out2.csv");
@@ -393,7 +393,7 @@ TEST_F(OnlineBinary, ReadsItsOwnTablesAgain) {
 TEST_F(OnlineBinary, SaysWhereNothingSoNearTheBoundaryWasMeasured) {
   const std::string nearer = "nearer to a corner or a face of the box";
   EXPECT_FALSE(contains(online("model.h5 --mu 0.24,0.05,0.05").out, nearer));
-  model.validated_mu = Vector{{0.2, 0, 0}};
+  model.made.validated_mu = Vector{{0.2, 0, 0}};
   write_model(model, "model.h5");
   EXPECT_FALSE(contains(online("model.h5 --mu 0.2,0,0").out, nearer));
   const Finished one = online("model.h5 --mu 0.21,0,0");
@@ -403,8 +403,8 @@ TEST_F(OnlineBinary, SaysWhereNothingSoNearTheBoundaryWasMeasured) {
   const Finished outside = online("model.h5 --mu 0.245,0,0 --extrapolate");
   EXPECT_TRUE(contains(outside.out, "unknown outside the box")) << outside.out;
   EXPECT_FALSE(contains(outside.out, nearer)) << outside.out;
-  model.validation_enriched = {};
-  model.validated_mu = {};
+  model.made.validation_enriched = {};
+  model.made.validated_mu = {};
   write_model(model, "model.h5");
   EXPECT_TRUE(contains(online("model.h5 --mu 0.2,0,0").out, "not measured: nobody knows"));
 }

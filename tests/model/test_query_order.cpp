@@ -13,7 +13,8 @@ namespace {
 /// More generators than functions: the multipliers are not unique, and a start chooses some.
 ReducedModel model_of_dependent_generators(bool trained) {
   ReducedModel model = synthetic::random_model({4, 2, 12, 2, 1, 1, 2}, 3);
-  if (trained) model.trained_mu = as_columns(parse_set(model.scene.parameters, "grid:2,2,2"), 3);
+  if (trained)
+    model.made.trained_mu = as_columns(parse_set(model.scene.parameters, "grid:2,2,2"), 3);
   return model;
 }
 

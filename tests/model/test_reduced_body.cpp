@@ -47,9 +47,9 @@ TEST_P(PerTerms, IsThatOfTheSumOfItsTerms) {
     for (const Parameter &p : scene.parameters.all)
       mu.push_back(p.lower + t * (p.upper - p.lower));
     at_mu.set(mu);
-    const Matrix a = full(model.a.reduced * theta(mu, GetParam()), n);
+    const Matrix a = full(model.body.a.reduced * theta(mu, GetParam()), n);
     const Vector theta_b = random_matrix(random, 2, 1), x = random_matrix(random, 5, 1);
-    const Vector load = (model.b.reduced * theta_b).reshaped(5, n).transpose() * x;
+    const Vector load = (model.contact.b.reduced * theta_b).reshaped(5, n).transpose() * x;
     const Vector expected = a.llt().solve(load);
     EXPECT_LE((at_mu.response(theta_b, x) - expected).norm(), 1e-12 * expected.norm());
     const Matrix loads = random_matrix(random, n, 4), half = at_mu.half_response(loads);
@@ -63,7 +63,7 @@ TEST_P(PerTerms, IsThatOfTheSumOfItsTerms) {
 TEST_P(PerTerms, AnIndefiniteOneIsSaid) {
   const Scene scene = toy_scene<value>();
   ReducedModel model = random_model({.a = GetParam()}, 5, scene, true);
-  model.a.reduced *= -1;
+  model.body.a.reduced *= -1;
   const ReducedBody body(model, scene);
   BodyAtMu at_mu(body);
   FullMu mu;
@@ -91,9 +91,9 @@ TEST(ReducedBody, WhatTheCornersDoNotShowIsFactorised) {
   BodyAtMu at_mu(body);
   at_mu.set({0.3});
   const Vector values{{same_at_corners(0, 0, {0.3}), same_at_corners(0, 1, {0.3})}};
-  const Matrix a = full(model.a.reduced * values, model.primal_size());
+  const Matrix a = full(model.body.a.reduced * values, model.primal_size());
   const Vector x = Vector::Ones(4);
-  const Vector expected = a.llt().solve(model.b.reduced.reshaped(4, 5).transpose() * x);
+  const Vector expected = a.llt().solve(model.contact.b.reduced.reshaped(4, 5).transpose() * x);
   EXPECT_LE((at_mu.response(Vector::Ones(1), x) - expected).norm(), 1e-12 * expected.norm());
 }
 

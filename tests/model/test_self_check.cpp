@@ -38,7 +38,7 @@ TEST(SelfCheck, FindsTheLargestOfEachAndWhere) {
   for (const Mu &mu : set) {
     const ReducedAnswer solution = solver.solve(mu);
     EXPECT_LE(*solver.outputs(mu, solution).max_penetration, check.penetration.value + 1e-9);
-    displacement = std::max(displacement, (model.contact_trace * solution.u).cwiseAbs().maxCoeff());
+    displacement = std::max(displacement, (model.contact.trace * solution.u).cwiseAbs().maxCoeff());
   }
   EXPECT_NEAR(check.scale, displacement, 1e-9 * displacement);
   EXPECT_TRUE(contains(printed(check, model),
@@ -55,7 +55,7 @@ TEST(SelfCheck, IsTheSameEveryTime) {
 
 TEST(SelfCheck, SaysWhatHasNoAnswer) {
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 1, 1, 2}, 21);
-  model.a.reduced *= -1; // not positive definite
+  model.body.a.reduced *= -1; // not positive definite
   const SelfCheck check = self_check(model, model.scene, 10);
   EXPECT_EQ(check.unanswered, 24);
   EXPECT_EQ(check.unanswered_at, parse_set(model.scene.parameters, "random:1:17")[0]);

@@ -33,7 +33,7 @@ TEST_F(ModelVtu, VtuHoldsTheMappedFieldAndContact) {
   ASSERT_EQ(u.size(), 5U);
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(u[std::size_t(i)], solver.field(solution)[i]);
-    const Point x = solver.scene().map({0.18, 0.01, 0.02}, point_of(model.mesh_points, i));
+    const Point x = solver.scene().map({0.18, 0.01, 0.02}, point_of(model.fields.points, i));
     EXPECT_EQ(points[std::size_t(3 * i)], x[0]);
     EXPECT_EQ(points[std::size_t(3 * i + 1)], x[1]);
   }
@@ -56,9 +56,9 @@ TEST_F(ModelVtu, VtuHoldsTheMappedFieldAndContact) {
 TEST_F(ModelVtu, VtuReadsFieldsAndInterfacesAlone) {
   const ReducedModel model = full_model();
   ReducedModel bare;
-  bare.mesh_points = model.mesh_points;
-  bare.mesh_cells = model.mesh_cells;
-  bare.interfaces = model.interfaces;
+  bare.fields.points = model.fields.points;
+  bare.fields.cells = model.fields.cells;
+  bare.contact.interfaces = model.contact.interfaces;
   const Scene scene = model.scene;
   const Vector u = Vector::LinSpaced(5, 0, 1), lambda = Vector::LinSpaced(3, 1, 2);
   const auto written = [&](const ReducedModel &of) {
@@ -101,13 +101,13 @@ TEST_F(PairVtu, ShowsBothBodiesWithTheirMotion) {
   const ReducedModel model = synthetic::random_pair_model({}, 11, p0());
   const Mu mu{0.8};
   const Written file = write(model, p0(), mu);
-  const Index nodes = model.mesh_points.rows();
+  const Index nodes = model.fields.points.rows();
   const std::vector<double> points = data_array(file.bodies, "points"),
                             u = data_array(file.bodies, "u");
   ASSERT_EQ(points.size(), static_cast<std::size_t>(3 * nodes));
   ASSERT_EQ(u.size(), points.size());
   for (Index i = 0; i < nodes; ++i) {
-    const Point x = point_of(model.mesh_points, i),
+    const Point x = point_of(model.fields.points, i),
                 image = p0().map(expand(p0().parameters, mu), x);
     const auto k = static_cast<std::size_t>(3 * i);
     EXPECT_EQ(points[k], image[0]);
@@ -116,7 +116,7 @@ TEST_F(PairVtu, ShowsBothBodiesWithTheirMotion) {
     EXPECT_EQ(u[k + 1], (x[1] > 0 ? -0.09 : 0.09) + file.w[2 * i + 1]);
     EXPECT_EQ(u[k + 2], 0);
   }
-  EXPECT_EQ(data_array(file.bodies, "connectivity").size(), model.mesh_cells.size());
+  EXPECT_EQ(data_array(file.bodies, "connectivity").size(), model.fields.cells.size());
 }
 
 /// What lies on the contact curve at mu = 0.8, where the slave arc reaches beyond the master arc.
@@ -131,7 +131,7 @@ void expect_curve(const Written &file, const ReducedModel &model, const Scene &s
   ASSERT_EQ(u.size(), 3 * count);
   EXPECT_EQ(data_array(file.contact, "connectivity").size(), 2 * (count - 1));
   EXPECT_EQ(data_array(file.contact, "types"), std::vector<double>(count - 1, 3));
-  const auto &[curves, nodes] = model.interfaces.front();
+  const auto &[curves, nodes] = model.contact.interfaces.front();
   for (std::size_t k = 0; k < count; ++k) {
     const auto node = static_cast<std::size_t>(file.paired[k]);
     const Point image = scene.map(expand(scene.parameters, {0.8}), curves.points[node]);
@@ -149,9 +149,9 @@ TEST_F(PairVtu, NumbersTheBodiesAndHasTheirStresses) {
   const ReducedModel model = synthetic::random_pair_model({}, 11, p0());
   const std::string cells = section(write(model, p0(), {0.8}).bodies, "CellData");
   const std::vector<double> body = data_array(cells, "body");
-  ASSERT_EQ(3 * body.size(), model.mesh_cells.size());
+  ASSERT_EQ(3 * body.size(), model.fields.cells.size());
   for (std::size_t k = 0; k < body.size(); ++k) {
-    const bool upper = model.mesh_points(model.mesh_cells[3 * k], 1) > 0;
+    const bool upper = model.mesh_points(model.fields.cells[3 * k], 1) > 0;
     EXPECT_EQ(body[k], upper ? 1 : 2);
   }
   for (const char *name : {"von_mises", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy"})
@@ -224,8 +224,8 @@ TEST_F(PairVtu, WithoutFieldsNothingIsWritten) {
   OnlineSolver solver(model, p0());
   const ReducedAnswer solution = solver.solve({1});
   const Vector w = solver.field(solution), lambda = solver.multiplier(solution);
-  model.mesh_points.resize(0, 0);
-  model.mesh_cells.clear();
+  model.fields.points.resize(0, 0);
+  model.fields.cells.clear();
   EXPECT_THROW(write_vtu(directory / "u.vtu", p0(), {1}, model, w, lambda), Error);
   EXPECT_FALSE(std::filesystem::exists(directory / "u.vtu"));
   EXPECT_FALSE(std::filesystem::exists(directory / "u_contact.vtu"));

@@ -42,8 +42,8 @@ TEST(TrainingSamples, ColumnsComeBackAsTheSet) {
 
 TEST(TrainingSamples, DistancesAreInPartsOfTheBox) {
   ReducedModel model = wide_model();
-  model.trained_mu = as_columns({{0.3, 0.05}, {1.1, 0}}, 2);
-  model.failed_mu = as_columns({{0.5, 0}}, 2);
+  model.made.trained_mu = as_columns({{0.3, 0.05}, {1.1, 0}}, 2);
+  model.made.failed_mu = as_columns({{0.5, 0}}, 2);
   // The first sample is 0.05 away, half a box; the failed one 0.2, a fifth of a box.
   EXPECT_TRUE(nearest_sample_failed(model, {0.3, 0}));
   EXPECT_FALSE(nearest_sample_failed(model, {0.3, 0.04}));
@@ -54,7 +54,7 @@ TEST(TrainingSamples, DistancesAreInPartsOfTheBox) {
 TEST(TrainingSamples, WithoutFailuresNoneIsNear) {
   ReducedModel model = wide_model();
   EXPECT_FALSE(nearest_sample_failed(model, {0.3, 0}));
-  model.trained_mu = as_columns({{0.3, 0.05}}, 2);
+  model.made.trained_mu = as_columns({{0.3, 0.05}}, 2);
   EXPECT_FALSE(nearest_sample_failed(model, {1.1, -0.05}));
 }
 
@@ -63,36 +63,36 @@ TEST(TrainingSamples, TheModelFileKeepsThem) {
                     ("rbvi_training_" + std::to_string(::getpid()) + ".h5");
   ReducedModel model = synthetic::random_model({3, 2, 4, 3, 2, 1, 2}, 11);
   model.scene.parameters = free_only(model.scene.parameters, "radius,center_y");
-  model.trained_mu = as_columns({{0.18, 0.05}, {0.24, 0}}, 2);
-  model.failed_mu = as_columns({{0.2, 0}}, 2);
+  model.made.trained_mu = as_columns({{0.18, 0.05}, {0.24, 0}}, 2);
+  model.made.failed_mu = as_columns({{0.2, 0}}, 2);
   write_model(model, path);
   const ReducedModel back = read_model(path, catalogue(), false);
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
-  EXPECT_EQ(back.trained_mu, model.trained_mu);
-  EXPECT_EQ(back.failed_mu, model.failed_mu);
+  EXPECT_EQ(back.made.trained_mu, model.made.trained_mu);
+  EXPECT_EQ(back.made.failed_mu, model.made.failed_mu);
 }
 
 TEST(TrainingSamples, OtherNumbersOfParametersAreInconsistent) {
-  for (Matrix ReducedModel::*member : {&ReducedModel::trained_mu, &ReducedModel::failed_mu}) {
+  for (Matrix ModelHistory::*member : {&ModelHistory::trained_mu, &ModelHistory::failed_mu}) {
     ReducedModel model = wide_model();
-    model.*member = Matrix::Zero(3, 2);
+    model.made.*member = Matrix::Zero(3, 2);
     EXPECT_THROW(check_model(model), Error);
-    model.*member = Matrix::Zero(2, 2);
+    model.made.*member = Matrix::Zero(2, 2);
     EXPECT_NO_THROW(check_model(model));
-    (model.*member)(1, 0) = std::numeric_limits<double>::quiet_NaN();
+    (model.made.*member)(1, 0) = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(check_model(model), Error);
   }
 }
 
 TEST(TrainingSamples, FailedOnesArePrinted) {
   ReducedModel model = wide_model();
-  model.trained_mu = as_columns({{0.3, 0.05}, {1.1, 0}}, 2);
+  model.made.trained_mu = as_columns({{0.3, 0.05}, {1.1, 0}}, 2);
   EXPECT_EQ(printed(model).find("failed samples"), std::string::npos);
-  model.failed_mu = as_columns({{0.5, 0.01}}, 2);
+  model.made.failed_mu = as_columns({{0.5, 0.01}}, 2);
   EXPECT_NE(printed(model).find("1 of 3, without"), std::string::npos) << printed(model);
   EXPECT_NE(printed(model).find("radius=0.5 center_y=0.01"), std::string::npos);
-  model.failed_mu = as_columns(std::vector<Mu>(74, {0.5, 0.01}), 2);
+  model.made.failed_mu = as_columns(std::vector<Mu>(74, {0.5, 0.01}), 2);
   EXPECT_NE(printed(model).find("and 64 more"), std::string::npos) << printed(model);
 }
 

@@ -26,7 +26,7 @@ int expect_agreement(const ReducedModel &model, const Scene &scene) {
   for (const Mu &mu : radii) {
     const ReducedAnswer solution = solver.solve(mu);
     const brute::Operators o = synthetic::pair_operators(model, scene, mu);
-    const brute::PairAnswer exact = brute::brute_force_pair(o, model.free_modes);
+    const brute::PairAnswer exact = brute::brute_force_pair(o, model.contact.free_modes);
     touching += exact.x.norm() > 0;
     EXPECT_LE((solution.u - exact.u).norm(), 1e-10 * exact.u.norm());
     EXPECT_LE((solution.lambda - exact.x).norm(), 1e-9 * exact.x.norm());
@@ -56,8 +56,8 @@ TEST(OnlinePair, WorksWithoutAMotion) {
 /// Rows that no generator touches are left out of the online products: an answer does not change.
 TEST(OnlinePair, RowsThatNoGeneratorTouchesDoNotMatter) {
   ReducedModel model = synthetic::random_pair_model({4, 3, 2}, 3, p1());
-  model.dual_basis.topRows(2).setZero();
-  model.dual_basis.bottomRows(4).setZero();
+  model.contact.dual_basis.topRows(2).setZero();
+  model.contact.dual_basis.bottomRows(4).setZero();
   EXPECT_EQ(expect_agreement(model, p1()), 4);
 }
 
@@ -66,12 +66,12 @@ TEST(OnlinePair, FreeModesAreEquations) {
   int answered = 0, refused = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     ReducedModel model = synthetic::random_pair_model({5, 3, 4}, seed, p0());
-    model.free_modes = 2;
+    model.contact.free_modes = 2;
     OnlineSolver solver(model, p0());
     for (const Mu &mu : radii) {
       const brute::Operators o = synthetic::pair_operators(model, p0(), mu);
       const brute::PairAnswer exact = brute::brute_force_pair(o, 2);
-      const Vector pressure = model.dual_basis * exact.x;
+      const Vector pressure = model.contact.dual_basis * exact.x;
       if (pressure.minCoeff() < -0.01 * pressure.maxCoeff()) {
         EXPECT_THROW(solver.solve(mu), Error);
         ++refused;
@@ -91,7 +91,7 @@ TEST(OnlinePair, FreeModesAreEquations) {
 /// supremizers.
 TEST(OnlinePair, OnlineEnrichmentFollowsTheOperatorOfTheQuery) {
   ReducedModel model = synthetic::random_pair_model({3, 6, 3}, 4, p0());
-  model.online_enriched = true;
+  model.body.online_enriched = true;
   OnlineSolver solver(model, p0());
   for (const Mu &mu : radii) {
     brute::Operators o = synthetic::pair_operators(model, p0(), mu);
@@ -115,7 +115,7 @@ TEST(OnlinePair, TheContactGapIsThatOfTheDeformedCurves) {
     const Vector w = solver.field(solution), gap = solver.contact_gap(solution);
     const FullMu all = expand(p0().parameters, mu);
     std::vector<Point> slave, master;
-    const auto &[curves, nodes] = model.interfaces.front();
+    const auto &[curves, nodes] = model.contact.interfaces.front();
     for (std::size_t i = 0; i < curves.points.size(); ++i) {
       const Point &x = curves.points[i];
       Point moved = p0().map(all, x);
@@ -148,7 +148,7 @@ TEST(OnlinePair, OutputsAreOfTheWholeDisks) {
   EXPECT_EQ(*whole.normal_force, 2 * *part.normal_force);
   EXPECT_EQ(*whole.contact_measure, 2 * *part.contact_measure);
   EXPECT_EQ(*whole.peak_pressure, *part.peak_pressure);
-  const Vector lambda = model.dual_basis * solution.lambda;
+  const Vector lambda = model.contact.dual_basis * solution.lambda;
   EXPECT_EQ(*part.energy, solution.energy);
   EXPECT_NEAR(*part.normal_force, lambda.dot(solution.contact.weights), 1e-14 * *part.normal_force);
   EXPECT_EQ(*part.peak_pressure, lambda.maxCoeff());
@@ -164,10 +164,10 @@ TEST(OnlinePair, ACurveThatDoesNotFitTheMultipliersIsRefused) {
   ReducedModel one_body = synthetic::random_model({}, 7);
   EXPECT_THROW(OnlineSolver(one_body, p0()), Error);
   EXPECT_NO_THROW((OnlineSolver(one_body)));
-  one_body.b = one_body.g = {};
+  one_body.contact.b = one_body.contact.g = {};
   EXPECT_THROW((OnlineSolver(one_body)), Error) << "its b separates";
   EXPECT_NO_THROW(OnlineSolver(model, p0()));
-  model.b = model.a;
+  model.contact.b = model.body.a;
   EXPECT_NO_THROW(check_model(model)) << "of a scene whose b separates it might be";
   EXPECT_TRUE(refuses("does not fit its scene", [&] { OnlineSolver(model, p0()); }));
 }
@@ -198,17 +198,18 @@ TEST(CheckPairModel, NamesWhatDoesNotFit) {
   };
   using M = ReducedModel;
   EXPECT_EQ(complaint([](M &) {}), "");
-  expect_complaint("g has terms and b has not", [](M &m) { m.g = m.a; });
-  expect_complaint("contact/trace", [](M &m) { m.contact_trace.conservativeResize(21, 6); });
-  expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis.conservativeResize(5, 3); });
+  expect_complaint("g has terms and b has not", [](M &m) { m.contact.g = m.body.a; });
+  expect_complaint("contact/trace", [](M &m) { m.contact.trace.conservativeResize(21, 6); });
+  expect_complaint("contact/dual_basis",
+                   [](M &m) { m.contact.dual_basis.conservativeResize(5, 3); });
   expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis(0, 0) = std::nan(""); });
-  expect_complaint("fields/primal_basis", [](M &m) { m.primal_basis.conservativeResize(46, 6); });
+  expect_complaint("fields/primal_basis", [](M &m) { m.fields.basis.conservativeResize(46, 6); });
 }
 
 TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
   const auto complaint = [](auto change) -> std::string {
     ReducedModel model = synthetic::random_pair_model({}, 8, p0());
-    change(model.interfaces.front());
+    change(model.contact.interfaces.front());
     try {
       check_model(model);
     } catch (const Error &error) {
@@ -249,7 +250,7 @@ TEST(CheckPairModel, NamesTheMemberOfAnInterface) {
 TEST(OnlinePair, AnInterfaceThatIsNoPairIsRefused) {
   const auto expect_refusal = [](const std::string &part, auto change) {
     ReducedModel model = synthetic::random_pair_model({}, 8, p0());
-    change(model.interfaces.front().mesh);
+    change(model.contact.interfaces.front().mesh);
     EXPECT_NO_THROW(check_model(model));
     EXPECT_TRUE(refuses(part, [&] { OnlineSolver(model, p0()); }));
   };
@@ -270,11 +271,12 @@ TEST(LeadingPair, AnswersLikeItsOwnDenseOperators) {
   for (const auto &[n, r] : {std::pair{7, 4}, std::pair{6, 3}, std::pair{4, 2}}) {
     const ReducedModel part = leading(model, n, r);
     check_model(part);
-    EXPECT_EQ(part.interfaces.front().mesh.parts, model.interfaces.front().mesh.parts);
-    EXPECT_EQ(part.modes, 4);
-    EXPECT_EQ(part.supremizers, n - 4);
-    EXPECT_EQ(part.contact_trace, model.contact_trace.leftCols(n));
-    EXPECT_EQ(part.dual_basis, model.dual_basis.leftCols(r));
+    EXPECT_EQ(part.contact.interfaces.front().mesh.parts,
+              model.contact.interfaces.front().mesh.parts);
+    EXPECT_EQ(part.body.modes, 4);
+    EXPECT_EQ(part.body.supremizers, n - 4);
+    EXPECT_EQ(part.contact.trace, model.contact.trace.leftCols(n));
+    EXPECT_EQ(part.contact.dual_basis, model.contact.dual_basis.leftCols(r));
     EXPECT_EQ(expect_agreement(part, p0()), 4);
   }
 }
@@ -288,13 +290,13 @@ TEST_F(PairFile, ReturnsTheModel) {
     const ReducedModel copy = read_model(directory / "model.h5", catalogue()),
                        bare = read_model(directory / "model.h5", catalogue(), false);
     EXPECT_TRUE(copy.evaluates_contact());
-    EXPECT_TRUE(synthetic::same(copy.interfaces, model.interfaces));
-    EXPECT_TRUE(synthetic::same(bare.interfaces, model.interfaces));
+    EXPECT_TRUE(synthetic::same(copy.contact.interfaces, model.contact.interfaces));
+    EXPECT_TRUE(synthetic::same(bare.interfaces, model.contact.interfaces));
     EXPECT_EQ(copy.scene.options, scene.options);
-    EXPECT_EQ(copy.dual_basis, model.dual_basis);
-    EXPECT_EQ(copy.contact_trace, model.contact_trace);
-    EXPECT_EQ(copy.b.size(), 0);
-    EXPECT_EQ(copy.g.size(), 0);
+    EXPECT_EQ(copy.contact.dual_basis, model.contact.dual_basis);
+    EXPECT_EQ(copy.contact.trace, model.contact.trace);
+    EXPECT_EQ(copy.contact.b.size(), 0);
+    EXPECT_EQ(copy.contact.g.size(), 0);
     OnlineSolver from_file(copy), without_fields(bare), original(model);
     const ReducedAnswer solution = from_file.solve({0.77});
     EXPECT_EQ(solution.u, original.solve({0.77}).u);

@@ -1,8 +1,8 @@
 // Every dual basis and every enrichment from snapshots to answers.
-#include "tests/catalogue.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "reduced.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST_P(DualBases, ABasisOfAllSnapshotsReturnsThem) {
     for (const Way &way : ways_with(GetParam())) {
       SCOPED_TRACE(described(type, way));
       r.reduce(with(everything(), type, way));
-      EXPECT_EQ(r.model.online_enriched, way.enrichment == Enrichment::online);
+      EXPECT_EQ(r.model.body.online_enriched, way.enrichment == Enrichment::online);
       const ModelErrors errors = r.errors_at(r.samples);
       EXPECT_EQ(errors.failed, 0);
       EXPECT_LE(errors.u.maxCoeff(), 1e-9);
@@ -75,9 +75,9 @@ TEST_P(DualBases, EveryTypeAndEnrichmentReduces) {
       ReduceOptions options = with({}, type, way);
       options.cone.tolerance = 1e-2;
       r.reduce(options);
-      EXPECT_GT(r.model.supremizers, 0);
-      EXPECT_EQ(r.model.generators, r.bases.cone.size());
-      EXPECT_EQ(r.model.free_modes > 0, type == ConeType::hybrid);
+      EXPECT_GT(r.model.body.supremizers, 0);
+      EXPECT_EQ(r.model.contact.generators, r.bases.cone.size());
+      EXPECT_EQ(r.model.contact.free_modes > 0, type == ConeType::hybrid);
       EXPECT_NO_THROW(check_model(r.model));
       const ModelErrors errors = r.errors_at(r.samples);
       EXPECT_EQ(errors.failed, 0);
@@ -94,9 +94,9 @@ TEST_P(DualBases, WithoutEnrichmentThereAreNoSupremizers) {
   ReduceOptions options;
   options.enrichment = Enrichment::decorrelated;
   Reduced r({{"disc_map", GetParam()}}, "grid:2,2,2", options);
-  EXPECT_EQ(r.model.supremizers, 0);
-  EXPECT_EQ(r.model.primal_size(), r.model.modes);
-  EXPECT_FALSE(r.model.online_enriched);
+  EXPECT_EQ(r.model.body.supremizers, 0);
+  EXPECT_EQ(r.model.primal_size(), r.model.body.modes);
+  EXPECT_FALSE(r.model.body.online_enriched);
   EXPECT_TRUE(r.bases.pga.sigma.empty());
   EXPECT_NO_THROW(check_model(r.model));
 }
@@ -136,10 +136,10 @@ TEST(EnergySupremizers, AreExactWhereADoesNotVary) {
   options.pga.tolerance = 1e-11;
   options.product = SupremizerProduct::energy;
   r.reduce(options);
-  EXPECT_EQ(r.model.modes, 1);
-  EXPECT_EQ(r.model.a.size(), 1);
-  EXPECT_EQ(r.model.b.size(), 1);
-  EXPECT_EQ(r.model.supremizers, r.model.generators);
+  EXPECT_EQ(r.model.body.modes, 1);
+  EXPECT_EQ(r.model.body.a.size(), 1);
+  EXPECT_EQ(r.model.contact.b.size(), 1);
+  EXPECT_EQ(r.model.body.supremizers, r.model.contact.generators);
   const std::vector<Sample> unseen =
       solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:8:2"));
   for (const Sample &sample : unseen) {
@@ -154,7 +154,7 @@ TEST(EnergySupremizers, AreExactWhereADoesNotVary) {
 
   options.product = SupremizerProduct::v;
   r.reduce(options);
-  EXPECT_EQ(r.model.modes, 1);
+  EXPECT_EQ(r.model.body.modes, 1);
   const auto [u_v, lambda_v] = differences(r, unseen);
   EXPECT_GE(u_v, 1e3 * std::max(u, 1e-9));
   EXPECT_GE(lambda_v, 1e3 * std::max(lambda, 1e-9));
@@ -186,8 +186,8 @@ TEST(EnergySupremizers, HybridIsExactAsWell) {
   options.pga.tolerance = 1e-11;
   options.product = SupremizerProduct::energy;
   r.reduce(options);
-  ASSERT_GT(r.model.free_modes, 0);
-  EXPECT_LE(r.model.free_modes, 5); // of 1, |x|^2, x, y and the load
+  ASSERT_GT(r.model.contact.free_modes, 0);
+  EXPECT_LE(r.model.contact.free_modes, 5); // of 1, |x|^2, x, y and the load
   const std::vector<Sample> unseen =
       solve_all(r.problem, parse_set(r.problem.scene().parameters, "random:8:2"));
   const auto [u, lambda] = differences(r, unseen);
@@ -220,9 +220,9 @@ TEST(HybridCone, BeatsAsManyGeneratorsFromMoreSnapshots) {
   r.reduce(options);
   options.cone.type = ConeType::mcpg;
   options.cone.tolerance = 0;
-  options.cone.max_size = r.model.generators;
+  options.cone.max_size = r.model.contact.generators;
   more.reduce(options);
-  EXPECT_EQ(more.model.generators, r.model.generators);
+  EXPECT_EQ(more.model.contact.generators, r.model.contact.generators);
   EXPECT_LT(r.errors_at(unseen).lambda.maxCoeff(), more.errors_at(unseen).lambda.maxCoeff());
 }
 

@@ -2,12 +2,12 @@
 // parameters that they have not seen; stability over all pairs of a parameter and a step.
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"
 #include "rbvi/study/bench.hpp"
 #include "rbvi/study/separation_errors.hpp"
 #include "rbvi/study/stability_report.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,8 +62,8 @@ TEST(LargeModel, TheLawAtEveryNodeIsExact) {
     SCOPED_TRACE(friction);
     Reduced r(large_disk(friction, "radius,indentation,offset"), "grid:3,3,3");
     r.reduce(by(MultiplierReduction::automatic));
-    EXPECT_TRUE(r.model.law);
-    EXPECT_EQ(r.model.law->states.cols(), 27);
+    EXPECT_TRUE(r.model.contact.law);
+    EXPECT_EQ(r.model.contact.law->states.cols(), 27);
     expect_errors(r, "random:8:3", 1e-6, 1e-9);
     const ModelErrors again = r.errors_at(r.samples);
     EXPECT_LE(again.lambda.maxCoeff(), 1e-9);
@@ -81,14 +81,14 @@ TEST(LargeModel, WithDisplacementsOfDegreeOne) {
 TEST(LargeModel, WhereTheStiffnessVariesToo) {
   Reduced r(large_disk("none", "indentation,core_stiffness", {{"arc_edges", "40"}}), "grid:3,4");
   r.reduce(by(MultiplierReduction::condensed));
-  EXPECT_GT(r.model.law->condensed.terms.cols(), 1);
+  EXPECT_GT(r.model.contact.law->condensed.terms.cols(), 1);
   expect_errors(r, "random:6:3", 1e-2, 1e-7);
 }
 
 TEST(LargeModel, ASymmetricSceneNeedsHalfTheMultipliers) {
   Reduced half(large_disk("coulomb", "indentation"), "grid:9");
   half.reduce(by(MultiplierReduction::condensed));
-  EXPECT_EQ(half.model.generators, 62);
+  EXPECT_EQ(half.model.contact.generators, 62);
   expect_errors(half, "random:5:2", 1e-6, 1e-9);
 }
 
@@ -139,7 +139,7 @@ TEST(LargeModel, OnlineEnrichmentFollowsTheState) {
   ReduceOptions options = by(MultiplierReduction::cone);
   options.enrichment = Enrichment::online;
   r.reduce(options);
-  EXPECT_TRUE(r.model.online_enriched);
+  EXPECT_TRUE(r.model.body.online_enriched);
   const ModelErrors again = r.errors_at(r.samples);
   EXPECT_EQ(again.failed, 0);
   EXPECT_LE(again.u.maxCoeff(), 1e-4);
@@ -172,7 +172,7 @@ TEST(LargeModel, AFileGivesTheSameModelWithoutTheScenesCode) {
   const ReducedAnswer here = one.solve(mu), there = other.solve(mu);
   EXPECT_EQ(here.u, there.u);
   EXPECT_EQ(here.lambda, there.lambda);
-  EXPECT_EQ(read.law->states, r.model.law->states);
+  EXPECT_EQ(read.contact.law->states, r.model.contact.law->states);
 }
 
 TEST(LargeModel, IterationsAreTimedByTheMethodsThatTheLawHas) {

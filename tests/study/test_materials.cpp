@@ -114,10 +114,10 @@ TEST_F(Materials, ByRegionAreThoseByPlace) {
     const double energy = one.outputs(mu, one.solve(mu)).energy.value();
     EXPECT_NEAR(energy, other.outputs(mu, other.solve(mu)).energy.value(), 1e-9) << contact;
     const FullMu all = expand(one.scene().parameters, mu);
-    const Vector u = Vector::LinSpaced(3 * regions.model.mesh_points.rows(), 0, 1);
+    const Vector u = Vector::LinSpaced(3 * regions.model.fields.points.rows(), 0, 1);
     const auto stresses = [&](const ReducedModel &model, const Scene &scene) {
-      return centre_stresses(scene, all, model.mesh_points, model.mesh_cells, model.mesh_materials,
-                             u);
+      return centre_stresses(scene, all, model.fields.points, model.fields.cells,
+                             model.fields.materials, u);
     };
     const Matrix found = stresses(regions.model, one.scene()),
                  wanted = stresses(places.model, other.scene());

@@ -1,5 +1,4 @@
 // Models whose multipliers are those near contact alone.
-#include "tests/catalogue.hpp"
 #include "disk.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/model/online.hpp"
@@ -7,6 +6,7 @@
 #include "rbvi/mor/nodal_dual_basis.hpp"
 #include "rbvi/mor/stages.hpp"
 #include "reduced.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -93,7 +93,7 @@ TEST(NearContact, GivesTheAnswersOfAllNodes) {
     near.reduce(options);
     check_model(near.model);
     EXPECT_GT(near.bases.dropped, 0);
-    EXPECT_EQ(near.model.generators + near.bases.dropped, all.generators);
+    EXPECT_EQ(near.model.contact.generators + near.bases.dropped, all.contact.generators);
     const ParameterSpace &space = near.problem.scene().parameters;
     OnlineSolver with_all(all), with_near(near.model);
     for (const Mu &mu : parse_set(space, "random:10:5")) {

@@ -3,10 +3,10 @@
 #include "../mesh/gmsh_writer.hpp"
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/study/output_errors.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -73,7 +73,7 @@ TEST_P(NitscheLaws, FewPointsAddWhatTheToleranceAllows) {
     OnlineSolver of_all(all);
     options.curve.rule = CurveRule::empirical;
     r.reduce(options);
-    const NitscheModel &curve = *r.model.nitsche;
+    const NitscheModel &curve = *r.model.contact.nitsche;
     EXPECT_GT(curve.factors.minCoeff(), 0);
     EXPECT_LT(curve.points.size(), 160u / 2) << "of 160, half of them mirror images";
     OnlineSolver few(r.model);
@@ -117,7 +117,7 @@ TEST(NitscheReduced, TwoCurvesGiveTheSnapshotsBack) {
   EXPECT_NEAR(*outputs.tangential_force, *last.outputs.tangential_force,
               1e-7 * *outputs.normal_force);
   r.reduce(with(CurveRule::empirical));
-  const auto &points = r.model.nitsche->points;
+  const auto &points = r.model.contact.nitsche->points;
   EXPECT_LT(points.front(), 48) << "of the upper arc";
   EXPECT_GE(points.back(), 48) << "of the lower one";
   EXPECT_LT(points.size(), 96u);
@@ -129,8 +129,9 @@ TEST(NitscheReduced, InterpolatedOperatorsGiveTheSnapshotsBack) {
     SCOPED_TRACE(friction);
     ReducedAlone r(disk(friction), "grid:7");
     expect_snapshots_back(r, CurveRule::interpolated, 1e-6);
-    EXPECT_GT(r.model.nitsche->contact_matrix.size(), 0);
-    EXPECT_EQ(r.model.nitsche->friction_vector.size() > 0, friction == std::string("coulomb"));
+    EXPECT_GT(r.model.contact.nitsche->contact_matrix.size(), 0);
+    EXPECT_EQ(r.model.contact.nitsche->friction_vector.size() > 0,
+              friction == std::string("coulomb"));
   }
 }
 
@@ -142,7 +143,7 @@ TEST(NitscheReduced, ErrorsOfTheInterpolationAreMeasuredOverFurtherParameters) {
   const auto histories_with = [&](const std::vector<Mu> &others) {
     options.curve.eim_validation = others;
     r.reduce(options);
-    return r.model.histories;
+    return r.model.made.histories;
   };
   const ParameterSpace &space = r.problem.scene().parameters;
   const auto same = histories_with(parse_set(space, "grid:7"));
@@ -178,7 +179,7 @@ TEST_P(NitscheLaws, OfTheDeformedBodyTheWholeCurveGivesTheSnapshotsBackAndFewPoi
   scene.parameters = free_only(scene.parameters, "indentation,offset");
   ReducedAlone r(scene, "grid:5,3");
   expect_snapshots_back(r, CurveRule::full, 1e-8);
-  EXPECT_EQ(r.model.nitsche->states.cols(), 15);
+  EXPECT_EQ(r.model.contact.nitsche->states.cols(), 15);
   const auto unseen = solve_all(r.problem, parse_set(scene.parameters, "random:5:3"));
   for (const int modes : {3, 8}) {
     r.reduce(with(CurveRule::empirical, modes));
@@ -196,7 +197,7 @@ TEST(NitscheReduced, ConsistencyIsASumOfFewTerms) {
        {std::pair{"radius", 1}, {"radius,core_stiffness", 1}, {"radius,poisson_ratio", 3}}) {
     ReducedAlone r(disk("coulomb", free), free == std::string("radius") ? "grid:4" : "grid:3,4");
     r.reduce(with(CurveRule::full));
-    EXPECT_EQ(r.model.nitsche->consistency.size(), terms) << free;
+    EXPECT_EQ(r.model.contact.nitsche->consistency.size(), terms) << free;
   }
 }
 
@@ -285,7 +286,7 @@ TEST(NitscheReduced, AFileGivesTheSameModelAndItsLeadingPart) {
     const ReducedModel read = read_model(file, catalogue());
     const Vector u = OnlineSolver(r.model).solve({0.87}).u;
     EXPECT_EQ(OnlineSolver(read).solve({0.87}).u, u);
-    EXPECT_EQ(read.nitsche->points, r.model.nitsche->points);
+    EXPECT_EQ(read.contact.nitsche->points, r.model.contact.nitsche->points);
     const ReducedModel part = leading(read, 3, 0);
     check_model(part);
     if (rule == CurveRule::full) {

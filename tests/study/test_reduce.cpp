@@ -3,9 +3,9 @@
 #include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/study/stability_report.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,8 +82,8 @@ TEST(ImposedModel, ReturnsItsSnapshotsWithTheirFrame) {
     const SceneOptions options{{"degree", degree}, {"circle_edges", "24"}};
     Reduced r(framed("radius,frame_height,frame_tilt", options), "grid:2,2,3");
     r.reduce(everything());
-    EXPECT_EQ(r.model.imposed_energy.size(), 1) << "all of it is integrated online";
-    EXPECT_FALSE(r.model.imposed_by.empty());
+    EXPECT_EQ(r.model.body.imposed_energy.size(), 1) << "all of it is integrated online";
+    EXPECT_FALSE(r.model.fields.imposed_by.empty());
     OnlineSolver online(r.model);
     for (const Sample &sample : r.samples)
       expect_same_outputs(online, online.solve(sample.mu), sample, 1e-9);
@@ -106,10 +106,10 @@ TEST(ImposedModel, AnswersBetweenItsSnapshots) {
 /// Without an imposed value at any mu the model has nothing of it.
 TEST(ImposedModel, IsThatOfTheSceneWhereTheFrameIsFixedAtZero) {
   Reduced r({{"circle_edges", "24"}}, "grid:2,2,2", everything());
-  EXPECT_EQ(r.model.imposed_energy.size(), 0);
-  EXPECT_TRUE(r.model.imposed_by.empty());
-  EXPECT_TRUE(r.model.interfaces.front().mesh.imposed_by.empty());
-  EXPECT_TRUE(r.model.f.samples.front().imposed_by.empty());
+  EXPECT_EQ(r.model.body.imposed_energy.size(), 0);
+  EXPECT_TRUE(r.model.fields.imposed_by.empty());
+  EXPECT_TRUE(r.model.contact.interfaces.front().mesh.imposed_by.empty());
+  EXPECT_TRUE(r.model.body.f.samples.front().imposed_by.empty());
 }
 
 /// Two disks whose flat sides are moved by imposed values, which are a load, or by the motion of
@@ -195,8 +195,8 @@ TEST_P(BothMaps, TheFewestSupremizersAreJustEnough) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   const int fewest = fewest_supremizers(world, r.problem, check, at_rest(set), 0.9);
   ASSERT_GT(fewest, 0);
-  const std::vector<StabilityRow> rows = stability_along(world, r.problem, check, at_rest(set),
-                                                         {fewest - 1, fewest, r.model.supremizers});
+  const std::vector<StabilityRow> rows = stability_along(
+      world, r.problem, check, at_rest(set), {fewest - 1, fewest, r.model.body.supremizers});
   EXPECT_LT(rows[0].ratio, 0.9);
   EXPECT_GE(rows[1].ratio, 0.9);
   for (const StabilityRow &row : rows) {
@@ -238,7 +238,7 @@ TEST(Reduce, AnEnrichedPairOfFullSizeIsTheModelItself) {
   options.pod.tolerance = 1e-3;
   options.pga.tolerance = 1e-9;
   Reduced r({}, "grid:3,2,2", options);
-  const SubModel pair = enriched_pair(r.model, r.model.modes, r.model.generators);
+  const SubModel pair = enriched_pair(r.model, r.model.body.modes, r.model.contact.generators);
   const Truths truths =
       make_truths(r.problem, r.model, solve_all(r.problem, {{0.17, -0.04, 0.03}}));
   const ModelErrors whole = model_errors(r.model, {}, truths, r.problem.w_product());

@@ -2,12 +2,12 @@
 // on supports, with loads; and models of scenes that no catalogue has.
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/study/stability_report.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ TEST(CondensedLaw, TractionsOnTheSidesOfABlockThatSticksOrSlips) {
   scene.parameters = free_only(scene.parameters, "indentation,shear,friction_coefficient");
   Reduced r(scene, "grid:2,2,2");
   r.reduce(condensed_law());
-  EXPECT_EQ(r.model.f.exact, 2);
+  EXPECT_EQ(r.model.body.f.exact, 2);
   const Largest errors = errors_of(r, "random:10:3");
   EXPECT_LE(errors.u, 1e-12);
   EXPECT_LE(errors.lambda, 1e-12);
@@ -80,7 +80,7 @@ TEST(CondensedLaw, AMembraneUnderALoadOnAnObstacle) {
     scene.parameters = free_only(scene.parameters, "radius");
     Reduced r(scene, "grid:9");
     r.reduce(condensed_law(1e-11));
-    EXPECT_GT(r.model.f.interpolation.rows(), 0) << "the load is interpolated";
+    EXPECT_GT(r.model.body.f.interpolation.rows(), 0) << "the load is interpolated";
     const Largest errors = errors_of(r, "random:6:3");
     EXPECT_LE(errors.u, 1e-8);
     EXPECT_LE(errors.lambda, 1e-8);
@@ -105,14 +105,14 @@ TEST(CondensedLaw, LoadsOnABodyWhoseStiffnessIsFree) {
 TEST(CondensedLaw, TwoBodiesKeepTheirNodesUnlessAskedOtherwise) {
   Reduced r(make_scene("two_disks", {{"arc_edges", "24"}}), "grid:9");
   r.reduce({});
-  EXPECT_TRUE(r.model.law.has_value());
+  EXPECT_TRUE(r.model.contact.law.has_value());
   const Largest errors = errors_of(r, "random:6:3");
   EXPECT_LE(errors.u, 1e-6);
   EXPECT_LE(errors.lambda, 1e-9);
   ReduceOptions cone;
   cone.multipliers.reduction = MultiplierReduction::cone;
   r.reduce(cone);
-  EXPECT_FALSE(r.model.law.has_value());
+  EXPECT_FALSE(r.model.contact.law.has_value());
 }
 
 TEST(Reductions, AConeWithSupremizersServesASupportWithoutFriction) {
@@ -122,8 +122,8 @@ TEST(Reductions, AConeWithSupremizersServesASupportWithoutFriction) {
   options.pod.tolerance = 1e-8;
   options.eim.tolerance = 1e-10;
   r.reduce(options);
-  EXPECT_GT(r.model.supremizers, 0);
-  EXPECT_FALSE(r.model.law.has_value());
+  EXPECT_GT(r.model.body.supremizers, 0);
+  EXPECT_FALSE(r.model.contact.law.has_value());
   const Largest errors = errors_of(r, "random:8:3");
   EXPECT_LE(errors.u, 1e-5);
   EXPECT_LE(errors.lambda, 1e-4);
@@ -143,7 +143,7 @@ TEST(Reductions, AConeForEachOfTwoInterfacesMeetsItsTargets) {
   const std::vector<Mu> unseen = parse_set(scene.parameters, "random:6:1");
   for (const InfSup &at :
        infsup_over(PETSC_COMM_WORLD, r.problem, make_stability_check(r.problem, r.model),
-                   at_rest(unseen), r.model.b.size() == 1))
+                   at_rest(unseen), r.model.contact.b.size() == 1))
     EXPECT_GE(at.off, 0.9 * at.on);
 }
 
@@ -171,7 +171,7 @@ TEST(Reductions, CollocationServesSeveralInterfacesWithLawsOfTheirOwn) {
     for (const bool exact : {true, false}) {
       SCOPED_TRACE(std::string("friction ") + friction + (exact ? ", mended" : ""));
       r.reduce(all_functions(exact));
-      EXPECT_LT(r.model.law->basis.normal.cols(), r.model.law->normal);
+      EXPECT_LT(r.model.contact.law->basis.normal.cols(), r.model.contact.law->normal);
       const Largest errors = errors_of(r, "random:6:3");
       EXPECT_LE(errors.u, exact ? 1e-5 : 1e-3);
       EXPECT_LE(errors.lambda, exact ? 1e-5 : 5e-3);
@@ -187,7 +187,7 @@ TEST(Reductions, CollocationServesTwoBodies) {
   for (const bool exact : {true, false}) {
     SCOPED_TRACE(exact ? "mended" : "not mended");
     r.reduce(all_functions(exact));
-    EXPECT_EQ(r.model.b.size(), 0);
+    EXPECT_EQ(r.model.contact.b.size(), 0);
     EXPECT_TRUE(r.model.evaluates_contact());
     const Largest errors = errors_of(r, "random:6:3");
     EXPECT_LE(errors.u, 5e-3);
@@ -203,8 +203,8 @@ TEST(Reductions, CollocationOfTwoBodiesReturnsItsTrainingSamples) {
   options.multipliers.exact = false;
   options.cone.type = ConeType::mcpg;
   r.reduce(options);
-  EXPECT_GT(r.model.supremizers, 0);
-  EXPECT_EQ(r.model.law->condensed.terms.size(), 0);
+  EXPECT_GT(r.model.body.supremizers, 0);
+  EXPECT_EQ(r.model.contact.law->condensed.terms.size(), 0);
   const ModelErrors errors = r.errors_at(r.samples);
   EXPECT_EQ(errors.failed, 0);
   EXPECT_LE(errors.u.maxCoeff(), 1e-8);
@@ -304,7 +304,7 @@ TEST(JoinedFunctions, AreReducedLikeOthers) {
       if (reduction != MultiplierReduction::cone) options.cone.type = ConeType::mcpg;
       options.eim.tolerance = 1e-10;
       r.reduce(options);
-      EXPECT_GT(r.model.b.interpolation.rows(), 1) << "B is interpolated";
+      EXPECT_GT(r.model.contact.b.interpolation.rows(), 1) << "B is interpolated";
       const Largest errors = errors_of(r, "random:6:3");
       EXPECT_LE(errors.u, reduction == MultiplierReduction::condensed ? 1e-12 : 1e-5);
       EXPECT_LE(errors.lambda, reduction == MultiplierReduction::condensed ? 1e-12 : 1e-5);

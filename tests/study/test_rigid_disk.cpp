@@ -3,12 +3,12 @@
 #include "disk.hpp"
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/model/collocated_law.hpp"
 #include "rbvi/solve/response_solver.hpp"
 #include "rbvi/study/stability_report.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -100,7 +100,8 @@ TEST(CondensedModel, NeedsNoSnapshotOfTheMultipliers) {
   EXPECT_LE(few.tangential, 1e-2);
   options.multipliers.exact = false;
   r.reduce(options);
-  EXPECT_GT(r.model.supremizers, 0) << "responses join, whatever is mended of other reductions";
+  EXPECT_GT(r.model.body.supremizers, 0)
+      << "responses join, whatever is mended of other reductions";
 }
 
 /// The full problem with multipliers that are hat functions of the coarser mesh: its body is asked
@@ -114,7 +115,7 @@ TEST(CondensedModel, KeepsTheLawOnTheHatsOfACoarserMesh) {
   r.reduce(options);
   check_model(r.model);
   const Problem coarse(PETSC_COMM_WORLD, disk("radius", {{"arc_edges", "20"}}), {});
-  const Matrix &hats = r.model.dual_basis;
+  const Matrix &hats = r.model.contact.dual_basis;
   const Index nodes = coarse.contact().nodes();
   EXPECT_EQ(hats.cols(), 2 * ((nodes + 1) / 2)) << "pairs of mirror images, of two components";
   EXPECT_EQ(hats.rows(), 2 * (2 * nodes - 1));
@@ -153,7 +154,7 @@ TEST(CondensedModel, DuplicatedSamplesChangeNothing) {
   const auto unseen = solve_all(once.problem, {{0.83}});
   const Worst a = errors_of(once, with(MultiplierReduction::condensed), unseen);
   const Worst b = errors_of(twice, with(MultiplierReduction::condensed), unseen);
-  EXPECT_EQ(once.model.modes, twice.model.modes);
+  EXPECT_EQ(once.model.body.modes, twice.model.body.modes);
   EXPECT_NEAR(a.u, b.u, 1e-8);
 }
 
@@ -197,11 +198,11 @@ TEST(MultiplierReductions, CollocatedWithoutTheCondensedOperatorIsAsAccurateAsPu
   options.multipliers.tangential = 1e-4;
   options.cone.tolerance = 1e-3;
   const Worst e = errors_of(r, options, unseen);
-  EXPECT_EQ(r.model.law->condensed.terms.size(), 0);
+  EXPECT_EQ(r.model.contact.law->condensed.terms.size(), 0);
   EXPECT_LE(e.u, 1e-2);
   EXPECT_LE(e.lambda, 5e-2);
   EXPECT_LE(e.tangential, 0.39) << "the error published";
-  EXPECT_FALSE(r.model.law->basis.nodes.empty());
+  EXPECT_FALSE(r.model.contact.law->basis.nodes.empty());
 }
 
 /// A cone of lambda_n and supremizers, no modes of lambda_tau and no collocation nodes: the limit
@@ -213,8 +214,8 @@ TEST(MultiplierReductions, CollocatedWithoutFriction) {
   const Worst reduced = errors_of(r, options, unseen);
   EXPECT_LE(reduced.u, 1e-2);
   EXPECT_LE(reduced.lambda, 5e-2);
-  EXPECT_EQ(r.model.law->basis.tangential.size(), 0);
-  EXPECT_TRUE(r.model.law->basis.nodes.empty());
+  EXPECT_EQ(r.model.contact.law->basis.tangential.size(), 0);
+  EXPECT_TRUE(r.model.contact.law->basis.nodes.empty());
   const StabilityCheck check = make_stability_check(r.problem, r.model);
   for (const InfSup &c : infsup_over(PETSC_COMM_WORLD, r.problem, check, at_rest(r.mus()), true))
     EXPECT_GE(c.off, c.hf * (1 - 1e-9)) << "the greedy's tolerance is that of (2.23)";
@@ -228,9 +229,9 @@ TEST(MultiplierReductions, CollocatedWithoutFriction) {
   Reduced slippery(scene, "grid:21");
   slippery.reduce(published());
   r.reduce(published());
-  const Matrix &cone = r.model.law->basis.normal;
-  ASSERT_EQ(slippery.model.law->basis.normal.cols(), cone.cols());
-  EXPECT_LE((slippery.model.law->basis.normal - cone).norm(), 1e-5 * cone.norm());
+  const Matrix &cone = r.model.contact.law->basis.normal;
+  ASSERT_EQ(slippery.model.contact.law->basis.normal.cols(), cone.cols());
+  EXPECT_LE((slippery.model.contact.law->basis.normal - cone).norm(), 1e-5 * cone.norm());
   OnlineSolver a(r.model), b(slippery.model);
   for (const Sample &truth : unseen) {
     const double force = *a.outputs(truth.mu, a.solve(truth.mu)).normal_force;
@@ -246,11 +247,11 @@ TEST(MultiplierReductions, CollocatedWithOnlineEnrichment) {
   options.pga.tolerance = 1e-9;
   options.infsup_tolerance = false;
   const Worst offline = errors_of(r, options, unseen);
-  const std::vector<int> nodes = r.model.law->basis.nodes;
+  const std::vector<int> nodes = r.model.contact.law->basis.nodes;
   options.enrichment = Enrichment::online;
   const Worst online = errors_of(r, options, unseen);
-  EXPECT_TRUE(r.model.online_enriched);
-  EXPECT_EQ(r.model.law->basis.nodes, nodes);
+  EXPECT_TRUE(r.model.body.online_enriched);
+  EXPECT_EQ(r.model.contact.law->basis.nodes, nodes);
   EXPECT_NEAR(online.u, offline.u, 1e-2 * offline.u);
   EXPECT_NEAR(online.lambda, offline.lambda, 1e-2 * offline.lambda);
   EXPECT_NEAR(online.tangential, offline.tangential, 1e-2 * offline.tangential);
@@ -268,15 +269,15 @@ TEST(MultiplierReductions, OnlineEnrichmentFollowsTheNormal) {
   EXPECT_LE(online.u, 1e-2);
   EXPECT_LE(online.lambda, 5e-2);
   EXPECT_LE(online.tangential, 5e-2);
-  const Matrix functions = multiplier_coefficients(r.model.law->basis);
+  const Matrix functions = multiplier_coefficients(r.model.contact.law->basis);
   OnlineSolver solver(r.model);
   for (const Sample &truth : unseen) {
     const ReducedAnswer answer = solver.solve(truth.mu);
     const Matrix b =
-        functions.transpose() *
-        (r.model.b.reduced * answer.theta_b).reshaped(r.model.generators, r.model.primal_size());
-    const Matrix z = enriched_subspace(b, r.model.modes);
-    EXPECT_EQ(z.cols(), r.model.modes + functions.cols());
+        functions.transpose() * (r.model.contact.b.reduced * answer.theta_b)
+                                    .reshaped(r.model.contact.generators, r.model.primal_size());
+    const Matrix z = enriched_subspace(b, r.model.body.modes);
+    EXPECT_EQ(z.cols(), r.model.body.modes + functions.cols());
     EXPECT_LT(z.cols(), r.model.primal_size());
     EXPECT_LE((z.transpose() * z - Matrix::Identity(z.cols(), z.cols())).norm(), 1e-12);
     EXPECT_LE((b - b * z * z.transpose()).norm(), 1e-12 * b.norm());
@@ -297,7 +298,7 @@ TEST(MultiplierReductions, CollocatedOrCondensedWithALoad) {
     for (const ReduceOptions &options :
          {published(), online_enriched, with(MultiplierReduction::condensed)}) {
       r.reduce(options);
-      EXPECT_EQ(r.model.self_check.unanswered, 0);
+      EXPECT_EQ(r.model.made.self_check.unanswered, 0);
       OnlineSolver online(r.model);
       for (const Mu &mu : {Mu{0.037, 0.01}, Mu{0.081, 0.19}}) { // sticks, slips
         const Sample truth = solve_all(r.problem, {mu}).front();

@@ -1,13 +1,13 @@
 // B^n and B^tau interpolated apart, from snapshots to answers; what the terms of a model leave.
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/model/collocated_law.hpp"
 #include "rbvi/mor/stages.hpp"
 #include "rbvi/study/separation_errors.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,9 +38,11 @@ ReduceOptions published() {
 /// The training mu into the model, as the tool does.
 void name_training(Reduced &r) {
   const std::vector<Mu> set = r.mus();
-  r.model.trained_mu.resize(static_cast<Index>(set.front().size()), static_cast<Index>(set.size()));
+  r.model.made.trained_mu.resize(static_cast<Index>(set.front().size()),
+                                 static_cast<Index>(set.size()));
   for (std::size_t p = 0; p < set.size(); ++p)
-    std::copy(set[p].begin(), set[p].end(), r.model.trained_mu.col(static_cast<Index>(p)).begin());
+    std::copy(set[p].begin(), set[p].end(),
+              r.model.made.trained_mu.col(static_cast<Index>(p)).begin());
 }
 
 /// Models of the same bases and nodes, with the one or the other separation of B.
@@ -57,7 +59,7 @@ Pair with_both(Reduced &r, const ReduceOptions &options, const RowOptions &rows)
   pair.joint = project(r.problem, r.samples, joint, bases);
   pair.apart = project(r.problem, r.samples, pair.separated, bases);
   (void)collocate(pair.joint, r.problem, r.samples, options.gcns);
-  pair.apart.law->basis.nodes = pair.joint.law->basis.nodes;
+  pair.apart.law->basis.nodes = pair.joint.contact.law->basis.nodes;
   check_model(pair.joint);
   check_model(pair.apart);
   return pair;
@@ -83,7 +85,7 @@ TEST(RowsApart, AnswersAreThoseOfOneInterpolationWithinTheTolerance) {
     const Pair pair = with_both(r, options, {{.tolerance = tolerance}, {.tolerance = 1e-10}});
     EXPECT_EQ(pair.apart.law->apart.normal, pair.separated.b.size());
     EXPECT_EQ(pair.apart.b.size(), pair.separated.b_size());
-    EXPECT_EQ(pair.joint.law->apart.normal, 0);
+    EXPECT_EQ(pair.joint.contact.law->apart.normal, 0);
     EXPECT_LE(difference(pair.joint, pair.apart), 20 * tolerance);
   }
   const Pair alike = with_both(r, options, {{.tolerance = 1e-10}, {.tolerance = 1e-10}});
@@ -98,12 +100,12 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
   options.eim_tangential = 1e-9;
   r.reduce(options);
   const ReducedModel &model = r.model;
-  EXPECT_LE(model.law->apart.normal_error, 1e-3);
-  EXPECT_LE(model.law->apart.tangential_error, 1e-9);
-  EXPECT_EQ(model.b.error, model.law->apart.normal_error);
-  EXPECT_EQ(model.histories.count("eim/b"), 0U);
-  EXPECT_EQ(model.histories.at("eim/b_normal").back(), model.law->apart.normal_error);
-  const Index n = model.law->normal;
+  EXPECT_LE(model.contact.law->apart.normal_error, 1e-3);
+  EXPECT_LE(model.contact.law->apart.tangential_error, 1e-9);
+  EXPECT_EQ(model.contact.b.error, model.contact.law->apart.normal_error);
+  EXPECT_EQ(model.made.histories.count("eim/b"), 0U);
+  EXPECT_EQ(model.made.histories.at("eim/b_normal").back(), model.contact.law->apart.normal_error);
+  const Index n = model.contact.law->normal;
   const std::vector<PetscInt> &contact_dofs = r.problem.places().natural_dofs;
   Operators op;
   OnlineSolver online(model);
@@ -111,10 +113,11 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
     r.problem.assemble_contact({radius}, op);
     const FullMu all = expand(r.problem.scene().parameters, {radius});
     const Vector theta =
-        contact_coefficients(model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
-    const Matrix found = (model.b.reduced * theta).reshaped(model.generators, model.primal_size());
-    const Matrix exact =
-        model.dual_basis.transpose() * (op.b * model.primal_basis(contact_dofs, Eigen::all));
+        contact_coefficients(model.contact.b, Part::b, r.problem.contact(), r.problem.scene(), all);
+    const Matrix found =
+        (model.contact.b.reduced * theta).reshaped(model.contact.generators, model.primal_size());
+    const Matrix exact = model.contact.dual_basis.transpose() *
+                         (op.b * model.primal_basis(contact_dofs, Eigen::all));
     EXPECT_LE((found - exact).topRows(n).norm(), 1e-2 * exact.norm());
     EXPECT_LE((found - exact).bottomRows(n).norm(), 1e-8 * exact.norm());
     // The work on a unit vertical displacement has no error of separation.
@@ -138,8 +141,8 @@ TEST(RowsApart, TheCondensedOperatorHasBoth) {
   options.multipliers.tangential = 1e-8;
   r.reduce(options);
   check_model(r.model);
-  const Index terms = r.model.b.size();
-  EXPECT_EQ(r.model.law->condensed.terms.cols(), terms * (terms + 1) / 2);
+  const Index terms = r.model.contact.b.size();
+  EXPECT_EQ(r.model.contact.law->condensed.terms.cols(), terms * (terms + 1) / 2);
   const ModelErrors e = r.errors_at(unseen);
   EXPECT_EQ(e.failed, 0);
   EXPECT_LE(e.lambda.maxCoeff(), 1e-5);
@@ -147,7 +150,7 @@ TEST(RowsApart, TheCondensedOperatorHasBoth) {
   ReduceOptions condensed = options;
   condensed.multipliers.reduction = MultiplierReduction::condensed;
   r.reduce(condensed);
-  EXPECT_EQ(r.model.law->apart.normal, 0) << "there one interpolation serves both";
+  EXPECT_EQ(r.model.contact.law->apart.normal, 0) << "there one interpolation serves both";
 }
 
 TEST(RowsApart, SurviveTheirFile) {
@@ -163,16 +166,16 @@ TEST(RowsApart, SurviveTheirFile) {
   ReducedModel again = read_model(path, catalogue());
   std::filesystem::remove(path);
   std::filesystem::remove(fields_file(path));
-  const TermsApart &was = r.model.law->apart, &is = again.law->apart;
+  const TermsApart &was = r.model.contact.law->apart, &is = again.contact.law->apart;
   EXPECT_GT(was.normal, 0);
   EXPECT_EQ(is.normal, was.normal);
   EXPECT_EQ(is.normal_error, was.normal_error);
   EXPECT_EQ(is.tangential_error, was.tangential_error);
   EXPECT_EQ(difference(r.model, again), 0);
-  again.law->apart.normal = again.b.size();
+  again.contact.law->apart.normal = again.contact.b.size();
   EXPECT_THROW(check_model(again), Error);
   again = r.model;
-  again.b.interpolation(again.b.size() - 1, 0) = 0.5;
+  again.contact.b.interpolation(again.contact.b.size() - 1, 0) = 0.5;
   EXPECT_THROW(check_model(again), Error);
 }
 

@@ -3,13 +3,13 @@
 #include "disk.hpp"
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/mor/nodal_dual_basis.hpp"
 #include "rbvi/solve/response_solver.hpp"
 #include "rbvi/study/stability_report.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,27 +34,28 @@ TEST(SupportStability, ConstantsAreThoseOfGeneralisedEigenproblems) {
   const std::vector<Mu> set{{0.73}, {1.01}, {1.28}};
   const StabilityCheck check = make_stability_check(r.problem, r.model);
   const std::vector<InfSup> found =
-      infsup_over(PETSC_COMM_WORLD, r.problem, check, at_rest(set), r.model.b.size() == 1);
+      infsup_over(PETSC_COMM_WORLD, r.problem, check, at_rest(set), r.model.contact.b.size() == 1);
   ResponseSolver solver(r.problem.v_product(), r.problem.trace(), "v_");
   // Generators of a greedy cone nearly depend on each other: orthonormal functions of their span.
   const Matrix w = Matrix(r.problem.w_product());
   const Eigen::LLT<Matrix> factor(w);
-  const Matrix functions = multiplier_functions(r.model.dual_basis, r.model.law->basis);
+  const Matrix functions =
+      multiplier_functions(r.model.contact.dual_basis, r.model.contact.law->basis);
   const ThinSvd svd = thin_svd((factor.matrixU() * functions).colwise().normalized());
   ASSERT_GT(svd.values(functions.cols() - 1), 1e-8 * svd.values(0));
   const Matrix x = factor.matrixU().solve(svd.left);
-  const Matrix coefficients = nodal_coefficients(r.model.dual_basis, x);
+  const Matrix coefficients = nodal_coefficients(r.model.contact.dual_basis, x);
   const Matrix one = Matrix::Identity(x.cols(), x.cols());
   Operators op;
   for (std::size_t p = 0; p < set.size(); ++p) {
     r.problem.assemble_contact(set[p], op);
     const FullMu all = expand(r.problem.scene().parameters, set[p]);
-    const Vector theta =
-        contact_coefficients(r.model.b, Part::b, r.problem.contact(), r.problem.scene(), all);
+    const Vector theta = contact_coefficients(r.model.contact.b, Part::b, r.problem.contact(),
+                                              r.problem.scene(), all);
     const Matrix b =
-        coefficients.transpose() *
-        (r.model.b.reduced * theta).reshaped(r.model.generators, r.model.primal_size());
-    const Matrix modes = b.leftCols(r.model.modes);
+        coefficients.transpose() * (r.model.contact.b.reduced * theta)
+                                       .reshaped(r.model.contact.generators, r.model.primal_size());
+    const Matrix modes = b.leftCols(r.model.body.modes);
     const Matrix loads = Matrix(op.b.transpose());
     const Matrix squares = op.b * solver.responses(loads);
     const auto [beta, c] = extremes(squares, w);
@@ -85,11 +86,11 @@ TEST(SupportStability, TheToleranceIsThatOfTheHighFidelityPair) {
     double smallest = 1;
     for (const InfSup &at : infsup_over(world, r.problem, check, at_rest(set), false))
       smallest = std::min(smallest, at.hf / at.c_hf);
-    ASSERT_EQ(r.model.histories.at("pga/tolerance").size(), 1U);
-    EXPECT_NEAR(r.model.histories.at("pga/tolerance").front(), smallest, 1e-9 * smallest);
-    EXPECT_LE(r.model.histories.at("pga/sigma").back(), smallest);
+    ASSERT_EQ(r.model.made.histories.at("pga/tolerance").size(), 1U);
+    EXPECT_NEAR(r.model.made.histories.at("pga/tolerance").front(), smallest, 1e-9 * smallest);
+    EXPECT_LE(r.model.made.histories.at("pga/sigma").back(), smallest);
     const auto rows =
-        stability_along(world, r.problem, check, at_rest(set), {0, r.model.supremizers});
+        stability_along(world, r.problem, check, at_rest(set), {0, r.model.body.supremizers});
     EXPECT_GE(rows.front().condition, 1) << "without supremizers the condition says nothing";
     EXPECT_LT(rows.back().condition, 1);
     EXPECT_GT(rows.back().classic, 0);

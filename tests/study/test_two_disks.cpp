@@ -3,11 +3,11 @@
 #include "../mor/stability_bound.hpp"
 #include "reduced.hpp"
 
-#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
 #include "rbvi/mor/high_fidelity_pair.hpp"
 #include "rbvi/study/stability_report.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,12 +44,12 @@ TEST_F(NineDisks, ABasisOfAllSnapshotsReturnsThem) {
   for (const ConeType type : {ConeType::nodal, ConeType::hybrid, ConeType::mcpg}) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
     r->reduce(with(type));
-    EXPECT_EQ(r->model.modes, 9);
-    ASSERT_EQ(r->model.interfaces.size(), 1U);
-    EXPECT_EQ(r->model.interfaces.front().mesh.parts, std::vector<int>(2, 281))
+    EXPECT_EQ(r->model.body.modes, 9);
+    ASSERT_EQ(r->model.contact.interfaces.size(), 1U);
+    EXPECT_EQ(r->model.contact.interfaces.front().mesh.parts, std::vector<int>(2, 281))
         << "of degree 2 on 140 edges";
-    EXPECT_EQ(r->model.a.size(), 1);
-    EXPECT_EQ(r->model.b.size() + r->model.g.size() + r->model.f.size(), 0);
+    EXPECT_EQ(r->model.body.a.size(), 1);
+    EXPECT_EQ(r->model.contact.b.size() + r->model.contact.g.size() + r->model.body.f.size(), 0);
     EXPECT_NO_THROW(check_model(r->model));
     const ModelErrors errors = r->errors_at(r->samples);
     EXPECT_EQ(errors.failed, 0);
@@ -78,7 +78,7 @@ TEST_F(NineDisks, UnseenRadiiAreAnswered) {
        {Expected{ConeType::mcpg, 2e-3, 0.02}, Expected{ConeType::hybrid, 2e-3, 0.012}}) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(e.type)]);
     r->reduce(with(e.type, 1e-4, 1e-4));
-    EXPECT_EQ(r->model.free_modes > 0, e.type == ConeType::hybrid);
+    EXPECT_EQ(r->model.contact.free_modes > 0, e.type == ConeType::hybrid);
     const ModelErrors errors = r->errors_at(unseen);
     EXPECT_EQ(errors.failed, 0);
     EXPECT_LE(errors.u.maxCoeff(), e.u);
@@ -95,7 +95,7 @@ TEST_F(NineDisks, TheSharpBoundHoldsAtEveryRadius) {
     ReduceOptions options = with(ConeType::hybrid, 1e-4, 1e-4);
     options.pga.stability = fraction;
     r->reduce(options);
-    ASSERT_GT(r->model.supremizers, 0);
+    ASSERT_GT(r->model.body.supremizers, 0);
     const StabilityCheck check = make_stability_check(r->problem, r->model);
     for (const Mu &mu : r->mus()) {
       const Matrix t = supremizers_at(r->problem, check.space, check.dual, {{mu, {}}}).front();
@@ -124,7 +124,7 @@ TEST(ReducedDisks, AnswersDoNotDependOnTheNumberOfRanks) {
     alone.reduce(with(type, 1e-4, 1e-4));
     world.reduce(with(type, 1e-4, 1e-4));
     EXPECT_EQ(alone.model.primal_size(), world.model.primal_size());
-    EXPECT_EQ(alone.model.generators, world.model.generators);
+    EXPECT_EQ(alone.model.contact.generators, world.model.contact.generators);
     OnlineSolver a(alone.model), w(world.model);
     for (const Mu &mu : parse_set(scene.parameters, "random:5:9")) {
       const ReducedAnswer one = a.solve(mu), many = w.solve(mu);
@@ -143,7 +143,7 @@ TEST(ReducedDisks, OtherDiscretisationsReduceAsWell) {
                    {{"degree", "1"}, {"multiplier", multiplier}, {"integration", integration}}),
         "grid:3");
     r.reduce(with(ConeType::hybrid));
-    EXPECT_EQ(r.model.dual_basis.rows(), std::string(multiplier) == "p1" ? 561 : 280);
+    EXPECT_EQ(r.model.contact.dual_basis.rows(), std::string(multiplier) == "p1" ? 561 : 280);
     expect_samples_returned(r, 1e-9, 1e-6);
   }
 }
@@ -173,8 +173,8 @@ TEST(ReducedDisks, ASingleSampleReturnsItself) {
                               ConeType::nodal, ConeType::hybrid}) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
     r.reduce(with(type));
-    EXPECT_EQ(r.model.modes, 1);
-    EXPECT_GE(r.model.generators, 1);
+    EXPECT_EQ(r.model.body.modes, 1);
+    EXPECT_GE(r.model.contact.generators, 1);
     expect_samples_returned(r, 1e-9, 1e-7);
   }
 }
@@ -187,8 +187,8 @@ TEST(ReducedDisks, AGreedyStopsAtTheRankOfItsSnapshots) {
   for (const ConeType type : {ConeType::cpg, ConeType::mcpg, ConeType::angle_greedy}) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
     r.reduce(with(type, 0, 0));
-    EXPECT_EQ(r.model.modes, 3);
-    EXPECT_EQ(r.model.generators, 3);
+    EXPECT_EQ(r.model.body.modes, 3);
+    EXPECT_EQ(r.model.contact.generators, 3);
     EXPECT_TRUE(r.bases.cone.history.reason == "round-off reached" ||
                 r.bases.cone.history.reason == "tolerance reached")
         << r.bases.cone.history.reason;
@@ -214,8 +214,8 @@ TEST(ReducedBlocks, SamplesWithoutContactTakePart) {
   for (const ConeType type : {ConeType::mcpg, ConeType::nodal, ConeType::hybrid}) {
     SCOPED_TRACE(cone_type_names()[static_cast<std::size_t>(type)]);
     r.reduce(with(type));
-    EXPECT_EQ(r.model.modes, 1) << "u is proportional to the approach that is left";
-    EXPECT_EQ(r.model.free_modes, 0) << "no node is always in contact";
+    EXPECT_EQ(r.model.body.modes, 1) << "u is proportional to the approach that is left";
+    EXPECT_EQ(r.model.contact.free_modes, 0) << "no node is always in contact";
     OnlineSolver online(r.model, r.problem.scene());
     for (const double indentation : {0.01, 0.03, 0.039, 0.041, 0.07, 0.1}) {
       const ReducedAnswer answer = online.solve({indentation});
@@ -235,9 +235,9 @@ TEST(ReducedBlocks, OfThePatchTestAreExact) {
   Reduced r(make_scene("patch"), "grid:3");
   for (const ConeType type : {ConeType::mcpg, ConeType::hybrid}) {
     r.reduce(with(type));
-    EXPECT_EQ(r.model.modes, 1);
-    EXPECT_EQ(r.model.generators, 1);
-    EXPECT_EQ(r.model.free_modes, type == ConeType::hybrid ? 1 : 0);
+    EXPECT_EQ(r.model.body.modes, 1);
+    EXPECT_EQ(r.model.contact.generators, 1);
+    EXPECT_EQ(r.model.contact.free_modes, type == ConeType::hybrid ? 1 : 0);
     const std::vector<Sample> unseen = solve_all(r.problem, {{0.0123}, {0.077}});
     const ModelErrors errors = r.errors_at(unseen);
     EXPECT_LE(errors.u.maxCoeff(), 1e-10);
@@ -266,8 +266,8 @@ TEST(TwoDisks, AHybridConeWidensUntilEveryRandomQueryIsAnswered) {
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   if (rank == 0) {
-    EXPECT_TRUE(made.model.self_check.clean());
-    EXPECT_EQ(made.model.self_check.queries, 202);
+    EXPECT_TRUE(made.model.made.self_check.clean());
+    EXPECT_EQ(made.model.made.self_check.queries, 202);
   }
   const Sample truth = solve_all(r.problem, {{0.8}}).front();
   OnlineSolver online(made.model);

@@ -71,7 +71,7 @@ struct Offline : testing::Test {
     const OfflineRun made = run();
     EXPECT_EQ(made.sweep.samples.size(), 15U);
     if (rank_of(PETSC_COMM_WORLD) != 0) return;
-    const SelfCheck &check = made.model.self_check;
+    const SelfCheck &check = made.model.made.self_check;
     EXPECT_GT(check.unanswered, 0);
     EXPECT_LT(check.unanswered, check.queries / 4);
     EXPECT_NE(check.reason.find(part), std::string::npos) << check.reason;

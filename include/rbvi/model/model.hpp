@@ -57,7 +57,7 @@ struct AffineTerms {
 /// term q is scales_q A_1 + Q C_q Q^T.
 struct StiffnessChange {
   Vector scales; ///< terms
-  Matrix range;  ///< Q: n x r; empty: ReducedModel::a has a column for every term
+  Matrix range;  ///< Q: n x r; empty: BodyModel::a has a column for every term
   Matrix cores;  ///< lower triangles of the r x r matrices C_q, column by column: r(r+1)/2 x terms
   Index rank() const { return range.cols(); }
 };
@@ -166,53 +166,51 @@ struct InterfaceModel {
   std::vector<int> nodes; ///< numbers of its nodes in the whole mesh
 };
 
-struct ReducedModel {
-  /// Read from a file, what its record holds (scene_record.hpp), or by the scene's code where a
-  /// function has no name. Its parameters are those of the model, free and fixed.
-  Scene scene;
-  std::map<std::string, std::string> settings; ///< tolerances and options that made it
-  std::string mesh_fingerprint;
-
+/// The body on its reduced space of n = modes + supremizers functions.
+struct BodyModel {
   int modes = 0;       ///< N
   int supremizers = 0; ///< S, or (condensed) the responses that join the modes
-  int generators = 0;  ///< R
-  int free_modes = 0;  ///< the last of the R: their coefficients take either sign
   /// V_N + S_R(mu) is made for each mu (2.17); the supremizers span S_R(mu) for every mu.
   bool online_enriched = false;
-  int primal_size() const { return modes + supremizers; }
-
   /// reduced: lower triangle of the n x n matrix, column by column, n(n+1)/2 x terms; of A_1 alone
   /// where the terms are in a_change.
   AffineTerms a;
   StiffnessChange a_change;
-  AffineTerms b; ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
-  AffineTerms f; ///< n x terms; none: no load
-  AffineTerms g; ///< R x J
+  AffineTerms f;              ///< n x terms; none: no load
   AffineTerms imposed_energy; ///< 1 x terms, of imposed displacements; none: there are none
+};
 
+/// Contact on R generators, by Nitsche's method on none.
+struct ContactModel {
+  int generators = 0; ///< R
+  int free_modes = 0; ///< the last of the R: their coefficients take either sign
+  AffineTerms b;      ///< reduced: R x n, column-major, R n x J; of a support see TermsApart
+  AffineTerms g;      ///< R x J
   std::vector<InterfaceModel> interfaces;
   Matrix dual_basis; ///< dual dofs x R; entries >= 0 but for hybrid cones
   /// The primal basis at the contact dofs, k x n. In a large pair of spaces at `trace_dofs` alone,
   /// those of the nodes over which contact moves and of two layers around them: elsewhere gaps are
   /// not known.
-  Matrix contact_trace;
+  Matrix trace;
   std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
-  Index contact_dofs() const { return interfaces.front().mesh.columns; } ///< k
-  /// B and G do not separate: they are evaluated for each mu on the interfaces.
-  bool evaluates_contact() const { return b.size() == 0 && has_multipliers(); }
   std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche;
-  /// Without: R = 0, and b and g have no terms.
-  bool has_multipliers() const { return !nitsche; }
+};
 
-  // Full order, for reconstruction; may stay in a file of their own, which may be large.
-  std::string fields_key;          ///< of that file, where they are not here
-  Matrix primal_basis;             ///< dofs x n, fixed dofs included
-  Matrix mesh_points;              ///< nodes x dim, reference coordinates
-  std::vector<int> mesh_cells;     ///< node numbers of each cell, nodes_per_cell of them
-  std::vector<int> mesh_materials; ///< of each cell (Scene::materials); empty: the first
-  std::vector<int> imposed_by;     ///< Cell::imposed_by of each dof; empty where nothing is imposed
+/// Of full order, for reconstruction; may stay in a file of their own, which may be large.
+struct ModelFields {
+  std::string key;             ///< of that file, where they are not here
+  Matrix basis;                ///< dofs x n, fixed dofs included
+  Matrix points;               ///< of the mesh: nodes x dim, reference coordinates
+  std::vector<int> cells;      ///< node numbers of each cell, nodes_per_cell of them
+  std::vector<int> materials;  ///< of each cell (Scene::materials); empty: the first
+  std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty where nothing is imposed
+};
 
+/// How a model was made, and what was found out about it.
+struct ModelHistory {
+  std::map<std::string, std::string> settings; ///< tolerances and options that made it
+  std::string mesh_fingerprint;
   ValidationErrors validation_enriched, validation_decorrelated;
   Matrix validated_mu; ///< free parameters x P, where these were measured
   SelfCheck self_check;
@@ -222,15 +220,31 @@ struct ReducedModel {
   std::map<std::string, double> stage_seconds;
 };
 
+struct ReducedModel {
+  /// Read from a file, what its record holds (scene_record.hpp), or by the scene's code where a
+  /// function has no name. Its parameters are those of the model, free and fixed.
+  Scene scene;
+  BodyModel body;
+  ContactModel contact;
+  ModelFields fields;
+  ModelHistory made;
+
+  int primal_size() const { return body.modes + body.supremizers; }
+  Index contact_dofs() const { return contact.interfaces.front().mesh.columns; } ///< k
+  /// Without: R = 0, and b and g have no terms.
+  bool has_multipliers() const { return !contact.nitsche; }
+  /// B and G do not separate: they are evaluated for each mu on the interfaces.
+  bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
+};
+
 inline constexpr int model_schema = 18;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
-/// not finite (members that reconstruction alone needs may all be empty).
+/// not finite (fields may all be empty).
 void check_model(const ReducedModel &model);
 
-/// What reconstruction alone needs, primal_basis, mesh_points, mesh_cells and imposed_by, is in a
-/// file of its own beside the model: model.h5 -> model.fields.h5. It is as large as the mesh; the
-/// model is not.
+/// The fields are in a file of their own beside the model: model.h5 -> model.fields.h5. It is as
+/// large as the mesh; the model is not.
 std::filesystem::path fields_file(const std::filesystem::path &model);
 
 /// Writes both files; that of the fields first, and only where it holds others or is not there, and
@@ -256,7 +270,7 @@ const ValidationErrors &expected_errors(const ReducedModel &model);
 /// none.
 ErrorOfOutput errors_of_outputs(const ReducedModel &model);
 
-/// Row `i` of mesh_points as a point.
+/// Row `i` of points as a point.
 Point point_of(const Matrix &points, Index i);
 
 /// The interfaces of the model. `scene` must outlive them. Throws bad_input where they do not fit.

@@ -36,7 +36,7 @@ public:
   /// At the dual dofs; of Nitsche's method what stands for it (nitsche_multiplier).
   Vector multiplier(const ReducedAnswer &solution) const;
   /// Gap that is left at the nodes with a constraint (ContactOperators::nodal_gap); infinite where
-  /// the model has no displacement (ReducedModel::trace_dofs).
+  /// the model has no displacement (ContactModel::trace_dofs).
   Vector contact_gap(const ReducedAnswer &solution) const;
   /// At all dofs, without the motion of the scene, with the values that boundaries impose. Throws
   /// failure if the model was read without its fields.

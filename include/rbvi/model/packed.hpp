@@ -1,4 +1,4 @@
-// Symmetric matrices as ReducedModel::a holds them: the lower triangle, column by column.
+// Symmetric matrices as BodyModel::a holds them: the lower triangle, column by column.
 #pragma once
 
 #include "rbvi/core/dense.hpp"

@@ -59,7 +59,7 @@ public:
   /// Without restriction what it is given; else its coordinates in the subspace.
   Vector restricted(const Vector &load) const;
 
-  bool has_load() const { return body_.model_.f.size() > 0; }
+  bool has_load() const { return body_.model_.body.f.size() > 0; }
   Vector load() const;      ///< F_N, n entries; zero without
   Matrix stiffness() const; ///< A_N, n x n
   Vector times(const Vector &u) const;

@@ -8,7 +8,7 @@
 
 namespace rbvi {
 
-/// free parameters x samples, as ReducedModel::trained_mu; `rows`: number of free parameters.
+/// free parameters x samples, as ModelHistory::trained_mu; `rows`: number of free parameters.
 Matrix as_columns(const std::vector<Mu> &set, int rows);
 
 /// One Mu per column.

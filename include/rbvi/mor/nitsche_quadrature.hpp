@@ -38,9 +38,10 @@ struct CurveReport {
   int states = 0;                      ///< pairs (mu, Newton step)
 };
 
-/// Fills model.nitsche; the rest of the model is there. `coefficients`: of the samples in the
-/// modes, n x P (interpolated alone asks for them). `u_left`: relative error that the modes leave
-/// in u. Collective. Throws failure where a reduced problem has no answer at a training parameter.
+/// Fills model.contact.nitsche; the rest of the model is there. `coefficients`: of the samples in
+/// the modes, n x P (interpolated alone asks for them). `u_left`: relative error that the modes
+/// leave in u. Collective. Throws failure where a reduced problem has no answer at a training
+/// parameter.
 CurveReport reduce_curve(Problem &problem, const std::vector<Sample> &samples,
                          const Matrix &coefficients, double u_left, const CurveOptions &options,
                          ReducedModel &model);
