@@ -13,6 +13,7 @@
 #include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/commands.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -56,9 +57,28 @@ std::string factors_of(const Term &term, const ParameterSpace &space) {
   return "exact" + (names.empty() ? std::string(", constant") : ", times " + joined(names, " * "));
 }
 
+/// Terms of the same factors are one line.
 void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
-  for (const Term &term : sum)
-    if (!term.of_imposed) std::printf("  %-10s %s\n", name, factors_of(term, space).c_str());
+  std::vector<std::pair<std::string, long>> lines;
+  for (const Term &term : sum) {
+    if (term.of_imposed) continue;
+    const std::string words = factors_of(term, space);
+    const auto same = std::ranges::find(lines, words, &std::pair<std::string, long>::first);
+    if (same == lines.end())
+      lines.emplace_back(words, 1);
+    else
+      ++same->second;
+  }
+  for (const auto &[words, count] : lines)
+    std::printf("  %-10s %s%s\n", name, words.c_str(),
+                count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
+}
+
+/// Without the round-off of numbers that were computed.
+std::string short_text(const ParameterSpace &space, Mu mu) {
+  for (double &value : mu)
+    value = parse_number(formatted("%.12g", value), "parameter");
+  return describe(space, mu);
 }
 
 void print_scene(const Problem &problem) {
@@ -132,7 +152,7 @@ void command_check(const ToolOptions &options) {
       if (!set.empty()) check_set(problem.scene(), parse_set(problem.scene().parameters, set));
   });
   const Mu mu = box_centre(problem.scene().parameters);
-  const std::string at = describe(problem.scene().parameters, mu);
+  const std::string at = short_text(problem.scene().parameters, mu);
   const HfSolution solution =
       while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
   write_solution(problem, options, mu, solution);

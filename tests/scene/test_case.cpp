@@ -173,6 +173,19 @@ const std::map<std::string, std::string> chosen{
     {"variants", "{hard: {says: harder, let.stiff: 4, choices.law.default: coulomb, "
                  "options: {pod_tolerance: 1e-3}, train: grid:2}}"}};
 
+TEST(Case, UnitsAreAllowedOnWhatARunGives) {
+  const Scene scene =
+      scene_of({{"units", "{length: mm, force: N}"},
+                {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, k: {range: [0.5, 20], "
+                               "default: 1}, nu: {range: [0.1, 0.4], default: 0.3}, "
+                               "young: {default: 15, unit: MPa}}"}},
+               {{"young", "1 MPa,2 GPa"}});
+  EXPECT_EQ(scene.parameters.all[3].lower, 1);
+  EXPECT_EQ(scene.parameters.all[3].upper, 2000);
+  EXPECT_TRUE(scene.units);
+  EXPECT_FALSE(scene_of().units);
+}
+
 TEST(Case, ChoicesVariantsAndPathsChangeIt) {
   EXPECT_FALSE(has_friction(scene_of(chosen)));
   EXPECT_TRUE(has_friction(scene_of(chosen, {{"law", "coulomb"}})));

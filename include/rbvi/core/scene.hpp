@@ -9,6 +9,7 @@
 
 #include "rbvi/core/contact_recipe.hpp"
 #include "rbvi/core/terms.hpp"
+#include "rbvi/core/units.hpp"
 
 namespace rbvi {
 
@@ -83,6 +84,7 @@ struct Scene {
   int components = 1; ///< of the displacement
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
   SceneOptions options;
+  std::optional<UnitSystem> units; ///< of numbers with a unit that a run gives
   ParameterSpace parameters;
   /// Throws bad_input where values of all parameters that are valid one by one make no sense
   /// together; empty: they always do.
@@ -134,6 +136,7 @@ struct SceneEntry {
   std::vector<CaseSetting> settings{};
   std::vector<std::pair<std::string, std::string>> variants{}; ///< of its file, with what they are
   std::map<std::string, double> mesh_numbers{};                ///< of the .geo that its mesh is
+  std::optional<UnitSystem> units{};                           ///< of numbers with a unit
 };
 
 /// What a program knows by name, and finds in model files (contact/registry.hpp).
