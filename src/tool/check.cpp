@@ -6,6 +6,7 @@
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/mesh/serial.hpp"
+#include "rbvi/mesh/surface.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/par/collective.hpp"
@@ -72,6 +73,14 @@ void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
   for (const auto &[words, count] : lines)
     std::printf("  %-10s %s%s\n", name, words.c_str(),
                 count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
+}
+
+/// Where nothing is said of the surface.
+void print_mesh(const SerialMesh &mesh, const Scene &scene) {
+  const std::vector<std::string> free = free_parts(mesh, surface_of(mesh, scene));
+  if (!free.empty())
+    std::printf("  %-20s %s: no condition, no load and no contact there\n", "free",
+                joined(free).c_str());
 }
 
 /// Without the round-off of numbers that were computed.
@@ -145,7 +154,11 @@ void command_check(const ToolOptions &options) {
   check_outputs(world, options, files_of_solution(options));
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
-  if (rank_of(world) == 0) print_scene(problem);
+  collectively(world, [&] {
+    if (rank_of(world) != 0) return;
+    print_scene(problem);
+    print_mesh(mesh_with_groups(options.scene, options.mesh.file), options.scene);
+  });
   check_points(problem);
   collectively(world, [&] {
     for (const std::string &set : {options.train, options.valid})

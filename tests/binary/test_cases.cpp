@@ -32,6 +32,7 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
   const std::string says = output_of(rbvi(2, "check block -vtu u.vtu"));
   EXPECT_TRUE(contains(says, "no defect was found")) << says;
   EXPECT_TRUE(contains(says, "depth                [0.01, 0.1] m\n")) << says;
+  EXPECT_TRUE(contains(says, "\n  free                 sides: no condition, no load")) << says;
   EXPECT_TRUE(contains(says, "\n  a          exact, constant (2 terms)\n")) << says;
   EXPECT_TRUE(fs::exists("u.vtu"));
   expect_all_refused({{"new block", "is there already"},

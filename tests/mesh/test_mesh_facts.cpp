@@ -340,6 +340,19 @@ TEST(MeshFacts, SizesAreTold) {
                  {"'top' of my mesh is not a long side: its length is 1, not 2"});
 }
 
+TEST(MeshFacts, CellsWithoutAMaterialAreRefused) {
+  Scene scene = make_scene(block.name, block.options);
+  scene.mesh.regions = {"part"};
+  for (Term &term : scene.a)
+    term.form.region = "part";
+  SerialMesh mesh = one_block();
+  mesh.region["part"] = all_cells(mesh);
+  EXPECT_NO_THROW(check_facts(mesh, scene, "my mesh"));
+  mesh.region["part"].erase(mesh.region["part"].begin());
+  expect_refused([&] { check_facts(mesh, scene, "my mesh"); },
+                 {"my mesh has cells without a material, 1 of 80", "write 'at: all'"});
+}
+
 TEST(MeshFacts, APartThatTheRecipeDoesNotNameIsRefused) {
   Scene scene = make_scene(block.name, block.options);
   scene.mesh.facts.front().within = "wall";
