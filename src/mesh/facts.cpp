@@ -211,10 +211,11 @@ void check_size(const Subject &s, const MeshFact &fact) {
       size += measure(s.mesh, facet);
   const int power = s.mesh.dim - (cells ? 0 : 1);
   const std::string name = power == 1 ? "length" : power == 2 ? "area" : "volume";
-  if (size > (1 + 1e-5) * fact.size || size < 0.9 * fact.size)
+  if (size > (1 + fact.excess) * fact.size || size < 0.9 * fact.size)
     refuse(s, fact,
            "its " + name + " is " + short_number(size) + ", not " + short_number(fact.size) +
-               (size > fact.size ? ": cells overlap" : ": it is too coarse, or not whole"));
+               (size > fact.size ? ": cells overlap, or it is larger"
+                                 : ": it is too coarse, or not whole"));
 }
 
 /// The surface of the mesh is the rim of its place.

@@ -75,8 +75,12 @@ void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
                 count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
 }
 
-/// Where nothing is said of the surface.
-void print_mesh(const SerialMesh &mesh, const Scene &scene) {
+/// What the mesh of a file is, and where nothing is said of its surface.
+void print_mesh(const SerialMesh &mesh, const Scene &scene, bool of_file) {
+  for (const MeshFact &fact : scene.mesh.facts)
+    if (of_file)
+      std::printf("  %-20s is %s\n", fact.part.empty() ? "the mesh" : fact.part.c_str(),
+                  fact.is.c_str());
   const std::vector<std::string> free = free_parts(mesh, surface_of(mesh, scene));
   if (!free.empty())
     std::printf("  %-20s %s: no condition, no load and no contact there\n", "free",
@@ -157,7 +161,8 @@ void command_check(const ToolOptions &options) {
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
     print_scene(problem);
-    print_mesh(mesh_with_groups(options.scene, options.mesh.file), options.scene);
+    print_mesh(mesh_with_groups(options.scene, options.mesh.file), options.scene,
+               !options.mesh.file.empty());
   });
   check_points(problem);
   collectively(world, [&] {

@@ -35,6 +35,7 @@ struct MeshFact {
   /// Length, area or volume; polygons with their vertices on a circle lack up to a tenth. 0: any.
   double size = 0;
   std::string within = ""; ///< a boundary that holds all facets of this one
+  double excess = 1e-5;    ///< share by which the size may be larger, as about polygons in a body
 };
 
 /// A region of a material of its own: a disc, or the part of one between lines through its centre.
