@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from figure_tools import GREEN, ORANGE, Missing, read_grid
+from figure_tools import GREEN, ORANGE, Missing, beside, parameters_of, read_grid
 from panels import Curve, Drawn, Lines, Triangles, save_panels
 
 SHADES = "YlGnBu"
@@ -21,24 +21,17 @@ def outline(points, cells):
     return points[np.array(single)][:, :, :2]
 
 
-def parameters_of(grid):
-    """"radius = 0.85 m, ..." of a VTU file."""
-    values = [(name[3:].replace("_", " "), numbers[0], grid.units[name])
-              for name, numbers in grid.of_all.items() if name.startswith("mu_")]
-    return ",  ".join(f"{name} {value:.4g}{'' if unit == '-' else ' ' + unit}"
-                      for name, value, unit in values)
-
-
-def contact_grids(run, grid):
+def contact_grids(path, grid):
     """The contact files beside u.vtu, one for each interface of which some part can touch: u_contact,
     u_contact_2, ..."""
-    numbers = sorted([int(path.stem.removeprefix("u_contact_")), path]
-                     for path in run.glob("u_contact_*.vtu"))
-    paths = [run / "u_contact.vtu", *(path for _, path in numbers)]
-    grids = [read_grid(path) for path in paths if path.is_file()]
-    for path, contact in zip(filter(lambda path: path.is_file(), paths), grids):
+    first = beside(path, "_contact")
+    numbers = sorted([int(file.stem.removeprefix(first.stem + "_")), file]
+                     for file in path.parent.glob(f"{first.stem}_*.vtu"))
+    paths = [file for file in (first, *(file for _, file in numbers)) if file.is_file()]
+    grids = [read_grid(file) for file in paths]
+    for file, contact in zip(paths, grids):
         if parameters_of(contact) != parameters_of(grid):
-            raise Missing(f"{path} is of another answer than {run}/u.vtu: remove it")
+            raise Missing(f"{file} is of another answer than {path}: remove it")
     return grids
 
 
@@ -186,14 +179,14 @@ def body_panels(grid, contacts):
     return panels + [contact_panel(curve, which) for curve, which in zip(contacts, names)]
 
 
-def solution_panels(run):
-    grid = read_grid(run / "u.vtu")
-    contacts = contact_grids(run, grid)
+def solution_panels(path):
+    grid = read_grid(path)
+    contacts = contact_grids(path, grid)
     return (body_panels if grid.of_nodes["u"].ndim == 2 else membrane_panels)(grid, contacts)
 
 
-def solution(run):
-    """One answer: the membrane and its pressure (Niakh 2022, figure 2.4), or bodies, their stress
-    and the pressure between them (figure 2.10)."""
-    return save_panels(run / "figures", "solution.png", solution_panels(run),
-                       parameters_of(read_grid(run / "u.vtu")))
+def solution(path):
+    """One answer, of the file u.vtu: the membrane and its pressure (Niakh 2022, figure 2.4), or
+    bodies, their stress and the pressure between them (figure 2.10)."""
+    return save_panels(path.parent / "figures", "solution.png", solution_panels(path),
+                       parameters_of(read_grid(path)))

@@ -42,21 +42,11 @@ Vector displacement(const Scene &scene, const FullMu &mu, const Matrix &points, 
   return result;
 }
 
-/// Adds the scene and its parameters.
-void describe(const State &state, Grid &grid) {
-  grid.scene = state.scene.name;
-  for (std::size_t i = 0; i < state.mu.size(); ++i) {
-    const Parameter &parameter = state.scene.parameters.all[i];
-    grid.of_all.push_back(
-        {"mu_" + parameter.name, Vector::Constant(1, state.mu[i]), parameter.unit});
-  }
-}
-
 Grid bodies(const State &state) {
   const auto &[scene, mu, model, u, lambda, moved] = state;
   const int per_cell = nodes_per_cell(scene.dim, scene.degree);
   Grid grid{mapped(state, model.mesh_points), model.mesh_cells, per_cell, {}, {}, {}};
-  describe(state, grid);
+  name_parameters(scene, mu, grid);
   if (model.mesh_cells.empty())
     throw failure("the model was read without its fields: no full field can be written");
   grid.of_nodes = {{"u", moved, "m"}};
@@ -83,15 +73,27 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
         state.u.segment(nodes[k] * components, components);
   Grid grid = interface.fields(
       state.mu, u, state.lambda.segment(contact.first_row[number], interface.dual().size()));
-  describe(state, grid);
+  name_parameters(state.scene, state.mu, grid);
   return grid;
 }
 
 } // namespace
 
-std::filesystem::path contact_file(const std::filesystem::path &path, std::size_t number) {
-  const std::string suffix = number == 0 ? "_contact" : "_contact_" + std::to_string(number + 1);
+void name_parameters(const Scene &scene, const FullMu &all_parameters, Grid &grid) {
+  grid.scene = scene.name;
+  for (std::size_t i = 0; i < all_parameters.size(); ++i) {
+    const Parameter &parameter = scene.parameters.all[i];
+    grid.of_all.push_back(
+        {"mu_" + parameter.name, Vector::Constant(1, all_parameters[i]), parameter.unit});
+  }
+}
+
+std::filesystem::path file_beside(const std::filesystem::path &path, const std::string &suffix) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+std::filesystem::path contact_file(const std::filesystem::path &path, std::size_t number) {
+  return file_beside(path, number == 0 ? "_contact" : "_contact_" + std::to_string(number + 1));
 }
 
 std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,

@@ -155,14 +155,18 @@ void check_variants(const ToolOptions &options) {
 void command_check(const ToolOptions &options) {
   const MPI_Comm world = PETSC_COMM_WORLD;
   collectively(world, [&] { check_variants(options); });
-  check_outputs(world, options, files_of_solution(options));
+  std::vector<NamedFile> outputs = files_of_solution(options);
+  for (NamedFile &file : files_of_check(options))
+    outputs.push_back(std::move(file));
+  check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
+  SerialMesh mesh; // on the first rank
   collectively(world, [&] {
     if (rank_of(world) != 0) return;
+    mesh = mesh_with_groups(options.scene, options.mesh.file);
     print_scene(problem);
-    print_mesh(mesh_with_groups(options.scene, options.mesh.file), options.scene,
-               !options.mesh.file.empty());
+    print_mesh(mesh, options.scene, !options.mesh.file.empty());
   });
   check_points(problem);
   collectively(world, [&] {
@@ -174,6 +178,10 @@ void command_check(const ToolOptions &options) {
   const HfSolution solution =
       while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
   write_solution(problem, options, mu, solution);
+  collectively(world, [&] {
+    if (rank_of(world) == 0 && !options.vtu.empty())
+      print_written(std::cout, write_check(options, problem, mesh));
+  });
   if (rank_of(world) != 0) return;
   std::printf("at the middle of the box, %s:\n", at.c_str());
   print_outputs(std::cout, solution.outputs);

@@ -59,7 +59,8 @@ std::vector<Option> of_runs() {
       of_command(
           text("vtu", OptionKind::text, "file", RBVI_AT(vtu),
                "file to which solve, and check, write displacement and stresses; contact goes to "
-               "FILE_contact")),
+               "FILE_contact, what check draws of the case to FILE_mesh, FILE_surface and "
+               "FILE_partners")),
       of_command(text("csv", OptionKind::text, "file", RBVI_AT(csv),
                       "file to which solve writes its outputs as a table")),
       flag("verify_stability", RBVI_AT(stability),

@@ -34,7 +34,10 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
   EXPECT_TRUE(contains(says, "depth                [0.01, 0.1] m\n")) << says;
   EXPECT_TRUE(contains(says, "\n  free                 sides: no condition, no load")) << says;
   EXPECT_TRUE(contains(says, "\n  a          exact, constant (2 terms)\n")) << says;
+  EXPECT_TRUE(contains(says, "\nwrote u_mesh.vtu, u_surface.vtu, u_partners_middle.vtu, ")) << says;
   EXPECT_TRUE(fs::exists("u.vtu"));
+  output_of(RBVI_FIGURES " u.vtu");
+  EXPECT_TRUE(fs::exists("figures/case.png") && fs::exists("figures/solution.png"));
   expect_all_refused({{"new block", "is there already"},
                       {"new", "new takes the name of a folder"},
                       {"new a b", "'b' is left over"},
