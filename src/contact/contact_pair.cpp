@@ -193,11 +193,13 @@ PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
   }
   result.b = weak.matrix();
   result.nodal_gap.resize(std::ssize(partners.vertices));
+  result.normals.reserve(partners.vertices.size());
   for (const PairPoint &p : partners.vertices) {
     nodal.add(p, 1);
     nodal.end_row();
     result.nodal_gap[std::ssize(result.paired)] = p.gap;
     result.paired.push_back(p.slave_edge + (p.s > 0.5 ? 1 : 0));
+    result.normals.push_back({-p.normal[0], -p.normal[1], 0});
   }
   result.nodal_b = nodal.matrix();
   return result;

@@ -67,7 +67,7 @@ public:
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
-    return support_fields(scene_, mu, *this, u, lambda);
+    return support_fields(*this, scene_, facing_, mu, u, lambda);
   }
 
   const EntitySum *entity_sum() const override { return follows_state() ? nullptr : this; }

@@ -87,7 +87,7 @@ public:
   void outputs(const FullMu &, const ContactOperators &, const Vector &, double,
                Outputs &) const override {}
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
-    return support_fields(scene_, mu, *this, u, lambda);
+    return support_fields(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
   }
 
 private:

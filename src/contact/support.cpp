@@ -54,6 +54,10 @@ RigidContact rigid_contact(const Support &support) {
         to_surface != nullptr ? to_surface->along(mu, point.x, n) : gap(mu, point.x);
     return FacedPoint{n, distance - dot(point.motion, n), slip_along(n, point.motion)};
   };
+  if (const auto *to_surface = support.gap.target<GapToSurface>())
+    rigid.facing.partner = [to = *to_surface](const FullMu &mu, const Point &x) {
+      return to.partner(mu, x);
+    };
   rigid.facing.normal = support.normal;
   rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;
@@ -64,20 +68,26 @@ RigidContact rigid_contact(const Support &support) {
   return rigid;
 }
 
-Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
-                    const Vector &u, const Vector &lambda) {
+Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
+                    const FullMu &mu, const Vector &u, const Vector &lambda) {
   const InterfaceMesh &mesh = interface.mesh();
   const std::vector<Index> &vertices = interface.dual().vertices;
   const auto count = static_cast<Index>(vertices.size());
   Grid grid = polyline(scene, mu, mesh, vertices, u);
+  const Vector moved = grid.of_nodes.front().values;
   Vector gap(count);
+  std::vector<Point> normals, ways;
   for (Index k = 0; k < count; ++k) {
     const Index node = vertices[k];
-    const PointConstraint at =
-        interface.constraint_at(mu, mesh.points[node], {u[2 * node], u[2 * node + 1], 0});
+    const Point &x = mesh.points[node];
+    const PointConstraint at = interface.constraint_at(mu, x, {u[2 * node], u[2 * node + 1], 0});
     gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
+    normals.push_back(at.direction);
+    if (facing.partner)
+      ways.push_back(facing.partner(mu, x) - Point{grid.points(k, 0) + moved[3 * k],
+                                                   grid.points(k, 1) + moved[3 * k + 1], 0});
   }
-  grid.of_nodes.push_back({"gap", gap, "m"});
+  add_gap(gap, normals, grid, ways);
   grid.of_nodes.push_back({"pressure", lambda.head(count), "Pa"});
   if (lambda.size() > count)
     grid.of_nodes.push_back({"tangential_stress", lambda.tail(count), "Pa"});

@@ -30,7 +30,7 @@ Grid TwoCurves::fields(const FullMu &mu, const Vector &u, const Vector &lambda) 
   const Index count = std::ssize(pair.paired);
   if (count < 2) return {};
   Grid grid = polyline(scene_, mu, mesh_, pair.paired, u);
-  grid.of_nodes.push_back({"gap", pair.nodal_gap - pair.nodal_b * state, "m"});
+  add_gap(pair.nodal_gap - pair.nodal_b * state, pair.normals, grid);
   const bool constant = space_ == MultiplierSpace::macro_edges;
   Vector pressure(constant ? count - 1 : count);
   for (Index k = 0; k < pressure.size(); ++k) {

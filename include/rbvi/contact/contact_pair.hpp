@@ -40,7 +40,8 @@ struct PairDiscretisation {
 /// multipliers, `weights` their integrals over the slave points that have a partner. A slave point
 /// beyond the ends of the master curve has none and contributes nothing.
 struct PairOperators : ContactOperators {
-  std::vector<Index> paired{}; ///< slave vertices that have a partner, increasing: rows of nodal_b
+  std::vector<Index> paired{};  ///< slave vertices that have a partner, increasing: rows of nodal_b
+  std::vector<Point> normals{}; ///< of these, out of the slave body
 };
 
 /// Rows of differences over both curves, one after the other. The points of a row are on few edges

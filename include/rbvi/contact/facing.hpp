@@ -30,6 +30,9 @@ struct Facing {
   /// `displacement`: the state there, which the condition is linearised about; at rest ignored.
   std::function<FacedPoint(const FullMu &mu, const PlacedPoint &point, const Point &displacement)>
       at;
+  /// The point that one of the reference boundary faces at rest, for pictures; empty: it lies along
+  /// the normal.
+  std::function<PointMap> partner{};
   /// The normal alone, for less work, where it does not depend on where the body is.
   Named<PointMap> normal{};
   bool asks_place = true; ///< whether `at` asks for PlacedPoint::y

@@ -162,7 +162,8 @@ public:
   /// `lambda`: a node with at most `least` counts as free.
   virtual void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                        double least, Outputs &outputs) const = 0;
-  /// The mapped interface with its pressure, gap, ...; no cell where nothing can touch. `u`: at its
+  /// The mapped interface with its pressure, gap, normal (out of the body; of a membrane in space,
+  /// downwards), to_partner, ...; no cell where nothing can touch. `u`: at its
   /// nodes, node * components + c, without the motion.
   virtual Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) = 0;
 
@@ -196,6 +197,11 @@ Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Poi
 /// together.
 void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
                       Outputs &outputs);
+
+/// Adds gap, normal and to_partner, what leads from each node to the point that it faces: along the
+/// normal, or other ways.
+void add_gap(const Vector &gap, const std::vector<Point> &normals, Grid &grid,
+             const std::vector<Point> &ways = {});
 
 /// motion + u at nodes of the mesh, three components each, for pictures.
 Vector moved_nodes(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,

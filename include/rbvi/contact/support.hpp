@@ -101,7 +101,7 @@ RigidSurface surface_in(const Stored &of);
 
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields.
-Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
-                    const Vector &u, const Vector &lambda);
+Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
+                    const FullMu &mu, const Vector &u, const Vector &lambda);
 
 } // namespace rbvi
