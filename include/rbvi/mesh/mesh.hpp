@@ -59,6 +59,8 @@ struct Mesh {
   std::vector<std::array<int, 4>> cells;        ///< owned cells: dim + 1 local vertices, rest -1
   std::vector<std::array<int, 6>> cell_middles; ///< degree 2: local nodes of their edges, rest -1
   std::vector<PetscInt> natural_cell;           ///< per owned cell
+  std::vector<int> body; ///< per owned cell: which of the connected parts of the mesh it is in
+  int bodies = 0;        ///< connected parts, by common vertices
 
   std::map<std::string, std::vector<bool>> region;      ///< per name: owned cells in it
   std::map<std::string, std::vector<bool>> boundary;    ///< per name: local nodes on it
