@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facets.hpp"
+#include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -285,6 +286,16 @@ void fill_bodies(Mesh &mesh, const Migration &migration, const std::vector<int> 
   MPI_Allreduce(MPI_IN_PLACE, &mesh.bodies, 1, MPI_INT, MPI_MAX, mesh.comm);
 }
 
+/// As the first rank knows them, which alone has the whole mesh.
+void fill_closed_ends(Mesh &mesh, const Scene &scene, const SerialMesh &whole) {
+  for (const std::string &name : contact_curves(scene)) {
+    std::array<bool, 2> closed{};
+    if (!whole.cells.empty()) closed = closed_ends(whole, name);
+    MPI_Bcast(closed.data(), 2, MPI_CXX_BOOL, 0, mesh.comm);
+    mesh.closed_ends[name] = closed;
+  }
+}
+
 std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
   std::vector<bool> result;
   for (const PetscInt point : mesh.dm_point)
@@ -330,6 +341,7 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const Migration migration(mesh.dm, part, world.size);
   fill_nodes_and_cells(mesh, migration, edges, all.points);
   fill_bodies(mesh, migration, all.bodies);
+  fill_closed_ends(mesh, scene, all.mesh);
   for (const std::string &name : scene.mesh.regions)
     mesh.region[name] = own_region(mesh, migration.arrived(all.marks[name], MPI_CHAR));
   std::unordered_map<PetscInt, std::size_t> cell_of; // by natural number

@@ -32,6 +32,9 @@ struct InterfaceMesh {
   int per_entity = 2;
   std::vector<int> edges; ///< cells beside a boundary: the local edge of each that is on it
   std::vector<int> parts; ///< number of nodes of each boundary, or region
+  /// Of each boundary 1 or 0 for its first and for its last end: whether the body ends there, so
+  /// that contact may reach it; empty: nowhere.
+  std::vector<int> closed_ends = {};
   /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
   std::vector<int> dofs;
   Index columns = 0; ///< of the problem
@@ -41,6 +44,11 @@ struct InterfaceMesh {
 
   Index nodes() const { return static_cast<Index>(points.size()); }
   Index count() const { return static_cast<Index>(entities.size()) / per_entity; }
+  /// Of boundary number `part`.
+  std::array<bool, 2> closed(std::size_t part) const {
+    if (closed_ends.empty()) return {};
+    return {closed_ends[2 * part] != 0, closed_ends[2 * part + 1] != 0};
+  }
   const int *nodes_of(Index entity) const { return entities.data() + entity * per_entity; }
 };
 

@@ -65,6 +65,8 @@ struct Mesh {
   std::map<std::string, std::vector<bool>> region;      ///< per name: owned cells in it
   std::map<std::string, std::vector<bool>> boundary;    ///< per name: local nodes on it
   std::map<std::string, std::vector<CellFacet>> facets; ///< per boundary: each has one owner
+  /// Per boundary with contact in 2D, at its first and last end by x: whether the body ends there.
+  std::map<std::string, std::array<bool, 2>> closed_ends;
 };
 
 /// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,
