@@ -54,6 +54,20 @@ TEST(PatchFriction, WithoutFrictionTheFootSlidesFreely) {
   }
 }
 
+/// With a large coefficient the foot sticks in part, or more of it does.
+TEST(PatchFriction, ALargeCoefficientHasAnswersThatAreLookedFor) {
+  Problem problem(PETSC_COMM_WORLD, block("1"), {});
+  HfOptions options;
+  const auto to_other = [&](const Mu &mu) {
+    return HighFidelity(problem, options).solve(mu).to_other;
+  };
+  const Mu several{0.01, 0.2, 2.868};
+  EXPECT_EQ(to_other(several), 0) << "not asked for";
+  options.looks_for_others = true;
+  EXPECT_GT(to_other(several), 0.1);
+  EXPECT_EQ(to_other({0.05, 0.02, 0.3}), 0);
+}
+
 TEST(PatchFriction, UzawaFindsTheSame) {
   for (const Mu &mu : {Mu{0.05, 0.02, 0.3}, Mu{0.05, 0.2, 0.3}}) {
     Problem problem(PETSC_COMM_SELF, block("1"), {});
