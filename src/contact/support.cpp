@@ -29,7 +29,6 @@ Record record_of(const HalfPlane &plane) {
   if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
   if (plane.surface) record.parts["surface"] = plane.surface.record;
   if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
-  if (plane.closed_ends) record.numbers["closed_ends"] = {1};
   add_friction(plane.friction, record);
   return record;
 }
@@ -61,8 +60,6 @@ RigidContact rigid_contact(const Support &support) {
   rigid.facing.normal = support.normal;
   rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;
-  rigid.facing.closed_ends = {support.closed_ends, support.closed_ends};
-  if (support.closed_ends) rigid.record.numbers["closed_ends"] = {1};
   if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
   add_friction(support.friction, rigid.record);
   return rigid;
@@ -95,12 +92,8 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
 }
 
 Support support_in(const Stored &of) {
-  Support support{text(of, "boundary"),
-                  made<PointMap>(part(of, "normal")),
-                  made<PointValue>(part(of, "gap")),
-                  friction_in(of),
-                  number(of, "lumped") != 0,
-                  of.record.numbers.contains("closed_ends")};
+  Support support{text(of, "boundary"), made<PointMap>(part(of, "normal")),
+                  made<PointValue>(part(of, "gap")), friction_in(of), number(of, "lumped") != 0};
   if (of.record.parts.contains("body_normal"))
     support.body_normal = made<PointMap>(part(of, "body_normal"));
   return support;
@@ -118,7 +111,6 @@ HalfPlane half_plane_in(const Stored &of) {
   if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
   plane.friction = friction_in(of);
   plane.lumped = number(of, "lumped") != 0;
-  plane.closed_ends = of.record.numbers.contains("closed_ends");
   if (of.record.parts.contains("body_normal"))
     plane.body_normal = made<PointMap>(part(of, "body_normal"));
   return plane;
@@ -141,7 +133,6 @@ RigidContact rigid_contact(const HalfPlane &plane) {
   rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
   rigid.facing.at_rest = plane.surface;
   rigid.facing.body_normal = plane.body_normal;
-  rigid.facing.closed_ends = {plane.closed_ends, plane.closed_ends};
   rigid.coefficients.push_back({"position of the half-plane", plane.position});
   if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
   return rigid;

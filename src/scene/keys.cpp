@@ -104,8 +104,6 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "nitsche_gamma0", "number",
      "Nitsche's gamma is this times (lambda + 2 shear modulus) over the length of an edge"},
     {"contact.*", "lumped", "no | yes", "vertex quadrature in b and g"},
-    {"contact.*", "closed_ends", "[yes | no, yes | no]",
-     "whether the body ends, or is mirrored, at the first and the last end of the boundary"},
     {"contact.*", "multiplier", "p0 | p1",
      "two bodies: constant on pairs of edges (of degree 2 on edges), or continuous"},
     {"contact.*", "integration", "intersection | direct",

@@ -47,6 +47,18 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
   output_of(rbvi(1, "verify -out model -valid random:2:1"));
 }
 
+TEST_F(Cases, ABodyThatNothingHoldsIsRefusedByEveryCommand) {
+  output_of(rbvi(1, "new block"));
+  std::string text = slurp("block/case.yaml");
+  const std::string held = "ux: shear, uy: -depth";
+  text.replace(text.find(held), held.size(), "uy: shear - depth");
+  spill("block/case.yaml", text);
+  const std::string says = "the body can move along (1, 0): impose displacements";
+  expect_all_refused({{"check block", says},
+                      {"solve -case block -mu 0.05,0,0.3", says},
+                      {"offline -case block -out run", says}});
+}
+
 TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
   spill("coarse.msh", coarse_gmsh());
   output_of(rbvi(1, "new own -mesh coarse.msh"));

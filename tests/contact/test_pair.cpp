@@ -158,11 +158,11 @@ TEST(PairInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
 
 /// The upper curve has no end to speak of where the body ends with it.
 TEST(PairInterface, ContactAtAnEndIsCountedUnlessItIsClosed) {
-  const InterfaceMesh mesh = two_curves(1);
+  InterfaceMesh mesh = two_curves(1);
   for (const PairDiscretisation &how : {constant, linear})
     for (const bool closed : {false, true}) {
-      Scene scene = scene_of(how, 1);
-      scene.contacts = {two_bodies({"slave", "master", how, {closed, false}})};
+      const Scene scene = scene_of(how, 1);
+      mesh.closed_ends = {closed ? 1 : 0, 0, 0, 0};
       const ContactOperators op = at(scene, mesh, {0});
       const auto interface = scene.contacts.front().make(scene, mesh);
       const auto ends = [&](Index row) {
@@ -176,6 +176,21 @@ TEST(PairInterface, ContactAtAnEndIsCountedUnlessItIsClosed) {
       EXPECT_EQ(ends(0), closed ? 0 : 1);
       EXPECT_EQ(ends(1), 0);
       EXPECT_EQ(ends(last), 1);
+    }
+}
+
+/// The lower body moves to the left until the upper one has nothing below it at its right end.
+TEST(PairInterface, ContactAtAnEndOfTheLowerCurveIsCountedUnlessItIsClosed) {
+  InterfaceMesh mesh = two_curves(1);
+  for (const PairDiscretisation &how : {constant, linear})
+    for (const bool closed : {false, true}) {
+      const Scene scene = scene_of(how, 1);
+      mesh.closed_ends = {1, 1, 0, closed ? 1 : 0};
+      const auto interface = scene.contacts.front().make(scene, mesh);
+      Outputs out;
+      interface->outputs({0.6}, at(scene, mesh, {0.6}), Vector::Ones(interface->dual().nodes()),
+                         1e-3, out);
+      EXPECT_EQ(*out.ends_in_contact, closed ? 0 : 1);
     }
 }
 

@@ -44,8 +44,6 @@ struct Facing {
   Named<PointMap> body_normal{};
   /// The condition is one along that normal, of the deformed body. Only where it follows the state.
   bool along_body = false;
-  /// Whether the body ends, or is mirrored, at the curve's first and last end.
-  std::array<bool, 2> closed_ends{};
 };
 
 inline PlacedPoint place(const Scene &scene, const Facing &facing, const FullMu &mu,

@@ -33,6 +33,9 @@ struct InterfaceMesh {
   int per_entity = 2;
   std::vector<int> edges; ///< cells beside a boundary: the local edge of each that is on it
   std::vector<int> parts; ///< number of nodes of each boundary, or region
+  /// Of each boundary 1 or 0 for its first and for its last end: whether the body ends there, so
+  /// that contact may reach it; empty: nowhere.
+  std::vector<int> closed_ends = {};
   /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
   std::vector<int> dofs;
   Index columns = 0; ///< of the problem
@@ -46,6 +49,11 @@ struct InterfaceMesh {
   /// Of each entity, a cell or a facet; the first of its nodes.
   int vertices() const { return per_entity == nodes_per_cell(dim, degree) ? dim + 1 : dim; }
   int material_of(Index entity) const { return materials.empty() ? 0 : materials[entity]; }
+  /// Of boundary number `part`.
+  std::array<bool, 2> closed(std::size_t part) const {
+    if (closed_ends.empty()) return {};
+    return {closed_ends[2 * part] != 0, closed_ends[2 * part + 1] != 0};
+  }
   const int *nodes_of(Index entity) const { return entities.data() + entity * per_entity; }
 };
 

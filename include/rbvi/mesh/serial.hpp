@@ -62,6 +62,10 @@ void check_places(const SerialMesh &mesh, const Scene &scene, const std::string 
 /// that is not refined: a rim that Scene::snap does not know is fitted by the file alone.
 void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &source);
 
+/// The connected part of each cell, from 0 in the order of the cells; cells with a common vertex
+/// are connected.
+std::vector<int> bodies_of(const SerialMesh &mesh);
+
 /// Largest coordinate, without its sign.
 double extent_of(const SerialMesh &mesh);
 
