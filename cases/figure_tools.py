@@ -150,8 +150,21 @@ def read_grid(path):
                 for name, values in section["PointData"].items()}
     of_cells = {name: np.repeat(values, repeats) for name, values in section["CellData"].items()}
     of_all = section["FieldData"]
-    units = dict(line.split(": ") for line in of_all.pop("units"))
+    units = dict(line.rsplit(": ", 1) for line in of_all.pop("units"))
     return Grid(points, cells, edges, of_nodes, of_cells, of_all, units)
+
+
+def beside(path, suffix):
+    """u.vtu, "_mesh" -> u_mesh.vtu"""
+    return path.with_name(path.stem + suffix + path.suffix)
+
+
+def parameters_of(grid):
+    """"radius = 0.85 m, ..." of a VTU file."""
+    values = [(name[3:].replace("_", " "), numbers[0], grid.units[name])
+              for name, numbers in grid.of_all.items() if name.startswith("mu_")]
+    return ",  ".join(f"{name} {value:.4g}{'' if unit == '-' else ' ' + unit}"
+                      for name, value, unit in values)
 
 
 def label_plane(axis):

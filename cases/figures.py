@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Figures of a run: figures.py RUN_DIR writes PNG and PDF files into RUN_DIR/figures.
+"""Figures of a run: figures.py RUN_DIR writes PNG and PDF files into RUN_DIR/figures; figures.py
+DIR/u.vtu draws that answer alone, into DIR/figures.
 
 Reads RUN_DIR/model.h5 (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify), RUN_DIR/u.vtu with the
-contact files beside it (rbvi-online --vtu, or rbvi solve -vtu) and, if it is there,
+contact files beside it (rbvi-online --vtu, or rbvi solve -vtu; of rbvi check -vtu also its mesh and
+the partners of its contacts) and, if it is there,
 RUN_DIR/bench/table.csv (rbvi bench). What else is missing, and what cannot be drawn, is named and left
 out; the exit status is then 1.
 """
@@ -14,6 +16,7 @@ import h5py
 import numpy as np
 
 from bench_figures import bench
+from case_figures import case
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
                           history, model_of, plt, table, with_unit)
 from panels import Curve, Lines, Triangles, save_panels
@@ -322,18 +325,12 @@ def errors(run):
     return save_panels(run / "figures", "errors.png", errors_panels(run))
 
 
-def main(arguments):
-    if len(arguments) != 1 or arguments[0].startswith("-"):
-        print("usage: figures.py RUN_DIR", file=sys.stderr)
-        return 2
-    run = Path(arguments[0])
-    if not run.is_dir():
-        print(f"figures.py: there is no run directory {run}", file=sys.stderr)
-        return 2
+def draw_all(figures, source):
+    """The exit status: 1 if some cannot be drawn."""
     status = 0
-    for draw in (solution, bases, pressure, infsup, error_map, mesh_quality, errors, bench):
+    for draw in figures:
         try:
-            problems = draw(run)
+            problems = draw(source)
         except Missing as missing:
             problems = [str(missing)]
         except Exception as error:  # a file that is damaged does not keep the others from being drawn
@@ -342,6 +339,21 @@ def main(arguments):
             print(f"figures.py: {draw.__name__}: {problem}", file=sys.stderr)
             status = 1
     return status
+
+
+def main(arguments):
+    if len(arguments) != 1 or arguments[0].startswith("-"):
+        print("usage: figures.py RUN_DIR | DIR/u.vtu", file=sys.stderr)
+        return 2
+    run = Path(arguments[0])
+    if run.suffix == ".vtu":
+        return draw_all((case, solution), run)
+    if not run.is_dir():
+        print(f"figures.py: there is no run directory {run}", file=sys.stderr)
+        return 2
+    of_answer = draw_all((case, solution), run / "u.vtu")
+    return max(of_answer, draw_all((bases, pressure, infsup, error_map, mesh_quality, errors, bench),
+                                   run))
 
 
 if __name__ == "__main__":

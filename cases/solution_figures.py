@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from figure_tools import GREEN, ORANGE, Missing, read_grid
+from figure_tools import GREEN, ORANGE, Missing, parameters_of, read_grid
 from panels import Curve, Drawn, Lines, Triangles, save_panels
 
 SHADES = "YlGnBu"
@@ -21,27 +21,19 @@ def outline(points, cells):
     return points[np.array(single)][:, :, :2]
 
 
-def parameters_of(grid):
-    """"radius = 0.85 m, ..." of a VTU file."""
-    values = [(name[3:].replace("_", " "), numbers[0], grid.units[name])
-              for name, numbers in grid.of_all.items() if name.startswith("mu_")]
-    return ",  ".join(f"{name} {value:.4g}{'' if unit == '-' else ' ' + unit}"
-                      for name, value, unit in values)
-
-
-def contact_grids(run, grid):
+def contact_grids(path, grid):
     """The contact files beside u.vtu, of the interfaces of which some part can touch, by their names:
     u_contact, or u_contact_NAME of several."""
     if "contacts" not in grid.of_all:
-        raise Missing(f"{run}/u.vtu does not name its contacts: write it again")
+        raise Missing(f"{path} does not name its contacts: write it again")
     of_name = {}
-    for path in run.glob("u_contact*.vtu"):
-        contact = read_grid(path)
+    for file in path.parent.glob(f"{path.stem}_contact*.vtu"):
+        contact = read_grid(file)
         name = contact.of_all.get("contacts", [""])[0]
         if name in grid.of_all["contacts"]:
             of_name[name] = contact
         if name not in grid.of_all["contacts"] or parameters_of(contact) != parameters_of(grid):
-            raise Missing(f"{path} is of another answer than {run}/u.vtu: remove it")
+            raise Missing(f"{file} is of another answer than {path}: remove it")
     return {name: of_name[name] for name in grid.of_all["contacts"] if name in of_name}
 
 
@@ -191,14 +183,14 @@ def body_panels(grid, contacts):
                      for name, curve in contacts.items()]
 
 
-def solution_panels(run):
-    grid = read_grid(run / "u.vtu")
-    contacts = contact_grids(run, grid)
+def solution_panels(path):
+    grid = read_grid(path)
+    contacts = contact_grids(path, grid)
     return (body_panels if grid.of_nodes["u"].ndim == 2 else membrane_panels)(grid, contacts)
 
 
-def solution(run):
-    """One answer: the membrane and its pressure (Niakh 2022, figure 2.4), or bodies, their stress
-    and the pressure between them (figure 2.10)."""
-    return save_panels(run / "figures", "solution.png", solution_panels(run),
-                       parameters_of(read_grid(run / "u.vtu")))
+def solution(path):
+    """One answer, of the file u.vtu: the membrane and its pressure (Niakh 2022, figure 2.4), or
+    bodies, their stress and the pressure between them (figure 2.10)."""
+    return save_panels(path.parent / "figures", "solution.png", solution_panels(path),
+                       parameters_of(read_grid(path)))

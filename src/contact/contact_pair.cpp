@@ -193,11 +193,13 @@ PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
   }
   result.b = weak.matrix();
   result.nodal_gap.resize(std::ssize(partners.vertices));
+  result.normals.reserve(partners.vertices.size());
   for (const PairPoint &p : partners.vertices) {
     nodal.add(p, 1);
     nodal.end_row();
     result.nodal_gap[std::ssize(result.paired)] = p.gap;
     result.paired.push_back(p.slave_edge + (p.s > 0.5 ? 1 : 0));
+    result.normals.push_back({-p.normal[0], -p.normal[1], 0});
   }
   result.nodal_b = nodal.matrix();
   return result;
@@ -263,13 +265,14 @@ bool is_partial(double weight, double whole) {
 }
 
 double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
-                       double least, std::array<bool, 2> closed) {
+                       double least, const ClosedEnds &closed) {
   const Index count = whole.size();
   const auto carries_from = [&](Index first, Index step) {
     Index row = first;
     while (row >= 0 && row < count && !(weights[row] > round_off * whole[row]))
       row += step;
-    if ((row == first && closed[step > 0 ? 0 : 1]) || row < 0 || row >= count) return false;
+    const auto &ends = row == first ? closed.slave : closed.master;
+    if (ends[step > 0 ? 0 : 1] || row < 0 || row >= count) return false;
     do {
       if (lambda[row] > least) return true;
       row += step;

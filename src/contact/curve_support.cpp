@@ -67,7 +67,7 @@ public:
   void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                double least, Outputs &outputs) const override;
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
-    return support_fields(scene_, mu, *this, u, lambda);
+    return support_fields(*this, scene_, facing_, mu, u, lambda);
   }
 
   const EntitySum *entity_sum() const override { return follows_state() ? nullptr : this; }
@@ -249,12 +249,10 @@ void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
   support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
                    mapped(dual_.vertices, Eigen::all)},
                   outputs);
-  if (facing_.closed_ends[0]) return;
-  const std::vector<Index> on_axis = partly_fixed(); // of symmetry: there contact has no end
-  const auto carries = [&](Index node) {
-    return lambda[node] > 0 && std::ranges::find(on_axis, node) == on_axis.end() ? 1.0 : 0.0;
-  };
-  outputs.ends_in_contact = carries(0) + carries(dual_.nodes() - 1);
+  const auto [first, last] = mesh_.closed(0);
+  if (first && last) return;
+  outputs.ends_in_contact =
+      (!first && lambda[0] > 0 ? 1.0 : 0.0) + (!last && lambda[dual_.nodes() - 1] > 0 ? 1.0 : 0.0);
 }
 
 Curvature CurveSupport::curvature(const FullMu &mu, const ContactState &state,

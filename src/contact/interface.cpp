@@ -99,6 +99,19 @@ void pressure_outputs(double images, const Vector &weights, const Vector &lambda
   outputs.peak_pressure = lambda.maxCoeff();
 }
 
+void add_gap(const Vector &gap, const std::vector<Point> &normals, Grid &grid,
+             const std::vector<Point> &ways) {
+  Vector normal(3 * gap.size()), way(3 * gap.size());
+  for (Index i = 0; i < gap.size(); ++i)
+    for (Index c = 0; c < 3; ++c) {
+      normal[3 * i + c] = normals[i][c];
+      way[3 * i + c] = ways.empty() ? gap[i] * normals[i][c] : ways[i][c];
+    }
+  grid.of_nodes.push_back({"gap", gap, "m"});
+  grid.of_nodes.push_back({"normal", normal});
+  grid.of_nodes.push_back({"to_partner", way, "m"});
+}
+
 Vector moved_nodes(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
                    const Vector &nodal) {
   Vector moved = Vector::Zero(3 * mesh.nodes());

@@ -148,7 +148,7 @@ private:
   /// Where they now are, with four Gauss points on each piece; without gaps.
   Partners partners(const FullMu &mu, const ContactState &state) const;
   double pressure_at(const PairPoint &point, const Vector &lambda) const;
-  std::array<bool, 2> mirrored(bool of_master) const;
+  std::array<bool, 2> mirrored() const;
 };
 
 LargePairInterface::LargePairInterface(const Scene &scene, InterfaceMesh interface_mesh,
@@ -156,7 +156,6 @@ LargePairInterface::LargePairInterface(const Scene &scene, InterfaceMesh interfa
     : TwoCurves(scene, std::move(interface_mesh), pair.multiplier) {
   if (mesh_.components != 2)
     throw bad_input("two deformed bodies meet with displacements of two components");
-  closed_ends_ = mirrored(false);
 }
 
 /// The bodies with their motion, and `moved` by the state.
@@ -178,18 +177,18 @@ Partners LargePairInterface::curves(const FullMu &mu, const ContactState &state,
       {{nodes.begin(), master}, mesh_.degree}, {{master, nodes.end()}, mesh_.degree}, lengths(mu)};
 }
 
-/// Ends of a curve that move vertically alone.
-std::array<bool, 2> LargePairInterface::mirrored(bool of_master) const {
+/// Ends of the master curve that move vertically alone.
+std::array<bool, 2> LargePairInterface::mirrored() const {
   const auto on_axis = [&](Index vertex) {
-    const Index node = (of_master ? mesh_.parts[0] : 0) + vertex;
+    const Index node = mesh_.parts[0] + vertex;
     return mesh_.dofs[2 * node] < 0 && mesh_.dofs[2 * node + 1] >= 0;
   };
-  return {on_axis(0), on_axis(vertex_count(mesh_.parts[of_master ? 1 : 0], mesh_.degree) - 1)};
+  return {on_axis(0), on_axis(vertex_count(mesh_.parts[1], mesh_.degree) - 1)};
 }
 
 Partners LargePairInterface::partners(const FullMu &mu, const ContactState &state) const {
   Partners now = curves(mu, state, true);
-  const Projection projection(now.slave, now.master, mirrored(true));
+  const Projection projection(now.slave, now.master, mirrored());
   now.cuts = projection.cuts();
   now.points = now.cuts.on_pieces(edge_quadrature);
   now.vertices = now.cuts.at_vertices();

@@ -59,11 +59,7 @@ public:
       dual_.points.push_back(mesh_.points[node]);
     dual_.components = layer_.friction() ? 2 : 1;
     dual_.gram = linear_gram(dual_.points, dual_.components);
-    for (const Index node : partly_fixed()) {
-      std::array<bool, 2> &closed = layer_.curves.front().facing.closed_ends;
-      if (node == 0) closed[0] = true;
-      if (node + 1 == dual_.nodes()) closed[1] = true;
-    }
+    layer_.curves.front().closed_ends = mesh_.closed(0);
   }
 
   const NitscheLayer *nitsche() const override { return &layer_; }
@@ -87,7 +83,7 @@ public:
   void outputs(const FullMu &, const ContactOperators &, const Vector &, double,
                Outputs &) const override {}
   Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override {
-    return support_fields(scene_, mu, *this, u, lambda);
+    return support_fields(*this, scene_, layer_.curves.front().facing, mu, u, lambda);
   }
 
 private:

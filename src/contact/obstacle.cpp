@@ -125,12 +125,14 @@ Grid ObstacleInterface::fields(const FullMu &mu, const Vector &u, const Vector &
     const Point x{points(i, 0), points(i, 1), mesh_.dim == 3 ? points(i, 2) : 0};
     gap[i] = u[i] - obstacle_.height(mu, x);
   }
-  return {std::move(points),
-          mesh_.entities,
-          mesh_.per_entity,
-          {{"pressure", pressure.col(0), "Pa"}, {"gap", gap, "m"}},
-          {},
-          {}};
+  Grid grid{std::move(points),
+            mesh_.entities,
+            mesh_.per_entity,
+            {{"pressure", pressure.col(0), "Pa"}},
+            {},
+            {}};
+  add_gap(gap, std::vector<Point>(mesh_.points.size(), {0, 0, -1}), grid);
+  return grid;
 }
 
 } // namespace

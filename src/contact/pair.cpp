@@ -27,7 +27,6 @@ PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, c
     if (vertical_.back() < 0)
       throw bad_input("two bodies meet along curves whose nodes all move vertically");
   }
-  closed_ends_ = pair.closed_ends;
 }
 
 PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &) const {
@@ -62,26 +61,22 @@ ContactRecipe two_bodies(Pair pair) {
     return std::make_unique<PairInterface>(scene, std::move(mesh), pair);
   };
   const auto &[multiplier, quadrature] = pair.discretisation;
-  recipe.record = {
-      "two_bodies",
-      2,
-      {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
-       {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}},
-       {"closed_ends", {pair.closed_ends[0] ? 1.0 : 0.0, pair.closed_ends[1] ? 1.0 : 0.0}}},
-      {{"slave", pair.slave}, {"master", pair.master}}};
+  recipe.record = {"two_bodies",
+                   3,
+                   {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
+                    {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}}},
+                   {{"slave", pair.slave}, {"master", pair.master}}};
   return recipe;
 }
 
 ContactKind two_bodies_kind() {
-  return {"two_bodies", 2, [](const Record &record) {
-            const std::vector<double> &closed = numbers(record, "closed_ends");
+  return {"two_bodies", 3, [](const Record &record) {
             const bool linear = number(record, "linear_pressure") != 0,
                        direct = number(record, "direct") != 0;
             return two_bodies({text(record, "slave"),
                                text(record, "master"),
                                {linear ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
-                                direct ? PairQuadrature::direct : PairQuadrature::intersection},
-                               {closed.front() != 0, closed.back() != 0}});
+                                direct ? PairQuadrature::direct : PairQuadrature::intersection}});
           }};
 }
 

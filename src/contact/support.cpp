@@ -29,7 +29,6 @@ Record record_of(const HalfPlane &plane) {
   if (plane.tilt) record.parts["tilt"] = plane.tilt.record;
   if (plane.surface) record.parts["surface"] = plane.surface.record;
   if (plane.body_normal) record.parts["body_normal"] = plane.body_normal.record;
-  if (plane.closed_ends) record.numbers["closed_ends"] = {1};
   add_friction(plane.friction, record);
   return record;
 }
@@ -54,30 +53,38 @@ RigidContact rigid_contact(const Support &support) {
         to_surface != nullptr ? to_surface->along(mu, point.x, n) : gap(mu, point.x);
     return FacedPoint{n, distance - dot(point.motion, n), slip_along(n, point.motion)};
   };
+  if (const auto *to_surface = support.gap.target<GapToSurface>())
+    rigid.facing.partner = [to = *to_surface](const FullMu &mu, const Point &x) {
+      return to.partner(mu, x);
+    };
   rigid.facing.normal = support.normal;
   rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;
-  rigid.facing.closed_ends = {support.closed_ends, support.closed_ends};
-  if (support.closed_ends) rigid.record.numbers["closed_ends"] = {1};
   if (support.body_normal) rigid.record.parts["body_normal"] = support.body_normal.record;
   add_friction(support.friction, rigid.record);
   return rigid;
 }
 
-Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
-                    const Vector &u, const Vector &lambda) {
+Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
+                    const FullMu &mu, const Vector &u, const Vector &lambda) {
   const InterfaceMesh &mesh = interface.mesh();
   const std::vector<Index> &vertices = interface.dual().vertices;
   const auto count = static_cast<Index>(vertices.size());
   Grid grid = polyline(scene, mu, mesh, vertices, u);
+  const Vector moved = grid.of_nodes.front().values;
   Vector gap(count);
+  std::vector<Point> normals, ways;
   for (Index k = 0; k < count; ++k) {
     const Index node = vertices[k];
-    const PointConstraint at =
-        interface.constraint_at(mu, mesh.points[node], {u[2 * node], u[2 * node + 1], 0});
+    const Point &x = mesh.points[node];
+    const PointConstraint at = interface.constraint_at(mu, x, {u[2 * node], u[2 * node + 1], 0});
     gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
+    normals.push_back(at.direction);
+    if (facing.partner)
+      ways.push_back(facing.partner(mu, x) - Point{grid.points(k, 0) + moved[3 * k],
+                                                   grid.points(k, 1) + moved[3 * k + 1], 0});
   }
-  grid.of_nodes.push_back({"gap", gap, "m"});
+  add_gap(gap, normals, grid, ways);
   grid.of_nodes.push_back({"pressure", lambda.head(count), "Pa"});
   if (lambda.size() > count)
     grid.of_nodes.push_back({"tangential_stress", lambda.tail(count), "Pa"});
@@ -85,12 +92,8 @@ Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface
 }
 
 Support support_in(const Stored &of) {
-  Support support{text(of, "boundary"),
-                  made<PointMap>(part(of, "normal")),
-                  made<PointValue>(part(of, "gap")),
-                  friction_in(of),
-                  number(of, "lumped") != 0,
-                  of.record.numbers.contains("closed_ends")};
+  Support support{text(of, "boundary"), made<PointMap>(part(of, "normal")),
+                  made<PointValue>(part(of, "gap")), friction_in(of), number(of, "lumped") != 0};
   if (of.record.parts.contains("body_normal"))
     support.body_normal = made<PointMap>(part(of, "body_normal"));
   return support;
@@ -108,7 +111,6 @@ HalfPlane half_plane_in(const Stored &of) {
   if (of.record.parts.contains("surface")) plane.surface = made<PointMap>(part(of, "surface"));
   plane.friction = friction_in(of);
   plane.lumped = number(of, "lumped") != 0;
-  plane.closed_ends = of.record.numbers.contains("closed_ends");
   if (of.record.parts.contains("body_normal"))
     plane.body_normal = made<PointMap>(part(of, "body_normal"));
   return plane;
@@ -131,7 +133,6 @@ RigidContact rigid_contact(const HalfPlane &plane) {
   rigid.facing.normal = [plane](const FullMu &mu, const Point &) { return normal_of(plane, mu); };
   rigid.facing.at_rest = plane.surface;
   rigid.facing.body_normal = plane.body_normal;
-  rigid.facing.closed_ends = {plane.closed_ends, plane.closed_ends};
   rigid.coefficients.push_back({"position of the half-plane", plane.position});
   if (plane.tilt) rigid.coefficients.push_back({"tilt of the half-plane", plane.tilt});
   return rigid;

@@ -151,15 +151,24 @@ const Maker<PointValue> gap_maker{
 
 } // namespace
 
-double GapToSurface::along(const FullMu &mu, const Point &x, const Point &n) const {
-  const Point from = at(mu, x);
-  if (kind == GapKind::ray) return distance_along(surface, mu, from, n);
-  if (kind == GapKind::vertical) {
-    const double side = n[1] < 0 ? -1 : 1;
-    return side * n[1] * distance_along(surface, mu, from, {0, side, 0});
+GapToSurface::Way GapToSurface::way(const FullMu &mu, const Point &from, const Point &n) const {
+  if (kind == GapKind::closest) {
+    const SurfacePoint there = surface(mu, from);
+    return {-there.distance, there.normal};
   }
-  const SurfacePoint there = surface(mu, from);
-  return -there.distance * dot(there.normal, n);
+  const Point direction = kind == GapKind::ray ? n : Point{0, n[1] < 0 ? -1.0 : 1.0, 0};
+  return {distance_along(surface, mu, from, direction), direction};
+}
+
+double GapToSurface::along(const FullMu &mu, const Point &x, const Point &n) const {
+  const Way to = way(mu, at(mu, x), n);
+  return kind == GapKind::ray ? to.length : to.length * dot(to.direction, n);
+}
+
+Point GapToSurface::partner(const FullMu &mu, const Point &x) const {
+  const Point from = at(mu, x);
+  const Way to = way(mu, from, normal(mu, x));
+  return from + to.length * to.direction;
 }
 
 Point on_circles(const std::vector<Circle> &circles, const Point &x) {

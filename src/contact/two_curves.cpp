@@ -20,8 +20,9 @@ std::vector<double> TwoCurves::lengths(const FullMu &mu) const {
 void TwoCurves::outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                         double least, Outputs &outputs) const {
   pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
-  outputs.ends_in_contact = ends_in_contact(whole_weights(lengths(mu), space_, mesh_.degree),
-                                            operators.weights, lambda, least, closed_ends_);
+  outputs.ends_in_contact =
+      ends_in_contact(whole_weights(lengths(mu), space_, mesh_.degree), operators.weights, lambda,
+                      least, {mesh_.closed(0), mesh_.closed(1)});
 }
 
 Grid TwoCurves::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
@@ -30,7 +31,7 @@ Grid TwoCurves::fields(const FullMu &mu, const Vector &u, const Vector &lambda) 
   const Index count = std::ssize(pair.paired);
   if (count < 2) return {};
   Grid grid = polyline(scene_, mu, mesh_, pair.paired, u);
-  grid.of_nodes.push_back({"gap", pair.nodal_gap - pair.nodal_b * state, "m"});
+  add_gap(pair.nodal_gap - pair.nodal_b * state, pair.normals, grid);
   const bool constant = space_ == MultiplierSpace::macro_edges;
   Vector pressure(constant ? count - 1 : count);
   for (Index k = 0; k < pressure.size(); ++k) {

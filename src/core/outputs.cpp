@@ -36,8 +36,8 @@ const std::vector<OutputColumn> &output_columns() {
        "nodes (-multiplier p0: pairs of edges) with pressure"},
       {"stick_nodes", &Outputs::stick_nodes, check, "those of them below the bound of friction"},
       {"ends_in_contact", &Outputs::ends_in_contact, check,
-       "ends of the contact boundary (of the membrane nodes on the rim of its region) with "
-       "pressure"},
+       "ends of the contact boundary, beyond which the body goes on, with pressure (of a membrane "
+       "the nodes on the rim of its region)"},
       {"kkt_residual", &Outputs::kkt_residual, check,
        "residual of the problem that was solved, relative"},
       {"quadrature_residual", &Outputs::quadrature_residual, check,

@@ -18,6 +18,16 @@ std::optional<std::size_t> find_any(const ParameterSpace &space, const std::stri
   return static_cast<std::size_t>(found - space.all.begin());
 }
 
+/// Throws bad_input that says in which unit the number is.
+double value_of(const Parameter &parameter, const std::string &text, const std::string &what) {
+  try {
+    return parse_number(text, what);
+  } catch (const Error &error) {
+    if (parameter.unit.empty()) throw;
+    throw bad_input(std::string(error.what()).append("; give it in ").append(parameter.unit));
+  }
+}
+
 Mu parse_named(const ParameterSpace &space, const std::vector<std::string> &entries) {
   Mu mu;
   for (int i = 0; i < space.size(); ++i)
@@ -32,7 +42,8 @@ Mu parse_named(const ParameterSpace &space, const std::vector<std::string> &entr
     if (!i) throw unknown_parameter(space, name);
     if (given[*i]) throw bad_input("parameter '" + name + "' is given twice");
     given[*i] = true;
-    mu[*i] = parse_number(entry.substr(equals + 1), "parameter " + name);
+    mu[*i] =
+        value_of(space.at(static_cast<int>(*i)), entry.substr(equals + 1), "parameter " + name);
   }
   return mu;
 }
@@ -155,9 +166,12 @@ Mu parse_mu(const ParameterSpace &space, const std::string &text, bool allow_out
   if (text.find('=') != std::string::npos) {
     mu = parse_named(space, entries);
   } else {
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      mu.push_back(
-          parse_number(entries[i], "value " + std::to_string(i + 1) + " of '" + text + "'"));
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const std::string what = "value " + std::to_string(i + 1) + " of '" + text + "'";
+      const bool has_place = static_cast<int>(i) < space.size(); // else there are too many
+      mu.push_back(has_place ? value_of(space.at(static_cast<int>(i)), entries[i], what)
+                             : parse_number(entries[i], what));
+    }
   }
   check_mu(space, mu, allow_outside);
   return mu;

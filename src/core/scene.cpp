@@ -10,7 +10,8 @@ namespace rbvi {
 
 namespace {
 
-void check_option(const SceneOption &option, const std::string &value) {
+void check_option(const SceneOption &option, const std::string &value,
+                  const std::optional<UnitSystem> &units) {
   if (option.choices.empty()) {
     const std::vector<std::string> numbers =
         option.may_vary ? split(value, ',') : std::vector{value};
@@ -18,7 +19,7 @@ void check_option(const SceneOption &option, const std::string &value) {
       throw bad_input("option " + option.name + " is '" + value +
                       "': give one value, or two bounds");
     for (const std::string &number : numbers)
-      check_range(option.valid, parse_number(number, "option " + option.name),
+      check_range(option.valid, parse_given(number, units, "", "option " + option.name),
                   "option " + option.name);
   } else if (std::find(option.choices.begin(), option.choices.end(), value) ==
              option.choices.end()) {
@@ -116,13 +117,14 @@ Scene make_scene(const SceneEntry &entry, const SceneOptions &options) {
     if (option == entry.options.end())
       throw bad_input("scene " + entry.name + " has no option '" + key + "'");
     if (value.empty() && option->choices.empty()) continue;
-    check_option(*option, value);
+    check_option(*option, value, entry.units);
     resolved[key] = value;
   }
   Scene scene = made(entry, resolved);
   scene.name = entry.name;
   scene.summary = entry.summary;
   scene.options = resolved;
+  scene.units = entry.units;
   return scene;
 }
 

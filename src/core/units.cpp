@@ -161,4 +161,21 @@ void check_dimension(const Quantity &quantity, const Dimension &wanted, const st
                     described(quantity.dimension));
 }
 
+double parse_given(const std::string &text, const std::optional<UnitSystem> &system,
+                   const std::string &unit, const std::string &what) {
+  const std::string all = trimmed(text);
+  const char *begin = all.data() + all.starts_with('+'), *end = all.data() + all.size();
+  double ignored = 0;
+  const char *behind = std::from_chars(begin, end, ignored).ptr;
+  if (behind == begin || behind == end || (!system && all.find(' ') == std::string::npos))
+    return parse_number(text, what);
+  try {
+    const Quantity quantity = parse_quantity(text, system);
+    if (!unit.empty()) check_dimension(quantity, dimension_of(unit), text);
+    return quantity.value;
+  } catch (const Error &error) {
+    throw bad_input(what + ": " + error.what());
+  }
+}
+
 } // namespace rbvi

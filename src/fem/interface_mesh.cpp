@@ -165,6 +165,11 @@ void add_edges(int first, int nodes, int degree, std::vector<int> &entities) {
   }
 }
 
+void add_closed_ends(const Mesh &mesh, const std::string &boundary, InterfaceMesh &interface) {
+  const auto &[first, last] = mesh.closed_ends.at(boundary);
+  interface.closed_ends.insert(interface.closed_ends.end(), {first ? 1 : 0, last ? 1 : 0});
+}
+
 Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
                   const std::function<Point(const Point &)> &snap) {
   std::vector<int> components = entities.components;
@@ -180,6 +185,7 @@ Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &e
     add_edges(static_cast<int>(found.natural.size()), static_cast<int>(nodes.size()), mesh.degree,
               found.mesh.entities);
     found.mesh.parts.push_back(static_cast<int>(nodes.size()));
+    add_closed_ends(mesh, name, found.mesh);
     for (const CurveNode &node : nodes) {
       const bool middle = node.natural >= mesh.total_vertices;
       found.natural.push_back(node.natural);
@@ -202,6 +208,7 @@ Found find_interface(const Mesh &mesh, const Dofs &dofs, const Scene &scene,
   Found found = entities.kind == cells    ? find_region(mesh, dofs, entities.parts.front())
                 : entities.kind == curves ? find_curves(mesh, dofs, entities, scene.snap)
                                           : find_cells_beside(mesh, dofs, entities.parts.front());
+  if (entities.kind == cells_beside) add_closed_ends(mesh, entities.parts.front(), found.mesh);
   found.mesh.dim = mesh.dim;
   found.mesh.degree = mesh.degree;
   found.mesh.components = dofs.components;

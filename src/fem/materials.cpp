@@ -21,7 +21,7 @@ Error no_material(const Scene &scene, const Mesh &mesh, std::size_t cell,
   const Point at = reference_centre(cell_of(mesh, cell));
   const std::string where = "the cell at (" + short_number(at[0]) + ", " + short_number(at[1]) +
                             (mesh.dim == 3 ? ", " + short_number(at[2]) : "") + ")";
-  if (found.empty()) return bad_input(where + " has no material: give one to its region");
+  if (found.empty()) return bad_input(where + " is without a material: name its region in one");
   return bad_input(where + " has two materials, " + name_of(scene.materials[found[0]]) + " and " +
                    name_of(scene.materials[found[1]]) + ": their regions overlap");
 }

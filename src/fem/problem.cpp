@@ -6,6 +6,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/check_scene.hpp"
+#include "rbvi/fem/free_motions.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <cmath>
@@ -60,6 +61,7 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
       contact_gather_(contact_gather),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
+  check_held(*scene_, mesh_, dofs_);
   if (!imposes_values(*scene_)) return;
   check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
   imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);

@@ -2,19 +2,13 @@
 
 namespace rbvi {
 
-namespace {
-
-/// The displacement of a point in direction `component` by mode number `mode`: translations, then
-/// rotations about z, x and y.
-double displacement(int dim, int mode, int component, const Point &x) {
+double rigid_displacement(int dim, int mode, int component, const Point &x) {
   if (mode < dim) return mode == component ? 1 : 0;
   const int first = (mode - dim) % 3, second = (first + 1) % 3;
   const auto at = [&](int i) { return x[i]; };
   if (component == first) return -at(second);
   return component == second ? at(first) : 0;
 }
-
-} // namespace
 
 Handle<MatNullSpace> rigid_body_modes(const Mesh &mesh, const Dofs &dofs) {
   const int count = mesh.dim == 2 ? 3 : 6;
@@ -27,8 +21,8 @@ Handle<MatNullSpace> rigid_body_modes(const Mesh &mesh, const Dofs &dofs) {
         const PetscInt row = dofs.free[node * static_cast<std::size_t>(dofs.components) +
                                        static_cast<std::size_t>(c)];
         if (row < 0 || !mesh.owned_node[node]) continue;
-        RBVI_CALL(VecSetValue(v.get(), row, displacement(mesh.dim, mode, c, mesh.points[node]),
-                              INSERT_VALUES));
+        RBVI_CALL(VecSetValue(
+            v.get(), row, rigid_displacement(mesh.dim, mode, c, mesh.points[node]), INSERT_VALUES));
       }
     RBVI_CALL(VecAssemblyBegin(v.get()));
     RBVI_CALL(VecAssemblyEnd(v.get()));

@@ -4,6 +4,7 @@
 #include "rbvi/io/write_atomically.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cstdint>
@@ -53,6 +54,17 @@ void append_base64(std::string &text, const std::string &bytes) {
   }
 }
 
+/// As an attribute of XML.
+std::string escaped(const std::string &text) {
+  std::string result;
+  for (const char letter : text)
+    if (const std::size_t at = std::string_view("&<>\"").find(letter); at != std::string::npos)
+      result += std::array{"&amp;", "&lt;", "&gt;", "&quot;"}[at];
+    else
+      result += letter;
+  return result;
+}
+
 class Writer {
 public:
   explicit Writer(VtuFormat format) : format_(format) {}
@@ -100,7 +112,7 @@ public:
 private:
   void open(const std::string &type, const std::string &name, const std::string &counted,
             std::size_t count) {
-    xml_ += "<DataArray type=\"" + type + "\" Name=\"" + name + "\" " + counted + "=\"" +
+    xml_ += "<DataArray type=\"" + type + "\" Name=\"" + escaped(name) + "\" " + counted + "=\"" +
             std::to_string(count) + "\"";
   }
 

@@ -4,6 +4,8 @@
 #include "rbvi/core/text.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace rbvi {
 
@@ -44,14 +46,44 @@ void check_curve(const SerialMesh &mesh, const std::string &name, const std::str
   }
 }
 
+/// The angle of a cell at its vertex number i.
+double angle_at(const SerialMesh &mesh, const std::array<int, 4> &cell, std::size_t i) {
+  const Point &at = mesh.points[cell[i]];
+  const Point a = mesh.points[cell[(i + 1) % 3]] - at, b = mesh.points[cell[(i + 2) % 3]] - at;
+  return std::atan2(norm(cross(a, b)), dot(a, b));
+}
+
 } // namespace
 
-void check_contact_curves(const SerialMesh &mesh, const Scene &scene, const std::string &source) {
-  if (mesh.dim != 2) return;
+std::vector<std::string> contact_curves(const Scene &scene) {
+  std::vector<std::string> names;
   for (const ContactRecipe &contact : scene.contacts)
-    if (contact.entities.kind != InterfaceEntities::Kind::cells)
-      for (const std::string &name : contact.entities.parts)
-        check_curve(mesh, name, "the contact boundary '" + name + "' of " + source);
+    if (contact.entities.kind != InterfaceEntities::Kind::cells && scene.dim == 2)
+      names.insert(names.end(), contact.entities.parts.begin(), contact.entities.parts.end());
+  return names;
+}
+
+void check_contact_curves(const SerialMesh &mesh, const Scene &scene, const std::string &source) {
+  for (const std::string &name : contact_curves(scene))
+    check_curve(mesh, name, "the contact boundary '" + name + "' of " + source);
+}
+
+std::array<bool, 2> closed_ends(const SerialMesh &mesh, const std::string &boundary) {
+  // Between the turn of a circle of 12 edges, 30 degrees, and that of a chamfer, 45.
+  constexpr double least_turn = 36 * std::numbers::pi / 180;
+  std::vector<int> vertices;
+  for (const auto &facet : mesh.boundary.at(boundary))
+    vertices.insert(vertices.end(), {facet[0], facet[1]});
+  const auto [first, last] =
+      std::ranges::minmax(vertices, {}, [&](int vertex) { return mesh.points[vertex][0]; });
+  std::array<double, 2> angle{};
+  for (const auto &cell : mesh.cells)
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (cell[i] == first) angle[0] += angle_at(mesh, cell, i);
+      if (cell[i] == last) angle[1] += angle_at(mesh, cell, i);
+    }
+  constexpr double widest = std::numbers::pi - least_turn;
+  return {angle[0] < widest, angle[1] < widest};
 }
 
 } // namespace rbvi

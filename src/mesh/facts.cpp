@@ -1,23 +1,15 @@
+#include "facets.hpp"
 #include "points.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
-#include "rbvi/mesh/serial.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 
 namespace rbvi {
 
 namespace {
-
-using Facet = std::array<int, 3>; ///< decreasing vertices, the rest -1
-
-Facet sorted(Facet facet) {
-  std::sort(facet.begin(), facet.end(), std::greater<>());
-  return facet;
-}
 
 /// What every check asks of.
 struct Subject {
@@ -27,23 +19,6 @@ struct Subject {
   double tolerance;         ///< a length: 1e-6 of the extent
   std::vector<Facet> outer; ///< facets of one cell alone, sorted
 };
-
-std::vector<Facet> outer_facets(const SerialMesh &mesh) {
-  std::vector<Facet> all, outer;
-  for (const auto &cell : mesh.cells)
-    for (int opposite = 0; opposite <= mesh.dim; ++opposite) {
-      Facet facet{-1, -1, -1};
-      std::size_t count = 0;
-      for (int i = 0; i <= mesh.dim; ++i)
-        if (i != opposite) facet[count++] = cell[i];
-      all.push_back(sorted(facet));
-    }
-  std::sort(all.begin(), all.end());
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if ((i == 0 || all[i - 1] != all[i]) && (i + 1 == all.size() || all[i + 1] != all[i]))
-      outer.push_back(all[i]);
-  return outer;
-}
 
 std::string text_of(const Subject &s, const Point &x) {
   std::string text;
@@ -105,15 +80,6 @@ std::vector<int> cells_of(const Subject &s, const std::string &part) {
   return all;
 }
 
-std::vector<Facet> facets_of(const Subject &s, const std::string &part) {
-  std::vector<Facet> facets;
-  for (const auto &facet : s.mesh.boundary.at(part))
-    facets.push_back(sorted(facet));
-  std::sort(facets.begin(), facets.end());
-  facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
-  return facets;
-}
-
 std::vector<int> vertices_of_part(const Subject &s, const MeshFact &fact) {
   std::vector<int> vertices;
   if (fact.part.empty() || is_region(s, fact.part)) {
@@ -121,7 +87,7 @@ std::vector<int> vertices_of_part(const Subject &s, const MeshFact &fact) {
       vertices.insert(vertices.end(), s.mesh.cells[cell].begin(),
                       s.mesh.cells[cell].begin() + s.mesh.dim + 1);
   } else {
-    for (const Facet &facet : facets_of(s, fact.part))
+    for (const Facet &facet : facets_of(s.mesh, fact.part))
       vertices.insert(vertices.end(), facet.begin(), facet.begin() + s.mesh.dim);
   }
   return vertices;
@@ -184,11 +150,11 @@ bool lies_along(const Subject &s, const MeshFact &fact, const Facet &facet) {
 
 /// The boundary is exactly the part of the surface in its place.
 void check_boundary(const Subject &s, const MeshFact &fact) {
-  const std::vector<Facet> facets = facets_of(s, fact.part);
+  const std::vector<Facet> facets = facets_of(s.mesh, fact.part);
   for (const Facet &facet : facets)
     if (!std::binary_search(s.outer.begin(), s.outer.end(), facet))
       refuse(s, fact, text_of(s, facet) + " has cells on both sides");
-  const std::vector<Facet> around = fact.within.empty() ? facets : facets_of(s, fact.within);
+  const std::vector<Facet> around = fact.within.empty() ? facets : facets_of(s.mesh, fact.within);
   for (const Facet &facet : facets)
     if (!std::binary_search(around.begin(), around.end(), facet))
       refuse(s, fact, text_of(s, facet) + " is not in '" + fact.within + "'");
@@ -217,6 +183,23 @@ void check_outer_boundaries(const Subject &s) {
       if (contact.entities.kind != InterfaceEntities::Kind::cells) check(part);
 }
 
+/// Every cell is in a region of the operator.
+void check_covered(const Subject &s) {
+  std::vector<bool> covered(s.mesh.cells.size(), s.scene.a.empty());
+  for (const Term &term : s.scene.a)
+    if (term.form.boundary.empty())
+      for (const int cell : cells_of(s, term.form.region))
+        covered[cell] = true;
+  const auto bare = std::ranges::find(covered, false);
+  if (bare == covered.end()) return;
+  const auto cell = static_cast<std::size_t>(bare - covered.begin());
+  throw bad_input(s.source + " has cells without a material, " +
+                  std::to_string(std::ranges::count(covered, false)) + " of " +
+                  std::to_string(covered.size()) + ", that about " +
+                  text_of(s, centre_of(s.mesh, s.mesh.cells[cell].data(), s.mesh.dim + 1)) +
+                  " for one: name their region in 'at:' of the material, or write 'at: all'");
+}
+
 void check_size(const Subject &s, const MeshFact &fact) {
   double size = 0;
   const bool cells = fact.part.empty() || is_region(s, fact.part);
@@ -224,14 +207,15 @@ void check_size(const Subject &s, const MeshFact &fact) {
     for (const int cell : cells_of(s, fact.part))
       size += measure(s.mesh, cell);
   else
-    for (const Facet &facet : facets_of(s, fact.part))
+    for (const Facet &facet : facets_of(s.mesh, fact.part))
       size += measure(s.mesh, facet);
   const int power = s.mesh.dim - (cells ? 0 : 1);
   const std::string name = power == 1 ? "length" : power == 2 ? "area" : "volume";
-  if (size > (1 + 1e-5) * fact.size || size < 0.9 * fact.size)
+  if (size > (1 + fact.excess) * fact.size || size < 0.9 * fact.size)
     refuse(s, fact,
            "its " + name + " is " + short_number(size) + ", not " + short_number(fact.size) +
-               (size > fact.size ? ": cells overlap" : ": it is too coarse, or not whole"));
+               (size > fact.size ? ": cells overlap, or it is larger"
+                                 : ": it is too coarse, or not whole"));
 }
 
 /// The surface of the mesh is the rim of its place.
@@ -281,7 +265,7 @@ void check_glued(const Subject &s) {
   for (const ContactRecipe &contact : s.scene.contacts)
     for (const std::string &name : contact.entities.parts)
       if (contact.entities.parts.size() > 1)
-        for (const Facet &facet : facets_of(s, name))
+        for (const Facet &facet : facets_of(s.mesh, name))
           apart.push_back(facet);
   std::sort(apart.begin(), apart.end());
   CommonVertices common(s);
@@ -291,7 +275,7 @@ void check_glued(const Subject &s) {
     Facet place{-1, -1, -1};
     for (int i = 0; i < s.mesh.dim; ++i)
       place[i] = common.of(facet[i]);
-    placed.emplace_back(sorted(place), facet);
+    placed.emplace_back(sorted_facet(place), facet);
   }
   std::sort(placed.begin(), placed.end());
   int pairs = 0;
@@ -341,6 +325,7 @@ void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &
   check_places(mesh, scene, source); // names the whole mesh first: a wrong unit shows in each part
   Subject s = subject_of(mesh, scene, source);
   s.outer = outer_facets(mesh);
+  check_covered(s);
   check_glued(s);
   check_outer_boundaries(s);
   for (const MeshFact &fact : scene.mesh.facts) {

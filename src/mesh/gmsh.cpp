@@ -213,10 +213,25 @@ SerialMesh mesh_of(const GmshFile &file, const Scene &scene) {
 
 std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(const std::string &file,
                                                                             int dim) {
+  const GmshFile content = read_gmsh_file(file);
+  const Elements cells = elements_of(content, dim), facets = elements_of(content, dim - 1);
+  std::set<std::size_t> nodes; // of cells
+  for (const auto &cell : cells.nodes)
+    nodes.insert(cell.begin(), cell.begin() + dim + 1);
+  const auto on_cells = [&](std::size_t facet) {
+    return std::all_of(facets.nodes[facet].begin(), facets.nodes[facet].begin() + dim,
+                       [&](std::size_t node) { return nodes.contains(node); });
+  };
   std::pair<std::vector<std::string>, std::vector<std::string>> parts;
-  for (const auto &[group, name] : read_gmsh_file(file).names)
-    if (group.first >= dim - 1 && group.first <= dim)
-      (group.first == dim ? parts.first : parts.second).push_back(name);
+  for (const auto &[group, name] : content.names) {
+    if (group.first != dim && group.first != dim - 1) continue;
+    const bool region = group.first == dim;
+    std::vector<std::string> &names = region ? parts.first : parts.second;
+    const auto own = members(content, region ? cells : facets, group.first, name);
+    if (!own.empty() && (region || std::ranges::all_of(own, on_cells)) &&
+        std::ranges::find(names, name) == names.end())
+      names.push_back(name);
+  }
   return parts;
 }
 

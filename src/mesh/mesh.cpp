@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facets.hpp"
+#include "rbvi/mesh/contact_curves.hpp"
 #include "rbvi/mesh/serial.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -237,6 +238,7 @@ struct Undistributed {
   std::map<std::string, std::vector<SerialFacet>> facets; ///< of every boundary
   std::size_t points = 0;                                 ///< of its DM
   std::map<std::string, std::vector<char>> marks;         ///< per region and boundary, of them
+  std::vector<int> bodies;                                ///< of the cells, then 0
 };
 
 /// Fills in the points and their marks. `dm`: not distributed yet.
@@ -244,6 +246,8 @@ void mark(DM dm, const MeshRecipe &recipe, Undistributed &all) {
   PetscInt end = 0;
   RBVI_CALL(DMPlexGetChart(dm, nullptr, &end));
   all.points = static_cast<std::size_t>(end);
+  all.bodies = bodies_of(all.mesh);
+  all.bodies.resize(all.points);
   for (const std::string &name : recipe.regions)
     all.marks[name] = marked_cells(all.mesh, name, all.points);
   for (const std::string &name : recipe.boundaries)
@@ -272,6 +276,24 @@ void fill_nodes_and_cells(Mesh &mesh, const Migration &migration, const EdgePoin
 
 std::vector<bool> own_region(const Mesh &mesh, const std::vector<char> &marks) {
   return {marks.begin(), marks.begin() + std::ssize(mesh.cells)}; // cells are the first points
+}
+
+void fill_bodies(Mesh &mesh, const Migration &migration, const std::vector<int> &all) {
+  mesh.body = migration.arrived(all, MPI_INT);
+  mesh.body.resize(mesh.cells.size()); // cells are the first points
+  for (const int body : mesh.body)
+    mesh.bodies = std::max(mesh.bodies, body + 1);
+  MPI_Allreduce(MPI_IN_PLACE, &mesh.bodies, 1, MPI_INT, MPI_MAX, mesh.comm);
+}
+
+/// As the first rank knows them, which alone has the whole mesh.
+void fill_closed_ends(Mesh &mesh, const Scene &scene, const SerialMesh &whole) {
+  for (const std::string &name : contact_curves(scene)) {
+    std::array<bool, 2> closed{};
+    if (!whole.cells.empty()) closed = closed_ends(whole, name);
+    MPI_Bcast(closed.data(), 2, MPI_CXX_BOOL, 0, mesh.comm);
+    mesh.closed_ends[name] = closed;
+  }
 }
 
 std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
@@ -318,6 +340,8 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const EdgePoints edges = mesh.degree == 2 ? edges_of(mesh.dm.get(), comm) : EdgePoints{};
   const Migration migration(mesh.dm, part, world.size);
   fill_nodes_and_cells(mesh, migration, edges, all.points);
+  fill_bodies(mesh, migration, all.bodies);
+  fill_closed_ends(mesh, scene, all.mesh);
   for (const std::string &name : scene.mesh.regions)
     mesh.region[name] = own_region(mesh, migration.arrived(all.marks[name], MPI_CHAR));
   std::unordered_map<PetscInt, std::size_t> cell_of; // by natural number

@@ -96,7 +96,11 @@ public:
       State point = evaluate(h_, q_, Vector::Zero(q_.size()));
       outcome = newton(laws_, point);
     }
-    if (outcome == Outcome::cycles) outcome = backup(evaluate(h_, q_, laws_.feasible(best_.x)));
+    if (outcome == Outcome::cycles) {
+      State point = evaluate(h_, q_, laws_.feasible(best_.x));
+      outcome = laws_.jump() && laws_.coefficient.isZero(0) ? settle_contact(std::move(point))
+                                                            : backup(std::move(point));
+    }
     return finish(outcome);
   }
 
@@ -202,6 +206,29 @@ private:
     return Outcome::limit;
   }
 
+  /// Of thresholds alone that act in contact: the nodes that touch tell the thresholds, a convex
+  /// problem, whose only answer tells the nodes that touch, until they stay or come back.
+  Outcome settle_contact(State point) {
+    std::vector<std::vector<char>> seen{contact_sets(laws_, point.x).active};
+    while (systems_left_ > 0) {
+      ++result_.backup_steps;
+      Laws frozen = laws_;
+      frozen.only_in_contact.assign(laws_.nodes, 0);
+      for (Index i = 0; i < laws_.nodes; ++i)
+        frozen.threshold[i] = laws_.at_node(i).threshold_at(seen.back()[i]);
+      point = evaluate(h_, q_, frozen.feasible(std::move(point.x)));
+      if (!solve_frozen(frozen, options_.tolerance, point)) return Outcome::indefinite;
+      const std::vector<char> touching = contact_sets(laws_, point.x).active;
+      if (touching == seen.back()) return newton(laws_, point);
+      for (Index i = 0; i < laws_.nodes; ++i)
+        undecided_ += touching[i] != seen.back()[i] ? 1 : 0;
+      if (std::ranges::find(seen, touching) != seen.end()) return Outcome::cycles;
+      seen.push_back(touching);
+      undecided_ = 0;
+    }
+    return Outcome::limit;
+  }
+
   bool solve_frozen(const Laws &frozen, double tolerance, State &point) {
     prepare(frozen, point.x);
     State trial = point;
@@ -245,10 +272,12 @@ private:
     if (outcome == Outcome::indefinite)
       return "the block of H of the nodes in contact is not positive definite: dependent "
              "constraints or an inexact H";
-    if (laws_.jump())
-      return "a threshold that acts in contact alone jumps where a node leaves contact, so "
-             "that some problems have no answer: let it act everywhere (-friction_bound arc), or "
-             "ask nearby";
+    if (undecided_ > 0)
+      return "a threshold that acts in contact alone jumps where a node leaves contact: without it "
+             "more nodes touch than with it (" +
+             std::to_string(undecided_) +
+             " here), and neither is an answer; let it act everywhere (-friction_bound arc), "
+             "or ask nearby";
     const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
     const std::string remedy = "start closer to the solution (a smaller change of the load or of "
                                "the coefficient of friction)";
@@ -265,7 +294,8 @@ private:
   State best_; ///< the solution, or the point of the least residual
   ActiveSets best_sets_;
   FrictionResult result_;
-  int systems_left_; ///< linear systems
+  int systems_left_;   ///< linear systems
+  long undecided_ = 0; ///< nodes that lift off with their thresholds and touch without
 };
 
 } // namespace

@@ -16,10 +16,9 @@ bool bounds_follow_pressure(const NodeLaws &laws) {
 }
 
 double distance_of_answers(const Vector &x, const Vector &other) {
-  constexpr double same = 1e-6;
   const double size = std::max(x.cwiseAbs().maxCoeff(), other.cwiseAbs().maxCoeff());
   const double largest = (x - other).cwiseAbs().maxCoeff();
-  return largest > same * size ? largest / size : 0;
+  return largest > least_distance * size ? largest / size : 0;
 }
 
 double distance_to_other_answer(const ColumnSource &columns, const Vector &q, const NodeLaws &laws,

@@ -7,13 +7,6 @@
 
 namespace rbvi {
 
-namespace {
-
-/// Of another answer that only the sign of the tangent tells of.
-constexpr double least_distance = 1e-6;
-
-} // namespace
-
 bool has_several_answers(const ReducedModel &model) {
   return model.made.histories.contains("self_check/other");
 }

@@ -153,6 +153,10 @@ void list_interface(const Store &store, const std::string &at, Interface &interf
   store.ask(at + "/parts does not fit", [&] {
     return std::accumulate(mesh.parts.begin(), mesh.parts.end(), Index{0}) == nodes;
   });
+  store(at + "/closed_ends", mesh.closed_ends, Indices{2});
+  store.ask(at + "/closed_ends does not fit", [&] {
+    return mesh.closed_ends.empty() || mesh.closed_ends.size() == 2 * mesh.parts.size();
+  });
   store(at + "/dofs", mesh.dofs, Indices{mesh.columns, nodes * mesh.components, -1});
   store(at + "/imposed_by", mesh.imposed_by);
   store.ask(at + "/imposed_by does not fit",

@@ -47,21 +47,11 @@ Vector displacement(const Scene &scene, const FullMu &mu, const Matrix &points, 
   return result;
 }
 
-/// Adds the scene and its parameters.
-void describe(const State &state, Grid &grid) {
-  grid.scene = state.scene.name;
-  for (std::size_t i = 0; i < state.mu.size(); ++i) {
-    const Parameter &parameter = state.scene.parameters.all[i];
-    grid.of_all.push_back(
-        {"mu_" + parameter.name, Vector::Constant(1, state.mu[i]), parameter.unit});
-  }
-}
-
 Grid bodies(const State &state) {
   const auto &[scene, mu, model, u, lambda, moved] = state;
   const int per_cell = nodes_per_cell(scene.dim, scene.degree);
   Grid grid{mapped(state, model.fields.points), model.fields.cells, per_cell, {}, {}, {}};
-  describe(state, grid);
+  name_parameters(scene, mu, grid);
   if (model.fields.cells.empty())
     throw failure("the model was read without its fields: no full field can be written");
   grid.of_nodes = {{"u", moved, "m"}};
@@ -91,7 +81,7 @@ Grid interface_grid(const State &state, const Contact &contact, std::size_t numb
         state.u.segment(nodes[k] * components, components);
   Grid grid = interface.fields(
       state.mu, u, state.lambda.segment(contact.first_row[number], interface.dual().size()));
-  describe(state, grid);
+  name_parameters(state.scene, state.mu, grid);
   grid.contacts = {contact.names[number]};
   return grid;
 }
@@ -107,17 +97,30 @@ std::string file_safe(std::string name) {
 
 } // namespace
 
-std::vector<fs::path> contact_files(const fs::path &path, const Scene &scene) {
+void name_parameters(const Scene &scene, const FullMu &all_parameters, Grid &grid) {
+  grid.scene = scene.name;
+  for (std::size_t i = 0; i < all_parameters.size(); ++i) {
+    const Parameter &parameter = scene.parameters.all[i];
+    grid.of_all.push_back(
+        {"mu_" + parameter.name, Vector::Constant(1, all_parameters[i]), parameter.unit});
+  }
+}
+
+fs::path file_beside(const fs::path &path, const std::string &suffix) {
+  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+std::vector<fs::path> contact_files(const fs::path &path, const Scene &scene,
+                                    const std::string &suffix) {
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < scene.contacts.size(); ++i) {
     const std::string &own = scene.contacts[i].name;
-    std::string name = path.stem().string() + "_contact";
+    std::string name = suffix;
     if (scene.contacts.size() > 1)
       name.append("_").append(own.empty() ? std::to_string(i + 1) : file_safe(own));
-    const auto file = [&] { return path.parent_path() / (name + path.extension().string()); };
-    while (std::ranges::find(files, file()) != files.end()) // "a b" and "a_b"
+    while (std::ranges::find(files, file_beside(path, name)) != files.end()) // "a b" and "a_b"
       name += "_";
-    files.push_back(file());
+    files.push_back(file_beside(path, name));
   }
   return files;
 }

@@ -267,7 +267,8 @@ Scene scene_of(const CaseNode &root, Defects &defects) {
 std::string name_of(const CaseNode &root, const std::string &file) {
   if (const CaseNode *name = root.find("name")) return name->value;
   const std::filesystem::path path(file);
-  const std::string folder = std::filesystem::absolute(path).parent_path().filename().string();
+  const std::string folder =
+      std::filesystem::absolute(path).lexically_normal().parent_path().filename().string();
   return path.stem() == "case" && !folder.empty() ? folder : path.stem().string();
 }
 
@@ -290,6 +291,7 @@ SceneEntry read_case(const std::string &text, const std::string &file, const Cas
   SceneEntry scene_entry{name_of(root, file)};
   if (const CaseNode *says = root.find("says")) scene_entry.summary = says->value;
   const Reader reader{.root = root, .units = units_of(root, defects)};
+  scene_entry.units = reader.units;
   for (const auto &[name, choice] : section(reader, "choices").entries)
     defects.collect(choice, [&, &own = name, &node = choice] {
       if (section(reader, "parameters").find(own) != nullptr)

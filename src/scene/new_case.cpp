@@ -26,7 +26,6 @@ contact:
     at: contact
     against: {plane: {normal: [0, -1], position: 0}} # out of the body; along it from [0, 0]
     friction: {coulomb: friction}
-    closed_ends: [yes, yes] # the body ends where the boundary does
 
 train: grid:4,4,4
 validate: random:20:1

@@ -135,9 +135,9 @@ RigidContact disk_contact(Reader &reader, const CaseNode &node, const CaseNode &
 
 RigidContact plane_contact(Reader &reader, const CaseNode &node, const CaseNode &table,
                            const Side &side, Scene &scene) {
-  check_used(node, "with a plane",
-             {"at", "against", "friction", "kinematics", "formulation", "nitsche_gamma0", "lumped",
-              "closed_ends"});
+  check_used(
+      node, "with a plane",
+      {"at", "against", "friction", "kinematics", "formulation", "nitsche_gamma0", "lumped"});
   if (is_large(node)) throw bad_input("kinematics: large is not for a plane yet: use small");
   const std::vector<double> normal = numbers_in(reader, entry(table, "normal"), 2);
   HalfPlane plane{side.boundary,
@@ -154,11 +154,6 @@ RigidContact plane_contact(Reader &reader, const CaseNode &node, const CaseNode 
   plane.body_normal = side.normal;
   plane.friction = friction_in(reader, node, scene);
   plane.lumped = yes_or(node, "lumped", false);
-  if (const CaseNode *ends = node.find("closed_ends")) {
-    if (ends->items.size() != 2 || is_yes(ends->items[0]) != is_yes(ends->items[1]))
-      throw bad_input("with a plane both ends are closed, [yes, yes], or none is");
-    plane.closed_ends = is_yes(ends->items[0]);
-  }
   return rigid_contact(plane);
 }
 
@@ -179,8 +174,7 @@ ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const C
 }
 
 ContactRecipe with_another_body(const CaseNode &node, const std::string &master) {
-  check_used(node, "between bodies",
-             {"at", "against", "kinematics", "multiplier", "integration", "closed_ends"});
+  check_used(node, "between bodies", {"at", "against", "kinematics", "multiplier", "integration"});
   const std::string &slave = entry(node, "at").value;
   const MultiplierSpace space = choice_or(node, "multiplier", "p0", {"p0", "p1"}) == "p1"
                                     ? MultiplierSpace::nodes
@@ -193,12 +187,8 @@ ContactRecipe with_another_body(const CaseNode &node, const std::string &master)
                       "kinematics: large");
     return deformed_bodies({slave, master, space});
   }
-  Pair pair{slave, master, {space, direct ? PairQuadrature::direct : PairQuadrature::intersection}};
-  if (const CaseNode *ends = node.find("closed_ends")) {
-    if (ends->items.size() != 2) throw bad_input("closed_ends are two, [yes, no]");
-    pair.closed_ends = {is_yes(ends->items[0]), is_yes(ends->items[1])};
-  }
-  return two_bodies(pair);
+  return two_bodies(
+      {slave, master, {space, direct ? PairQuadrature::direct : PairQuadrature::intersection}});
 }
 
 ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {

@@ -154,7 +154,10 @@ void read_mesh(Reader &reader, Scene &scene, Defects &defects) {
     if ((shape_name == nullptr) == (file == nullptr))
       throw bad_input("a mesh is 'built_in: SHAPE' or 'file: FILE.msh'");
     scene.mesh = recipe_of_sections(reader);
-    if (shape_name == nullptr) return;
+    if (shape_name == nullptr) return read_facts(reader, mesh, scene.mesh, defects);
+    if (mesh.find("facts") != nullptr)
+      throw bad_input(
+          "'facts' are those of a mesh from a file: the built-in shapes have their own");
     ShapeNumbers numbers;
     const double edges = number_or(reader, mesh, "edges", 0);
     if (edges != std::floor(edges) || edges < 0 || edges > 1e6)

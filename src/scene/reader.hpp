@@ -74,6 +74,8 @@ std::optional<std::vector<Product>> products_of(Reader &reader, const Expression
 /// defects one by one.
 void read_parameters(Reader &reader, Scene &scene, Defects &defects);
 void read_mesh(Reader &reader, Scene &scene, Defects &defects);
+/// Of the mesh from a file: what its parts must be.
+void read_facts(const Reader &reader, const CaseNode &mesh, MeshRecipe &recipe, Defects &defects);
 void read_motion(Reader &reader, Scene &scene, Defects &defects);
 void read_physics(Reader &reader, Scene &scene, Defects &defects);
 void read_contact(Reader &reader, Scene &scene, Defects &defects);

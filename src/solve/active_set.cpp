@@ -2,6 +2,8 @@
 #include "rbvi/method/several_answers.hpp"
 #include "rbvi/solve/methods.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -17,7 +19,8 @@ template <class Found> void take(Found &&found, MethodResult &result) {
 
 } // namespace
 
-MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start) {
+MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start,
+                              bool looks_for_others) {
   const ColumnSource columns = [&](const std::vector<Index> &which) {
     return condensed_columns(body, op.b, which);
   };
@@ -30,7 +33,9 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
         result);
   } else {
     FrictionAnswer found = friction_answer(columns, q, op.laws, start, true);
-    if (found.has_others) found.reason += ", but the law of friction has other answers";
+    if (looks_for_others && found.converged)
+      result.to_other = distance_to_other_answer(columns, q, op.laws, found);
+    if (found.has_others) result.to_other = std::max(result.to_other, least_distance);
     result.start = std::move(found.start);
     take(std::move(found), result);
   }

@@ -146,7 +146,8 @@ Vector HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
 MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, const Vector &slip) {
   if (part_) part_->set(op);
   FullBody &body = part_ ? static_cast<FullBody &>(*part_) : *body_;
-  MethodResult result = solve_active_set(body, op, nearest_start(mu, op));
+  MethodResult result =
+      solve_active_set(body, op, nearest_start(mu, op), options_.looks_for_others);
   if (!result.converged) return result;
   result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
   measure(problem_, op, op.weights, result);

@@ -6,6 +6,7 @@
 #include "rbvi/fem/check_scene.hpp"
 #include "rbvi/io/write_atomically.hpp"
 #include "rbvi/mesh/serial.hpp"
+#include "rbvi/mesh/surface.hpp"
 #include "rbvi/model/print.hpp"
 #include "rbvi/mor/reduce.hpp"
 #include "rbvi/par/collective.hpp"
@@ -13,6 +14,7 @@
 #include "rbvi/tool/cases.hpp"
 #include "rbvi/tool/commands.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -56,9 +58,40 @@ std::string factors_of(const Term &term, const ParameterSpace &space) {
   return "exact" + (names.empty() ? std::string(", constant") : ", times " + joined(names, " * "));
 }
 
+/// Terms of the same factors are one line.
 void print_sum(const char *name, const Sum &sum, const ParameterSpace &space) {
-  for (const Term &term : sum)
-    if (!term.of_imposed) std::printf("  %-10s %s\n", name, factors_of(term, space).c_str());
+  std::vector<std::pair<std::string, long>> lines;
+  for (const Term &term : sum) {
+    if (term.of_imposed) continue;
+    const std::string words = factors_of(term, space);
+    const auto same = std::ranges::find(lines, words, &std::pair<std::string, long>::first);
+    if (same == lines.end())
+      lines.emplace_back(words, 1);
+    else
+      ++same->second;
+  }
+  for (const auto &[words, count] : lines)
+    std::printf("  %-10s %s%s\n", name, words.c_str(),
+                count == 1 ? "" : (" (" + std::to_string(count) + " terms)").c_str());
+}
+
+/// What the mesh of a file is, and where nothing is said of its surface.
+void print_mesh(const SerialMesh &mesh, const Scene &scene, bool of_file) {
+  for (const MeshFact &fact : scene.mesh.facts)
+    if (of_file)
+      std::printf("  %-20s is %s\n", fact.part.empty() ? "the mesh" : fact.part.c_str(),
+                  fact.is.c_str());
+  const std::vector<std::string> free = free_parts(mesh, surface_of(mesh, scene));
+  if (!free.empty())
+    std::printf("  %-20s %s: no condition, no load and no contact there\n", "free",
+                joined(free).c_str());
+}
+
+/// Without the round-off of numbers that were computed.
+std::string short_text(const ParameterSpace &space, Mu mu) {
+  for (double &value : mu)
+    value = parse_number(formatted("%.12g", value), "parameter");
+  return describe(space, mu);
 }
 
 void print_scene(const Problem &problem) {
@@ -124,27 +157,38 @@ void command_check(const ToolOptions &options) {
   if (options.run_tests && options.scene.tests.empty())
     throw bad_input("this case has no 'tests:' that -run could prove (cases/README.md)");
   collectively(world, [&] { check_variants(options); });
-  check_outputs(world, options, files_of_solution(options));
+  std::vector<NamedFile> outputs = files_of_solution(options);
+  for (NamedFile &file : files_of_check(options))
+    outputs.push_back(std::move(file));
+  check_outputs(world, options, outputs);
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
-  if (rank_of(world) == 0) print_scene(problem);
+  SerialMesh mesh; // on the first rank
+  collectively(world, [&] {
+    if (rank_of(world) != 0) return;
+    mesh = mesh_with_groups(options.scene, options.mesh.file);
+    print_scene(problem);
+    print_mesh(mesh, options.scene, !options.mesh.file.empty());
+  });
   check_points(problem);
   collectively(world, [&] {
     for (const std::string &set : {options.train, options.valid})
       if (!set.empty()) check_set(problem.scene(), parse_set(problem.scene().parameters, set));
   });
   const Mu mu = box_centre(problem.scene().parameters);
-  const std::string at = describe(problem.scene().parameters, mu);
+  const std::string at = short_text(problem.scene().parameters, mu);
   const HfSolution solution =
       while_doing("solving " + at, [&] { return HighFidelity(problem, options.hf).solve(mu); });
   write_solution(problem, options, mu, solution);
-  if (rank_of(world) == 0) {
+  collectively(world, [&] {
+    if (rank_of(world) != 0) return;
+    if (!options.vtu.empty()) print_written(std::cout, write_check(options, problem, mesh));
     std::printf("at the middle of the box, %s:\n", at.c_str());
     print_outputs(std::cout, solution.outputs);
     if (solution.outputs.contact_nodes && *solution.outputs.contact_nodes == 0)
       std::printf("warning: nothing touches there\n");
     std::printf("no defect was found\n");
-  }
+  });
   if (options.run_tests) run_tests(options);
 }
 

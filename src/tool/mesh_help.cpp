@@ -33,13 +33,18 @@ std::string contract(const Scene &scene) {
 } // namespace
 
 void print_mesh_contract(const SceneEntry &entry) {
-  const std::string own = contract(make_scene(entry));
-  std::printf(
-      "  A mesh of your own (-mesh FILE: Gmsh 2.2, 4.0 or 4.1, order 1), its parts\n"
-      "  by physical name, vertices in place to 1e-6 of the extent, edges along the rims:\n%s",
-      own.c_str());
-  for (const auto &[choice, scene] : variants(entry))
-    if (const std::string other = contract(scene); other != own)
+  const Scene scene = make_scene(entry);
+  const std::string own = contract(scene);
+  std::printf("  %s (Gmsh 2.2, 4.0 or 4.1, order 1) has these parts as physical groups.\n%s%s",
+              scene.mesh.generator.empty() ? "The mesh of the case, mesh: file or -mesh FILE"
+                                           : "A mesh of your own, -mesh FILE",
+              scene.mesh.facts.empty()
+                  ? ""
+                  : "  Its vertices are where it says below, to a millionth of its size, and its\n"
+                    "  edges run along the rims of regions:\n",
+              own.c_str());
+  for (const auto &[choice, other_scene] : variants(entry))
+    if (const std::string other = contract(other_scene); other != own)
       std::printf("  With %s:\n%s", choice.c_str(), other.c_str());
 }
 

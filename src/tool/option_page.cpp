@@ -93,7 +93,8 @@ min max hypot`. Quote an expression that holds `: `, `?` or, inside of `[ ]`, a 
 term decides what becomes of it: where the domain does not move, or moves by a similarity (stiffness), a
 term that separates into functions of parameters and of the point is exact; every other one is
 interpolated. A parameter without a range is a constant, which a run may change (`-young 20`) or free
-(`-young 10,30`). With `units:` a number may have a unit of that system: `205 GPa`.
+(`-young 10,30`). With `units:` a number may have a unit, and becomes one of that system: `205 GPa`;
+also behind the name of a parameter, `-young '1 GPa,2 GPa'`.
 
 **A path** such as `contact.support.friction` leads to a value. `-set mesh.edges=200` puts one there;
 `choices:` are options of the case whose alternatives do; a variant (`-variant NAME`) does so before all

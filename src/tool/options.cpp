@@ -30,20 +30,23 @@ Scene given_scene(const SceneEntry &entry) {
 enum class Given { nothing, value, bounds };
 
 /// "-radius 0.2" fixes a parameter, "-radius 0.18,0.22" frees it between bounds.
-Given adapt_parameter(Parameter &parameter) {
+Given adapt_parameter(Parameter &parameter, const std::optional<UnitSystem> &units) {
   const std::string text = text_of(parameter.name);
   const std::vector<std::string> parts = split(text, ',');
   const std::string what = "option -" + parameter.name;
+  const auto number = [&](const std::string &part) {
+    return parse_given(part, units, parameter.unit, what);
+  };
   if (text.empty()) return Given::nothing;
   if (parts.size() == 1) {
-    parameter.value = parse_number(parts[0], what);
+    parameter.value = number(parts[0]);
     check_range(parameter.valid, parameter.value, what);
     return Given::value;
   }
   if (parts.size() != 2)
     throw bad_input(what + " is '" + text + "': give one value, or two bounds");
-  parameter.lower = parse_number(parts[0], what);
-  parameter.upper = parse_number(parts[1], what);
+  parameter.lower = number(parts[0]);
+  parameter.upper = number(parts[1]);
   if (parameter.lower == parameter.upper)
     throw bad_input(what + " is '" + text + "': both bounds are the same; one value fixes it");
   if (!(parameter.lower < parameter.upper))
@@ -62,7 +65,7 @@ void adapt_parameters(Scene &scene, const Registry &registry) {
   std::vector<std::string> fixed;
   for (int i = 0; i < static_cast<int>(space.all.size()); ++i) {
     Parameter &parameter = space.all[i];
-    const Given given = adapt_parameter(parameter);
+    const Given given = adapt_parameter(parameter, scene.units);
     const bool free = std::find(space.free.begin(), space.free.end(), i) != space.free.end();
     if (given == Given::value)
       fixed.push_back(parameter.name);

@@ -55,7 +55,9 @@ void command_solve(const ToolOptions &options) {
   Problem problem(world, options.scene, options.mesh, options.contact_gather);
   check_scene(problem);
   check_solver_options(problem, options.hf);
-  HighFidelity solver(problem, options.hf);
+  HfOptions hf = options.hf;
+  hf.looks_for_others = true;
+  HighFidelity solver(problem, hf);
   const HfSolution solution =
       while_doing("solving " + describe(space, mu), [&] { return solver.solve(mu); });
   collectively(world, [&] {
@@ -65,6 +67,7 @@ void command_solve(const ToolOptions &options) {
     ResolutionTally resolution;
     resolution.add(solution.outputs);
     resolution.print(std::cout);
+    warn_of_other_answers(std::cout, solution.to_other > 0 ? 1 : 0, 1);
     warn_of_locking(
         locking_ratio(options.scene, expand(space, mu), material_points(problem.contact())),
         std::cout);

@@ -56,10 +56,11 @@ std::vector<Option> of_runs() {
       of_command(
           text("mu", OptionKind::text, "parameter", RBVI_AT(mu),
                "parameter at which solve solves: 0.18,0.02,-0.01 or radius=0.18,center_x=0.02")),
-      of_command(
-          text("vtu", OptionKind::text, "file", RBVI_AT(vtu),
-               "file to which solve, and check, write displacement and stresses; contact goes to "
-               "FILE_contact, of several contacts each to FILE_contact_NAME")),
+      of_command(text(
+          "vtu", OptionKind::text, "file", RBVI_AT(vtu),
+          "file to which solve, and check, write displacement and stresses; contact goes to "
+          "FILE_contact, of several contacts each to FILE_contact_NAME, what check draws of the "
+          "case to FILE_mesh, FILE_surface and FILE_partners")),
       of_command(text("csv", OptionKind::text, "file", RBVI_AT(csv),
                       "file to which solve writes its outputs as a table")),
       flag("verify_stability", RBVI_AT(stability),

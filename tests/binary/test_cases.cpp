@@ -32,7 +32,12 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
   const std::string says = output_of(rbvi(2, "check block -vtu u.vtu"));
   EXPECT_TRUE(contains(says, "no defect was found")) << says;
   EXPECT_TRUE(contains(says, "depth                [0.01, 0.1] m\n")) << says;
+  EXPECT_TRUE(contains(says, "\n  free                 sides: no condition, no load")) << says;
+  EXPECT_TRUE(contains(says, "\n  a          exact, constant (2 terms)\n")) << says;
+  EXPECT_TRUE(contains(says, "\nwrote u_mesh.vtu, u_surface.vtu, u_partners_middle.vtu, ")) << says;
   EXPECT_TRUE(fs::exists("u.vtu"));
+  output_of(RBVI_FIGURES " u.vtu");
+  EXPECT_TRUE(fs::exists("figures/case.png") && fs::exists("figures/solution.png"));
   expect_all_refused({{"new block", "is there already"},
                       {"new", "new takes the name of a folder"},
                       {"new a b", "'b' is left over"},
@@ -40,6 +45,18 @@ TEST_F(Cases, ANewOneIsRightAndIsNotWrittenTwice) {
   output_of(rbvi(2, "offline -case block -train grid:2,2,2 -out model"));
   EXPECT_TRUE(contains(output_of(rbvi_online("model/model.h5 --mu 0.05,0.1,0.3")), "normal_force"));
   output_of(rbvi(1, "verify -out model -valid random:2:1"));
+}
+
+TEST_F(Cases, ABodyThatNothingHoldsIsRefusedByEveryCommand) {
+  output_of(rbvi(1, "new block"));
+  std::string text = slurp("block/case.yaml");
+  const std::string held = "ux: shear, uy: -depth";
+  text.replace(text.find(held), held.size(), "uy: shear - depth");
+  spill("block/case.yaml", text);
+  const std::string says = "the body can move along (1, 0): impose displacements";
+  expect_all_refused({{"check block", says},
+                      {"solve -case block -mu 0.05,0,0.3", says},
+                      {"offline -case block -out run", says}});
 }
 
 TEST_F(Cases, AMeshOfOnesOwnBeginsACaseOfIt) {
@@ -106,6 +123,35 @@ TEST_F(Cases, ContactsHaveTheirNames) {
   EXPECT_TRUE(contains(says, "wrote u.vtu, u_contact_upper_plate.vtu, u_contact_lower_plate.vtu"))
       << says;
   expect_fields("u_contact_lower_plate.vtu", {"contacts", "pressure", "tangential_stress"});
+}
+
+/// The mesh of a case is what its facts say, or is refused; numbers of a run may have units.
+TEST_F(Cases, FactsOfItsMeshAndUnits) {
+  spill("coarse.msh", coarse_gmsh());
+  const std::string membrane =
+      "rbvi: 1\n"
+      "physics: membrane\n"
+      "units: {length: m, force: N}\n"
+      "mesh: {file: coarse.msh, facts: {all: {box: [-0.5, -0.5, 0.5, 0.5]}, "
+      "boundary: {size: 4}}}\n"
+      "parameters: {height: {range: [-0.2 m, -0.1 m], default: -150 mm, "
+      "unit: m}}\n"
+      "imposed: {rim: {at: boundary, u: 0}}\n"
+      "loads: {weight: {at: all, force: -25}}\n"
+      "contact: {table: {at: obstacle, above: height}}\n";
+  spill("case.yaml", membrane);
+  const std::string says = output_of(rbvi(1, "check case.yaml -height '-160 mm,-14 cm'"));
+  EXPECT_TRUE(contains(says, "  the mesh             is the box [-0.5, 0.5] x [-0.5, 0.5]\n"))
+      << says;
+  EXPECT_TRUE(contains(says, "  boundary             is of length 4\n")) << says;
+  EXPECT_TRUE(contains(says, "at the middle of the box, height=-0.15:\n")) << says;
+  EXPECT_TRUE(contains(output_of(rbvi(1, "-help -case case.yaml")), "boundary   of length 4\n"));
+  expect_all_refused(
+      {{"check case.yaml -set mesh.facts.boundary.size=3",
+        "'boundary' of mesh file 'coarse.msh' is "
+        "not of length 3: its length is 4"},
+       {"check case.yaml -height '2 MPa'", "option -height: a length is wanted, 2 MPa is a stress"},
+       {"solve -case case.yaml -mu '-150 mm'", "'-150 mm': not a number; give it in m"}});
 }
 
 /// The command line, its paths, a variant, choices and the file.

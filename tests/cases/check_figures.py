@@ -17,14 +17,19 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests")]
 
 import figures
+from case_figures import case_panels
 from figure_tools import plt, read_grid, table
 from panels import Lines, Triangles, figure_of, shown
-from small_runs import RUNS
+from small_runs import CHECKED, RUNS
 from solution_figures import contact_grids, solution_panels
 
 # Of the force. Nitsche's method has stresses at the ends of edges alone, which do not integrate the
 # stress of elements of degree 2 exactly.
 FORCE_TOLERANCE = {"multipliers": 1e-3, "nitsche": 0.05}
+
+
+# Files of partners: the obstacle moves with its membrane, and the second plate of the roller is fixed.
+PLACES = {"membrane_obstacle": 1, "two_disks": 3, "roller": 4}
 
 
 class Checks:
@@ -104,10 +109,31 @@ def force_on_region(panel):
     return area @ panel.values[panel.cells].mean(axis=1)
 
 
+def check_partners(check, grid, name):
+    """The way from a node to its partner has the gap along the normal."""
+    along = np.sum(grid.of_nodes["to_partner"] * grid.of_nodes["normal"], axis=1)
+    gap = grid.of_nodes["gap"]
+    check.that(np.allclose(along, gap, rtol=0, atol=1e-12), f"{name}: partners are not a gap away")
+
+
+def check_case(check, path):
+    """What rbvi check draws: the surface has its groups, contacts their partners."""
+    name, (panels, words) = path.parent.name, case_panels(path)
+    check_panels(check, panels, f"{name}, case")
+    files = list(path.parent.glob("u_partners*.vtu"))
+    check.that(len(files) == PLACES[name] and len(words.splitlines()) == min(3, len(files)),
+               f"{name}: {len(files)} places, {words}")
+    for file in files:
+        check_partners(check, read_grid(file), file)
+    surface = read_grid(path.parent / "u_surface.vtu")
+    free = surface.of_cells["(free)"]
+    check.that(np.any(free > 0) == (name != "membrane_obstacle"), f"{name}: what is free")
+
+
 def check_answer(check, run):
     """Pressures that are drawn, over all interfaces, have the normal force of the answer as their
     integral; gaps are closed below them."""
-    grid, panels = read_grid(run / "u.vtu"), solution_panels(run)
+    grid, panels = read_grid(run / "u.vtu"), solution_panels(run / "u.vtu")
     check_panels(check, panels, f"{run.name}, solution", run.name.split("_")[0])
     with open(run / "solve.csv", encoding="utf-8", newline="") as file:
         answer = next(csv.DictReader(file))
@@ -115,7 +141,7 @@ def check_answer(check, run):
     if grid.of_nodes["u"].ndim == 1:
         force = force_on_region(panels[1])
     else:
-        contacts = contact_grids(run, grid)
+        contacts = contact_grids(run / "u.vtu", grid)
         lines = [panel for panel in panels if isinstance(panel, Lines)]
         check.that(len(lines) == len(contacts) == len(list(run.glob("u_contact*.vtu"))),
                    f"{run.name}: {len(lines)} panels of {len(contacts)} interfaces")
@@ -126,6 +152,8 @@ def check_answer(check, run):
         for panel in lines:
             check.that(np.all(np.diff(panel.curves[-1].x) > 0) or
                        np.all(np.diff(panel.curves[-1].x) < 0), f"{run.name}: x goes back")
+    for contact in contact_grids(run / "u.vtu", grid):
+        check_partners(check, contact, run.name)
     tolerance = FORCE_TOLERANCE["nitsche" if "nitsche" in run.name else "multipliers"]
     check.that(abs(force - expected) <= tolerance * abs(expected),
                f"{run.name}: the pressure that is drawn has the force {force:.6g}, not {expected:.6g}")
@@ -190,6 +218,8 @@ def main(runs, scratch):
         check_run(check, runs / name)
     for run in sorted((runs / "answers").iterdir()):
         check_answer(check, run)
+    for name in CHECKED:
+        check_case(check, runs / "checks" / name / "u.vtu")
     check_damage(check, runs / "disk_none", scratch)
     print("\n".join(check.wrong) or f"{check.count} checks of {len(RUNS)} runs hold")
     return 1 if check.wrong else 0

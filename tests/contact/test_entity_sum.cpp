@@ -358,8 +358,9 @@ TEST(ObstacleInterface, FieldsAreThoseOfTheMappedRegion) {
   const FullMu mu{0.7};
   const Grid grid = scene.contacts.front().make(scene, mesh)->fields(mu, u, lambda);
   EXPECT_EQ(grid.cells, mesh.entities);
-  ASSERT_EQ(grid.of_nodes.size(), 2U);
+  ASSERT_EQ(grid.of_nodes.size(), 4U);
   EXPECT_EQ(grid.of_nodes[0].values, lambda);
+  EXPECT_EQ(Vector(grid.of_nodes[2].values.tail<3>()), (Vector{{0, 0, -1}})) << "downwards";
   for (Index i = 0; i < 9; ++i) {
     const Point x = scene.map(mu, mesh.points[i]);
     EXPECT_EQ(grid.points(i, 0), x[0]);

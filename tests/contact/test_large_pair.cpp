@@ -288,10 +288,14 @@ TEST(LargePair, ContactAtAnEndOfEitherCurveIsCounted) {
   EXPECT_EQ(ends(*nodes, on_nodes, {6}), 1) << "the last vertex with a partner";
   EXPECT_EQ(ends(*nodes, on_nodes, {7}), 1) << "its function has a partner in part";
   EXPECT_EQ(ends(*nodes, on_nodes, {0, 6}), 2);
-  mesh.dofs[0] = -1; // on an axis of symmetry contact has no end
+  mesh.closed_ends = {1, 0, 0, 0}; // the upper body ends there
   const auto half = deformed_bodies({"slave", "master", spaces[0]}).make(scene, mesh);
   EXPECT_EQ(ends(*half, at(*half, {0}, {}), {0, 1}), 0);
   EXPECT_EQ(ends(*half, at(*half, {0}, {}), {0, 6}), 1);
+  mesh.closed_ends = {0, 1, 0, 1}; // the lower body ends at 1.6
+  const auto rim = deformed_bodies({"slave", "master", spaces[0]}).make(scene, mesh);
+  EXPECT_EQ(ends(*rim, at(*rim, {0}, {}), {5, 6}), 0);
+  EXPECT_EQ(ends(*rim, at(*rim, {0}, {}), {0, 6}), 1);
 }
 
 TEST(LargePair, ACurveThatFoldsIsAFailureOfThisState) {

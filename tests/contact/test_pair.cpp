@@ -158,11 +158,11 @@ TEST(PairInterface, OutputsAreThoseOfTheMirrorImagesTogether) {
 
 /// The upper curve has no end to speak of where the body ends with it.
 TEST(PairInterface, ContactAtAnEndIsCountedUnlessItIsClosed) {
-  const InterfaceMesh mesh = two_curves(1);
+  InterfaceMesh mesh = two_curves(1);
   for (const PairDiscretisation &how : {constant, linear})
     for (const bool closed : {false, true}) {
-      Scene scene = scene_of(how, 1);
-      scene.contacts = {two_bodies({"slave", "master", how, {closed, false}})};
+      const Scene scene = scene_of(how, 1);
+      mesh.closed_ends = {closed ? 1 : 0, 0, 0, 0};
       const ContactOperators op = at(scene, mesh, {0});
       const auto interface = scene.contacts.front().make(scene, mesh);
       const auto ends = [&](Index row) {
@@ -179,13 +179,33 @@ TEST(PairInterface, ContactAtAnEndIsCountedUnlessItIsClosed) {
     }
 }
 
+/// The lower body moves to the left until the upper one has nothing below it at its right end.
+TEST(PairInterface, ContactAtAnEndOfTheLowerCurveIsCountedUnlessItIsClosed) {
+  InterfaceMesh mesh = two_curves(1);
+  for (const PairDiscretisation &how : {constant, linear})
+    for (const bool closed : {false, true}) {
+      const Scene scene = scene_of(how, 1);
+      mesh.closed_ends = {1, 1, 0, closed ? 1 : 0};
+      const auto interface = scene.contacts.front().make(scene, mesh);
+      Outputs out;
+      interface->outputs({0.6}, at(scene, mesh, {0.6}), Vector::Ones(interface->dual().nodes()),
+                         1e-3, out);
+      EXPECT_EQ(*out.ends_in_contact, closed ? 0 : 1);
+    }
+}
+
 /// Where the bodies are beside each other.
 TEST(PairInterface, WithoutPartnersThereIsNothingToDraw) {
   const Scene scene = scene_of(constant, 1);
   const InterfaceMesh mesh = two_curves(1);
   const auto interface = scene.contacts.front().make(scene, mesh);
   const Vector u = Vector::Zero(2 * mesh.nodes()), lambda = Vector::Zero(4);
-  EXPECT_EQ(interface->fields({0}, u, lambda).cells.size(), 16U);
+  const Grid grid = interface->fields({0}, u, lambda);
+  EXPECT_EQ(grid.cells.size(), 16U);
+  const auto normal = std::ranges::find(grid.of_nodes, "normal", &Field::name);
+  ASSERT_NE(normal, grid.of_nodes.end());
+  for (Index i = 0; i < 9; ++i)
+    EXPECT_EQ(Vector(normal->values.segment<3>(3 * i)), (Vector{{0, -1, 0}})) << "out of the slave";
   EXPECT_TRUE(interface->fields({3}, u, lambda).cells.empty());
 }
 

@@ -345,5 +345,25 @@ TEST(Support, VertexQuadratureIsNodal) {
   }
 }
 
+TEST(Support, FieldsHaveTheNormalAndTheGapThatIsLeft) {
+  SupportScene scene = support_scene(1);
+  scene.support.normal = [](const FullMu &, const Point &x) {
+    return Point{x[0] / norm(x), x[1] / norm(x), 0};
+  };
+  scene.support.gap = [](const FullMu &mu, const Point &x) { return mu[0] - norm(x); };
+  const InterfaceMesh curve = support_curve(arc(6, 0.4), 1);
+  const auto interface = rigid_support(scene.support).make(scene, curve);
+  const Vector u = Vector::Constant(2 * curve.nodes(), 0.1), lambda = Vector::Zero(14);
+  const Grid grid = interface->fields({1.5}, u, lambda);
+  ASSERT_EQ(grid.of_nodes[1].name, "gap");
+  ASSERT_EQ(grid.of_nodes[2].name, "normal");
+  for (Index i = 0; i < curve.nodes(); ++i) {
+    const Point &x = curve.points[i];
+    const double along = 0.1 * (x[0] + x[1]) / norm(x);
+    EXPECT_NEAR(grid.of_nodes[1].values[i], 1.5 - norm(x) - along, 1e-15);
+    EXPECT_NEAR(grid.of_nodes[2].values[3 * i + 1], x[1] / norm(x), 1e-15);
+  }
+}
+
 } // namespace
 } // namespace rbvi::support_test

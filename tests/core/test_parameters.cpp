@@ -57,6 +57,11 @@ TEST(ParseMu, RefusesWhatIsWrong) {
   EXPECT_TRUE(refused("y=1", "no parameter 'y'"));
   EXPECT_TRUE(refused("x=0,x=0", "given twice"));
   EXPECT_TRUE(refused("x=0,0.2", "no name"));
+  ParameterSpace metres = space();
+  metres.all.front().unit = "m";
+  for (const char *text : {"20 cm,0", "radius=20 cm"})
+    EXPECT_TRUE(
+        refuses("'20 cm': not a number; give it in m", [&] { (void)parse_mu(metres, text); }));
   EXPECT_TRUE(refuses("is fixed", [] { (void)parse_mu(only_x(), "radius=0.2"); }));
 }
 

@@ -61,5 +61,21 @@ TEST(Units, HaveDimensionsAndErrorsThatNameThem) {
   EXPECT_TRUE(refuses("unknown unit of 'mass'", [] { unit_system({{"mass", "kg"}}); }));
 }
 
+TEST(Units, OfWhatARunGives) {
+  const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "N"}});
+  EXPECT_EQ(parse_given("2 GPa", mm, "MPa", "option -young"), 2000);
+  EXPECT_EQ(parse_given("+2GPa", mm, "", "option -young"), 2000);
+  EXPECT_EQ(parse_given(" 1e-3", std::nullopt, "MPa", "option -young"), 1e-3);
+  const auto refused = [&](const std::string &text, const std::optional<UnitSystem> &system,
+                           const std::string &says) {
+    return refuses(says, [&] { (void)parse_given(text, system, "MPa", "option -young"); });
+  };
+  EXPECT_TRUE(refused("2 mm", mm, "option -young: a stress is wanted, 2 mm is a length"));
+  EXPECT_TRUE(refused("2 MPb", mm, "option -young: unknown unit 'MPb'"));
+  EXPECT_TRUE(refused("stiff", mm, "option -young is 'stiff': not a number"));
+  EXPECT_TRUE(refused("2x", std::nullopt, "option -young is '2x': not a number"));
+  EXPECT_TRUE(refused("2 MPa", std::nullopt, "option -young: '2 MPa' has a unit, but no units"));
+}
+
 } // namespace
 } // namespace rbvi::units_test

@@ -5,7 +5,7 @@ and vtu.
 Each run OUT/NAME is made, asked and verified, some are measured: model.h5, samples, every table of
 rbvi, online_before.csv and online_after.csv (rbvi-online before and after rbvi verify), solve.csv,
 u.vtu of that solve and online.vtu of rbvi-online at the same mu. OUT/answers/NAME has solve.csv and
-u.vtu of every scene and formulation.
+u.vtu of every scene and formulation, OUT/checks/NAME what rbvi check draws of some cases.
 """
 
 import shutil
@@ -45,6 +45,7 @@ RUNS = {
                        "-formulation", "nitsche"],
 }
 MEASURED = ("two_disks", "nitsche_empirical")  # by rbvi bench, which takes longest
+CHECKED = ("membrane_obstacle", "two_disks", "roller")
 GROWN = "disk_none"  # by rbvi bench -bench_growth
 
 
@@ -76,6 +77,11 @@ def answer(rbvi, out, options, mu):
     call(rbvi, "solve", *options, "-mu", mu, "-csv", out / "solve.csv", "-vtu", out / "u.vtu")
 
 
+def check(rbvi, out, case):
+    out.mkdir(parents=True)
+    call(rbvi, "check", case, "-vtu", out / "u.vtu")
+
+
 def main(binaries, out):
     shutil.rmtree(out, ignore_errors=True)
     with ThreadPoolExecutor(2) as pool:
@@ -83,6 +89,8 @@ def main(binaries, out):
         jobs += [pool.submit(answer, binaries / "rbvi", out / "answers" / one.name,
                              ["-case", one.case, *one.scene], one.mu[-1])
                  for one in every_scene() if not one.reduction]
+        jobs += [pool.submit(check, binaries / "rbvi", out / "checks" / name, CASES / name)
+                 for name in CHECKED]
         for done in jobs:
             done.result()
     print(f"{len(RUNS)} runs in {out}")

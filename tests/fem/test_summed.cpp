@@ -84,6 +84,7 @@ TEST(Summed, FacetsOfABoundaryAreIntegratedOnce) {
   Scene scene = disk("radius");
   scene.fixed = {};
   scene.motion = {};
+  scene.a.push_back(exact_term(spring("arc", 1, 2, 2))); // the body is held
   scene.f = {mapped_term(traction_load(
       "arc",
       [](const FullMu &, const Point &, const Point &) -> Point {

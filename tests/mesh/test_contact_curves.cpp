@@ -53,6 +53,38 @@ TEST(ContactCurves, WhatIsNoGraphOverXIsRefused) {
                       [&] { check_contact_curves(doubled, block(), "the mesh"); }));
 }
 
+using Ends = std::array<bool, 2>;
+
+/// A polygon of so many edges about the origin, its triangles from there, with two of the edges.
+SerialMesh polygon(int edges) {
+  SerialMesh mesh;
+  mesh.points = {{0, 0, 0}};
+  for (int k = 0; k < edges; ++k) {
+    const double angle = 2 * M_PI * k / edges - M_PI / 2;
+    mesh.points.push_back({std::cos(angle), std::sin(angle), 0});
+    mesh.cells.push_back({0, 1 + k, 1 + (k + 1) % edges, -1});
+  }
+  mesh.boundary[name] = {{edges, 1, -1}, {1, 2, -1}};
+  return mesh;
+}
+
+TEST(ContactCurves, ABodyEndsWhereItsSurfaceTurnsAway) {
+  EXPECT_EQ(closed_ends(one_block(), name), (Ends{true, true}));
+  EXPECT_EQ(closed_ends(two_blocks(), "master"), (Ends{true, true}));
+  for (const int edges : {8, 100}) {
+    EXPECT_EQ(closed_ends(half_disc(edges), name), (Ends{false, false})) << "the arc goes on";
+    EXPECT_EQ(closed_ends(refined(half_disc(edges)), name), (Ends{false, false}));
+  }
+  EXPECT_EQ(closed_ends(annulus(8), "top"), (Ends{false, false}));
+  for (const char *arc : {"slave", "master"}) // from the axis of symmetry
+    EXPECT_EQ(closed_ends(two_graded_quarter_discs(8), arc), (Ends{true, false}));
+  EXPECT_EQ(closed_ends(polygon(8), name), (Ends{true, true})) << "a chamfer is no arc";
+  EXPECT_EQ(closed_ends(polygon(12), name), (Ends{false, false})) << "a coarse circle is one";
+  SerialMesh part = one_block();
+  std::erase_if(part.boundary[name], [&](const auto &facet) { return middle(part, facet) > 0.5; });
+  EXPECT_EQ(closed_ends(part, name), (Ends{true, false})) << "a part of a flat face";
+}
+
 TEST(ContactCurves, LoadsAndContactAreOnTheSurface) {
   Scene scene = block();
   scene.mesh.facts.clear();

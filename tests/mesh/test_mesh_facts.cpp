@@ -340,6 +340,29 @@ TEST(MeshFacts, SizesAreTold) {
                  {"'top' of my mesh is not a long side: its length is 1, not 2"});
 }
 
+TEST(MeshFacts, CellsWithoutAMaterialAreRefused) {
+  Scene scene = make_scene(block.name, block.options);
+  scene.mesh.regions = {"part"};
+  for (Term &term : scene.a)
+    term.form.region = "part";
+  SerialMesh mesh = one_block();
+  mesh.region["part"] = all_cells(mesh);
+  EXPECT_NO_THROW(check_facts(mesh, scene, "my mesh"));
+  mesh.region["part"].erase(mesh.region["part"].begin());
+  expect_refused([&] { check_facts(mesh, scene, "my mesh"); },
+                 {"my mesh has cells without a material, 1 of 80", "write 'at: all'"});
+}
+
+/// A body with a round hole is larger by what polygons leave of the hole.
+TEST(MeshFacts, ASizeMayHaveAnExcess) {
+  Scene scene = make_scene(block.name, block.options);
+  scene.mesh.facts = {{"", "a small body", {}, 0.46}};
+  expect_refused([&] { check_facts(one_block(), scene, "my mesh"); },
+                 {"its area is 0.5, not 0.46"});
+  scene.mesh.facts.front().excess = 0.1;
+  EXPECT_NO_THROW(check_facts(one_block(), scene, "my mesh"));
+}
+
 TEST(MeshFacts, APartThatTheRecipeDoesNotNameIsRefused) {
   Scene scene = make_scene(block.name, block.options);
   scene.mesh.facts.front().within = "wall";
@@ -355,6 +378,16 @@ TEST(MeshFacts, AfterARefinementCurvesAreStillInPlace) {
         (void)make_mesh(PETSC_COMM_WORLD, scene, {"", 1});
       },
       {"of the built-in mesh, refined 1 times is not"});
+}
+
+/// Edges along an arc that no curve of the case snaps stay straight.
+TEST(MeshFacts, FactsOfACaseAreThoseOfItsFile) {
+  Scene scene = make_scene("rigid_disk");
+  scene.snap = [](const Point &x) { return x; };
+  scene.mesh.inclusion = {};
+  scene.mesh.generator = "";
+  const TemporaryFile file(written(drawing_of(half_disc()), {"4.1", false}));
+  EXPECT_NO_THROW((void)make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 1}));
 }
 
 TEST(MeshFacts, AFacetOfABoundaryIsOneOfACell) {

@@ -135,6 +135,10 @@ TEST(Friction, FindsOneOfTheSolutionsThatEnumerationFinds) {
       EXPECT_EQ(result.converged, !solutions.empty()) << k << " " << result.reason;
       without_solution += solutions.empty();
       EXPECT_TRUE(!solutions.empty() || bound.only_in_contact);
+      if (solutions.empty() && bound.coefficient == 0) {
+        EXPECT_NE(result.reason.find("and neither is an answer"), std::string::npos)
+            << k << " " << result.reason;
+      }
       if (!result.converged) continue;
       EXPECT_TRUE(std::any_of(solutions.begin(), solutions.end(), [&](const Vector &x) {
         return (x - result.x).norm() <= 1e-10 * (1 + x.norm());

@@ -164,6 +164,14 @@ TEST_F(VtuFile, FieldDataSaysSceneParametersAndUnits) {
   }
 }
 
+/// Groups of a mesh have names of any kind.
+TEST_F(VtuFile, NamesOfAnyTextAreXml) {
+  Grid grid = random_grid(2);
+  grid.of_cells[0].name = "a<b & \"c\"";
+  const std::string file = written(grid, VtuFormat::ascii);
+  EXPECT_EQ(values_of(file, "a&lt;b &amp; &quot;c&quot;").size(), 8U);
+}
+
 TEST_F(VtuFile, LargeGridsAreInBase64) {
   Grid grid;
   grid.points = Matrix::Zero(2000, 2);

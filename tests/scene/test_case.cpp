@@ -176,6 +176,46 @@ const std::map<std::string, std::string> chosen{
     {"variants", "{hard: {says: harder, let.stiff: 4, choices.law.default: coulomb, "
                  "options: {pod_tolerance: 1e-3}, train: grid:2}}"}};
 
+TEST(Case, FactsOfAMeshArePlacesAndSizesOfItsParts) {
+  const Scene scene = scene_of(
+      {{"units", "{length: mm, force: N}"},
+       {"mesh",
+        "{file: a.msh, facts: {all: {size: 0.5}, core: {disk: [0, 1, 0.25]}, contact: {segment: "
+        "[0, 0, 1 mm, 0], within: rim}, top: {arc: [0, 0, 1, 0, 90 deg], size: pi/2}}}"},
+       {"materials", "{rubber: {at: [all, core], E: young*k, nu: nu}}"}});
+  const std::vector<MeshFact> &facts = scene.mesh.facts;
+  ASSERT_EQ(facts.size(), 4U);
+  EXPECT_EQ(facts[0].part, "");
+  EXPECT_EQ(facts[0].is, "of area 0.5");
+  EXPECT_EQ(facts[0].size, 0.5);
+  EXPECT_EQ(facts[0].excess, 0.1);
+  EXPECT_FALSE(facts[0].distance);
+  EXPECT_EQ(facts[1].is, "the disk of radius 0.25 about (0, 1)");
+  EXPECT_DOUBLE_EQ(facts[1].distance({0, 0.9, 0}), -0.15);
+  EXPECT_EQ(facts[2].is, "the segment from (0, 0) to (1, 0), a part of 'rim'");
+  EXPECT_EQ(facts[2].within, "rim");
+  EXPECT_DOUBLE_EQ(facts[2].distance({2, 0, 0}), 1);
+  EXPECT_EQ(facts[3].is, "the arc of radius 1 about (0, 0) from 0 to 90 degrees, of length 1.571");
+  EXPECT_NEAR(facts[3].distance({-1, 0, 0}), std::sqrt(2), 1e-15);
+  EXPECT_EQ(scene.mesh.boundaries, (Names{"top", "contact", "rim"})) << "with the outer one";
+  const Scene boxed = scene_of({{"mesh", "{file: a.msh, facts: {all: {box: [0, 0, 1, 0.5]}}}"}});
+  EXPECT_EQ(boxed.mesh.facts[0].is, "the box [0, 1] x [0, 0.5]");
+  EXPECT_DOUBLE_EQ(boxed.mesh.facts[0].distance({0.5, 0.25, 0}), -0.25);
+}
+
+TEST(Case, UnitsAreAllowedOnWhatARunGives) {
+  const Scene scene =
+      scene_of({{"units", "{length: mm, force: N}"},
+                {"parameters", "{depth: {range: [0.01, 0.1], default: 0.05}, k: {range: [0.5, 20], "
+                               "default: 1}, nu: {range: [0.1, 0.4], default: 0.3}, "
+                               "young: {default: 15, unit: MPa}}"}},
+               {{"young", "1 MPa,2 GPa"}});
+  EXPECT_EQ(scene.parameters.all[3].lower, 1);
+  EXPECT_EQ(scene.parameters.all[3].upper, 2000);
+  EXPECT_TRUE(scene.units);
+  EXPECT_FALSE(scene_of().units);
+}
+
 TEST(Case, ChoicesVariantsAndPathsChangeIt) {
   EXPECT_FALSE(has_friction(scene_of(chosen)));
   EXPECT_TRUE(has_friction(scene_of(chosen, {{"law", "coulomb"}})));

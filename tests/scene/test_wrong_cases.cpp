@@ -232,6 +232,36 @@ TEST(WrongCase, Tests) {
   });
 }
 
+TEST(WrongCase, FactsOfAMesh) {
+  const auto facts = [](const std::string &text) {
+    return Sections{{"mesh", "{file: a.msh, facts: {" + text + "}}"},
+                    {"materials", "{rubber: {at: core, E: young*k, nu: nu}}"}};
+  };
+  expect_refused({
+      {{{"mesh", "{built_in: one_block, facts: {all: {size: 1}}}"}}, "have their own"},
+      {facts("tpo: {size: 1}"), "no section of the case names a part 'tpo' of the mesh: the "
+                                "nearest is 'top'"},
+      {facts("top: {}"), "give box, disk, segment, arc, size or within"},
+      {facts("top: {line: [0, 0, 1, 0]}"), "unknown key 'line' of mesh: facts"},
+      {facts("top: {segment: [0, 0, 1]}"), "a list of 4 numbers"},
+      {facts("top: {segment: [0, 0, 0, 0]}"), "the same point"},
+      {facts("top: {box: [0, 0, 0, 1]}"), "the lower corner comes first"},
+      {facts("core: {disk: [0, 0, 0]}"), "the radius of a disk is positive"},
+      {facts("top: {arc: [0, 0, -1, 0, pi]}"), "the radius of an arc is positive"},
+      {facts("top: {arc: [0, 0, 1, 0, 180]}"), "angles in radians"},
+      {facts("top: {arc: [0, 0, 1, pi, 0]}"), "counterclockwise"},
+      {facts("top: {box: [0, 0, 1, 1], segment: [0, 1, 1, 1]}"), "a part has one place"},
+      {facts("core: {segment: [0, 1, 1, 1]}"), "segment is a place of boundaries"},
+      {facts("core: {within: top}"), "within is of boundaries"},
+      {facts("top: {size: 0}"), "the size of a part is positive"},
+      {facts("top: {size: k}"), "has the name k"},
+      {{{"units", "{length: mm, force: N}"},
+        {"mesh", "{file: a.msh, facts: {top: {box: [0, 0, 1 "
+                 "MPa, 1]}}}"}},
+       "a length is wanted"},
+  });
+}
+
 TEST(WrongCase, AllDefectsAreToldAtOnceByTheirPlaces) {
   const std::string message = said("rbvi: 1\n"
                                    "physics: plane_strain\n"

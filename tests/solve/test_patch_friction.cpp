@@ -30,6 +30,7 @@ void expect_exact(const Scene &scene, const Mu &mu, bool frictionless = false) {
   EXPECT_NEAR(*s.outputs.peak_pressure, exact.pressure, 1e-12 * exact.pressure);
   EXPECT_NEAR(*s.outputs.centre_pressure, exact.pressure, 1e-11 * exact.pressure);
   EXPECT_NEAR(*s.outputs.contact_half_width, 0.5, 1e-13);
+  EXPECT_FALSE(s.outputs.ends_in_contact) << "the block ends with its foot";
 }
 
 TEST(PatchFriction, AFootThatSticksIsExact) {
@@ -52,6 +53,20 @@ TEST(PatchFriction, WithoutFrictionTheFootSlidesFreely) {
     expect_exact(block(degree, "none"), {0.05, 0.1, 0.3}, true);
     expect_exact(block(degree), {0.05, 0.1, 0});
   }
+}
+
+/// With a large coefficient the foot sticks in part, or more of it does.
+TEST(PatchFriction, ALargeCoefficientHasAnswersThatAreLookedFor) {
+  Problem problem(PETSC_COMM_WORLD, block("1"), {});
+  HfOptions options;
+  const auto to_other = [&](const Mu &mu) {
+    return HighFidelity(problem, options).solve(mu).to_other;
+  };
+  const Mu several{0.01, 0.2, 2.868};
+  EXPECT_EQ(to_other(several), 0) << "not asked for";
+  options.looks_for_others = true;
+  EXPECT_GT(to_other(several), 0.1);
+  EXPECT_EQ(to_other({0.05, 0.02, 0.3}), 0);
 }
 
 TEST(PatchFriction, UzawaFindsTheSame) {

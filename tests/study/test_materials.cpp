@@ -147,7 +147,7 @@ TEST_F(Materials, EachCellHasOne) {
       return error.what();
     }
   };
-  EXPECT_NE(said(scene_of("{a: {at: soft, E: k, nu: 0.2}}", "")).find("has no material"),
+  EXPECT_NE(said(scene_of("{a: {at: soft, E: k, nu: 0.2}}", "")).find("without a material"),
             std::string::npos);
   Scene twice = scene_of(by_region, "");
   twice.materials.push_back({{"hard"}, twice.materials[0].of_cell});

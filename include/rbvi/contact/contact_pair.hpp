@@ -40,7 +40,8 @@ struct PairDiscretisation {
 /// multipliers, `weights` their integrals over the slave points that have a partner. A slave point
 /// beyond the ends of the master curve has none and contributes nothing.
 struct PairOperators : ContactOperators {
-  std::vector<Index> paired{}; ///< slave vertices that have a partner, increasing: rows of nodal_b
+  std::vector<Index> paired{};  ///< slave vertices that have a partner, increasing: rows of nodal_b
+  std::vector<Point> normals{}; ///< of these, out of the slave body
 };
 
 /// Rows of differences over both curves, one after the other. The points of a row are on few edges
@@ -100,11 +101,16 @@ Vector whole_weights(const std::vector<double> &lengths, MultiplierSpace space, 
 /// one everywhere.
 bool is_partial(double weight, double whole);
 
-/// The ends of contact where `lambda` is above `least`: where the slave curve ends, unless that end
-/// is closed (the body ends, or is mirrored, there), or where nothing faces it from there on: the
-/// last multiplier with a partner, and those before it that do not have one everywhere.
+/// Ends of the slave and of the master curve where the body ends (InterfaceMesh::closed).
+struct ClosedEnds {
+  std::array<bool, 2> slave, master;
+};
+
+/// The ends of contact where `lambda` is above `least`: where the slave curve ends, or where the
+/// master curve does and nothing faces the slave from there on (the last multiplier with a partner,
+/// and those before it that do not have one everywhere), unless that end is closed.
 double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
-                       double least, std::array<bool, 2> closed);
+                       double least, const ClosedEnds &closed);
 
 /// Gram matrix of the multipliers in L2 of the slave polygon; an entry (possibly zero) for every
 /// pair of neighbours.

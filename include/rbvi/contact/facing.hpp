@@ -30,6 +30,9 @@ struct Facing {
   /// `displacement`: the state there, which the condition is linearised about; at rest ignored.
   std::function<FacedPoint(const FullMu &mu, const PlacedPoint &point, const Point &displacement)>
       at;
+  /// The point that one of the reference boundary faces at rest, for pictures; empty: it lies along
+  /// the normal.
+  std::function<PointMap> partner{};
   /// The normal alone, for less work, where it does not depend on where the body is.
   Named<PointMap> normal{};
   bool asks_place = true; ///< whether `at` asks for PlacedPoint::y
@@ -41,8 +44,6 @@ struct Facing {
   Named<PointMap> body_normal{};
   /// The condition is one along that normal, of the deformed body. Only where it follows the state.
   bool along_body = false;
-  /// Whether the body ends, or is mirrored, at the curve's first and last end.
-  std::array<bool, 2> closed_ends{};
 };
 
 inline PlacedPoint place(const Scene &scene, const Facing &facing, const FullMu &mu,

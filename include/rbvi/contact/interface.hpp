@@ -33,6 +33,9 @@ struct InterfaceMesh {
   int per_entity = 2;
   std::vector<int> edges; ///< cells beside a boundary: the local edge of each that is on it
   std::vector<int> parts; ///< number of nodes of each boundary, or region
+  /// Of each boundary 1 or 0 for its first and for its last end: whether the body ends there, so
+  /// that contact may reach it; empty: nowhere.
+  std::vector<int> closed_ends = {};
   /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
   std::vector<int> dofs;
   Index columns = 0; ///< of the problem
@@ -46,6 +49,11 @@ struct InterfaceMesh {
   /// Of each entity, a cell or a facet; the first of its nodes.
   int vertices() const { return per_entity == nodes_per_cell(dim, degree) ? dim + 1 : dim; }
   int material_of(Index entity) const { return materials.empty() ? 0 : materials[entity]; }
+  /// Of boundary number `part`.
+  std::array<bool, 2> closed(std::size_t part) const {
+    if (closed_ends.empty()) return {};
+    return {closed_ends[2 * part] != 0, closed_ends[2 * part + 1] != 0};
+  }
   const int *nodes_of(Index entity) const { return entities.data() + entity * per_entity; }
 };
 
@@ -162,7 +170,8 @@ public:
   /// `lambda`: a node with at most `least` counts as free.
   virtual void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                        double least, Outputs &outputs) const = 0;
-  /// The mapped interface with its pressure, gap, ...; no cell where nothing can touch. `u`: at its
+  /// The mapped interface with its pressure, gap, normal (out of the body; of a membrane in space,
+  /// downwards), to_partner, ...; no cell where nothing can touch. `u`: at its
   /// nodes, node * components + c, without the motion.
   virtual Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) = 0;
 
@@ -196,6 +205,11 @@ Matrix mapped_points(const Scene &scene, const FullMu &mu, const std::vector<Poi
 /// together.
 void pressure_outputs(double images, const Vector &weights, const Vector &lambda, double least,
                       Outputs &outputs);
+
+/// Adds gap, normal and to_partner, what leads from each node to the point that it faces: along the
+/// normal, or other ways.
+void add_gap(const Vector &gap, const std::vector<Point> &normals, Grid &grid,
+             const std::vector<Point> &ways = {});
 
 /// motion + u at nodes of the mesh, three components each, for pictures.
 Vector moved_nodes(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,

@@ -46,6 +46,7 @@ struct NitscheCurve {
   Friction law;
   Facing facing;
   double gamma0;
+  std::array<bool, 2> closed_ends{}; ///< InterfaceMesh::closed
   bool friction() const { return law.law != FrictionLaw::none; }
   /// Throws failure, naming the value, for a negative one.
   NitscheLaw law_at(const FullMu &mu) const;

@@ -13,9 +13,6 @@ namespace rbvi {
 struct Pair {
   std::string slave, master; ///< boundaries
   PairDiscretisation discretisation;
-  /// Whether the bodies end, or are mirrored, at the first and at the last end of the slave curve:
-  /// contact may reach it.
-  std::array<bool, 2> closed_ends{};
 };
 
 ContactRecipe two_bodies(Pair pair);

@@ -25,9 +25,6 @@ struct Support {
   Named<PointValue> gap;
   Friction friction{};
   bool lumped = false; ///< vertex quadrature
-  /// The body ends where the boundary does: contact may reach its ends, as it may an axis of
-  /// symmetry.
-  bool closed_ends = false;
   /// By Nitsche's method: the unit normal of the body's exact boundary at a point of the reference
   /// boundary, out of the mapped body, which its stress acts on; empty: that of the edges.
   Named<PointMap> body_normal{};
@@ -48,7 +45,6 @@ struct HalfPlane {
   Friction friction{};
   bool lumped = false;           ///< vertex quadrature
   Named<PointMap> body_normal{}; ///< Support::body_normal
-  bool closed_ends = false;      ///< Support::closed_ends
 };
 
 /// A surface where the body now is: large deformations (Niakh 2022, appendix A). A point x of the
@@ -101,7 +97,7 @@ RigidSurface surface_in(const Stored &of);
 
 /// The curve of a support with motion + u, gap, pressure and tangential stress; see
 /// ContactInterface::fields.
-Grid support_fields(const Scene &scene, const FullMu &mu, const ContactInterface &interface,
-                    const Vector &u, const Vector &lambda);
+Grid support_fields(const ContactInterface &interface, const Scene &scene, const Facing &facing,
+                    const FullMu &mu, const Vector &u, const Vector &lambda);
 
 } // namespace rbvi

@@ -44,6 +44,14 @@ struct GapToSurface {
   GapKind kind;
   double operator()(const FullMu &mu, const Point &x) const { return along(mu, x, normal(mu, x)); }
   double along(const FullMu &mu, const Point &x, const Point &n) const;
+  Point partner(const FullMu &mu, const Point &x) const;
+
+private:
+  struct Way {
+    double length;
+    Point direction;
+  };
+  Way way(const FullMu &mu, const Point &from, const Point &n) const;
 };
 
 /// (partner - at) . normal, at = at(mu, x) (Niakh 2022, (3.4)). Evaluation throws failure where the

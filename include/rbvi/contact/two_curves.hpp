@@ -24,8 +24,6 @@ protected:
   std::vector<double> lengths(const FullMu &mu) const;
 
   MultiplierSpace space_;
-  /// Whether the bodies end, or are mirrored, at the ends of the slave curve.
-  std::array<bool, 2> closed_ends_{};
 
 private:
   std::vector<Point> slave_; ///< reference nodes

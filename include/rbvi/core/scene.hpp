@@ -9,6 +9,7 @@
 
 #include "rbvi/core/contact_recipe.hpp"
 #include "rbvi/core/terms.hpp"
+#include "rbvi/core/units.hpp"
 
 namespace rbvi {
 
@@ -34,6 +35,7 @@ struct MeshFact {
   /// Length, area or volume; polygons with their vertices on a circle lack up to a tenth. 0: any.
   double size = 0;
   std::string within = ""; ///< a boundary that holds all facets of this one
+  double excess = 1e-5;    ///< share by which the size may be larger, as about polygons in a body
 };
 
 /// A region of a material of its own: a disc, or the part of one between lines through its centre.
@@ -104,6 +106,7 @@ struct Scene {
   int components = 1; ///< of the displacement
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
   SceneOptions options;
+  std::optional<UnitSystem> units; ///< of numbers with a unit that a run gives
   ParameterSpace parameters;
   std::map<int, Coordinate> coordinates; ///< of some of parameters.all; the others: themselves
   /// Throws bad_input where values of all parameters that are valid one by one make no sense
@@ -157,6 +160,7 @@ struct SceneEntry {
   std::vector<CaseSetting> settings{};
   std::vector<std::pair<std::string, std::string>> variants{}; ///< of its file, with what they are
   std::map<std::string, double> mesh_numbers{};                ///< of the .geo that its mesh is
+  std::optional<UnitSystem> units{};                           ///< of numbers with a unit
 };
 
 /// What a program knows by name, and finds in model files (contact/registry.hpp).

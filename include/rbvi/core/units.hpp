@@ -42,4 +42,9 @@ std::string described(const Dimension &dimension);
 /// Throws bad_input if a quantity, written as `text`, has a unit of another dimension.
 void check_dimension(const Quantity &quantity, const Dimension &wanted, const std::string &text);
 
+/// A number that a run gives, with a unit of the dimension of `unit` ("": any) or without one.
+/// Throws bad_input, which calls it `what`.
+double parse_given(const std::string &text, const std::optional<UnitSystem> &system,
+                   const std::string &unit, const std::string &what);
+
 } // namespace rbvi

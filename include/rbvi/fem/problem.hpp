@@ -55,8 +55,8 @@ constexpr Index default_contact_gather = 10000;
 
 class Problem {
 public:
-  /// Collective on `comm`. Throws bad_input (check_functions), for a mesh that does not fit, and
-  /// for boundaries that impose different displacements where they meet.
+  /// Collective on `comm`. Throws bad_input (check_functions, check_held), for a mesh that does not
+  /// fit, and for boundaries that impose different displacements where they meet.
   Problem(MPI_Comm comm, Scene scene, const MeshOptions &options,
           Index contact_gather = default_contact_gather);
   /// The same on the mesh with `levels` refinements less; null where there is none. Collective.

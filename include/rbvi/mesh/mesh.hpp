@@ -59,10 +59,14 @@ struct Mesh {
   std::vector<std::array<int, 4>> cells;        ///< owned cells: dim + 1 local vertices, rest -1
   std::vector<std::array<int, 6>> cell_middles; ///< degree 2: local nodes of their edges, rest -1
   std::vector<PetscInt> natural_cell;           ///< per owned cell
+  std::vector<int> body; ///< per owned cell: which of the connected parts of the mesh it is in
+  int bodies = 0;        ///< connected parts, by common vertices
 
   std::map<std::string, std::vector<bool>> region;      ///< per name: owned cells in it
   std::map<std::string, std::vector<bool>> boundary;    ///< per name: local nodes on it
   std::map<std::string, std::vector<CellFacet>> facets; ///< per boundary: each has one owner
+  /// Per boundary with contact in 2D, at its first and last end by x: whether the body ends there.
+  std::map<std::string, std::array<bool, 2>> closed_ends;
 };
 
 /// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,

@@ -13,8 +13,8 @@ namespace rbvi {
 /// the file, nodes of no cell are left out; cells are turned to be positively oriented. Throws
 /// bad_input (see make_mesh).
 SerialMesh read_gmsh(const std::string &file, const Scene &scene);
-/// The names of its physical groups of cells and of facets, in a mesh of that dimension. Throws
-/// bad_input.
+/// The names of its physical groups of cells and of facets on their vertices, in a mesh of that
+/// dimension; each once. Throws bad_input.
 std::pair<std::vector<std::string>, std::vector<std::string>> parts_of_gmsh(const std::string &file,
                                                                             int dim);
 
@@ -56,10 +56,15 @@ void check_places(const SerialMesh &mesh, const Scene &scene, const std::string 
 
 /// As check_places, and further that the parts are whole. Regions hold every cell in their place,
 /// whose rim the mesh fits; boundaries exactly the facets of the surface along theirs; together
-/// they are the surface, where the recipe says so; sizes are right; no facets lie on top of others
-/// without common nodes, unless they are a pair's; loads and contact are on the surface. For a mesh
+/// they are the surface, where the recipe says so; sizes are right; every cell is in a region of a;
+/// no facets lie on top of others without common nodes, unless they are a pair's; loads and contact
+/// are on the surface. For a mesh
 /// that is not refined: a rim that Scene::snap does not know is fitted by the file alone.
 void check_facts(const SerialMesh &mesh, const Scene &scene, const std::string &source);
+
+/// The connected part of each cell, from 0 in the order of the cells; cells with a common vertex
+/// are connected.
+std::vector<int> bodies_of(const SerialMesh &mesh);
 
 /// Largest coordinate, without its sign.
 double extent_of(const SerialMesh &mesh);

@@ -11,6 +11,9 @@ namespace rbvi {
 /// alone. Otherwise there is one answer.
 bool bounds_follow_pressure(const NodeLaws &laws);
 
+/// Of two answers, relative; of another one that only the sign of the tangent tells of.
+constexpr double least_distance = 1e-6;
+
 struct FrictionAnswer : FrictionResult {
   /// In the plane: the determinant of the tangent at x is negative. For every c there is one more
   /// answer with a positive determinant than with a negative one, as without friction: so there are
@@ -25,7 +28,7 @@ FrictionAnswer friction_answer(const ColumnSource &columns, const Vector &q, con
                                const Vector &start, bool by_rule,
                                const FrictionOptions &options = {});
 
-/// Largest difference of two answers over their largest entry; 0 up to 1e-6, as of one answer.
+/// Largest difference of two answers over their largest entry; 0 up to least_distance, as of one.
 double distance_of_answers(const Vector &x, const Vector &other);
 
 /// The distance of found.x to the farthest other answer; 0: none was found. Looks from rest, by the

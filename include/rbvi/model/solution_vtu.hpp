@@ -5,16 +5,23 @@
 
 namespace rbvi {
 
-/// Of the interfaces of a scene: "u.vtu" -> "u_contact.vtu"; of several by their names,
+/// Adds the name of the scene and its parameters, "mu_NAME", as field data.
+void name_parameters(const Scene &scene, const FullMu &all_parameters, Grid &grid);
+
+/// "u.vtu", "_mesh" -> "u_mesh.vtu".
+std::filesystem::path file_beside(const std::filesystem::path &path, const std::string &suffix);
+
+/// Of the interfaces of a scene: "u.vtu", "_contact" -> "u_contact.vtu"; of several by their names,
 /// "u_contact_upper_plate.vtu", or "u_contact_1.vtu" where they have none.
 std::vector<std::filesystem::path> contact_files(const std::filesystem::path &path,
-                                                 const Scene &scene);
+                                                 const Scene &scene,
+                                                 const std::string &suffix = "_contact");
 
 /// One solution, full or reduced: `u` at all dofs (the motion of the scene is added), `lambda` at
 /// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields and interfaces alone are
 /// read). The displacement goes to `path`, with the number of the body on each cell
 /// and, of elastic bodies, the stresses at its centre; to its contact_files each interface
-/// with pressure, gap and (curves) displacement; of two bodies the part of the slave curve that
+/// with pressure, gap, normal and (curves) displacement; of two bodies the part of the slave curve that
 /// faces the master. A pressure that is constant on edges is also given at the nodes, as the mean
 /// of the edges beside them weighted by length. Field data: "mu_NAME" of every parameter, the names
 /// of the interfaces. Returns the files written. Throws failure if the model was read without its

@@ -51,6 +51,9 @@ struct HfOptions {
   double uzawa_step = 0;          ///< rho; 0: 1 / largest eigenvalue of B A^-1 B^T
   NonlinearOptions nonlinear;     ///< where contact follows the displacement
   NitscheOptions nitsche;
+  /// HfSolution::to_other, from further starts: by active sets on the multipliers, at small
+  /// deformations.
+  bool looks_for_others = false;
 };
 
 /// Relative residuals of the optimality system.
@@ -70,6 +73,7 @@ struct KktResidual {
 struct HfSolution : Answer {
   Vector slip; ///< the history of friction that it leaves (contact/history.hpp); empty without any
   std::vector<Index> active; ///< normal multipliers in contact
+  double to_other = 0; ///< largest distance to another answer that was seen, relative; 0: none
   KktResidual kkt;
   Outputs outputs;
   int columns = 0; ///< active_set: columns of the condensed operator

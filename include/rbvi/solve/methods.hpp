@@ -24,8 +24,10 @@ struct MethodResult : HfSolution {
 Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u);
 
 /// Active sets on the multipliers of a body that is set to `op`; friction by its rule
-/// (friction_answer). `start`: FrictionResult::start of a nearby problem; empty: cold. Collective.
-MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start);
+/// (friction_answer). `start`: FrictionResult::start of a nearby problem; empty: cold.
+/// `looks_for_others`: of HfOptions. Collective.
+MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start,
+                              bool looks_for_others = false);
 
 /// Contact that follows the displacement: Kacanov's or Newton's iteration on the condensed problem,
 /// every step on every rank. `op`: at mu; its contact operators become those of the solution.

@@ -1,6 +1,7 @@
 // The commands of the rbvi tool.
 #pragma once
 
+#include "rbvi/mesh/surface.hpp"
 #include "rbvi/solve/high_fidelity.hpp"
 #include "rbvi/tool/options.hpp"
 
@@ -26,6 +27,13 @@ void command_bench(const ToolOptions &options);
 
 /// What offline takes on several meshes, by several ranks per solve. Collective on the world.
 void command_growth(const ToolOptions &options);
+
+/// What check writes beside the file of -vtu: the mesh with its groups, its surface, and of each
+/// contact the partners at some parameters. The names, none without that option; and the files, by
+/// one rank.
+std::vector<NamedFile> files_of_check(const ToolOptions &options);
+std::vector<std::filesystem::path> write_check(const ToolOptions &options, const Problem &problem,
+                                               const SerialMesh &mesh);
 
 /// A case: its text and variants, its mesh, its functions, contact over the box, one solve. What
 /// was read is printed, every defect told; and its tests, where they are asked for. Collective on

@@ -1,0 +1,123 @@
+"""The picture of a case, from the files of rbvi check -vtu: its mesh with the groups of its surface,
+and what its contacts face before anything is deformed."""
+
+from functools import partial
+
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.transforms import ScaledTranslation
+
+from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, label_plane, parameters_of, plt,
+                          read_grid)
+from panels import Curve, Drawn, Lines, Triangles, legend_below, save_panels
+
+# Places in the box by the names of their files.
+PLACES = {"middle": ("middle of the box", BLUE), "least": ("where the gap is least", ORANGE),
+          "largest": ("where the gap is largest", GREEN)}
+HUES = (BLUE, GREEN, PURPLE, "#E69F00", "#56B4E9", ORANGE)
+MOST_WAYS = 40  # from points to their partners that are drawn
+FREE = "(free)"
+
+
+def draw_regions(mesh, axis):
+    """Handles of a legend, one for each."""
+    x, count = mesh.points, len(mesh.of_cells)
+    shade = sum(((k + 1) * values for k, values in enumerate(mesh.of_cells.values())),
+                np.zeros(len(mesh.cells)))
+    top = max(6, 2 * count * (count + 1))
+    axis.tripcolor(x[:, 0], x[:, 1], mesh.cells, facecolors=shade, cmap="Greys", vmin=-0.5, vmax=top,
+                   edgecolors="#999999", linewidth=0.2, rasterized=True)
+    return [Patch(color=plt.get_cmap("Greys")((k + 1.5) / (top + 0.5)), label=name)
+            for k, name in enumerate(mesh.of_cells)]
+
+
+def draw_groups(mesh, surface, figure, axis):
+    """The mesh, its regions in shades, the groups of its surface in colours, the largest below; what
+    is free is dotted."""
+    handles = draw_regions(mesh, axis)
+
+    def draw(which, label, **style):
+        segments = mesh.points[surface.cells[which], :2]
+        handles.append(axis.add_collection(LineCollection(segments, label=label, **style)))
+
+    groups = {name: values > 0 for name, values in surface.of_cells.items() if name != FREE}
+    order = sorted(groups, key=lambda name: -groups[name].sum())
+    for k, name in enumerate(order):
+        inside = any(np.all(groups[other] >= groups[name]) for other in order[:k])
+        draw(groups[name], name, colors=HUES[k % len(HUES)], linewidths=2 if inside else 4)
+    free = surface.of_cells[FREE] > 0
+    if free.any():
+        draw(free, "free: no condition, load or contact", colors="black", linewidths=1.2,
+             linestyles=":")
+    label_plane(axis)
+    axis.locator_params(nbins=5)
+    below = axis.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)  # inches
+    axis.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.1, 0), bbox_transform=below,
+                borderpad=0, ncols=2)
+
+
+def draw_partners(grids, _, axis):
+    """A contact boundary, what it faces, and the ways between them."""
+    handles = []
+    for place, grid in grids.items():
+        label, colour = PLACES[place]
+        x, way = grid.points[:, :2], grid.of_nodes["to_partner"][:, :2]
+        some = slice(None, None, max(1, len(x) // MOST_WAYS))
+        axis.add_collection(LineCollection(np.stack([x, x + way], axis=1)[some], colors=colour,
+                                           linewidths=0.5, alpha=0.7))
+        handles += axis.plot(x[:, 0], x[:, 1], color=colour, label=label)
+        axis.plot(*(x + way).T, color=colour, linestyle="--", linewidth=1.2)
+    handles.append(Line2D([], [], color="black", linestyle="--", linewidth=1.2, label="what it faces"))
+    legend_below(axis, handles)
+    label_plane(axis)
+    axis.set_aspect("equal", adjustable="datalim")
+
+
+def contact_panels(grids, which):
+    middle = next(iter(grids.values()))
+    if middle.cells.shape[1] > 2:
+        gaps = {place: grid.of_nodes["gap"] for place, grid in grids.items()}
+        return [Triangles(f"gap of {which}, {PLACES[place][0]}", grid.points[:, :2], grid.cells,
+                          gaps[place], "height above the obstacle (m)",
+                          (gaps[place].min(), gaps[place].max() + (np.ptp(gaps[place]) == 0)))
+                for place, grid in grids.items()]
+    curves = [Curve(grid.points[:, 0], grid.of_nodes["gap"], *PLACES[place])
+              for place, grid in grids.items()]
+    return [Drawn(f"{which} and what it faces", partial(draw_partners, grids)),
+            Lines(f"gap along {which}", "x (m)", "gap, overlap below 0 (m)", curves)]
+
+
+def partners(path):
+    """By the name of each contact and by place, those that were written."""
+    of_name = {}
+    for place in PLACES:
+        for file in sorted(path.parent.glob(f"{path.stem}_partners*_{place}{path.suffix}")):
+            grid = read_grid(file)
+            of_name.setdefault(grid.of_all["contacts"][0], {})[place] = grid
+    names = read_grid(path).of_all["contacts"]
+    return {name: of_name[name] for name in names if name in of_name}
+
+
+def case_panels(path):
+    """Panels, and the parameters of the places in the box."""
+    mesh, surface = (read_grid(beside(path, name)) for name in ("_mesh", "_surface"))
+    contacts = partners(path)
+    panels = [Drawn("mesh, groups of its surface", partial(draw_groups, mesh, surface))]
+    words = {}
+    for name, grids in contacts.items():
+        which = name if len(contacts) > 1 else "contact"
+        panels += contact_panels(grids, which)
+        for place, grid in grids.items():
+            label = PLACES[place][0] if place == "middle" else f"{which}, {PLACES[place][0]}"
+            words[label] = parameters_of(grid)
+    return panels, "\n".join(f"{label}: {numbers}" for label, numbers in words.items())
+
+
+def case(path):
+    """Nothing where rbvi check did not write its files."""
+    if not beside(path, "_mesh").is_file():
+        return []
+    panels, words = case_panels(path)
+    return save_panels(path.parent / "figures", "case.png", panels, words)

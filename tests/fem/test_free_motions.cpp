@@ -1,0 +1,118 @@
+// Bodies that nothing holds are refused with their name and their motion.
+#include "../core/refuses.hpp"
+#include "../cube_mesh.hpp"
+#include "../mesh/temporary_file.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/element/facet_forms.hpp"
+#include "rbvi/element/scalar_forms.hpp"
+#include "rbvi/fem/free_motions.hpp"
+#include "rbvi/fem/problem.hpp"
+#include "tests/catalogue.hpp"
+
+namespace rbvi::free_motions_test {
+namespace {
+
+Scene with_fixed(Scene scene, std::vector<FixedBoundary> fixed) {
+  scene.fixed = std::move(fixed);
+  scene.f.clear();
+  return scene;
+}
+
+Scene block(std::vector<FixedBoundary> fixed) {
+  return with_fixed(make_scene("patch", {{"bodies", "one"}}), std::move(fixed));
+}
+
+void make(const Scene &scene) {
+  const Problem problem(PETSC_COMM_WORLD, scene, {});
+}
+
+TEST(FreeMotions, OfABlockAreNamed) {
+  const auto expect = [](const std::string &motion, std::vector<FixedBoundary> fixed) {
+    EXPECT_TRUE(refuses("the body can " + motion + ": impose displacements",
+                        [&] { make(block(std::move(fixed))); }));
+  };
+  expect("move and turn", {});
+  expect("move along (0, 1)", {{"sides", {0}}});
+  expect("move along (1, 0)", {{"top", {1}}});
+  // The scene is drawn where it moves to: its top is at 0.5.
+  expect("move along (0, 1) and turn about (0.5, 0.5)", {{"top", {0}}});
+  EXPECT_NO_THROW(make(block({{"sides", {0}}, {"top", {1}}})));
+  EXPECT_NO_THROW(make(block({{"sides", {1}}, {"top", {0}}})));
+}
+
+TEST(FreeMotions, OneOfTwoBodiesMayBeFree) {
+  Scene scene = with_fixed(make_scene("patch"), {{"bottom", {}}});
+  EXPECT_TRUE(refuses("the body 'upper' between (0, 0) and (1, 0.5) can move and turn: impose",
+                      [&] { make(scene); }));
+  scene.mesh.regions.clear();
+  scene.mesh.facts.clear();
+  EXPECT_TRUE(refuses("the body between (0, 0) and (1, 0.5) can move and turn: impose",
+                      [&] { make(scene); }));
+  EXPECT_TRUE(
+      refuses("the body 'upper' between (0, 0) and (1, 0.5) can move along (0, 1), the body "
+              "'lower' between (0, -0.5) and (1, 0) can move along (0, 1): impose",
+              [&] {
+                make(with_fixed(make_scene("patch"), {{"sides", {0}}}));
+              }));
+}
+
+/// The upper quarter of a disk, where the map takes it.
+TEST(FreeMotions, ATurnIsAboutThePointWhereItsLinesCross) {
+  const Scene scene = make_scene("two_disks", {{"arc_edges", "8"}});
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+  EXPECT_TRUE(refuses(" and (1, 1.001) can turn about (0, 1.001), the body", [&] {
+    check_held(scene, mesh, number_dofs(mesh, 2, {{"axis", {1}}, {"top", {0}}}));
+  }));
+}
+
+TEST(FreeMotions, OfAMembraneIsTheConstant) {
+  const Scene scene = make_scene("membrane_obstacle", {{"circle_edges", "12"}});
+  EXPECT_TRUE(refuses("the body can move: impose", [&] { make(with_fixed(scene, {})); }));
+}
+
+TEST(FreeMotions, TermsOfAHoldABody) {
+  Scene scene = block({});
+  scene.a.push_back(exact_term(spring("sides", 1e-9, 2, 1)));
+  EXPECT_NO_THROW(make(scene));
+  // A force on the displacement alone, without one on its slope.
+  Scene membrane = with_fixed(make_scene("membrane_obstacle", {{"circle_edges", "12"}}), {});
+  membrane.a.push_back(exact_term(spring("boundary", 1, 1, 1)));
+  EXPECT_NO_THROW(make(membrane));
+  // Of two bodies the springs hold one.
+  Scene two = with_fixed(make_scene("patch"), {});
+  two.a.push_back(exact_term(spring("bottom", 1, 2, 1)));
+  EXPECT_TRUE(refuses("the body 'upper' between (0, 0) and (1, 0.5) can move and turn: impose",
+                      [&] { make(two); }));
+}
+
+TEST(FreeMotions, OfABodyInSpaceAreNamed) {
+  Scene scene = make_scene("membrane_obstacle");
+  scene.dim = scene.components = 3;
+  scene.mesh = {"", {"core"}, {"boundary"}};
+  scene.snap = {};
+  scene.contacts = {};
+  scene.f = {};
+  scene.map = [](const FullMu &, const Point &x) { return x; };
+  for (const int degree : {1, 2}) {
+    scene.degree = degree;
+    scene.a = {exact_term(elasticity("", lame(1, 0.3), degree))};
+    const TemporaryFile file(cube_mesh(3, 0.1));
+    const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {file.name(), 0});
+    const auto check = [&](const std::vector<FixedBoundary> &fixed) {
+      check_held(scene, mesh, number_dofs(mesh, 3, fixed));
+    };
+    EXPECT_TRUE(refuses("the body can move and turn: impose", [&] { check({}); }));
+    EXPECT_TRUE(refuses("the body can move at right angles to (1, 0, 0) and turn about an axis "
+                        "along (1, 0, 0): impose",
+                        [&] {
+                          check({{"boundary", {0}}});
+                        }));
+    EXPECT_TRUE(refuses("the body can move along (0, 1, 0): impose", [&] {
+      check({{"boundary", {0, 2}}});
+    }));
+    EXPECT_NO_THROW(check({{"boundary", {}}}));
+  }
+}
+
+} // namespace
+} // namespace rbvi::free_motions_test
