@@ -47,7 +47,7 @@ NodalTrace::NodalTrace(const ReducedModel &model, const Contact &contact)
     : model_(model), held_(held_by(model, contact)) {
   if (model.contact.trace_dofs.empty()) {
     dofs_ = nodal_dofs(contact);
-    trace_ = model.contact_trace(dofs_, Eigen::all);
+    trace_ = model.contact.trace(dofs_, Eigen::all);
     return;
   }
   dofs_.assign(model.contact.trace_dofs.begin(), model.contact.trace_dofs.end());

@@ -101,7 +101,7 @@ EvaluatedContact::EvaluatedContact(const ReducedModel &model, const Scene &scene
       rows_(Matrix(model.contact.dual_basis.transpose()).sparseView()),
       place_(model.contact.trace.rows(), -1) {
   const std::vector<int> &dofs = model.contact.law->condensed.dofs;
-  trace_ = dofs.empty() ? model.contact.trace : Matrix(model.contact_trace(dofs, Eigen::all));
+  trace_ = dofs.empty() ? model.contact.trace : Matrix(model.contact.trace(dofs, Eigen::all));
   unit_loads_ = body.prepared(trace_.transpose());
   for (std::size_t k = 0; k < dofs.size(); ++k)
     place_[dofs[k]] = static_cast<int>(k);

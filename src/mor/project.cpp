@@ -262,7 +262,7 @@ void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
       if (near[row]) known[entry.col()] = true;
   for (std::size_t dof = 0; dof < known.size(); ++dof)
     if (known[dof]) model.contact.trace_dofs.push_back(static_cast<int>(dof));
-  model.contact.trace = model.contact_trace(model.contact.trace_dofs, Eigen::all).eval();
+  model.contact.trace = model.contact.trace(model.contact.trace_dofs, Eigen::all).eval();
 }
 
 void store_histories(const AffineOperators &affine, const ReducedBases &bases,

@@ -69,7 +69,7 @@ inline void add_fields(std::mt19937 &random, ReducedModel &model) {
   triangle.per_entity = 3;
   triangle.parts = {3};
   triangle.columns = 3;
-  model.contact.trace = model.primal_basis(contact.nodes, Eigen::all);
+  model.contact.trace = model.fields.basis(contact.nodes, Eigen::all);
   model.contact.interfaces = {contact};
 }
 

@@ -133,7 +133,7 @@ TEST_F(ModelFile, ReturnsWhatLargeModelsHave) {
   model.body.a.reduced = model.body.a.reduced.leftCols(1).eval();
   model.body.a_change = {Vector::Ones(terms), Matrix::Ones(n, 2), Matrix::Ones(3, terms)};
   model.contact.trace_dofs = {0, 2};
-  model.contact.trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  model.contact.trace = model.contact.trace({0, 2}, Eigen::all).eval();
   write_model(model, path);
   const ReducedModel copy = read_model(path, catalogue());
   EXPECT_EQ(copy.body.a.reduced, model.body.a.reduced);
@@ -183,7 +183,7 @@ TEST_F(ModelFile, FieldsHaveAFileOfTheirOwn) {
   std::filesystem::rename(fields, directory / "away");
   EXPECT_NE(refusal().find("model.fields.h5 is missing"), std::string::npos);
   ReducedModel other = model;
-  other.primal_basis(0, 0) += 1e-9;
+  other.fields.basis(0, 0) += 1e-9;
   write_model(other, directory / "other.h5");
   std::filesystem::rename(fields_file(directory / "other.h5"), fields);
   EXPECT_NE(refusal().find("has the fields of another model"), std::string::npos);

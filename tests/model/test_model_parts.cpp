@@ -26,14 +26,14 @@ TEST(CheckModel, NamesWhatDoesNotFit) {
   using M = ReducedModel;
   EXPECT_FALSE(refused([](M &) {}));
   // A hybrid cone continues its hats with negative values, and need not have modes.
-  EXPECT_FALSE(refused([](M &m) { m.dual_basis(0, 0) = -1; }));
+  EXPECT_FALSE(refused([](M &m) { m.contact.dual_basis(0, 0) = -1; }));
   EXPECT_FALSE(refused([](M &m) {
-    m.dual_basis(0, 0) = -1;
+    m.contact.dual_basis(0, 0) = -1;
     m.contact.free_modes = 0;
   }));
   EXPECT_TRUE(refused([](M &m) { m.body.modes = 4; }));
   EXPECT_TRUE(refused([](M &m) { m.body.a.reduced(0, 0) = std::nan(""); }));
-  EXPECT_TRUE(refused([](M &m) { m.dual_basis(0, 0) = std::nan(""); }));
+  EXPECT_TRUE(refused([](M &m) { m.contact.dual_basis(0, 0) = std::nan(""); }));
   EXPECT_TRUE(refused([](M &m) { m.contact.free_modes = -1; }));
   EXPECT_TRUE(refused([](M &m) { m.contact.free_modes = 5; }));
   EXPECT_TRUE(refused([](M &m) { m.fields.cells[0] = 5; }));

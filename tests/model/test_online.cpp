@@ -96,7 +96,7 @@ TEST(OnlineSolver, TraceOfSomeNodes) {
   const ReducedModel model = toy_model({3, 3, 3, 2, 2, 2, 2}, 5);
   ReducedModel partial = model;
   partial.contact.trace_dofs = {0, 2};
-  partial.contact.trace = model.contact_trace({0, 2}, Eigen::all).eval();
+  partial.contact.trace = model.contact.trace({0, 2}, Eigen::all).eval();
   check_model(partial);
   OnlineSolver solver(model, synthetic::toy_scene<smooth>()),
       other(partial, synthetic::toy_scene<smooth>());

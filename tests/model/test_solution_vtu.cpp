@@ -151,7 +151,7 @@ TEST_F(PairVtu, NumbersTheBodiesAndHasTheirStresses) {
   const std::vector<double> body = data_array(cells, "body");
   ASSERT_EQ(3 * body.size(), model.fields.cells.size());
   for (std::size_t k = 0; k < body.size(); ++k) {
-    const bool upper = model.mesh_points(model.fields.cells[3 * k], 1) > 0;
+    const bool upper = model.fields.points(model.fields.cells[3 * k], 1) > 0;
     EXPECT_EQ(body[k], upper ? 1 : 2);
   }
   for (const char *name : {"von_mises", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy"})

@@ -202,7 +202,7 @@ TEST(CheckPairModel, NamesWhatDoesNotFit) {
   expect_complaint("contact/trace", [](M &m) { m.contact.trace.conservativeResize(21, 6); });
   expect_complaint("contact/dual_basis",
                    [](M &m) { m.contact.dual_basis.conservativeResize(5, 3); });
-  expect_complaint("contact/dual_basis", [](M &m) { m.dual_basis(0, 0) = std::nan(""); });
+  expect_complaint("contact/dual_basis", [](M &m) { m.contact.dual_basis(0, 0) = std::nan(""); });
   expect_complaint("fields/primal_basis", [](M &m) { m.fields.basis.conservativeResize(46, 6); });
 }
 

@@ -117,7 +117,7 @@ TEST(RowsApart, TermsSumUpToTheProjectionOfB) {
     const Matrix found =
         (model.contact.b.reduced * theta).reshaped(model.contact.generators, model.primal_size());
     const Matrix exact = model.contact.dual_basis.transpose() *
-                         (op.b * model.primal_basis(contact_dofs, Eigen::all));
+                         (op.b * model.fields.basis(contact_dofs, Eigen::all));
     EXPECT_LE((found - exact).topRows(n).norm(), 1e-2 * exact.norm());
     EXPECT_LE((found - exact).bottomRows(n).norm(), 1e-8 * exact.norm());
     // The work on a unit vertical displacement has no error of separation.
