@@ -4,7 +4,6 @@
 #include "order.hpp"
 #include "pivoting.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -274,10 +273,11 @@ private:
       return "the block of H of the nodes in contact is not positive definite: dependent "
              "constraints or an inexact H";
     if (undecided_ > 0)
-      return "a threshold that acts in contact alone jumps where a node leaves contact: with it " +
-             counted(undecided_, "node") +
-             " of those lift off that touch without it, and neither is an answer; let it act "
-             "everywhere (-friction_bound arc), or ask nearby";
+      return "a threshold that acts in contact alone jumps where a node leaves contact: without it "
+             "more nodes touch than with it (" +
+             std::to_string(undecided_) +
+             " here), and neither is an answer; let it act everywhere (-friction_bound arc), "
+             "or ask nearby";
     const std::string after = " after " + std::to_string(options_.max_iterations) + " steps: ";
     const std::string remedy = "start closer to the solution (a smaller change of the load or of "
                                "the coefficient of friction)";

@@ -30,6 +30,7 @@ void expect_exact(const Scene &scene, const Mu &mu, bool frictionless = false) {
   EXPECT_NEAR(*s.outputs.peak_pressure, exact.pressure, 1e-12 * exact.pressure);
   EXPECT_NEAR(*s.outputs.centre_pressure, exact.pressure, 1e-11 * exact.pressure);
   EXPECT_NEAR(*s.outputs.contact_half_width, 0.5, 1e-13);
+  EXPECT_FALSE(s.outputs.ends_in_contact) << "the block ends with its foot";
 }
 
 TEST(PatchFriction, AFootThatSticksIsExact) {
