@@ -166,8 +166,8 @@ TEST_F(Runs, ManyHatFunctionsAndThoseOfACoarserMesh) {
   EXPECT_GT(fine.body.a_change.rank(), 0);
   EXPECT_LT(fine.body.a_change.rank(), fine.primal_size() / 3);
   EXPECT_FALSE(fine.contact.trace_dofs.empty());
-  EXPECT_EQ(coarse.settings.at("cone_level"), "1");
-  EXPECT_LT(2 * coarse.generators, fine.contact.generators);
+  EXPECT_EQ(coarse.made.settings.at("cone_level"), "1");
+  EXPECT_LT(2 * coarse.contact.generators, fine.contact.generators);
   output_of(rbvi(1, "solve -case case.yaml -mu 0.19,0.01,-0.02 -csv truth.csv"));
   for (const std::string run : {"fine", "coarse"}) {
     EXPECT_TRUE(read_model(run + "/model.h5", catalogue()).made.self_check.clean());

@@ -70,7 +70,7 @@ TEST_F(ModelFile, AModelWhoseSceneHasChangedInThisBuildIsRefused) {
   const Scene scene = model.scene;
   model.made.settings[whole_scene] = scene_text(scene, contact_of(model, scene));
   write_model(model, path);
-  EXPECT_EQ(read_model(path, catalogue()).settings, model.made.settings);
+  EXPECT_EQ(read_model(path, catalogue()).made.settings, model.made.settings);
   const std::string line = "map values: ";
   std::string &text = model.made.settings[whole_scene];
   const std::size_t digit = text.find(line) + line.size() + 5;
@@ -168,7 +168,7 @@ TEST_F(ModelFile, FieldsHaveAFileOfTheirOwn) {
   again.made.settings["verified"] = "yes";
   write_model(again, path);
   EXPECT_EQ(std::filesystem::last_write_time(fields), written) << "the same fields stay";
-  EXPECT_EQ(read_model(path, catalogue()).settings, again.made.settings);
+  EXPECT_EQ(read_model(path, catalogue()).made.settings, again.made.settings);
 
   const auto refusal = [&]() -> std::string {
     EXPECT_NO_THROW(read_model(path, catalogue(), false));

@@ -291,7 +291,7 @@ TEST_F(PairFile, ReturnsTheModel) {
                        bare = read_model(directory / "model.h5", catalogue(), false);
     EXPECT_TRUE(copy.evaluates_contact());
     EXPECT_TRUE(synthetic::same(copy.contact.interfaces, model.contact.interfaces));
-    EXPECT_TRUE(synthetic::same(bare.interfaces, model.contact.interfaces));
+    EXPECT_TRUE(synthetic::same(bare.contact.interfaces, model.contact.interfaces));
     EXPECT_EQ(copy.scene.options, scene.options);
     EXPECT_EQ(copy.contact.dual_basis, model.contact.dual_basis);
     EXPECT_EQ(copy.contact.trace, model.contact.trace);

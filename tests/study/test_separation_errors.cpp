@@ -59,7 +59,7 @@ Pair with_both(Reduced &r, const ReduceOptions &options, const RowOptions &rows)
   pair.joint = project(r.problem, r.samples, joint, bases);
   pair.apart = project(r.problem, r.samples, pair.separated, bases);
   (void)collocate(pair.joint, r.problem, r.samples, options.gcns);
-  pair.apart.law->basis.nodes = pair.joint.contact.law->basis.nodes;
+  pair.apart.contact.law->basis.nodes = pair.joint.contact.law->basis.nodes;
   check_model(pair.joint);
   check_model(pair.apart);
   return pair;
@@ -83,8 +83,8 @@ TEST(RowsApart, AnswersAreThoseOfOneInterpolationWithinTheTolerance) {
   for (const double tolerance : {1e-3, 1e-5, 1e-7}) {
     SCOPED_TRACE(tolerance);
     const Pair pair = with_both(r, options, {{.tolerance = tolerance}, {.tolerance = 1e-10}});
-    EXPECT_EQ(pair.apart.law->apart.normal, pair.separated.b.size());
-    EXPECT_EQ(pair.apart.b.size(), pair.separated.b_size());
+    EXPECT_EQ(pair.apart.contact.law->apart.normal, pair.separated.b.size());
+    EXPECT_EQ(pair.apart.contact.b.size(), pair.separated.b_size());
     EXPECT_EQ(pair.joint.contact.law->apart.normal, 0);
     EXPECT_LE(difference(pair.joint, pair.apart), 20 * tolerance);
   }
