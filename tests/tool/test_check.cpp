@@ -132,7 +132,7 @@ TEST_F(Check, BodiesFaceEachOtherAndEachContactHasItsFiles) {
   if (!first()) return;
   EXPECT_EQ(files_of_check(options_).size(), 8U);
   EXPECT_EQ(written_.size(), 6U) << "the gap of the second one does not vary in the box";
-  for (const char *place : {"_middle", "_2_middle"}) {
+  for (const char *place : {"_upper_plate_middle", "_lower_plate_middle"}) {
     const Partners plate = at(place);
     ASSERT_GT(plate.gap.size(), 3U) << place;
     const Point a = plate.partner(0), b = plate.partner(1), c = plate.partner(plate.gap.size() - 1);

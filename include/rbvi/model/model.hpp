@@ -195,6 +195,8 @@ struct ContactModel {
   std::vector<int> trace_dofs; ///< contact dof of each row, rising; empty: all of them
   std::optional<NodalLaw> law;
   std::optional<NitscheModel> nitsche;
+  /// Without: R = 0, and b and g have no terms.
+  bool has_multipliers() const { return !nitsche; }
 };
 
 /// Of full order, for reconstruction; may stay in a file of their own, which may be large.
@@ -231,8 +233,7 @@ struct ReducedModel {
 
   int primal_size() const { return body.modes + body.supremizers; }
   Index contact_dofs() const { return contact.interfaces.front().mesh.columns; } ///< k
-  /// Without: R = 0, and b and g have no terms.
-  bool has_multipliers() const { return !contact.nitsche; }
+  bool has_multipliers() const { return contact.has_multipliers(); }
   /// B and G do not separate: they are evaluated for each mu on the interfaces.
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
