@@ -33,6 +33,16 @@ Record record_of(const HalfPlane &plane) {
   return record;
 }
 
+/// What a point faces along its normal; distance(mu, x, normal) without the motion.
+template <class Distance>
+auto faced(const std::function<PointMap> &normal, const Distance &distance) {
+  return [=](const FullMu &mu, const PlacedPoint &point, const Point &) {
+    const Point n = normal(mu, point.x);
+    return FacedPoint{n, distance(mu, point.x, n) - dot(point.motion, n),
+                      slip_along(n, point.motion)};
+  };
+}
+
 } // namespace
 
 RigidContact rigid_contact(const Support &support) {
@@ -45,18 +55,20 @@ RigidContact rigid_contact(const Support &support) {
                       {{"lumped", {support.lumped ? 1.0 : 0.0}}},
                       {{"boundary", support.boundary}},
                       {{"normal", support.normal.record}, {"gap", support.gap.record}}}};
-  rigid.facing.at = [normal = support.normal,
-                     gap = support.gap](const FullMu &mu, const PlacedPoint &point, const Point &) {
-    const Point n = normal(mu, point.x);
-    const auto *to_surface = gap.target<GapToSurface>(); // which needs no other normal
-    const double distance =
-        to_surface != nullptr ? to_surface->along(mu, point.x, n) : gap(mu, point.x);
-    return FacedPoint{n, distance - dot(point.motion, n), slip_along(n, point.motion)};
-  };
-  if (const auto *to_surface = support.gap.target<GapToSurface>())
+  if (const auto *to_surface = support.gap.target<GapToSurface>()) { // it needs no other normal
+    rigid.facing.at =
+        faced(support.normal, [to = *to_surface](const FullMu &mu, const Point &x, const Point &n) {
+          return to.along(mu, x, n);
+        });
     rigid.facing.partner = [to = *to_surface](const FullMu &mu, const Point &x) {
       return to.partner(mu, x);
     };
+  } else {
+    rigid.facing.at =
+        faced(support.normal, [gap = support.gap](const FullMu &mu, const Point &x, const Point &) {
+          return gap(mu, x);
+        });
+  }
   rigid.facing.normal = support.normal;
   rigid.facing.asks_place = false;
   rigid.facing.body_normal = support.body_normal;

@@ -297,11 +297,14 @@ Named<PointValue> point_value_of(const Formula &value) {
 
 Named<PointMap> point_map_of(const Formula &components) {
   check_names(components, {"x", "y", "z"});
-  if (dependence_of(components).empty() && !depends_on_point(components)) {
-    Point vector{};
-    for (std::size_t c = 0; c < components.values.size(); ++c)
-      vector[c] = *expanded(components.values[c], components.lets).constant();
-    return everywhere(vector);
+  if (!depends_on_point(components)) {
+    std::vector<Named<Coefficient>> own;
+    for (const Expression &value : components.values) {
+      Formula one = components;
+      one.values = {value};
+      own.push_back(coefficient_of(one));
+    }
+    return everywhere(own);
   }
   return function_of(expression_map_maker, record_of_formula(components));
 }

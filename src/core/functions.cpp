@@ -57,6 +57,33 @@ const Maker<PointMap> vector_maker{
       return [vector](const FullMu &, const Point &) { return vector; };
     }};
 
+/// Of components of any one type, the others zero.
+template <class Number> std::function<PointMap> same_everywhere(std::vector<Number> components) {
+  return [components = std::move(components)](const FullMu &mu, const Point &) {
+    Point vector{};
+    for (std::size_t c = 0; c < components.size(); ++c)
+      vector[c] = components[c](mu);
+    return vector;
+  };
+}
+
+std::function<PointMap> vector_of(const std::vector<std::function<Coefficient>> &components) {
+  std::vector<AffineCoefficient> lines;
+  for (const auto &component : components)
+    if (const auto *line = component.target<AffineCoefficient>()) lines.push_back(*line);
+  if (lines.size() == components.size()) return same_everywhere(std::move(lines));
+  return same_everywhere(components);
+}
+
+const Maker<PointMap> components_maker{
+    "components", 1, [](const Stored &of) -> std::function<PointMap> {
+      std::vector<std::function<Coefficient>> components;
+      for (const auto &[name, record] : of.record.parts)
+        components.push_back(made<Coefficient>(part(of, name)));
+      if (components.size() > 3) throw bad_input("a vector of the file has four components");
+      return vector_of(components);
+    }};
+
 const Maker<Material> material_maker{
     "everywhere", 1, [](const Record &of) -> std::function<Material> {
       const Lame material{number(of, "lambda"), number(of, "shear")};
@@ -66,9 +93,9 @@ const Maker<Material> material_maker{
 } // namespace
 
 FunctionLibrary common_functions() {
-  return {log_maker,    exp_maker,      log_to_half_maker, exp_to_half_maker,
-          affine_maker, constant_maker, identity_maker,    value_maker,
-          vector_maker, material_maker, coefficient_maker, scaled_maker};
+  return {log_maker,         exp_maker,      log_to_half_maker, exp_to_half_maker, affine_maker,
+          constant_maker,    identity_maker, value_maker,       vector_maker,      material_maker,
+          coefficient_maker, scaled_maker,   components_maker};
 }
 
 template <class Signature> Named<Signature> made(const Stored &stored) {
@@ -136,6 +163,13 @@ Named<PointValue> everywhere(double value) {
 
 Named<PointMap> everywhere(const Point &vector) {
   return vector_maker({{"x", {vector[0]}}, {"y", {vector[1]}}, {"z", {vector[2]}}});
+}
+
+Named<PointMap> everywhere(const std::vector<Named<Coefficient>> &components) {
+  std::map<std::string, Record> parts;
+  for (std::size_t c = 0; c < components.size(); ++c)
+    parts[std::string(1, "xyz"[c])] = components[c].record;
+  return components_maker.named(vector_of({components.begin(), components.end()}), {}, parts);
 }
 
 Named<PointValue> everywhere(const Named<Coefficient> &value) {

@@ -73,6 +73,7 @@ Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_par
 ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
   const NitscheModel &nitsche = *model_.contact.nitsche;
+  system.mu = all_parameters;
   system.quadratic = quadratic_at(all_parameters);
   ReducedAnswer answer;
   answer.mu = all_parameters;
@@ -110,14 +111,16 @@ Vector ReducedNitsche::multiplier(const FullMu &all_parameters, const Vector &u)
   return nitsche_multiplier(layer_, all_parameters, model_.contact.trace * u);
 }
 
-Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vector &u,
+Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters,
+                                        const std::vector<NitscheFace> &faces, const Vector &u,
                                         Outputs &outputs) const {
   if (model_.contact.nitsche->rule == CurveRule::full) return u;
   if (!whole_)
     whole_ = std::make_unique<System>(model_, layer_.cells,
                                       whole_curve(*model_.contact.nitsche, layer_));
-  whole_->quadratic = quadratic_at(all_parameters);
-  whole_->set_points(layer_, all_parameters);
+  whole_->quadratic =
+      system_->mu == all_parameters ? system_->quadratic : quadratic_at(all_parameters);
+  whole_->set_points(layer_, all_parameters, faces);
   whole_->set(u);
   whole_->set_bounds();
   (void)whole_->residual();
@@ -128,9 +131,10 @@ Vector ReducedNitsche::over_whole_curve(const FullMu &all_parameters, const Vect
 
 void ReducedNitsche::outputs(const FullMu &all_parameters, const Vector &u,
                              Outputs &outputs) const {
-  const Vector on_layer = model_.contact.trace * over_whole_curve(all_parameters, u, outputs);
-  const std::vector<NitscheFace> faces =
-      nitsche_faces(layer_, all_parameters, layer_.cells, on_layer);
+  std::vector<NitscheFace> faces = nitsche_faces(layer_, all_parameters, layer_.cells);
+  const Vector on_layer =
+      model_.contact.trace * over_whole_curve(all_parameters, faces, u, outputs);
+  turn_to(layer_, all_parameters, on_layer, faces);
   nitsche_outputs(layer_, all_parameters, faces, on_layer, nitsche_pressures(faces, on_layer),
                   outputs);
 }

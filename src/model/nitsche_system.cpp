@@ -20,6 +20,31 @@ constexpr double bound_accuracy = 1e-12;    ///< change of u by new bounds
 constexpr double shortest_step = 0.125;
 constexpr int most_steps = 100, most_full_steps = 25, most_loops = 60;
 
+/// The Gauss points beside a cell, as they are known or one by one.
+class FaceOfCell {
+public:
+  FaceOfCell(const NitscheLayer &layer, const FullMu &mu, const CurveCell &beside,
+             const NitscheFace *known)
+      : layer_(layer), mu_(mu), facing_(layer.curve_of(beside).facing), known_(known) {
+    if (known == nullptr) at_ = curve_cell_at(layer, mu, beside);
+  }
+  double gamma() const { return known_ != nullptr ? known_->gamma : at_->gamma; }
+  NitschePoint point(int q) const {
+    if (known_ != nullptr) return known_->points[q];
+    const auto [s, weight] = edge_quadrature[q];
+    NitschePoint point = nitsche_point(layer_.scene, facing_, mu_, *at_, s);
+    point.weight *= weight;
+    return point;
+  }
+
+private:
+  const NitscheLayer &layer_;
+  const FullMu &mu_;
+  const Facing &facing_;
+  const NitscheFace *known_;
+  std::optional<CurveCellAtMu> at_;
+};
+
 } // namespace
 
 Matrix basis_on(const CurveCell &cell, const Matrix &trace) {
@@ -41,7 +66,8 @@ ReducedNitsche::System::System(const ReducedModel &model, const std::vector<Curv
   u = Vector::Zero(model.primal_size());
 }
 
-void ReducedNitsche::System::set_points(const NitscheLayer &layer, const FullMu &all_parameters) {
+void ReducedNitsche::System::set_points(const NitscheLayer &layer, const FullMu &all_parameters,
+                                        const std::vector<NitscheFace> &whole) {
   mu = all_parameters;
   const bool turns = layer.follows_state();
   terms = {Vector(points), Vector(points), Vector::Zero(points), {}, layer.friction()};
@@ -54,24 +80,23 @@ void ReducedNitsche::System::set_points(const NitscheLayer &layer, const FullMu 
   Index next = 0;
   for (const Part &part : parts) {
     const CurveCell &beside = layer.cells[part.cell];
-    const CurveCellAtMu at = curve_cell_at(layer, mu, beside);
     const NitscheCurve &curve = layer.curve_of(beside);
+    const FaceOfCell face(layer, mu, beside, whole.empty() ? nullptr : &whole[part.cell]);
     const auto count = static_cast<Index>(part.points.size());
     Eigen::Matrix<double, 12, Eigen::Dynamic> local(12, kinds * count);
     terms.laws.insert(terms.laws.end(), part.points.size(), curve.law_at(mu));
     for (Index k = 0; k < count; ++k) {
       const auto [q, factor] = part.points[k];
-      const EdgePoint rule = edge_quadrature[q];
-      const NitschePoint point = nitsche_point(layer.scene, curve.facing, mu, at, rule.s);
-      local.col(k) = point.normal(at.gamma);
-      if (kinds > 1) local.col(count + k) = point.tangential(at.gamma);
+      const NitschePoint point = face.point(q);
+      local.col(k) = point.normal(face.gamma());
+      if (kinds > 1) local.col(count + k) = point.tangential(face.gamma());
       if (turns) {
         local.col(2 * count + k) = point.n;
         local.col(3 * count + k) = point.tau;
         at_rest.push_back({&curve.facing, point.place, point.facing.normal});
       }
-      terms.weights[next + k] = factor * rule.weight * point.weight;
-      terms.gamma[next + k] = at.gamma;
+      terms.weights[next + k] = factor * point.weight;
+      terms.gamma[next + k] = face.gamma();
       set_offsets(next + k, point.facing);
     }
     for (Index kind = 0; kind < kinds; ++kind)

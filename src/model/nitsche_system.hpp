@@ -52,7 +52,9 @@ struct ReducedNitsche::System {
   using ChosenPoints = std::vector<std::pair<int, double>>;
   System(const ReducedModel &model, const std::vector<CurveCell> &cells,
          const ChosenPoints &chosen);
-  void set_points(const NitscheLayer &layer, const FullMu &all_parameters);
+  /// `whole`: the faces of all cells at rest, where they are known.
+  void set_points(const NitscheLayer &layer, const FullMu &all_parameters,
+                  const std::vector<NitscheFace> &whole = {});
   void set_offsets(Index point, const FacedPoint &facing);
   void set(const Vector &coefficients);
   void set_bounds() { bounds = terms.bounds_at(pressures); }

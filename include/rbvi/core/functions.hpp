@@ -87,6 +87,8 @@ Named<PointMap> identity();
 /// The same at all points for all mu.
 Named<PointValue> everywhere(double value);
 Named<PointMap> everywhere(const Point &vector);
+/// Up to three components.
+Named<PointMap> everywhere(const std::vector<Named<Coefficient>> &components);
 Named<Material> everywhere(const Lame &material);
 /// The same at all points.
 Named<PointValue> everywhere(const Named<Coefficient> &value);

@@ -56,7 +56,9 @@ private:
   /// `of_samples`: NitscheModel::starts or states.
   Vector predicted(const Matrix &of_samples, const FullMu &all_parameters) const;
   /// The answer with the integrals over the whole curve, from u. Sets quadrature_residual, of u.
-  Vector over_whole_curve(const FullMu &all_parameters, const Vector &u, Outputs &outputs) const;
+  /// `faces`: of all cells at rest.
+  Vector over_whole_curve(const FullMu &all_parameters, const std::vector<NitscheFace> &faces,
+                          const Vector &u, Outputs &outputs) const;
 
   const ReducedModel &model_;
   const NitscheLayer layer_;
