@@ -282,6 +282,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
   std::vector<std::size_t> first; // contact dofs before each interface
   std::vector<PetscInt> &natural_dofs = places.natural_dofs;
   const auto components = static_cast<std::size_t>(dofs.components);
+  const std::vector<int> materials = materials_of_cells(scene, mesh);
   Edges edges;
   for (const ContactRecipe &contact : scene.contacts) {
     Found found = find_interface(mesh, dofs, scene, contact.entities);
@@ -305,7 +306,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       found.mesh.dofs.push_back(at->second);
     }
     found.mesh.imposed_by = imposed_at(mesh, dofs, found.natural);
-    found.mesh.materials = materials_of_entities(scene, mesh, found.mesh, found.natural);
+    found.mesh.materials = materials_of_entities(scene, mesh, materials, found.mesh, found.natural);
     places.meshes.push_back(std::move(found.mesh));
     places.natural_nodes.push_back(std::move(found.natural));
   }

@@ -37,7 +37,8 @@ bool is_of(const BodyMaterial &material, const Mesh &mesh, std::size_t cell) {
 
 std::vector<int> materials_of_cells(const Scene &scene, const Mesh &mesh) {
   std::vector<int> result;
-  if (scene.materials.empty()) return result;
+  const bool one = scene.materials.size() == 1 && scene.materials.front().regions.empty();
+  if (scene.materials.empty() || one) return result;
   collectively(mesh.comm, [&] {
     for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
       std::vector<int> found;
@@ -52,9 +53,9 @@ std::vector<int> materials_of_cells(const Scene &scene, const Mesh &mesh) {
 }
 
 std::vector<int> materials_of_entities(const Scene &scene, const Mesh &mesh,
+                                       const std::vector<int> &of_cells,
                                        const InterfaceMesh &interface,
                                        const std::vector<PetscInt> &natural) {
-  const std::vector<int> of_cells = materials_of_cells(scene, mesh);
   if (scene.materials.size() < 2) return {};
   const bool whole_cells = interface.vertices() == mesh.dim + 1;
   using Vertices = std::vector<PetscInt>;

@@ -1,27 +1,18 @@
+#include "rbvi/element/cell_fields.hpp"
 #include "rbvi/mesh/serial.hpp"
-
-#include <numeric>
 
 namespace rbvi {
 
 std::vector<int> bodies_of(const SerialMesh &mesh) {
-  std::vector<int> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root_of = [&](int vertex) {
-    while (parent[vertex] != vertex)
-      vertex = parent[vertex] = parent[parent[vertex]];
-    return vertex;
-  };
+  if (mesh.cells.empty()) return {};
+  std::vector<int> vertices;
   for (const auto &cell : mesh.cells)
-    for (int i = 1; i <= mesh.dim; ++i)
-      parent[root_of(cell[i])] = root_of(cell[0]);
-  std::vector<int> number(mesh.points.size(), -1), result;
-  int count = 0;
-  for (const auto &cell : mesh.cells) {
-    int &own = number[root_of(cell[0])];
-    if (own < 0) own = count++;
-    result.push_back(own);
-  }
+    vertices.insert(vertices.end(), cell.begin(), cell.begin() + mesh.dim + 1);
+  const Vector numbers =
+      body_numbers(vertices, mesh.dim + 1, std::ssize(mesh.points), vertices.front());
+  std::vector<int> result;
+  for (const double number : numbers) // from 1
+    result.push_back(static_cast<int>(number) - 1);
   return result;
 }
 

@@ -73,8 +73,9 @@ Vector ReducedNitsche::predicted(const Matrix &of_samples, const FullMu &all_par
 ReducedAnswer ReducedNitsche::solve(const FullMu &all_parameters) {
   System &system = *system_;
   const NitscheModel &nitsche = *model_.contact.nitsche;
-  system.mu = all_parameters;
+  system.mu.clear(); // until its quadratic is there
   system.quadratic = quadratic_at(all_parameters);
+  system.mu = all_parameters;
   ReducedAnswer answer;
   answer.mu = all_parameters;
   if (interpolated_) {

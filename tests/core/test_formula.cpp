@@ -46,6 +46,11 @@ TEST(Formula, HasTheValuesOfItsExpressions) {
   const auto m = point_map_of(formula({"scale*x", "a - y"}));
   EXPECT_EQ(m(mu, x), (Point{150, -2, 0}));
   EXPECT_EQ(again(m)(mu, x), m(mu, x));
+  for (const char *second : {"3 - b", "b^2 + twice"}) { // the same everywhere: affine, and not
+    const auto same = point_map_of(formula({"2*a", second}));
+    EXPECT_EQ(same(mu, x), (Point{4, std::string(second) == "3 - b" ? 0.0 : 19.0, 0})) << second;
+    EXPECT_EQ(again(same)(mu, x), same(mu, x)) << second;
+  }
   const auto t = traction_of(formula({"a*nx", "y*ny", "z"}));
   EXPECT_EQ(t(mu, x, n), (Point{1.2, 3.2, 7}));
   EXPECT_EQ(again(t)(mu, x, n), t(mu, x, n));

@@ -6,12 +6,16 @@
 #include "rbvi/element/cell_fields.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/model/online.hpp"
+#include "rbvi/par/collective.hpp"
 #include "rbvi/scene/case.hpp"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <optional>
 #include <sstream>
+
+#include <unistd.h>
 
 namespace rbvi::materials_test {
 namespace {
@@ -123,6 +127,28 @@ TEST_F(Materials, ByRegionAreThoseByPlace) {
                  wanted = stresses(places.model, other.scene());
     EXPECT_LE((found - wanted).cwiseAbs().maxCoeff(), 1e-12 * wanted.cwiseAbs().maxCoeff());
   }
+}
+
+/// Numbers of materials come back from the files of a model, and are asked for.
+TEST_F(Materials, FilesKeepThem) {
+  Reduced regions(scene_of(by_region, ", sides: {at: sides, ux: 0}"), "grid:2,2", PETSC_COMM_WORLD,
+                  mesh(true));
+  regions.reduce(testing_reduced::everything());
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  const ReducedModel &model = regions.model;
+  EXPECT_EQ(std::ranges::count(model.fields.materials, 0), 64) << "half of the cells are soft";
+  EXPECT_EQ(model.contact.interfaces.front().mesh.materials, std::vector<int>(8, 0));
+  const auto path = std::filesystem::path(testing::TempDir()) /
+                    ("rbvi_materials_" + std::to_string(::getpid()) + ".h5");
+  write_model(model, path);
+  ReducedModel again = read_model(path, catalogue());
+  std::filesystem::remove(path);
+  std::filesystem::remove(fields_file(path));
+  EXPECT_EQ(again.fields.materials, model.fields.materials);
+  EXPECT_EQ(again.contact.interfaces.front().mesh.materials,
+            model.contact.interfaces.front().mesh.materials);
+  again.fields.materials.back() = 2;
+  EXPECT_THROW(OnlineSolver{again}, Error);
 }
 
 /// The warning looks at the material beside contact.
