@@ -48,6 +48,13 @@ Term mapped_term(Form form, std::optional<std::vector<int>> parameters) {
   return {std::move(form), std::nullopt, std::move(parameters)};
 }
 
+double coefficient_of(const Term &term, const FullMu &all_parameters) {
+  double product = 1;
+  for (const Factor &factor : *term.theta)
+    product *= factor.value(all_parameters);
+  return product;
+}
+
 SplitSum split_sum(const Sum &sum, const ParameterSpace &space) {
   FullMu fixed;
   for (const Parameter &p : space.all)

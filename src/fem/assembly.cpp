@@ -25,6 +25,18 @@ std::size_t cell_rows(const Mesh &mesh, const Dofs &dofs, std::size_t cell, Cell
   return count;
 }
 
+/// Entries in the rows of this rank that no cell makes.
+std::size_t coupled_entries(const Dofs &dofs) {
+  const auto end = dofs.first_free + static_cast<PetscInt>(dofs.natural_owned.size());
+  std::size_t entries = 0;
+  for (const std::vector<PetscInt> &coupled : dofs.coupled)
+    entries +=
+        coupled.size() * static_cast<std::size_t>(std::ranges::count_if(coupled, [&](PetscInt row) {
+          return row >= dofs.first_free && row < end;
+        }));
+  return entries;
+}
+
 } // namespace
 
 std::vector<int> imposed_on(const Mesh &mesh, const Dofs &dofs, std::size_t cell,
@@ -89,6 +101,13 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs) {
         columns.push_back(cell[j]);
       }
   }
+  for (const std::vector<PetscInt> &coupled : dofs.coupled)
+    for (const PetscInt row : coupled)
+      for (const PetscInt column : coupled)
+        if (row >= dofs.first_free && row < dofs.first_free + owned) {
+          rows.push_back(row);
+          columns.push_back(column);
+        }
   RBVI_CALL(MatSetPreallocationCOO(matrix.get(), static_cast<PetscCount>(rows.size()), rows.data(),
                                    columns.data()));
   RBVI_CALL(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
@@ -145,7 +164,7 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
               const Dofs &dofs, const MappedVertices &mapped, Mat matrix) {
   const auto count =
       static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
-  std::vector<PetscScalar> all(mesh.cells.size() * count * count, 0);
+  std::vector<PetscScalar> all(mesh.cells.size() * count * count + coupled_entries(dofs), 0);
   for (const WeightedForm &weighted : forms)
     visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {

@@ -1,13 +1,17 @@
 #include "rbvi/fem/free_motions.hpp"
 
+#include "motion_text.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/imposed.hpp"
+#include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/imposed.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -17,29 +21,19 @@ namespace rbvi {
 
 namespace {
 
-/// Squares of sines between motions and what holds them, and energies relative to those of a rough
-/// field: less is round-off.
-constexpr double held = 1e-12;
-constexpr long most_told = 3; ///< bodies
-
-/// A connected part of the mesh: its box.
-struct Body {
-  Point low, high;
-  Point centre() const { return (low + high) / 2; }
-  double size() const { return norm(high - low) / 2; }
-};
+constexpr std::size_t most_told = 3; ///< bodies
 
 struct Bodies {
   const Mesh &mesh;
   const Dofs &dofs;
   std::vector<Point> at;    ///< per local node of an owned cell
   std::vector<int> of_node; ///< -1: of no owned cell
-  std::vector<Body> all;
+  std::vector<MeshPart> all;
 
   int modes() const { return dofs.components == 1 ? 1 : mesh.dim == 2 ? 3 : 6; }
   /// The rigid motions of the body of a node there, rotations about the centre.
   Vector motions(std::size_t node, int component) const {
-    const Body &body = all[of_node[node]];
+    const MeshPart &body = all[of_node[node]];
     const Point x = (at[node] - body.centre()) / body.size();
     return Vector::NullaryExpr(modes(), [&](Index mode) {
       return rigid_displacement(mesh.dim, static_cast<int>(mode), component, x);
@@ -129,68 +123,9 @@ std::vector<Matrix> free_motions(const Grams &grams) {
     const Matrix gram = grams.middleCols(first, grams.rows());
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(gram);
     free.push_back(eigen.eigenvectors().leftCols(
-        (eigen.eigenvalues().array() <= held * std::max(1.0, gram.trace())).count()));
+        (eigen.eigenvalues().array() <= motion_is_held * std::max(1.0, gram.trace())).count()));
   }
   return free;
-}
-
-bool is_free(const Matrix &motions) {
-  return motions.cols() > 0;
-}
-
-std::string vector_text(const Bodies &bodies, const Point &x) {
-  std::string text;
-  for (int c = 0; c < bodies.mesh.dim; ++c)
-    text.append(c == 0 ? "(" : ", ").append(short_number(std::abs(x[c]) < 1e-9 ? 0 : x[c]));
-  return text.append(")");
-}
-
-/// Of either sign.
-std::string direction_text(const Bodies &bodies, const Point &x) {
-  const double sign = *std::ranges::max_element(x, {}, [](double part) { return std::abs(part); });
-  return vector_text(bodies, x / std::copysign(1, sign));
-}
-
-/// "along (0, 1)": directions, the columns, orthonormal.
-std::string translations_text(const Bodies &bodies, const Matrix &directions) {
-  const Index dim = bodies.mesh.dim;
-  if (directions.cols() == dim) return "move in every direction";
-  const auto column = [&](Index j) {
-    Point direction{};
-    for (Index c = 0; c < dim; ++c)
-      direction[c] = directions(c, j);
-    return direction;
-  };
-  const bool one = directions.cols() == 1;
-  return (one ? "move along " : "move at right angles to ") +
-         direction_text(bodies, one ? column(0) : cross(column(0), column(1)));
-}
-
-/// Of turns, the columns: about a point in the plane, about an axis in space.
-std::string turn_text(const Bodies &bodies, const Body &body, const Matrix &turns) {
-  if (bodies.mesh.dim == 3)
-    return turns.cols() > 1 ? "turn"
-                            : "turn about an axis along " +
-                                  direction_text(bodies, {turns(4, 0), turns(5, 0), turns(3, 0)});
-  // The velocity (t_x - w y, t_y + w x) at (x, y) from the centre, in sizes, is zero there.
-  const double scale = body.size() / turns(2, 0);
-  return "turn about " +
-         vector_text(bodies, body.centre() + Point{-turns(1, 0) * scale, turns(0, 0) * scale, 0});
-}
-
-/// "move along (0, 1) and turn about (0.5, 0)".
-std::string motions_text(const Bodies &bodies, const Body &body, const Matrix &free) {
-  if (free.cols() == bodies.modes()) return free.cols() == 1 ? "move" : "move and turn";
-  const Index dim = bodies.mesh.dim;
-  // Combinations without a turn are the translations, those at right angles to them turn.
-  const Eigen::JacobiSVD<Matrix> svd(free.bottomRows(free.rows() - dim), Eigen::ComputeFullV);
-  const auto turning = (svd.singularValues().array() > std::sqrt(held)).count();
-  const Matrix all = free * svd.matrixV();
-  std::vector<std::string> texts;
-  if (free.cols() > turning)
-    texts.push_back(translations_text(bodies, all.topRightCorner(dim, free.cols() - turning)));
-  if (turning > 0) texts.push_back(turn_text(bodies, body, all.leftCols(turning)));
-  return joined(texts, " and ");
 }
 
 /// Numbers of the bodies that have a cell in a region.
@@ -214,17 +149,89 @@ std::vector<std::string> names_of(const Bodies &bodies) {
   std::vector<std::string> names;
   for (std::size_t body = 0; body < bodies.all.size(); ++body)
     names.push_back("the body " + (regions[body].empty() ? "" : regions[body] + " ") + "between " +
-                    vector_text(bodies, bodies.all[body].low) + " and " +
-                    vector_text(bodies, bodies.all[body].high));
+                    vector_text(bodies.mesh.dim, bodies.all[body].low) + " and " +
+                    vector_text(bodies.mesh.dim, bodies.all[body].high));
   return names;
+}
+
+/// A node with springs: its free dofs and the motions there.
+struct SpringNode {
+  std::vector<PetscInt> rows;
+  Matrix motions; ///< rows x modes
+};
+
+/// The node of a body nearest to a point, the one of the least natural number. Collective.
+SpringNode nearest_node(const Bodies &bodies, int body, const Point &to) {
+  struct {
+    double distance = std::numeric_limits<double>::infinity();
+    int natural = std::numeric_limits<int>::max();
+  } nearest;
+  std::size_t here = 0;
+  for (std::size_t node = 0; node < bodies.of_node.size(); ++node) {
+    if (bodies.of_node[node] != body || !bodies.mesh.owned_node[node]) continue;
+    const double distance = norm(bodies.at[node] - to);
+    const auto natural = static_cast<int>(bodies.mesh.natural_node[node]);
+    if (std::pair(distance, natural) >= std::pair(nearest.distance, nearest.natural)) continue;
+    nearest.distance = distance;
+    nearest.natural = natural;
+    here = node;
+  }
+  const int mine = nearest.natural;
+  MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPI_DOUBLE_INT, MPI_MINLOC, bodies.mesh.comm);
+  const int components = bodies.dofs.components;
+  Matrix found = Matrix::Zero(components, 1 + bodies.modes());
+  if (mine == nearest.natural && bodies.of_node[here] == body)
+    for (int c = 0; c < components; ++c)
+      found.row(c) << double(bodies.dofs.free[bodies.dof(here, c)]),
+          bodies.motions(here, c).transpose();
+  over_ranks(bodies.mesh.comm, MPI_SUM, found);
+  SpringNode node{{}, Matrix(0, bodies.modes())};
+  for (int c = 0; c < components; ++c) {
+    if (found(c, 0) < 0) continue;
+    node.rows.push_back(static_cast<PetscInt>(found(c, 0)));
+    node.motions.conservativeResize(std::ssize(node.rows), Eigen::NoChange);
+    node.motions.bottomRows(1) = found.row(c).tail(bodies.modes());
+  }
+  return node;
+}
+
+/// Near the corners of its box, which they hold like the whole body. Collective.
+void choose_springs(const Bodies &bodies, FreeBody &body) {
+  Matrix motions(0, bodies.modes());
+  for (int corner = 0; corner < 1 << bodies.mesh.dim; ++corner) {
+    Point at{};
+    for (int c = 0; c < bodies.mesh.dim; ++c)
+      at[c] = ((corner >> c) & 1) != 0 ? body.part.high[c] : body.part.low[c];
+    const SpringNode node = nearest_node(bodies, body.number, at);
+    if (node.rows.empty() || std::ranges::find(body.rows, node.rows.front()) != body.rows.end())
+      continue;
+    body.rows.insert(body.rows.end(), node.rows.begin(), node.rows.end());
+    motions.conservativeResize(std::ssize(body.rows), Eigen::NoChange);
+    motions.bottomRows(std::ssize(node.rows)) = node.motions;
+  }
+  const ThinQr qr = thin_qr(motions * body.motions);
+  if (!(qr.r.diagonal().cwiseAbs().minCoeff() > 1e-6))
+    throw bad_input(body.name + " has too few nodes that can move");
+  body.springs = qr.q;
+}
+
+/// theta of the first exact term of a on cells of the body. Collective.
+std::vector<Factor> coefficient_on(const Scene &scene, const Mesh &mesh, int body) {
+  for (const Term &term : scene.a) {
+    if (!term.theta || !term.form.boundary.empty()) continue;
+    if (term.form.region.empty() || bodies_in(mesh, mesh.region.at(term.form.region))[body] != 0)
+      return *term.theta;
+  }
+  return {};
 }
 
 } // namespace
 
-void check_held(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
+std::vector<FreeBody> free_bodies(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
+  const auto is_free = [](const Matrix &motions) { return motions.cols() > 0; };
   if (std::ranges::none_of(free_motions(held_by_displacements(find_bodies(mesh, dofs, {}))),
                            is_free))
-    return;
+    return {};
   const FullMu mu = generic_point(scene.parameters);
   const MappedVertices mapped = map_vertices(scene, mu, mesh);
   const Bodies bodies = find_bodies(mesh, dofs, mapped);
@@ -232,17 +239,79 @@ void check_held(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
   for (const Term &term : scene.a)
     add_energy(bodies, term, mu, mapped, grams);
   const std::vector<Matrix> free = free_motions(grams);
-  const long all = std::ranges::count_if(free, is_free);
-  if (all == 0) return;
+  if (std::ranges::none_of(free, is_free)) return {};
   const std::vector<std::string> names = names_of(bodies);
-  std::string found;
-  long told = 0;
-  for (std::size_t body = 0; body < free.size() && told < most_told; ++body)
+  std::vector<FreeBody> result;
+  for (std::size_t body = 0; body < free.size(); ++body)
     if (is_free(free[body]))
-      found.append(told++ == 0 ? "" : ", ")
-          .append(names[body] + " can " + motions_text(bodies, bodies.all[body], free[body]));
-  if (all > told) found.append(" (and " + std::to_string(all - told) + " more)");
-  throw bad_input(found + ": impose displacements that prevent it; contact alone holds no body");
+      result.push_back({names[body], static_cast<int>(body), bodies.all[body], free[body]});
+  return result;
+}
+
+std::vector<FreeBody> add_springs(Scene &scene, const Mesh &mesh, Dofs &dofs) {
+  std::vector<FreeBody> result = free_bodies(scene, mesh, dofs);
+  if (result.empty()) return result;
+  if (scene.components == 1)
+    throw bad_input(
+        describe(result, mesh.dim, Matrix::Identity(motions_of(result), motions_of(result))) +
+        ": impose displacements that prevent it");
+  const Bodies bodies =
+      find_bodies(mesh, dofs, map_vertices(scene, generic_point(scene.parameters), mesh));
+  for (FreeBody &body : result) {
+    choose_springs(bodies, body);
+    body.term = static_cast<int>(scene.a.size());
+    scene.a.push_back(exact_term(elasticity("", Lame{0, 0}, scene.degree),
+                                 coefficient_on(scene, mesh, body.number)));
+    dofs.coupled.push_back(body.rows);
+  }
+  scene.f.push_back(exact_term(body_load("", everywhere(Point{}), scene.components, scene.degree)));
+  return result;
+}
+
+std::vector<Handle<Vec>> rigid_motions(const std::vector<FreeBody> &bodies, const Scene &scene,
+                                       const FullMu &mu, const Mesh &mesh, const Dofs &dofs) {
+  const Bodies parts = find_bodies(mesh, dofs, map_vertices(scene, mu, mesh));
+  const std::vector<Matrix> free = free_motions(held_by_displacements(parts));
+  std::vector<Handle<Vec>> result;
+  for (const FreeBody &body : bodies) {
+    // Points that displacements hold may move with mu, and with them what a turn is about.
+    const bool by_displacements = free[body.number].cols() == body.motions.cols();
+    const Matrix &now = free[body.number];
+    const Matrix motions =
+        by_displacements ? Matrix(now * (now.transpose() * body.motions)) : body.motions;
+    for (Index k = 0; k < motions.cols(); ++k) {
+      Handle<Vec> motion = make_vector(dofs);
+      for (std::size_t node = 0; node < parts.of_node.size(); ++node) {
+        if (parts.of_node[node] != body.number || !mesh.owned_node[node]) continue;
+        for (int c = 0; c < dofs.components; ++c)
+          if (const PetscInt row = dofs.free[parts.dof(node, c)]; row >= 0)
+            RBVI_CALL(VecSetValue(motion.get(), row, parts.motions(node, c).dot(motions.col(k)),
+                                  INSERT_VALUES));
+      }
+      RBVI_CALL(VecAssemblyBegin(motion.get()));
+      RBVI_CALL(VecAssemblyEnd(motion.get()));
+      result.push_back(std::move(motion));
+    }
+  }
+  return result;
+}
+
+std::string describe(const std::vector<FreeBody> &bodies, int dim, const Matrix &motions) {
+  std::string text;
+  std::size_t told = 0;
+  Index first = 0;
+  for (const FreeBody &body : bodies) {
+    const Index count = body.motions.cols();
+    const Eigen::JacobiSVD<Matrix> svd(motions.middleRows(first, count), Eigen::ComputeThinU);
+    const Matrix own =
+        svd.matrixU().leftCols((svd.singularValues().array() > 1e-6 * motions.norm()).count());
+    first += count;
+    if (own.cols() == 0 || ++told > most_told) continue;
+    text.append(told == 1 ? "" : ", ")
+        .append(body.name + " can " + motions_text(dim, body.part, body.motions * own));
+  }
+  if (told > most_told) text.append(" (and " + std::to_string(told - most_told) + " more)");
+  return text;
 }
 
 } // namespace rbvi

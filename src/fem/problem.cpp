@@ -6,8 +6,9 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/check_scene.hpp"
-#include "rbvi/fem/free_motions.hpp"
+#include "rbvi/method/balance.hpp"
 #include "rbvi/par/collective.hpp"
+#include "rbvi/par/columns.hpp"
 
 #include <cmath>
 #include <utility>
@@ -53,18 +54,69 @@ std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
 
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
     : given_(checked(std::move(scene))), mesh_options_(options),
-      scene_(std::make_unique<const Scene>(with_imposed_loads(given_))),
+      scene_(std::make_unique<Scene>(with_imposed_loads(given_))),
       mesh_(make_mesh(comm, *scene_, options)),
       dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
-      places_(place_interfaces(mesh_, dofs_, *scene_)),
+      free_(add_springs(*scene_, mesh_, dofs_)), places_(place_interfaces(mesh_, dofs_, *scene_)),
       contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
       contact_gather_(contact_gather),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
-  check_held(*scene_, mesh_, dofs_);
+  if (!free_.empty()) stiffen_springs();
   if (!imposes_values(*scene_)) return;
   check_imposed(*scene_, generic_point(scene_->parameters), mesh_, dofs_);
   imposed_energy_ = make_imposed_energy(*scene_, mesh_, dofs_);
+}
+
+void Problem::stiffen_springs() {
+  const FullMu mu = generic_point(scene_->parameters);
+  sum_up(scene_->a, scene_->parameters, mu, mesh_, dofs_, map_vertices(*scene_, mu, mesh_), a_);
+  stiffen(free_, *scene_, mu, a_);
+  beta_ = Vector::Zero(motions_of(free_));
+  pressed_ = make_vector(dofs_);
+  if (!has_multipliers(*scene_)) return;
+  Operators operators;
+  Mu free_parameters;
+  for (const int p : scene_->parameters.free)
+    free_parameters.push_back(mu[p]);
+  collectively(comm(), [&] { assemble_contact(free_parameters, operators); });
+  const Matrix unresisted = unresisted_motions(operators.laws, held_by(operators));
+  if (unresisted.cols() > 0)
+    throw bad_input(describe(free_, mesh_.dim, unresisted) +
+                    ": impose displacements that prevent it, for no contact does");
+}
+
+void Problem::relax_springs(const Vector &beta) {
+  beta_ = beta;
+  RBVI_CALL(VecCopy(f_.total.get(), pressed_.get()));
+  add_spring_forces(free_, spring_coefficients(free_, *scene_, operators_.mu).cwiseProduct(beta_),
+                    pressed_.get());
+}
+
+double Problem::spring_energy() const {
+  if (free_.empty()) return 0;
+  return spring_coefficients(free_, *scene_, operators_.mu).dot(beta_.cwiseAbs2()) / 2;
+}
+
+Matrix Problem::held_by(const Operators &operators) const {
+  Matrix held(operators.b.rows(), motions_of(free_));
+  const auto motions = rigid_motions(free_, *scene_, operators.mu, mesh_, dofs_);
+  for (Index k = 0; k < held.cols(); ++k)
+    held.col(k) = operators.b * restrict_to(trace(), motions[k].get());
+  return held;
+}
+
+std::array<Vector, 2> Problem::pushed(const FullMu &mu) const {
+  Vector sum(motions_of(free_)), terms(sum.size());
+  const auto motions = rigid_motions(free_, *scene_, mu, mesh_, dofs_);
+  for (Index k = 0; k < sum.size(); ++k) {
+    const Vector work = local_values(motions[k].get()).cwiseProduct(local_values(f_.total.get()));
+    sum[k] = work.sum();
+    terms[k] = work.cwiseAbs().sum();
+  }
+  over_ranks(comm(), MPI_SUM, sum);
+  over_ranks(comm(), MPI_SUM, terms);
+  return {sum, terms};
 }
 
 std::unique_ptr<Problem> Problem::coarser(int levels) const {
@@ -129,7 +181,8 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector 
   if (new_a) sum_up(scene_->a, scene_->parameters, all, mesh_, dofs_, mapped_, a_);
   if (new_f) sum_up(scene_->f, scene_->parameters, all, mesh_, dofs_, mapped_, f_);
   operators_.a = a_.total.get();
-  operators_.f = f_.total.get();
+  operators_.f = free_.empty() ? f_.total.get() : pressed_.get();
+  if (!free_.empty()) relax_springs(beta_);
   if (imposes_values(*scene_))
     operators_.imposed_energy = energy_at(imposed_energy_, *scene_, all, mesh_, dofs_, mapped_);
   return operators_;

@@ -92,10 +92,10 @@ bool CollocatedSolver::answer_on_functions(const LawAtMu &law, const Vector &sta
   return !mends || answer.residual <= mended_above;
 }
 
-ReducedAnswer CollocatedSolver::solve(const FullMu &mu) {
+ReducedAnswer CollocatedSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
   const Vector from = start(mu);
   ReducedAnswer answer;
-  const LawAtMu law = at_nodes_.problem().at(mu, answer);
+  const LawAtMu law = at_nodes_.problem().at(mu, answer, {}, relaxed.beta);
   if (!answer_on_functions(law, from, answer)) at_nodes_.solve_at_nodes(law, answer);
   at_nodes_.problem().finish(law, answer);
   at_nodes_.starts().keep(answer.start);

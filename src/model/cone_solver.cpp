@@ -4,6 +4,7 @@
 #include "rbvi/core/largest.hpp"
 #include "rbvi/method/anderson.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/free_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +92,7 @@ void ConeSolver::solve_dual(ReducedAnswer &answer) {
 }
 
 void ConeSolver::solve_pair(const Vector &state, ReducedAnswer &answer) {
-  at_mu_.set(answer.mu);
+  at_mu_.set(answer.mu, beta_);
   if (model_.evaluates_contact())
     evaluate_contact(state, answer);
   else
@@ -114,6 +115,8 @@ void ConeSolver::finish(ReducedAnswer &answer) {
       kkt_residual(at_mu_.restricted(au), at_mu_.restricted(btx), at_mu_.restricted(f_), bu, g_,
                    answer.lambda, model_.contact.free_modes, terms);
   answer.least_pressure = active_fraction;
+  if (model_.body.springs.size() > 0)
+    answer.motions = free_motions_at(at_mu_, b_scale_ * b_, uniform_laws(b_.rows(), 1, {}));
   if (!(answer.residual <= largest_left))
     throw failure((std::ostringstream("the reduced answer has a KKT residual of ", std::ios::ate)
                    << answer.residual << ": reduce again with fewer generators or more supremizers")
@@ -195,9 +198,10 @@ void ConeSolver::start(const FullMu &mu) {
     qp_.start_from(start.active);
 }
 
-ReducedAnswer ConeSolver::solve(const FullMu &mu) {
+ReducedAnswer ConeSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
   ReducedAnswer answer;
   answer.mu = mu;
+  beta_ = relaxed.beta;
   if (!options_.warm) start(mu);
   solve_from_start(answer);
   return answer;

@@ -6,6 +6,7 @@
 #include "rbvi/contact/following.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/model/free_bodies.hpp"
 
 namespace rbvi {
 
@@ -47,9 +48,9 @@ NonlinearStart FollowingSolver::start(const FullMu &mu) const {
   return start;
 }
 
-ReducedAnswer FollowingSolver::solve(const FullMu &mu) {
+ReducedAnswer FollowingSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
   if (evaluated_.set_compliance(mu) && nodal_) nodal_->forget();
-  at_mu_.set(mu);
+  at_mu_.set(mu, relaxed.beta);
   Vector load; // half response to it
   Compliance &compliance = evaluated_.compliance();
   NonlinearContact problem{.compliance = compliance,
@@ -80,6 +81,9 @@ ReducedAnswer FollowingSolver::solve(const FullMu &mu) {
   answer.energy = 0.5 * (answer.reaction.dot(problem.free - found.state) - load.squaredNorm());
   answer.u = evaluated_.moved_by(at_mu_, answer.reaction);
   if (load.size() > 0) answer.u += at_mu_.transposed_half_response(load);
+  if (model_.body.springs.size() > 0)
+    answer.motions = free_motions_at(
+        at_mu_, evaluated_.rows() * answer.contact.b * model_.contact.trace, problem.laws);
   answer.residual = found.residual;
   answer.iterations = found.steps;
   answer.load_steps = found.load_steps;

@@ -14,7 +14,7 @@ public:
   /// `by_rule`: as in friction_answer.
   NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                 const QueryOptions &options, bool by_rule);
-  ReducedAnswer solve(const FullMu &mu) override;
+  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
   /// From answer.start, where that is there, or from what the samples predict.
   void solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer);
   LawProblem &problem() { return problem_; }
@@ -31,7 +31,7 @@ class CollocatedSolver : public QueryMethod {
 public:
   CollocatedSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                    const QueryOptions &options);
-  ReducedAnswer solve(const FullMu &mu) override;
+  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
 
 private:
   Vector start(const FullMu &mu);
@@ -52,7 +52,7 @@ class FollowingSolver : public QueryMethod {
 public:
   FollowingSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                   const QueryOptions &options, bool by_rule);
-  ReducedAnswer solve(const FullMu &mu) override;
+  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
 
 private:
   NonlinearStart start(const FullMu &mu) const;

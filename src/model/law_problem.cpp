@@ -4,6 +4,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/model/collocated_law.hpp"
+#include "rbvi/model/free_bodies.hpp"
 
 #include <numeric>
 
@@ -24,10 +25,11 @@ LawProblem::LawProblem(const ReducedModel &model, const Scene &scene, const Cont
       edge_(edge_of_nodes(contact, model.contact.dual_basis)), body_(model, scene), at_mu_(body_),
       contact_(reduced_contact(model, scene, contact, body_)) {}
 
-LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &state) {
+LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &state,
+                       const Vector &beta) {
   answer.mu = mu;
   contact_->set(mu, state, answer);
-  at_mu_.set(mu);
+  at_mu_.set(mu, beta);
   LawAtMu law{contact_->g(), {}, {}, laws_at(columns_, interfaces_, mu)};
   const MultiplierBasis &functions = model_.contact.law->basis;
   if (functions.normal.size() > 0 || at_mu_.has_load()) law.b = contact_->b();
@@ -57,6 +59,7 @@ void LawProblem::finish(const LawAtMu &law, ReducedAnswer &answer) const {
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
   contact_->move(at_mu_, answer);
+  if (model_.body.springs.size() > 0) answer.motions = free_motions_at(at_mu_, law.b, law.laws);
   if (law.load.size() > 0) answer.u += at_mu_.transposed_half_response(law.load);
 }
 

@@ -38,9 +38,10 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   answer.start = std::move(found.start);
 }
 
-ReducedAnswer NodeLawSolver::solve(const FullMu &mu) {
+ReducedAnswer NodeLawSolver::solve(const FullMu &mu, const Relaxed &relaxed) {
   ReducedAnswer answer;
-  const LawAtMu law = problem_.at(mu, answer);
+  const LawAtMu law = problem_.at(mu, answer, {}, relaxed.beta);
+  answer.start = relaxed.start;
   solve_at_nodes(law, answer);
   problem_.finish(law, answer);
   starts_.keep(answer.start);

@@ -58,6 +58,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (model.contact.b.size() > 0)
     result.contact.b.reduced =
         leading_block(model.contact.b.reduced, model.contact.generators, r, n);
+  if (model.body.springs.size() > 0) result.body.springs = model.body.springs.topRows(n);
   if (model.body.f.size() > 0) result.body.f.reduced = model.body.f.reduced.topRows(n);
   if (model.contact.g.size() > 0) result.contact.g.reduced = model.contact.g.reduced.topRows(r);
   result.contact.dual_basis = model.contact.dual_basis.leftCols(r);
@@ -78,6 +79,13 @@ const ValidationErrors &expected_errors(const ReducedModel &model) {
   return model.body.supremizers == 0 && plain.count + plain.unanswered > 0
              ? plain
              : model.made.validation_enriched;
+}
+
+Vector spring_coefficients(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
+  Vector result(std::ssize(model.body.spring_terms));
+  for (Index k = 0; k < result.size(); ++k)
+    result[k] = coefficient_of(scene.a[model.body.spring_terms[k]], mu);
+  return result;
 }
 
 ErrorOfOutput errors_of_outputs(const ReducedModel &model) {

@@ -111,6 +111,12 @@ template <class Store, class Model> void list_operators(const Store &store, Mode
   list_terms(store, "b", model.contact.b, Shape{r * n, model.contact.b.size()}, dim, interfaces);
   list_terms(store, "f", model.body.f, Shape{n, model.body.f.size()}, dim, 1);
   list_terms(store, "g", model.contact.g, Shape{r, model.contact.g.size()}, dim, interfaces);
+  auto &body = model.body;
+  const Index motions = std::ssize(body.spring_terms);
+  store("springs/terms", body.spring_terms, Indices{std::ssize(model.scene.a)});
+  store("springs/reduced", body.springs, Shape{motions > 0 ? n : any_size, motions});
+  store("springs/motions", body.motions,
+        Shape{motions, motions > 0 ? model.made.trained_mu.cols() : any_size});
   auto &energy = model.body.imposed_energy;
   list_terms(store, "imposed_energy", energy, Shape{1, energy.size()}, dim, 1);
 }

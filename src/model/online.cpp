@@ -5,6 +5,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/model/affine_coefficients.hpp"
+#include "rbvi/model/free_bodies.hpp"
 
 #include <algorithm>
 
@@ -71,7 +72,8 @@ OnlineSolver::OnlineSolver(const ReducedModel &model, Scene scene, const QueryOp
 ReducedAnswer OnlineSolver::solve(const Mu &mu, bool extrapolate) {
   check_query(scene_, mu, extrapolate);
   return while_doing("solving the reduced problem at " + describe(scene_.parameters, mu), [&] {
-    ReducedAnswer solution = method_->solve(expand(scene_.parameters, mu));
+    ReducedAnswer solution =
+        solve_balanced(*method_, model_, scene_, expand(scene_.parameters, mu));
     if (const AffineTerms &imposed = model_.body.imposed_energy; imposed.size() > 0)
       solution.energy += imposed.reduced.row(0).dot(
           affine_coefficients(imposed, imposed_energy_, scene_, solution.mu));

@@ -95,8 +95,9 @@ Matrix ReducedBody::prepared(const Matrix &loads) const {
   return eigenvectors_ * (eigenvalues_.cwiseInverse().asDiagonal() * turned(loads));
 }
 
-void BodyAtMu::set(const FullMu &mu) {
+void BodyAtMu::set(const FullMu &mu, const Vector &beta) {
   mu_ = mu;
+  beta_ = beta;
   if (body_.model_.body.online_enriched) {
     subspace_.resize(0, 0);
     lower_.resize(0, 0);
@@ -146,6 +147,21 @@ Vector BodyAtMu::restricted(const Vector &load) const {
 }
 
 Vector BodyAtMu::load() const {
+  if (beta_.size() == 0) return given_load();
+  const Vector theta = spring_coefficients(body_.model_, body_.scene_, mu_);
+  return given_load() + body_.model_.body.springs * theta.cwiseProduct(beta_);
+}
+
+Matrix BodyAtMu::free_motions() const {
+  const Matrix &springs = body_.model_.body.springs;
+  const Matrix half = half_response(springs);
+  Matrix motions(springs.rows(), springs.cols());
+  for (Index k = 0; k < motions.cols(); ++k)
+    motions.col(k) = transposed_half_response(half.col(k));
+  return motions;
+}
+
+Vector BodyAtMu::given_load() const {
   const AffineTerms &f = body_.model_.body.f;
   if (!has_load()) return Vector::Zero(body_.model_.primal_size());
   return f.reduced * affine_coefficients(f, body_.scene_.f, body_.scene_, mu_);

@@ -2,6 +2,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/io/parameter_sets.hpp"
+#include "rbvi/model/free_bodies.hpp"
 #include "rbvi/model/law_solver.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/small_svd.hpp"
@@ -17,12 +18,14 @@ namespace {
 constexpr std::size_t at_a_time = 100, most_queries = 10000; ///< queries
 
 /// The multipliers of the loads at each mu, zero where the law has no answer. Collective.
-Matrix answers_at(const Problem &problem, const CondensedLoads &loads, QueryMethod &solver,
-                  const std::vector<Mu> &set) {
+Matrix answers_at(const Problem &problem, const CondensedLoads &loads, const ReducedModel &model,
+                  QueryMethod &solver, const std::vector<Mu> &set) {
   Matrix answers = Matrix::Zero(loads.columns.cols(), std::ssize(set));
   take_turns(problem.comm(), set.size(), [&](std::size_t p) {
     try {
-      const ReducedAnswer answer = solver.solve(expand(problem.scene().parameters, set[p]));
+      const Scene &scene = problem.scene();
+      const ReducedAnswer answer =
+          solve_balanced(solver, model, scene, expand(scene.parameters, set[p]));
       answers.col(p) =
           !loads.units.empty() ? answer.reaction : Vector(answer.theta_b[0] * answer.lambda);
     } catch (const Error &) { // the self-check tells of such mu
@@ -94,7 +97,7 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
     set.emplace_back(training.begin(), training.end());
   const Mu any = set.front();
   const auto solver = law_solver(model, problem.scene(), problem.contact());
-  Matrix answers = answers_at(problem, loads, *solver, set);
+  Matrix answers = answers_at(problem, loads, model, *solver, set);
   if (answers.isZero(0)) throw failure("the law of contact has no answer at any training mu");
   ParameterReader random(problem.scene().parameters,
                          "random:" + std::to_string(most_queries) + ":29");
@@ -110,7 +113,7 @@ int append_answered_responses(Problem &problem, const CondensedLoads &loads,
       throw failure("the responses to the answers of the law go on after " +
                     std::to_string(most_queries) +
                     " of them: use a smaller box, or -response_tolerance 0");
-    answers = answers_at(problem, loads, *solver, set);
+    answers = answers_at(problem, loads, model, *solver, set);
   } while (directions.left(answers) > between * tolerance);
   ResponseSolver body(problem.assemble(any).a, problem.trace(), "hf_");
   constexpr double dependent = 1e-9; // of a response's own norm: the modes hold it

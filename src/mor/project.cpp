@@ -239,6 +239,27 @@ void project_exact(Problem &problem, const std::vector<Sample> &samples,
     model.body.f.reduced.col(q++) = project_load(problem.comm(), term.get(), basis);
 }
 
+/// The springs of bodies that contact alone holds. Collective.
+void project_springs(const Problem &problem, const std::vector<Sample> &samples, Mat basis,
+                     BodyModel &body) {
+  const std::vector<FreeBody> &bodies = problem.free_bodies();
+  if (bodies.empty()) return;
+  const Index motions = motions_of(bodies);
+  for (const FreeBody &free : bodies)
+    body.spring_terms.insert(body.spring_terms.end(), static_cast<std::size_t>(free.motions.cols()),
+                             free.term);
+  body.springs.resize(body.modes + body.supremizers, motions);
+  for (Index k = 0; k < motions; ++k) {
+    const Handle<Vec> force = make_vector(problem.dofs());
+    add_spring_forces(bodies, Vector::Unit(motions, k), force.get());
+    body.springs.col(k) = project_load(problem.comm(), force.get(), basis);
+  }
+  body.motions.resize(motions, std::ssize(samples));
+  for (std::size_t p = 0; p < samples.size(); ++p)
+    body.motions.col(p) = spring_lengths(
+        bodies, from_natural(problem.dofs(), displacement(problem.comm(), samples[p])).get());
+}
+
 /// Leaves in the trace of a large pair of spaces the nodes over which contact moves, those that
 /// generators reach and free modes do not, and two layers around them.
 void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
@@ -292,6 +313,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
   {
     const BorrowedColumns basis(bases.pod.basis.columns.get());
     project_exact(problem, samples, affine, basis.get(), model);
+    project_springs(problem, samples, basis.get(), model.body);
     model.contact.trace = restrict_to(problem.trace(), basis.get());
     project_snapshots(problem, samples, affine, basis.get(), model);
   }

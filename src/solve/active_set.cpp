@@ -10,6 +10,7 @@ namespace {
 
 template <class Found> void take(Found &&found, MethodResult &result) {
   result.lambda = std::move(found.x);
+  result.w = std::move(found.w);
   result.active = std::move(found.active);
   result.iterations = found.iterations;
   result.columns = found.columns;
@@ -20,11 +21,12 @@ template <class Found> void take(Found &&found, MethodResult &result) {
 } // namespace
 
 MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start,
-                              bool looks_for_others) {
+                              const ActiveSetOptions &options) {
   const ColumnSource columns = [&](const std::vector<Index> &which) {
     return condensed_columns(body, op.b, which);
   };
-  const Vector q = op.g - op.b * body.free(op);
+  Vector q = op.g - op.b * body.free(op);
+  if (options.correction.size() > 0) q += options.correction;
   MethodResult result;
   RBVI_CALL(VecDuplicate(op.f, result.free_u.put()));
   if (!op.laws.has_tangents()) {
@@ -32,8 +34,8 @@ MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector 
         solve_lcp(columns, q, start.size() > 0 ? in_contact(op.laws, start) : std::vector<Index>()),
         result);
   } else {
-    FrictionAnswer found = friction_answer(columns, q, op.laws, start, true);
-    if (looks_for_others && found.converged)
+    FrictionAnswer found = friction_answer(columns, q, op.laws, start, options.by_rule);
+    if (options.looks_for_others && found.converged)
       result.to_other = distance_to_other_answer(columns, q, op.laws, found);
     if (found.has_others) result.to_other = std::max(result.to_other, least_distance);
     result.start = std::move(found.start);

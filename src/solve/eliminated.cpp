@@ -332,12 +332,13 @@ bool GridSequence::has_coarser() {
 }
 
 MethodResult GridSequence::solve(const Mu &mu, const Operators &op, const Vector &start,
-                                 double accuracy) {
+                                 double accuracy, bool by_rule) {
   constexpr double enough_to_start = 1e-8;
   // Steps from a neighbour are as many as layers of cells between the sets; those from coarser
   // meshes are three or four on every mesh, and cost a third more. Measured on membranes: 0.07 and
   // 0.10 s at 13e3 dofs, 0.51 and 0.47 s at 53e3, 4.8 and 2.1 s at 213e3.
   constexpr PetscInt coarser_from = 40000;
+  if (!by_rule) return on_this_.solve(op, start, accuracy);
   if (start.size() > 0 && (problem_.dofs().total_free < coarser_from || !has_coarser()))
     return on_this_.solve(op, start, accuracy, true);
   if (!has_coarser()) return on_this_.solve(op, {}, accuracy, true);

@@ -22,6 +22,8 @@ namespace rbvi {
 namespace {
 
 constexpr double largest_residual = 1e-10; ///< KKT, of an active-set method
+constexpr double refined_above = 1e-11;
+constexpr int most_refinements = 2;
 
 /// Sets the outputs, but for what the method itself knows. `weights`: of all normal multipliers.
 void measure(const Problem &problem, const Operators &op, const Vector &weights,
@@ -35,7 +37,7 @@ void measure(const Problem &problem, const Operators &op, const Vector &weights,
   const double images = problem.scene().mirror_images;
   Outputs &outputs = result.outputs;
   result.residual = result.kkt.largest();
-  outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy);
+  outputs.energy = images * (quadratic / 2 - linear + op.imposed_energy + problem.spring_energy());
   outputs.kkt_residual = result.residual;
   const Vector left = op.nodal_gap - op.nodal_b * restrict_to(problem.trace(), result.free_u.get());
   std::array<double, 2> penetration = penetration_at(left, op.nodal_gap);
@@ -102,6 +104,12 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
                     " is for small deformations: leave it out, or use -kinematics small");
   if (options.method == HfMethod::vi) require_bounds_at_nodes(problem.scene());
   if (!has_multipliers(problem.scene())) {
+    if (const auto &free = problem.free_bodies(); !free.empty()) {
+      const Index motions = motions_of(free);
+      throw bad_input(describe(free, problem.scene().dim, Matrix::Identity(motions, motions)) +
+                      ": impose displacements that prevent it, for by Nitsche's method contact "
+                      "alone holds no body, or use -formulation mixed");
+    }
     nitsche_ = std::make_unique<NitscheSolver>(problem, options.nitsche);
     return;
   }
@@ -109,8 +117,9 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
     throw bad_input("-hf_contact eliminated is for small deformations: leave it out, or use "
                     "-kinematics small");
   if (eliminates(problem, options)) grids_ = std::make_unique<GridSequence>(problem);
+  const bool several_solves = follows_state(problem.contact()) || !problem.free_bodies().empty();
   const ColumnsLast last = constant_stiffness(problem.scene()) && !grids_ ? ColumnsLast::for_all_mu
-                           : follows_state(problem.contact())             ? ColumnsLast::for_one_mu
+                           : several_solves                               ? ColumnsLast::for_one_mu
                                                                           : ColumnsLast::for_one_b;
   body_ = std::make_unique<FactoredBody>(ksp_.get(), problem.trace(), last);
   part_fits_ =
@@ -120,6 +129,7 @@ HighFidelity::HighFidelity(Problem &problem, const HfOptions &options)
 HighFidelity::~HighFidelity() = default;
 
 const HighFidelity::Solved *HighFidelity::nearest(const Mu &mu) const {
+  if (last_) return &*last_;
   const ParameterSpace &space = problem_.scene().parameters;
   const Solved *nearest = nullptr;
   double best = 0;
@@ -139,17 +149,30 @@ const HighFidelity::Solved *HighFidelity::nearest(const Mu &mu) const {
 
 Vector HighFidelity::nearest_start(const Mu &mu, const Operators &op) {
   const bool columns_are_kept = part_ || body_->count() > 0;
-  if (solved_.empty()) return columns_are_kept ? Vector() : rough_start(ksp_.get(), problem_, op);
-  return nearest(mu)->start;
+  if (const Solved *found = nearest(mu)) return found->start;
+  return columns_are_kept ? Vector() : rough_start(ksp_.get(), problem_, op);
 }
 
 MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, const Vector &slip) {
   if (part_) part_->set(op);
   FullBody &body = part_ ? static_cast<FullBody &>(*part_) : *body_;
-  MethodResult result =
-      solve_active_set(body, op, nearest_start(mu, op), options_.looks_for_others);
+  ActiveSetOptions options{!last_, options_.looks_for_others, {}};
+  MethodResult result = solve_active_set(body, op, nearest_start(mu, op), options);
   if (!result.converged) return result;
-  result.kkt = kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+  const auto residual = [&] {
+    return kkt_residual(problem_.trace(), op, result.free_u.get(), result.lambda);
+  };
+  result.kkt = residual();
+  // H has the round-off of A^-1, which iterative refinement takes out.
+  options = {false, options_.looks_for_others, Vector::Zero(op.g.size())};
+  for (int pass = 0; pass < most_refinements && !(result.kkt.largest() <= refined_above); ++pass) {
+    options.correction +=
+        op.g - op.b * restrict_to(problem_.trace(), result.free_u.get()) - result.w;
+    const Vector from = result.start.size() > 0 ? result.start : result.lambda;
+    result = solve_active_set(body, op, from, options);
+    if (!result.converged) return result;
+    result.kkt = residual();
+  }
   measure(problem_, op, op.weights, result);
   result.slip = slip_left(problem_, op, slip, result);
   return result;
@@ -160,8 +183,9 @@ std::optional<MethodResult> HighFidelity::run_eliminated(const Mu &mu, const Ope
                                                          const Vector &slip,
                                                          std::string &complaint) {
   try {
-    const Vector start = solved_.empty() ? Vector() : nearest(mu)->start;
-    MethodResult result = grids_->solve(mu, op, start);
+    const Solved *near = nearest(mu);
+    const Vector start = near == nullptr ? Vector() : near->start;
+    MethodResult result = grids_->solve(mu, op, start, 1e-13, !last_);
     if (!result.converged) {
       complaint = result.reason;
     } else {
@@ -189,8 +213,8 @@ MethodResult HighFidelity::run_eliminated_or_condensed(const Mu &mu, const Opera
 MethodResult HighFidelity::run_following(const Mu &mu, const Operators &at_rest,
                                          const Vector &slip) {
   NonlinearStart start{undeformed(problem_.contact(), problem_.scene(), at_rest.mu), {}};
-  if (!solved_.empty() && !bounds_follow_pressure(at_rest.laws))
-    start = {nearest(mu)->state, nearest(mu)->start};
+  const Solved *near = nearest(mu);
+  if (near != nullptr && !bounds_follow_pressure(at_rest.laws)) start = {near->state, near->start};
   Operators op = at_rest;
   NonlinearResult steps;
   MethodResult result =
@@ -266,6 +290,23 @@ void HighFidelity::complete_compliance() {
     body_->require_all();
 }
 
+/// By the method of the options. Throws failure where it does not converge.
+MethodResult HighFidelity::run(const Mu &mu, const Operators &op, const Vector &slip) {
+  const bool by_sets = options_.method == HfMethod::active_set;
+  MethodResult result = follows_state(problem_.contact()) ? run_following(mu, op, slip)
+                        : grids_  ? run_eliminated_or_condensed(mu, op, slip)
+                        : by_sets ? run_condensed(mu, op, slip)
+                                  : run_over_ranks(op, slip);
+  if (!result.converged)
+    throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
+  return result;
+}
+
+HighFidelity::Solved HighFidelity::solved(const Mu &mu, const MethodResult &result) const {
+  return {mu, result.start.size() > 0 ? result.start : result.lambda,  {},
+          {}, result.states.empty() ? Vector{} : result.states.back(), result.beta};
+}
+
 HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   check_history(problem_.contact(), slip);
   if (nitsche_ && slip.size() > 0)
@@ -286,12 +327,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   const bool follows = follows_state(problem_.contact());
   if (body_) body_->set(op.a);
   if (condensed) complete_compliance();
-  MethodResult result = follows     ? run_following(mu, op, slip)
-                        : grids_    ? run_eliminated_or_condensed(mu, op, slip)
-                        : condensed ? run_condensed(mu, op, slip)
-                                    : run_over_ranks(op, slip);
-  if (!result.converged)
-    throw failure(result.reason + " (" + std::to_string(result.iterations) + " iterations)");
+  MethodResult result = problem_.free_bodies().empty() ? run(mu, op, slip) : run_free(mu, op, slip);
   result.u = whole_displacement(problem_, mu, result.free_u.get());
   if (problem_.scene().components == 1) result.outputs.min_u = result.u.minCoeff();
   result.outputs.seconds = MPI_Wtime() - start;
@@ -304,11 +340,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
                   ": is the mesh or the parameter extreme? Try "
                   "-hf_pc_factor_mat_solver_type mumps, or with an iterative -hf_ksp_type a "
                   "smaller -hf_ksp_rtol");
-  solved_.push_back({mu,
-                     result.start.size() > 0 ? result.start : result.lambda,
-                     {},
-                     {},
-                     follows ? result.states.back() : Vector{}});
+  solved_.push_back(solved(mu, result));
   return std::move(static_cast<HfSolution &>(result));
 }
 

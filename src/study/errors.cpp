@@ -42,6 +42,7 @@ ReducedModel rebased(const ReducedModel &model, const Matrix &c, int modes) {
   for (Index q = 0; q < model.contact.b.size(); ++q)
     result.contact.b.reduced.col(q) =
         (model.contact.b.reduced.col(q).reshaped(r, c.rows()) * c).eval().reshaped();
+  if (model.body.springs.size() > 0) result.body.springs = c.transpose() * model.body.springs;
   result.body.f.reduced = c.transpose() * model.body.f.reduced;
   result.contact.trace = model.contact.trace * c;
   result.fields.basis.resize(0, 0);

@@ -106,6 +106,11 @@ void print_scene(const Problem &problem) {
   }
   std::printf("  %-20s %ld dofs, %ld contact nodes\n", "mesh", long(problem.dofs().total),
               long(problem.contact().nodes()));
+  if (const auto &free = problem.free_bodies(); !free.empty()) {
+    const Index motions = motions_of(free);
+    std::printf("  %-20s %s\n", "held by contact",
+                describe(free, scene.dim, Matrix::Identity(motions, motions)).c_str());
+  }
   print_sum("a", scene.a, scene.parameters);
   print_sum("f", scene.f, scene.parameters);
   std::printf("  %-10s %s\n", "b and g",

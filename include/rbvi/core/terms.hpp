@@ -51,6 +51,9 @@ Term exact_term(Form form, std::vector<Factor> factors = {});
 /// A kernel that depends on mu.
 Term mapped_term(Form form, std::optional<std::vector<int>> parameters = {});
 
+/// theta of an exact term.
+double coefficient_of(const Term &term, const FullMu &all_parameters);
+
 /// Exact terms whose coefficients are multiples of each other over the free parameters.
 struct ExactGroup {
   struct Member {

@@ -22,6 +22,8 @@ struct Dofs {
   /// Like `free`: number of the fixed boundary that imposes values on it (Cell::imposed_by), -1
   /// elsewhere; empty where no boundary does.
   std::vector<int> imposed_by;
+  /// Rows that something beside cells couples with each other, lists of them, on every rank.
+  std::vector<std::vector<PetscInt>> coupled{};
 };
 
 /// Collective. Throws bad_input for a component that the displacement does not have.

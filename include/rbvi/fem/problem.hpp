@@ -14,6 +14,7 @@
 #pragma once
 
 #include "rbvi/fem/distributed_contact.hpp"
+#include "rbvi/fem/free_motions.hpp"
 #include "rbvi/fem/imposed.hpp"
 #include "rbvi/fem/summed.hpp"
 
@@ -55,8 +56,9 @@ constexpr Index default_contact_gather = 10000;
 
 class Problem {
 public:
-  /// Collective on `comm`. Throws bad_input (check_functions, check_held), for a mesh that does not
-  /// fit, and for boundaries that impose different displacements where they meet.
+  /// Collective on `comm`. Throws bad_input (check_functions), for a mesh that does not fit, for
+  /// boundaries that impose different displacements where they meet, and for motions of a body that
+  /// neither displacements nor terms of a nor any contact can prevent.
   Problem(MPI_Comm comm, Scene scene, const MeshOptions &options,
           Index contact_gather = default_contact_gather);
   /// The same on the mesh with `levels` refinements less; null where there is none. Collective.
@@ -64,7 +66,7 @@ public:
   int refinements() const { return mesh_options_.refine; }
 
   MPI_Comm comm() const { return mesh_.comm; }
-  /// With the loads of the imposed values in f.
+  /// With the loads of the imposed values in f, and the springs of free bodies in a.
   const Scene &scene() const { return *scene_; }
   const Mesh &mesh() const { return mesh_; }
   const Dofs &dofs() const { return dofs_; }
@@ -90,6 +92,17 @@ public:
   Vector imposed_displacement(const Mu &mu) const;
   const ImposedEnergy &imposed_energy() const { return imposed_energy_; }
 
+  const std::vector<FreeBody> &free_bodies() const { return free_; }
+  /// What the springs of free bodies are relaxed at, motions_of(free_bodies()) entries, in F from
+  /// now on. Collective.
+  void relax_springs(const Vector &beta);
+  double spring_energy() const; ///< of springs that are relaxed at beta in the energy of A and F
+  /// What each multiplier does to the free motions: B Z, rows of B x motions_of(free_bodies()), all
+  /// rows on every rank. `operators`: with all rows. Collective.
+  Matrix held_by(const Operators &operators) const;
+  /// Z^T F without the springs, and the sum of the sizes of its terms. Collective.
+  std::array<Vector, 2> pushed(const FullMu &mu) const;
+
   /// A and F of the last mu term by term.
   const Summed<Mat> &a_terms() const { return a_; }
   const Summed<Vec> &f_terms() const { return f_; }
@@ -99,13 +112,15 @@ public:
 
 private:
   bool is_split(std::size_t interface) const;
+  void stiffen_springs();
   void assemble_split(ContactRows rows, const Vector &slip);
 
   Scene given_; ///< without the loads of imposed values
   MeshOptions mesh_options_;
-  std::unique_ptr<const Scene> scene_; ///< the interfaces refer to it
+  std::unique_ptr<Scene> scene_; ///< the interfaces refer to it
   Mesh mesh_;
   Dofs dofs_;
+  std::vector<FreeBody> free_;
   InterfacePlaces places_;
   Contact contact_;
   Index contact_gather_;
@@ -113,6 +128,8 @@ private:
   MappedVertices mapped_;
   Summed<Mat> a_;
   Summed<Vec> f_;
+  Vector beta_;         ///< relax_springs()
+  Handle<Vec> pressed_; ///< F with it
   ImposedEnergy imposed_energy_;
   Handle<Mat> v_product_;
   Operators operators_;

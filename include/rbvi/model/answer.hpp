@@ -3,8 +3,16 @@
 
 #include "rbvi/contact/interface.hpp"
 #include "rbvi/method/answer.hpp"
+#include "rbvi/method/node_laws.hpp"
 
 namespace rbvi {
+
+/// What holds k free motions: B Z; Z^T F without springs, and the sums of the sizes of its terms.
+struct FreeMotions {
+  NodeLaws laws;
+  Matrix held; ///< rows of the laws x k
+  Vector load, terms;
+};
 
 /// u: n coefficients; lambda: R coefficients, >= 0 but for those of the free modes; residual: of
 /// the reduced problem, at all nodes of the law where they are known.
@@ -17,6 +25,13 @@ struct ReducedAnswer : Answer {
   double least_pressure = 0; ///< of the peak: where there is at most so much a node counts as free
   /// Largest distance to another answer that was seen, relative to the largest multiplier; 0: none.
   double to_other = 0;
+  std::optional<FreeMotions> motions{}; ///< of bodies that contact alone holds
+};
+
+/// What the springs of free bodies are relaxed at, and where a solve then starts from
+/// (Answer::start); empty: from what the samples predict.
+struct Relaxed {
+  Vector beta{}, start{};
 };
 
 /// What is left of the conditions of a query that has an answer: ReducedAnswer::residual.
@@ -34,7 +49,8 @@ struct QueryOptions {
 class QueryMethod {
 public:
   virtual ~QueryMethod() = default;
-  virtual ReducedAnswer solve(const FullMu &mu) = 0;
+  /// `relaxed`: for models with free bodies (solve_balanced).
+  virtual ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) = 0;
 };
 
 } // namespace rbvi

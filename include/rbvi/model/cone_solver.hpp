@@ -23,7 +23,7 @@ public:
   /// Throws failure, saying what to try, if the reduced constraints contradict each other, if A_N
   /// is not positive definite, if the KKT residual exceeds 1e-8, or if a node that the dual basis
   /// takes to be in contact is pulled at by more than 1 % of the peak pressure.
-  ReducedAnswer solve(const FullMu &mu) override;
+  ReducedAnswer solve(const FullMu &mu, const Relaxed &relaxed) override;
 
 private:
   /// Sets qp_ to where a query starts.
@@ -50,6 +50,7 @@ private:
   Index first_dual_ = 0, dual_rows_; ///< the rows of the dual basis that are not zero are these
 
   // What a query changes.
+  Vector beta_; ///< Relaxed::beta
   struct Start {
     std::vector<Index> active;
     std::optional<MixedQp> qp; ///< with its factorisation, of Y number y_number

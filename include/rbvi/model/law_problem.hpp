@@ -29,9 +29,10 @@ public:
   LawProblem(const ReducedModel &model, const Scene &scene, const Contact &contact);
   LawProblem(const LawProblem &) = delete;
 
-  /// At mu, contact at a state where it follows one; valid until the next call. Sets mu, theta_b or
-  /// contact of the answer.
-  LawAtMu at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {});
+  /// At mu, contact at a state where it follows one, springs of free bodies relaxed at beta; valid
+  /// until the next call. Sets mu, theta_b or contact of the answer.
+  LawAtMu at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {},
+             const Vector &beta = {});
   ReducedContact &contact() { return *contact_; } ///< of the last at()
   const BodyAtMu &body() const { return at_mu_; }
   AtAllNodes at_all_nodes(const LawAtMu &law, const Vector &x);

@@ -176,7 +176,13 @@ struct BodyModel {
   /// where the terms are in a_change.
   AffineTerms a;
   StiffnessChange a_change;
-  AffineTerms f;              ///< n x terms; none: no load
+  AffineTerms f; ///< n x terms; none: no load
+  /// Of bodies that contact alone holds (model/free_bodies.hpp), k motions; none: empty. V^T
+  /// springs, n x k; the term of Scene::a that has each; springs^T u of the training samples, k x
+  /// samples.
+  Matrix springs;
+  std::vector<int> spring_terms;
+  Matrix motions;
   AffineTerms imposed_energy; ///< 1 x terms, of imposed displacements; none: there are none
 };
 
@@ -238,7 +244,7 @@ struct ReducedModel {
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 18;
+inline constexpr int model_schema = 19;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).
@@ -262,6 +268,9 @@ ReducedModel read_model(const std::filesystem::path &path, const Registry &regis
 /// the first r generators. Errors measured for other sizes are dropped. Throws bad_input for sizes
 /// that the model does not have.
 ReducedModel leading(const ReducedModel &model, int n, int r);
+
+/// theta of the springs of each free motion.
+Vector spring_coefficients(const ReducedModel &model, const Scene &scene, const FullMu &mu);
 
 /// The errors measured for this model: with supremizers if it has any. `count` 0: nobody measured
 /// them.

@@ -51,8 +51,9 @@ class BodyAtMu {
 public:
   /// `body` must outlive it.
   explicit BodyAtMu(const ReducedBody &body) : body_(body) {}
-  /// The mu of the next calls. They, or this, throw failure where A_N is not positive definite.
-  void set(const FullMu &mu);
+  /// The mu of the next calls, and what the springs of free bodies are relaxed at. They, or this,
+  /// throw failure where A_N is not positive definite.
+  void set(const FullMu &mu, const Vector &beta = {});
   /// Restricts displacements and loads to the columns of `subspace` (n x any number) until the next
   /// set(); for a model that is enriched online, which needs that after each.
   void restrict_to(Matrix subspace);
@@ -60,8 +61,10 @@ public:
   Vector restricted(const Vector &load) const;
 
   bool has_load() const { return body_.model_.body.f.size() > 0; }
-  Vector load() const;      ///< F_N, n entries; zero without
-  Matrix stiffness() const; ///< A_N, n x n
+  Vector load() const;         ///< F_N, n entries, with that of the springs; zero without
+  Vector given_load() const;   ///< without it
+  Matrix free_motions() const; ///< of bodies that contact alone holds, n x k
+  Matrix stiffness() const;    ///< A_N, n x n
   Vector times(const Vector &u) const;
 
   /// R without the factor sqrt(scale()) is another one where root_number() is.
@@ -83,6 +86,7 @@ private:
 
   const ReducedBody &body_;
   FullMu mu_{};
+  Vector beta_{};
   std::optional<std::vector<double>> at_{}; ///< values of the parameters that A depends on
   Vector theta_;
   double scale_ = 1;

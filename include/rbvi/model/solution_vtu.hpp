@@ -21,11 +21,11 @@ std::vector<std::filesystem::path> contact_files(const std::filesystem::path &pa
 /// the dual dofs, on the mesh of `model` mapped by h(mu) (its fields and interfaces alone are
 /// read). The displacement goes to `path`, with the number of the body on each cell
 /// and, of elastic bodies, the stresses at its centre; to its contact_files each interface
-/// with pressure, gap, normal and (curves) displacement; of two bodies the part of the slave curve that
-/// faces the master. A pressure that is constant on edges is also given at the nodes, as the mean
-/// of the edges beside them weighted by length. Field data: "mu_NAME" of every parameter, the names
-/// of the interfaces. Returns the files written. Throws failure if the model was read without its
-/// fields.
+/// with pressure, gap, normal and (curves) displacement; of two bodies the part of the slave curve
+/// that faces the master. A pressure that is constant on edges is also given at the nodes, as the
+/// mean of the edges beside them weighted by length. Field data: "mu_NAME" of every parameter, the
+/// names of the interfaces. Returns the files written. Throws failure if the model was read without
+/// its fields.
 std::vector<std::filesystem::path> write_vtu(const std::filesystem::path &path, const Scene &scene,
                                              const FullMu &all_parameters,
                                              const ReducedModel &model, const Vector &u,

@@ -77,9 +77,10 @@ public:
   explicit GridSequence(Problem &problem) : problem_(problem), on_this_(problem) {}
   /// `op`: of the problem at mu. `start`: as above; where it is empty, or the mesh is fine, from
   /// the coarser meshes, where there are any, first to a lower `accuracy`. Friction is solved by
-  /// its rule on the coarsest mesh that is used, and continued on the others. Collective.
+  /// its rule on the coarsest mesh that is used, and continued on the others; not `by_rule`: it is
+  /// continued from `start` on this mesh. Collective.
   MethodResult solve(const Mu &mu, const Operators &op, const Vector &start,
-                     double accuracy = 1e-13);
+                     double accuracy = 1e-13, bool by_rule = true);
 
 private:
   bool has_coarser();

@@ -80,6 +80,7 @@ struct HfSolution : Answer {
   /// Where contact follows the displacement: the states at the contact dofs at which its condition
   /// was linearised, that of the solution last.
   std::vector<Vector> states;
+  Vector beta; ///< of bodies that contact alone holds: what their springs are relaxed at
 };
 
 struct MethodResult;
@@ -116,11 +117,15 @@ private:
     Handle<Vec> u; ///< Nitsche's method, as the pressures
     Matrix pressures;
     Vector state{}; ///< where contact follows the displacement
+    Vector beta{};  ///< HfSolution::beta
   };
+  Solved solved(const Mu &mu, const MethodResult &result) const;
   const Solved *nearest(const Mu &mu) const;
   Vector nearest_start(const Mu &mu, const Operators &op);
   /// All columns of the compliance at once, where that takes less than those that are needed.
   void complete_compliance();
+  MethodResult run(const Mu &mu, const Operators &op, const Vector &slip);
+  MethodResult run_free(const Mu &mu, const Operators &op, const Vector &slip);
   MethodResult run_following(const Mu &mu, const Operators &op, const Vector &slip);
   MethodResult run_condensed(const Mu &mu, const Operators &op, const Vector &slip);
   std::optional<MethodResult> run_eliminated(const Mu &mu, const Operators &op, const Vector &slip,
@@ -142,6 +147,7 @@ private:
   std::unique_ptr<ScaledPart> part_; ///< where a part of it is scaled, from the second mu on
   Handle<Mat> w_product_;            ///< over the ranks, where a method wants it
   std::vector<Solved> solved_;
+  std::optional<Solved> last_; ///< where springs of free bodies change, of those before
   int solves_ = 0;
 };
 

@@ -17,17 +17,22 @@ const std::vector<std::string> &hf_contact_names();
 /// measured on it.
 struct MethodResult : HfSolution {
   Handle<Vec> free_u;
+  Vector w; ///< of solve_active_set: H lambda + q
   bool converged = false;
 };
 
 /// At all dofs in natural order, the imposed values among them. Collective.
 Vector whole_displacement(const Problem &problem, const Mu &mu, Vec u);
 
-/// Active sets on the multipliers of a body that is set to `op`; friction by its rule
-/// (friction_answer). `start`: FrictionResult::start of a nearby problem; empty: cold.
-/// `looks_for_others`: of HfOptions. Collective.
+struct ActiveSetOptions {
+  bool by_rule = true;           ///< friction: friction_answer
+  bool looks_for_others = false; ///< of HfOptions
+  Vector correction{};           ///< is added to q; empty: nothing is
+};
+/// Active sets on the multipliers of a body that is set to `op`. `start`: FrictionResult::start of
+/// a nearby problem; empty: cold. Collective.
 MethodResult solve_active_set(FullBody &body, const Operators &op, const Vector &start,
-                              bool looks_for_others = false);
+                              const ActiveSetOptions &options = {});
 
 /// Contact that follows the displacement: Kacanov's or Newton's iteration on the condensed problem,
 /// every step on every rank. `op`: at mu; its contact operators become those of the solution.

@@ -1,0 +1,19 @@
+// Queries of models with bodies that contact alone holds (fem/free_motions.hpp): what their springs
+// are relaxed at is found such that forces balance, from what the training samples predict.
+#pragma once
+
+#include "rbvi/method/node_laws.hpp"
+#include "rbvi/model/answer.hpp"
+#include "rbvi/model/reduced_body.hpp"
+
+namespace rbvi {
+
+/// What holds the free motions at an answer. `b`: rows of multipliers x n; `laws`: of these rows.
+FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws);
+
+/// As method.solve(), with the springs relaxed. Throws failure where forces do not balance, or
+/// where nothing holds a motion at the answer.
+ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
+                             const FullMu &mu);
+
+} // namespace rbvi

@@ -1,0 +1,131 @@
+#include "rbvi/method/balance.hpp"
+
+#include "rbvi/method/anderson.hpp"
+#include "rbvi/method/nonnegative_qp.hpp"
+
+#include <Eigen/SVD>
+
+#include <algorithm>
+
+namespace rbvi {
+
+namespace {
+
+/// Of motions: rows that are this much smaller resist by round-off.
+constexpr double resists = 1e-8;
+
+Matrix null_space(const Matrix &rows) {
+  if (rows.rows() == 0) return Matrix::Identity(rows.cols(), rows.cols());
+  const Eigen::JacobiSVD<Matrix, Eigen::FullPivHouseholderQRPreconditioner> svd(
+      rows, Eigen::ComputeFullV);
+  const Vector &values = svd.singularValues();
+  const Index rank = (values.array() > resists * values[0]).count();
+  return svd.matrixV().rightCols(rows.cols() - rank);
+}
+
+/// Null space of some rows, given by R of their QR, or themselves where they are few.
+Matrix null_space(const Matrix &held, const std::vector<Index> &rows) {
+  const Matrix chosen = held(rows, Eigen::all);
+  return null_space(chosen.rows() > chosen.cols() ? triangular_factor(chosen) : chosen);
+}
+
+template <class Carries, class Sticks>
+Matrix not_held(const NodeLaws &laws, const Matrix &held, Carries &&carries, Sticks &&sticks) {
+  std::vector<Index> rows;
+  for (Index node = 0; node < laws.nodes(); ++node) {
+    if (carries(node)) rows.push_back(laws.normal[node]);
+    if (!laws.has_tangent(node) || !sticks(node)) continue;
+    for (Index t = 0; t < laws.tangents; ++t)
+      rows.push_back(laws.tangent[node] + t);
+  }
+  return null_space(held, rows);
+}
+
+} // namespace
+
+Matrix unresisted_motions(const NodeLaws &laws, const Matrix &held) {
+  return not_held(
+      laws, held, [](Index) { return true; },
+      [&](Index node) { return laws.bound[node].carries_traction(true); });
+}
+
+Matrix loose_motions(const NodeLaws &laws, const Matrix &held, const Vector &x) {
+  constexpr double least = 1e-9; // of the largest pressure and of the bound
+  double largest = 0;
+  for (const Index row : laws.normal)
+    largest = std::max(largest, x[row]);
+  const Vector bounds = bounds_of(laws, x);
+  return not_held(
+      laws, held, [&](Index node) { return x[laws.normal[node]] > least * largest; },
+      [&](Index node) {
+        return x.segment(laws.tangent[node], laws.tangents).norm() < (1 - least) * bounds[node];
+      });
+}
+
+Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &load,
+                       const Vector &terms) {
+  constexpr double round_off = 1e-9;
+  if (!(load.norm() > round_off * terms.norm())) return Vector::Zero(load.size());
+  std::vector<Vector> rays;
+  for (Index node = 0; node < laws.nodes(); ++node) {
+    const Vector normal = held.row(laws.normal[node]);
+    const FrictionBound &bound = laws.bound[node];
+    rays.push_back(normal);
+    if (!laws.has_tangent(node) || !bound.carries_traction(true)) continue;
+    for (Index t = 0; t < laws.tangents; ++t)
+      for (const double sign : {-1.0, 1.0}) {
+        const Vector traction = sign * held.row(laws.tangent[node] + t).transpose();
+        rays.push_back(bound.threshold > 0 ? traction
+                                           : Vector(normal + bound.coefficient * traction));
+      }
+  }
+  Matrix columns(load.size(), std::ssize(rays));
+  for (std::size_t ray = 0; ray < rays.size(); ++ray)
+    columns.col(static_cast<Index>(ray)) = rays[ray];
+  NonnegativeQp projection(load.size());
+  projection.solve(columns, load);
+  const Vector left = projection.residual();
+  return left.norm() > round_off * terms.norm() ? left : Vector::Zero(load.size());
+}
+
+Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths) {
+  constexpr int most_solves = 100;
+  constexpr double tolerance = 1e-12, round_off = 1e-10, in_flight = 0.1, farthest = 1e12;
+  Balance result;
+  Anderson anderson(beta.size());
+  std::vector<Vector> images;
+  Vector last;
+  double step = 1, least = 0;
+  while (result.solves < most_solves) {
+    const SpringState state = lengths(beta);
+    ++result.solves;
+    const double before = least;
+    result.beta = beta;
+    result.excess = state.lengths - beta;
+    const double size = result.excess.norm();
+    const bool stalls = result.solves > 1 && size > 0.5 * before;
+    // Where nothing touches, the force of the springs moves by the same again and again.
+    const bool flies =
+        size > 0 && last.size() > 0 && (result.excess - last).norm() <= in_flight * size;
+    result.converged = !flies && size <= (stalls ? round_off : tolerance) * state.scale;
+    if (result.converged || !(step < farthest)) return result;
+    least = result.solves == 1 ? size : std::min(least, size);
+    step = flies ? 4 * step : 1;
+    last = result.excess;
+    if (flies) {
+      anderson = Anderson(beta.size());
+      images.clear();
+      beta += step * result.excess;
+      continue;
+    }
+    images.push_back(state.lengths);
+    const Vector shares = anderson.combine(result.excess);
+    if (std::ssize(images) > shares.size()) images.erase(images.begin());
+    beta.setZero();
+    for (Index j = 0; j < shares.size(); ++j)
+      beta += shares[j] * images[j];
+  }
+  return result;
+}
+
+} // namespace rbvi

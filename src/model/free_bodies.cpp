@@ -1,0 +1,54 @@
+#include "rbvi/model/free_bodies.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/local_fit.hpp"
+#include "rbvi/method/balance.hpp"
+
+#include <utility>
+
+namespace rbvi {
+
+FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws) {
+  const Matrix motions = body.free_motions();
+  const Vector load = body.given_load();
+  return {std::move(laws), b * motions, motions.transpose() * load,
+          motions.cwiseAbs().transpose() * load.cwiseAbs()};
+}
+
+ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
+                             const FullMu &mu) {
+  const Matrix &springs = model.body.springs;
+  if (springs.size() == 0) return method.solve(mu, {});
+  const Matrix &of_samples = model.body.motions, &at = model.made.trained_mu;
+  const Vector start = at.cols() == of_samples.cols() // not before the model is complete
+                           ? local_fit(of_samples, parts_of_box(scene.parameters, at),
+                                       parts_of_box(scene.parameters, mu))
+                           : Vector(of_samples.rowwise().mean());
+  ReducedAnswer answer;
+  int iterations = 0;
+  const Balance balance = find_balance(start, [&](const Vector &beta) {
+    Vector from = std::move(answer.start);
+    answer = method.solve(mu, {beta, std::move(from)});
+    iterations += answer.iterations;
+    const FreeMotions &motions = *answer.motions;
+    if (iterations == answer.iterations &&
+        unbalanced_load(motions.laws, motions.held, motions.load, motions.terms).norm() > 0)
+      throw failure("a body that contact alone holds is pushed where no contact and no friction "
+                    "can hold it");
+    return SpringState{springs.transpose() * answer.u,
+                       springs.cwiseAbs().colwise().sum().maxCoeff() *
+                           answer.u.lpNorm<Eigen::Infinity>()};
+  });
+  if (!balance.converged)
+    throw failure("the forces on a body that contact alone holds do not balance in " +
+                  std::to_string(balance.solves) +
+                  " solves: reduce again with more training parameters");
+  if (loose_motions(answer.motions->laws, answer.motions->held, answer.lambda).cols() > 0)
+    throw failure("at the answer no contact and no friction holds a body: it can move at no cost");
+  answer.iterations = iterations;
+  const Vector theta = spring_coefficients(model, scene, mu);
+  answer.energy += theta.dot(balance.beta.cwiseAbs2()) / 2;
+  return answer;
+}
+
+} // namespace rbvi

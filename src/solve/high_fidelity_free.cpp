@@ -1,0 +1,56 @@
+// HighFidelity with bodies that contact alone holds: what their springs are relaxed at is found
+// such that forces balance.
+#include "rbvi/solve/high_fidelity.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/method/balance.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/solve/eliminated.hpp"
+#include "rbvi/solve/methods.hpp"
+
+namespace rbvi {
+
+MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vector &slip) {
+  const std::vector<FreeBody> &bodies = problem_.free_bodies();
+  const int dim = problem_.scene().dim;
+  last_.reset(); // what a solve that failed has left
+  const Solved *near = nearest(mu);
+  const Vector start = near == nullptr ? Vector::Zero(motions_of(bodies)) : near->beta;
+  Operators all;
+  collectively(problem_.comm(), [&] { problem_.assemble_contact(mu, all); });
+  const auto [load, terms] = problem_.pushed(op.mu);
+  const Vector left = unbalanced_load(all.laws, problem_.held_by(all), load, terms);
+  if (left.norm() > 0)
+    throw failure(describe(bodies, dim, left) +
+                  ", and is pushed where no contact and no friction can hold it: " +
+                  describe(problem_.scene().parameters, op.mu));
+  MethodResult result;
+  int iterations = 0;
+  const Balance balance = find_balance(start, [&](const Vector &beta) {
+    problem_.relax_springs(beta);
+    result = run(mu, op, slip);
+    iterations += result.iterations;
+    last_ = solved(mu, result);
+    PetscReal largest = 0;
+    RBVI_CALL(VecNorm(result.free_u.get(), NORM_INFINITY, &largest));
+    return SpringState{spring_lengths(bodies, result.free_u.get()), largest * spring_size(bodies)};
+  });
+  last_.reset();
+  problem_.relax_springs(Vector::Zero(start.size()));
+  if (!balance.converged)
+    throw failure("the forces on bodies that contact alone holds do not balance in " +
+                  std::to_string(balance.solves) +
+                  " solves: " + describe(bodies, dim, balance.excess) +
+                  ": give them friction or displacements that hold them");
+  if (grids_ == nullptr) static_cast<ContactOperators &>(all) = op;
+  const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);
+  if (loose.cols() > 0)
+    throw failure(describe(bodies, dim, loose) +
+                  " at no cost at the answer, where no contact and no friction holds it");
+  result.iterations = iterations;
+  result.beta = balance.beta;
+  result.outputs.iterations = iterations;
+  return result;
+}
+
+} // namespace rbvi

@@ -1,0 +1,136 @@
+// Bodies that contact alone holds: what holds them, what can be balanced, and where forces balance.
+#include "rbvi/method/balance.hpp"
+
+#include "random_matrix.hpp"
+#include "rbvi/method/several_answers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi::balance_test {
+namespace {
+
+/// Nodes at x = 0, 1, ... of a flat foot, normals downwards: rows n . z and tau . z of the motions
+/// along x, along y and about the origin.
+Matrix foot(Index nodes, bool friction) {
+  Matrix held = Matrix::Zero((friction ? 2 : 1) * nodes, 3);
+  for (Index i = 0; i < nodes; ++i) {
+    held.row(i) << 0, -1, -double(i);
+    if (friction) held.row(nodes + i) << 1, 0, 0;
+  }
+  return held;
+}
+
+TEST(Balance, TellsTheMotionsThatNoContactResists) {
+  const NodeLaws plain = uniform_laws(3, 1, {}), rough = uniform_laws(3, 2, {.coefficient = 0.3}),
+                 smooth = uniform_laws(3, 2, {});
+  const Matrix along = unresisted_motions(plain, foot(3, false));
+  ASSERT_EQ(along.cols(), 1);
+  EXPECT_NEAR(std::abs(along(0, 0)), 1, 1e-14);
+  EXPECT_EQ(unresisted_motions(rough, foot(3, true)).cols(), 0);
+  EXPECT_EQ(unresisted_motions(smooth, foot(3, true)).cols(), 1) << "a coefficient of zero";
+  EXPECT_EQ(unresisted_motions(uniform_laws(1, 2, {.coefficient = 0.3}), foot(1, true)).cols(), 1)
+      << "one node is turned about";
+  EXPECT_EQ(unresisted_motions(plain, Matrix::Zero(3, 3)).cols(), 3);
+}
+
+TEST(Balance, AnAnswerHoldsWhereItCarriesAndSticks) {
+  const NodeLaws laws = uniform_laws(3, 2, {.coefficient = 0.5});
+  const Matrix held = foot(3, true);
+  Vector x(6);
+  x << 1, 0, 1, 0.1, 0, 0.1;
+  EXPECT_EQ(loose_motions(laws, held, x).cols(), 0);
+  x << 1, 0, 1, 0.5, 0, 0.5; // slips: held against nothing along x
+  EXPECT_EQ(loose_motions(laws, held, x).cols(), 1);
+  x << 1, 0, 0, 0.1, 0, 0; // one node carries
+  EXPECT_EQ(loose_motions(laws, held, x).cols(), 1);
+  EXPECT_EQ(loose_motions(laws, held, Vector::Zero(6)).cols(), 3);
+}
+
+/// Loads on a foot between x = 0 and 2: down, with a resultant between its ends and inside the cone
+/// of friction.
+TEST(Balance, ALoadIsBalancedInTheConeOfFriction) {
+  const NodeLaws laws = uniform_laws(3, 2, {.coefficient = 0.5});
+  const Matrix held = foot(3, true);
+  const auto left = [&](double along, double down, double at) {
+    Vector load(3);
+    load << along, -down, -down * at;
+    return unbalanced_load(laws, held, load, load.cwiseAbs()).norm();
+  };
+  EXPECT_EQ(left(0, 1, 1), 0);
+  EXPECT_EQ(left(0.5, 1, 0.3), 0) << "on the cone";
+  EXPECT_EQ(left(-0.49, 1, 2), 0);
+  EXPECT_GT(left(0.6, 1, 1), 0.05) << "slides";
+  EXPECT_GT(left(0, 1, 2.2), 0.05) << "tips";
+  EXPECT_GT(left(0, -1, 1), 0.5) << "is lifted";
+  Vector round_off(3);
+  round_off << 0, 1e-13, 0;
+  EXPECT_EQ(unbalanced_load(laws, held, round_off, Vector::Ones(3)).norm(), 0);
+}
+
+/// H = H_0 + D D^T with springs of stiffness 1, D the motions on m nodes: at beta
+/// w = H x + q - D (beta + load), lengths = beta + load - D^T x.
+struct Problem {
+  Matrix elastic, held;
+  Vector gap, load;
+  NodeLaws laws;
+  Vector x{}, w{};
+
+  SpringState at(const Vector &beta) {
+    const Matrix h = elastic + held * held.transpose();
+    const Vector q = gap - held * (beta + load);
+    const FrictionAnswer answer = friction_answer(
+        [&](const std::vector<Index> &which) { return Matrix(h(Eigen::all, which)); }, q, laws, {},
+        false);
+    EXPECT_TRUE(answer.converged);
+    x = answer.x;
+    w = answer.w;
+    return {beta + load - held.transpose() * x, load.norm() + x.norm() + beta.norm()};
+  }
+};
+
+Matrix compliance(Index size, unsigned seed) {
+  const Matrix factor = Random(seed).matrix(size, size);
+  return 0.1 * (factor * factor.transpose() / double(size) + Matrix::Identity(size, size));
+}
+
+TEST(Balance, IsFoundForBodiesThatTouchThatOverlapAndThatFly) {
+  for (const bool friction : {false, true})
+    for (const double gap : {0.0, -0.5, 3.0}) {
+      const Index nodes = 8;
+      const NodeLaws laws =
+          uniform_laws(nodes, friction ? 2 : 1, {.coefficient = friction ? 0.4 : 0.0});
+      Matrix held = foot(nodes, friction) / 3;
+      if (!friction) held = held.rightCols(2).eval();
+      Vector load(held.cols());
+      if (friction)
+        load << 0.2, -1, -3;
+      else
+        load << -1, -3;
+      Problem problem{compliance(held.rows(), 5), held, Vector::Zero(held.rows()), load, laws};
+      problem.gap.head(nodes).setConstant(gap);
+      const Balance found = find_balance(Vector::Zero(load.size()),
+                                         [&](const Vector &beta) { return problem.at(beta); });
+      ASSERT_TRUE(found.converged) << friction << ' ' << gap;
+      EXPECT_LE(found.solves, 20) << friction << ' ' << gap;
+      EXPECT_LE((load - held.transpose() * problem.x).norm(), 1e-9);
+      // Without springs: the laws at w = H_0 x + gap - D beta.
+      const Vector w = problem.elastic * problem.x + problem.gap - held * found.beta;
+      EXPECT_LE((w - problem.w).norm(), 1e-9 * (1 + gap));
+    }
+}
+
+TEST(Balance, ThatIsNotThereIsNotFound) {
+  const NodeLaws laws = uniform_laws(4, 1, {});
+  Vector load(2);
+  load << 1, 0; // lifts
+  Problem problem{compliance(4, 3), foot(4, false).rightCols(2), Vector::Zero(4), load, laws};
+  const Balance found =
+      find_balance(Vector::Zero(2), [&](const Vector &beta) { return problem.at(beta); });
+  EXPECT_FALSE(found.converged);
+  EXPECT_GT(found.excess.norm(), 0.5);
+}
+
+} // namespace
+} // namespace rbvi::balance_test

@@ -1,0 +1,151 @@
+// Bodies that contact alone holds: against closed forms, by all solvers, and reduced.
+#include "../core/refuses.hpp"
+#include "reduced.hpp"
+
+#include "rbvi/core/largest.hpp"
+#include "rbvi/element/elastic_forms.hpp"
+#include "rbvi/model/online.hpp"
+#include "rbvi/par/collective.hpp"
+#include "rbvi/scene/case.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rbvi::free_bodies_test {
+namespace {
+
+using testing_reduced::Reduced;
+
+/// A block on the floor y = 0 under the tractions of a constant stress: uniaxial strain under the
+/// pressure p with the shear stress t, which a foot that sticks carries exactly. It may be drawn
+/// `above` the floor.
+Scene block(int degree, const std::string &friction = "friction: {coulomb: c}",
+            const std::string &mesh = "one_block", double above = 0) {
+  const std::string text =
+      "rbvi: 1\nphysics: plane_strain\nmesh: {built_in: " + mesh +
+      ", degree: " + std::to_string(degree) +
+      "}\nparameters: {p: {range: [0.5, 2], default: 1}, t: {range: [-0.2, 0.2], default: 0.1}, "
+      "c: {range: [0.5, 1], default: 0.5}}\n" +
+      (friction.find("coulomb") == std::string::npos ? "free: p,t\n" : "") +
+      "materials: {rubber: {at: all, E: 15, nu: 0.3}}\n"
+      "loads:\n  top: {at: top, traction: [t, -p]}\n"
+      "  sides: {at: sides, traction: ['-p * 0.3 / 0.7 * nx', 't * nx']}\n"
+      "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: " +
+      std::to_string(above) + "}}" + (friction.empty() ? "" : ", " + friction) + "}}\n";
+  return make_scene(read_case(text, "block.yaml"), {});
+}
+
+void expect_exact(const Problem &problem, const Mu &mu, const HfSolution &s, double sunk = 0) {
+  const double pressure = mu[0], stress = mu[1], tolerance = 1e-11 * pressure;
+  const Index nodes = problem.contact().nodes();
+  EXPECT_LE((s.lambda.head(nodes).array() - pressure).abs().maxCoeff(), tolerance);
+  EXPECT_LE((s.lambda.tail(nodes).array().abs() - std::abs(stress)).abs().maxCoeff(), tolerance);
+  EXPECT_NEAR(s.outputs.normal_force.value(), pressure, tolerance) << "the balance of forces";
+  EXPECT_LE(s.kkt.largest(), 1e-10);
+  const Lame material = lame(15, 0.3);
+  const double strain = pressure / (material.lambda + 2 * material.shear),
+               shear = stress / material.shear;
+  double worst = 0;
+  const Mesh &mesh = problem.mesh();
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const double y = mesh.points[v][1];
+    const Index dof = 2 * mesh.natural_node[v];
+    worst = rbvi::largest(
+        {worst, std::abs(s.u[dof] - shear * y), std::abs(s.u[dof + 1] + sunk + strain * y)});
+  }
+  EXPECT_LE(worst, 1e-11);
+  // The energy is that of the body and of the load, without the springs.
+  const double area = 0.5, density = (pressure * strain + stress * shear) / 2;
+  EXPECT_NEAR(s.outputs.energy.value(), -area * density - pressure * sunk, tolerance);
+}
+
+template <class Work> std::string said(Work &&work) {
+  try {
+    work();
+    return "";
+  } catch (const Error &error) {
+    return error.what();
+  }
+}
+
+TEST(FreeBodies, ABlockOnAFloorIsInBalance) {
+  for (const int degree : {1, 2})
+    for (const HfContact how : {HfContact::condensed, HfContact::eliminated}) {
+      Problem problem(PETSC_COMM_WORLD, block(degree), {});
+      HfOptions options;
+      options.contact = how;
+      HighFidelity solver(problem, options);
+      for (const Mu &mu : {Mu{1, 0.1, 0.5}, Mu{2, -0.2, 0.3}, Mu{0.5, 0, 1}})
+        expect_exact(problem, mu, solver.solve(mu));
+    }
+}
+
+/// It falls before anything touches.
+TEST(FreeBodies, ABlockAboveAFloorFallsOntoIt) {
+  Problem problem(PETSC_COMM_WORLD, block(2, "friction: {coulomb: c}", "one_block", 0.4), {});
+  const Mu mu{1, 0, 0.5};
+  expect_exact(problem, mu, HighFidelity(problem, {}).solve(mu), 0.4);
+}
+
+TEST(FreeBodies, UzawaFindsTheSame) {
+  Problem problem(PETSC_COMM_WORLD, block(1), {});
+  HfOptions options;
+  options.method = HfMethod::uzawa;
+  options.uzawa_accelerated = true;
+  options.uzawa_tolerance = 1e-11;
+  const HfSolution s = HighFidelity(problem, options).solve({1, 0.1, 0.5});
+  EXPECT_NEAR(s.outputs.normal_force.value(), 1, 1e-8);
+  EXPECT_NEAR(s.outputs.peak_pressure.value(), 1, 1e-6);
+}
+
+TEST(FreeBodies, WhatNothingHoldsIsRefused) {
+  EXPECT_TRUE(refuses("the body can move along (1, 0): impose displacements that prevent it, for "
+                      "no contact does",
+                      [] { Problem(PETSC_COMM_WORLD, block(1, ""), {}); }));
+  EXPECT_TRUE(refuses("by Nitsche's method contact alone holds no body", [] {
+    Problem problem(PETSC_COMM_WORLD, block(1, "formulation: nitsche, nitsche_gamma0: 100"), {});
+    HighFidelity(problem, {});
+  }));
+  Problem problem(PETSC_COMM_WORLD, block(1), {});
+  HighFidelity solver(problem, {});
+  EXPECT_NE(said([&] {
+              solver.solve({1, 0.2, 0.1});
+            }).find("is pushed where no contact and no friction can hold it"),
+            std::string::npos);
+  EXPECT_NE(said([&] {
+              solver.solve({1, 0, 0});
+            }).find("can move along (1, 0) at no cost at the answer"),
+            std::string::npos);
+  expect_exact(problem, {1, 0.1, 0.5}, solver.solve({1, 0.1, 0.5})); // a failure leaves no trace
+}
+
+TEST(FreeBodies, AReducedBlockIsInBalance) {
+  Reduced made(block(2), "grid:2,3,2");
+  made.reduce(testing_reduced::everything());
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  EXPECT_EQ(made.model.body.springs.cols(), 3);
+  OnlineSolver online(made.model);
+  for (const Mu &mu : {Mu{1.3, 0.05, 0.8}, Mu{0.6, -0.1, 0.55}}) {
+    const ReducedAnswer answer = online.solve(mu);
+    const Outputs outputs = online.outputs(mu, answer);
+    EXPECT_NEAR(outputs.normal_force.value(), mu[0], 1e-11);
+    EXPECT_NEAR(outputs.peak_pressure.value(), mu[0], 1e-8);
+    const Lame material = lame(15, 0.3);
+    EXPECT_NEAR(outputs.energy.value(),
+                -0.25 * (mu[0] * mu[0] / (material.lambda + 2 * material.shear) +
+                         mu[1] * mu[1] / material.shear),
+                1e-9);
+  }
+  EXPECT_NE(said([&] {
+              online.solve({1, 0.2, 0.1}, true);
+            }).find("is pushed where no contact and no friction can hold it"),
+            std::string::npos);
+  EXPECT_NE(said([&] {
+              online.solve({1, 0, 0}, true);
+            }).find("it can move at no cost"),
+            std::string::npos);
+}
+
+} // namespace
+} // namespace rbvi::free_bodies_test
