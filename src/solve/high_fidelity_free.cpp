@@ -24,6 +24,14 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
     throw failure(describe(bodies, dim, left) +
                   ", and is pushed where no contact and no friction can hold it: " +
                   describe(problem_.scene().parameters, op.mu));
+  const auto moving = [&](const Vector &lengths) { // the motions that make springs so long
+    Matrix of_motions(lengths.size(), lengths.size());
+    Index k = 0;
+    for (const Handle<Vec> &motion :
+         rigid_motions(bodies, problem_.scene(), op.mu, problem_.mesh(), problem_.dofs()))
+      of_motions.col(k++) = spring_lengths(bodies, motion.get());
+    return lu_solve(of_motions, lengths);
+  };
   MethodResult result;
   int iterations = 0;
   const Balance balance = find_balance(start, [&](const Vector &beta) {
@@ -40,7 +48,7 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
   if (!balance.converged)
     throw failure("the forces on bodies that contact alone holds do not balance in " +
                   std::to_string(balance.solves) +
-                  " solves: " + describe(bodies, dim, balance.excess) +
+                  " solves: " + describe(bodies, dim, moving(balance.excess)) +
                   ": give them friction or displacements that hold them");
   if (grids_ == nullptr) static_cast<ContactOperators &>(all) = op;
   const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);
