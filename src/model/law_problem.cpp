@@ -20,16 +20,17 @@ const ReducedModel &with_law(const ReducedModel &model) {
 } // namespace
 
 LawProblem::LawProblem(const ReducedModel &model, const Scene &scene, const Contact &contact)
-    : model_(with_law(model)), interfaces_(contact),
+    : model_(with_law(model)), scene_(scene), interfaces_(contact),
       columns_(laws_of_columns(contact, model.contact.dual_basis)),
       edge_(edge_of_nodes(contact, model.contact.dual_basis)), body_(model, scene), at_mu_(body_),
       contact_(reduced_contact(model, scene, contact, body_)) {}
 
 LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &state,
                        const Vector &beta) {
+  if (beta.size() > 0) return relaxed(mu, beta, answer);
   answer.mu = mu;
   contact_->set(mu, state, answer);
-  at_mu_.set(mu, beta);
+  at_mu_.set(mu);
   LawAtMu law{contact_->g(), {}, {}, laws_at(columns_, interfaces_, mu)};
   const MultiplierBasis &functions = model_.contact.law->basis;
   if (functions.normal.size() > 0 || at_mu_.has_load()) law.b = contact_->b();
@@ -40,6 +41,25 @@ LawAtMu LawProblem::at(const FullMu &mu, ReducedAnswer &answer, const Vector &st
     law.load = at_mu_.half_response(at_mu_.load());
     law.q -= law.b * at_mu_.transposed_half_response(law.load);
   }
+  return law;
+}
+
+/// Of springs that are relaxed at beta only q and the load change with beta.
+LawAtMu LawProblem::relaxed(const FullMu &mu, const Vector &beta, ReducedAnswer &answer) {
+  if (!unrelaxed_ || unrelaxed_->answer.mu != mu) {
+    unrelaxed_.reset();
+    Unrelaxed now;
+    now.law = at(mu, now.answer);
+    now.answer.motions = free_motions_at(at_mu_, now.law.b, now.law.laws);
+    now.theta = spring_coefficients(model_, scene_, mu);
+    now.springs = at_mu_.half_response(model_.body.springs);
+    unrelaxed_ = std::move(now);
+  }
+  answer = unrelaxed_->answer;
+  LawAtMu law = unrelaxed_->law;
+  const Vector forces = unrelaxed_->theta.cwiseProduct(beta);
+  law.q -= answer.motions->held * forces;
+  law.load += unrelaxed_->springs * forces;
   return law;
 }
 
@@ -59,7 +79,6 @@ void LawProblem::finish(const LawAtMu &law, ReducedAnswer &answer) const {
       throw failure("contact reaches the edge of the nodes that the model has multipliers at: " +
                     std::string(keeps_more));
   contact_->move(at_mu_, answer);
-  if (model_.body.springs.size() > 0) answer.motions = free_motions_at(at_mu_, law.b, law.laws);
   if (law.load.size() > 0) answer.u += at_mu_.transposed_half_response(law.load);
 }
 

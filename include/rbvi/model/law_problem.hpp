@@ -30,7 +30,8 @@ public:
   LawProblem(const LawProblem &) = delete;
 
   /// At mu, contact at a state where it follows one, springs of free bodies relaxed at beta; valid
-  /// until the next call. Sets mu, theta_b or contact of the answer.
+  /// until the next call. Sets mu, theta_b or contact of the answer,
+  /// and its free motions where there is a beta.
   LawAtMu at(const FullMu &mu, ReducedAnswer &answer, const Vector &state = {},
              const Vector &beta = {});
   ReducedContact &contact() { return *contact_; } ///< of the last at()
@@ -41,13 +42,24 @@ public:
   void finish(const LawAtMu &law, ReducedAnswer &answer) const;
 
 private:
+  /// At the mu of the last answer with free bodies, their springs relaxed at zero.
+  struct Unrelaxed {
+    LawAtMu law;
+    ReducedAnswer answer; ///< what at() sets of it, and what holds the motions
+    Vector theta;         ///< spring_coefficients
+    Matrix springs;       ///< half responses to them
+  };
+  LawAtMu relaxed(const FullMu &mu, const Vector &beta, ReducedAnswer &answer);
+
   const ReducedModel &model_;
+  const Scene &scene_;
   const Contact &interfaces_;
   const ColumnLaws columns_;      ///< of the dual basis
   const std::vector<Index> edge_; ///< columns of the dual basis beside nodes without one
   const ReducedBody body_;
   BodyAtMu at_mu_;
   const std::unique_ptr<ReducedContact> contact_;
+  std::optional<Unrelaxed> unrelaxed_;
 };
 
 /// Where queries start: from what the training samples around mu predict (core/local_fit.hpp), or
