@@ -59,8 +59,13 @@ std::vector<std::string> texts_of(const Record &record, const std::string &name)
   return texts;
 }
 
-/// `at`: how many of the coordinates the values may have.
-BoundProgram program_of(const Record &record, std::size_t at) {
+/// So many of the coordinates.
+std::vector<std::string> first(long count) {
+  return {coordinates.begin(), coordinates.begin() + count};
+}
+
+/// `at`: names that the values may have beside those of parameters.
+BoundProgram program_of(const Record &record, const std::vector<std::string> &at) {
   const std::vector<std::string> names = split(text(record, "parameters"), ' ');
   if (names.size() != numbers(record, "positions").size() || names.size() > most_parameters)
     throw bad_input("a function of the file has other parameters than positions of them");
@@ -73,15 +78,15 @@ BoundProgram program_of(const Record &record, std::size_t at) {
   std::vector<Expression> values;
   for (const std::string &value : texts_of(record, "value"))
     values.push_back(parse_expression(value));
-  return bound_program(lets, values, names,
-                       {coordinates.begin(), coordinates.begin() + static_cast<long>(at)}, {});
+  return bound_program(lets, values, names, at, {});
 }
 
 /// Evaluates the values of a record at a point.
 class Evaluator {
 public:
   /// Throws bad_input unless it has `least` to `most` values.
-  Evaluator(const Record &record, std::size_t at, std::size_t least, std::size_t most)
+  Evaluator(const Record &record, const std::vector<std::string> &at, std::size_t least,
+            std::size_t most)
       : size_(texts_of(record, "value").size()), program_(program_of(record, at)) {
     for (const double position : numbers(record, "positions"))
       positions_.push_back(static_cast<std::size_t>(position));
@@ -109,7 +114,7 @@ private:
 
 const Maker<Coefficient> expression_coefficient_maker{
     "expression", version, [](const Record &of) -> std::function<Coefficient> {
-      return [own = Evaluator(of, 0, 1, 1)](const FullMu &mu) {
+      return [own = Evaluator(of, first(0), 1, 1)](const FullMu &mu) {
         double value;
         own(mu, nullptr, &value);
         return value;
@@ -118,10 +123,18 @@ const Maker<Coefficient> expression_coefficient_maker{
 
 const Maker<PointValue> expression_value_maker{
     "expression", version, [](const Record &of) -> std::function<PointValue> {
-      return [own = Evaluator(of, 3, 1, 1)](const FullMu &mu, const Point &x) {
+      return [own = Evaluator(of, first(3), 1, 1)](const FullMu &mu, const Point &x) {
         double value;
         own(mu, x.data(), &value);
         return value;
+      };
+    }};
+
+const Maker<FieldValues> expression_fields_maker{
+    "expression", version, [](const Record &of) -> std::function<FieldValues> {
+      return [own = Evaluator(of, output_fields(), 2, 2)](const FullMu &mu, const double *fields,
+                                                          double *results) {
+        own(mu, fields, results);
       };
     }};
 
@@ -136,17 +149,18 @@ struct ExpressionMap {
 
 const Maker<PointMap> expression_map_maker{"expression", version,
                                            [](const Record &of) -> std::function<PointMap> {
-                                             return ExpressionMap{Evaluator(of, 3, 1, 3)};
+                                             return ExpressionMap{Evaluator(of, first(3), 1, 3)};
                                            }};
 
 const Maker<Traction> expression_traction_maker{
     "expression", version, [](const Record &of) -> std::function<Traction> {
-      return [own = Evaluator(of, 6, 1, 3)](const FullMu &mu, const Point &x, const Point &n) {
-        const std::array at{x[0], x[1], x[2], n[0], n[1], n[2]};
-        Point value{};
-        own(mu, at.data(), value.data());
-        return value;
-      };
+      return
+          [own = Evaluator(of, first(6), 1, 3)](const FullMu &mu, const Point &x, const Point &n) {
+            const std::array at{x[0], x[1], x[2], n[0], n[1], n[2]};
+            Point value{};
+            own(mu, at.data(), value.data());
+            return value;
+          };
     }};
 
 /// "the radius {r}" -> "the radius 0.2", from the values in their order.
@@ -177,7 +191,7 @@ std::vector<Expression> expressions_in(const std::string &message) {
 /// The conditions come first, then the values in their messages.
 const Maker<Check> expression_check_maker{
     "expression", version, [](const Record &of) -> std::function<Check> {
-      const Evaluator own(of, 0, 1, 1000);
+      const Evaluator own(of, first(0), 1, 1000);
       return [own, messages = texts_of(of, "message")](const FullMu &mu) {
         std::vector<double> values(own.size());
         own(mu, nullptr, values.data());
@@ -347,9 +361,20 @@ std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
   return result;
 }
 
+const std::vector<std::string> &output_fields() {
+  static const std::vector<std::string> names{"x",        "y",   "ux",        "uy",
+                                              "pressure", "gap", "tangential"};
+  return names;
+}
+
+Named<FieldValues> field_values_of(const Formula &values) {
+  check_names(values, output_fields());
+  return function_of(expression_fields_maker, record_of_formula(values));
+}
+
 FunctionLibrary formula_functions() {
   return {expression_coefficient_maker, expression_value_maker, expression_map_maker,
-          expression_traction_maker, expression_check_maker};
+          expression_traction_maker,    expression_check_maker, expression_fields_maker};
 }
 
 } // namespace rbvi

@@ -124,6 +124,7 @@ template Named<Surface> made(const Stored &);
 template Named<Material> made(const Stored &);
 template Named<Kernel> made(const Stored &);
 template Named<Traction> made(const Stored &);
+template Named<FieldValues> made(const Stored &);
 
 Named<NumberMap> logarithm() {
   return log_maker();

@@ -100,16 +100,14 @@ void set_penetration(const std::array<double, 2> &penetration, Outputs &outputs)
 namespace {
 
 const char *name_of(std::optional<double> Outputs::*member) {
-  return std::ranges::find(output_columns(), member, &OutputColumn::value)->name;
+  return std::ranges::find(output_columns(), member, &OutputColumn::value)->name.c_str();
 }
 
 } // namespace
 
 void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutput &errors) {
-  for (const OutputColumn &column : output_columns()) {
-    const std::optional<double> value = outputs.*column.value;
-    if (!value) continue;
-    const std::string digits = formatted("%.10g", *value);
+  for (const OutputColumn &column : columns_of({outputs})) {
+    const std::string digits = formatted("%.10g", column.of(outputs).value());
     out << std::left << std::setw(22) << column.name << digits;
     const auto error = errors.find(column.name);
     if (error != errors.end())
@@ -129,24 +127,36 @@ void print_outputs(std::ostream &out, const Outputs &outputs, const ErrorOfOutpu
 }
 
 void check_finite(const Outputs &outputs) {
-  for (const OutputColumn &column : output_columns())
-    if (const std::optional<double> value = outputs.*column.value; value && !std::isfinite(*value))
-      throw failure("the answer has no " + std::string(column.name) + ", which is " +
-                    short_number(*value) +
+  for (const OutputColumn &column : columns_of({outputs}))
+    if (const std::optional<double> value = column.of(outputs); !std::isfinite(*value))
+      throw failure("the answer has no " + column.name + ", which is " + short_number(*value) +
                     ": is a load, a material or the mesh extreme, or a function of the scene not "
                     "finite there?");
 }
 
-const OutputColumn &output_column(const std::string &name) {
-  const std::vector<OutputColumn> &columns = output_columns();
-  const auto found = std::find_if(columns.begin(), columns.end(),
-                                  [&](const OutputColumn &column) { return name == column.name; });
-  if (found != columns.end()) return *found;
-  std::vector<std::string> names;
-  for (const OutputColumn &column : columns)
-    names.emplace_back(column.name);
-  throw bad_input("there is no output '" + name + "': the nearest is '" +
-                  nearest_name(name, names) + "'");
+std::optional<double> OutputColumn::of(const Outputs &outputs) const {
+  if (value != nullptr) return outputs.*value;
+  const auto found = std::ranges::find(outputs.named, name, &NamedOutput::name);
+  return found == outputs.named.end() ? std::optional<double>() : found->value;
+}
+
+std::vector<OutputColumn> columns_of(const std::vector<Outputs> &rows) {
+  std::vector<OutputColumn> columns;
+  for (const OutputColumn &column : output_columns())
+    if (std::ranges::any_of(rows, [&](const Outputs &row) { return column.of(row).has_value(); }))
+      columns.push_back(column);
+  for (const Outputs &row : rows)
+    for (const NamedOutput &named : row.named)
+      if (std::ranges::find(columns, named.name, &OutputColumn::name) == columns.end())
+        columns.push_back(output_column(named.name));
+  return columns;
+}
+
+OutputColumn output_column(const std::string &name) {
+  const auto found = std::ranges::find(output_columns(), name, &OutputColumn::name);
+  return found != output_columns().end()
+             ? *found
+             : OutputColumn{name, nullptr, OutputKind::quantity, "of the case"};
 }
 
 namespace {
@@ -238,7 +248,7 @@ bool is_table_column(const std::string &name) {
   if (std::ranges::find(others, name) != others.end()) return true;
   return std::any_of(output_columns().begin(), output_columns().end(),
                      [&](const OutputColumn &column) {
-                       return name == column.name || name == std::string(column.name) + "_error";
+                       return name == column.name || name == column.name + "_error";
                      });
 }
 

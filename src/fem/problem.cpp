@@ -1,6 +1,7 @@
 #include "rbvi/fem/problem.hpp"
 
 #include "rbvi/contact/history.hpp"
+#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 #include "rbvi/core/validity.hpp"
@@ -190,6 +191,20 @@ const Operators &Problem::assemble(const Mu &mu, ContactRows rows, const Vector 
 
 Vector Problem::imposed_displacement(const Mu &mu) const {
   return natural_imposed(*scene_, expand(scene_->parameters, mu), mesh_, dofs_);
+}
+
+void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u,
+                       const Vector &lambda, Outputs &outputs) {
+  const Index components = problem.dofs().components;
+  const auto at_nodes = [&](std::size_t interface) {
+    const std::vector<PetscInt> &nodes = problem.places().natural_nodes[interface];
+    Vector own(std::ssize(nodes) * components);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      own.segment(static_cast<Index>(k) * components, components) =
+          u.segment(nodes[k] * components, components);
+    return own;
+  };
+  add_named_outputs(problem.scene(), problem.contact(), mu, at_nodes, lambda, outputs);
 }
 
 Mat Problem::v_product() {

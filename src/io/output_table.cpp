@@ -24,15 +24,13 @@ RowText row_of(const Mu &mu, const std::string &id) {
 
 OutputTable::OutputTable(std::ostream &out, const ParameterSpace &space, const Outputs &like,
                          TableStyle style)
-    : out_(out), parameters_(space.size()), style_(std::move(style)) {
-  for (const OutputColumn &column : output_columns())
-    if (like.*column.value) columns_.push_back(column);
+    : out_(out), parameters_(space.size()), columns_(columns_of({like})), style_(std::move(style)) {
   out_ << (style_.id ? "id," : "");
   for (int i = 0; i < parameters_; ++i)
     out_ << (i > 0 ? "," : "") << space.at(i).name;
   for (const OutputColumn &column : columns_) {
-    out_ << ',' << column.name;
-    if (style_.errors.contains(column.name)) out_ << ',' << column.name << "_error";
+    out_ << ',' << field(column.name);
+    if (style_.errors.contains(column.name)) out_ << ',' << field(column.name + "_error");
   }
   out_ << (style_.status ? ",status\n" : "\n");
 }
@@ -48,7 +46,7 @@ void OutputTable::add(const Mu &mu, const Outputs &outputs, bool errors_hold,
   begin(row_of(mu, id));
   const std::string format = "%." + std::to_string(style_.digits) + "g";
   for (const OutputColumn &column : columns_) {
-    const std::optional<double> value = outputs.*column.value;
+    const std::optional<double> value = column.of(outputs);
     out_ << ',' << (value ? formatted(format.c_str(), *value) : "");
     const auto error = style_.errors.find(column.name);
     if (error != style_.errors.end())
@@ -70,9 +68,12 @@ void write_csv(std::ostream &out, const ParameterSpace &space, const std::vector
     throw failure("a table of " + std::to_string(mus.size()) + " parameters and " +
                   std::to_string(rows.size()) + " results");
   Outputs like;
-  for (const OutputColumn &column : output_columns())
-    for (const Outputs &row : rows)
-      if (row.*column.value) like.*column.value = row.*column.value;
+  for (const OutputColumn &column : columns_of(rows)) {
+    if (column.value == nullptr)
+      like.named.push_back({column.name, 0});
+    else
+      like.*column.value = 0;
+  }
   OutputTable table(out, space, like);
   for (std::size_t r = 0; r < rows.size(); ++r)
     table.add(mus[r], rows[r]);

@@ -1,5 +1,6 @@
 #include "rbvi/model/online.hpp"
 
+#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/core/validity.hpp"
@@ -110,6 +111,22 @@ Vector OnlineSolver::field(const ReducedAnswer &solution) const {
   return field + imposed_values(scene_, solution.mu, nodes, model_.fields.imposed_by);
 }
 
+void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
+                                        Outputs &outputs) const {
+  if (scene_.outputs.empty()) return;
+  const Vector columns = model_.contact.trace * solution.u;
+  const auto at_nodes = [&](std::size_t interface) {
+    const InterfaceMesh &mesh = contact_.interfaces[interface]->mesh();
+    Vector u = Vector::Zero(std::ssize(mesh.dofs));
+    for (Index i = 0; i < u.size(); ++i)
+      if (const int column = mesh.dofs[i]; column >= 0) u[i] = columns[column];
+    if (!mesh.imposed_by.empty())
+      u += imposed_values(scene_, solution.mu, mesh.points, mesh.imposed_by);
+    return u;
+  };
+  add_named_outputs(scene_, contact_, solution.mu, at_nodes, lambda, outputs);
+}
+
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {
   Outputs result;
   const double images = scene_.mirror_images;
@@ -125,10 +142,12 @@ Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const
   }
   if (nitsche_) {
     nitsche_->outputs(solution.mu, solution.u, result);
+    add_outputs_of_scene(solution, multiplier(solution), result);
     check_finite(result);
     return result;
   }
   const Vector lambda = multiplier(solution);
+  add_outputs_of_scene(solution, lambda, result);
   const ContactOperators operators = nodal_operators(solution, lambda);
   const Vector gap = trace_->gap_left(operators, solution.u);
   trace_->check_outside(operators, gap);

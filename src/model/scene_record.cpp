@@ -150,6 +150,15 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
       part.record = recipe.record;
     if (part.has("name", !recipe.name.empty())) part.text("name", recipe.name);
   });
+  store.items("output", scene.outputs, [](const Store &part, auto &output) {
+    name_record(part, "output");
+    part.text("name", output.name);
+    int kind = static_cast<int>(output.kind);
+    part.number("kind", kind);
+    if constexpr (Store::reads) output.kind = static_cast<OutputForm::Kind>(kind);
+    part.texts("at", output.at);
+    part.function("values", output.values);
+  });
   // Loads of imposed values are made again from these values and the kernels of a.
   const bool imposes = imposes_values(scene);
   const auto term = [&](const Store &part, auto &of) { list_term(part, of, imposes); };

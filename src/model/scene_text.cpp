@@ -286,6 +286,7 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
   add_parameters(scene, text);
   Record record = record_of(scene);
   record.parts.erase("check"); // refuses parameters, and changes no answer
+  std::erase_if(record.parts, [](const auto &part) { return part.first.starts_with("output_"); });
   for (auto &[name, part] : record.parts)
     if (name.starts_with("contact_")) part.texts.erase("name"); // nor does what it is called
   text.add("scene", record);

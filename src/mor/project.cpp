@@ -265,7 +265,8 @@ void project_springs(const Problem &problem, const std::vector<Sample> &samples,
 void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
   constexpr Index large = 100000;
   constexpr int layers = 2;
-  if (model.contact.law || model.contact.b.size() == 0 || model.contact.trace.size() < large)
+  if (model.contact.law || model.contact.b.size() == 0 || model.contact.trace.size() < large ||
+      !problem.scene().outputs.empty())
     return;
   const auto nonzero = [](const auto &row) { return (row.array() != 0).any(); };
   std::vector<bool> near(model.contact.dual_basis.rows());

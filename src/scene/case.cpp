@@ -208,6 +208,7 @@ void read_sections(Reader &reader, Scene &scene, Defects &defects) {
   read_physics(reader, scene, defects);
   read_motion(reader, scene, defects);
   read_contact(reader, scene, defects);
+  read_outputs(reader, scene, defects);
   read_requirements(reader, scene, defects);
   read_symmetry(reader, scene, defects);
 }

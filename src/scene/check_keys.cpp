@@ -1,3 +1,4 @@
+#include "rbvi/core/formula.hpp"
 #include "reader.hpp"
 
 #include "rbvi/core/text.hpp"
@@ -55,6 +56,8 @@ public:
     for (const char *section_name : {"parameters", "let"})
       for (const auto &[name, node] : section(reader, section_name).entries)
         known_.push_back(name);
+    in_outputs_ = known_;
+    in_outputs_.insert(in_outputs_.end(), output_fields().begin(), output_fields().end());
   }
 
   /// An entry of the table whose keys are those of `table`.
@@ -107,7 +110,7 @@ private:
       defects_.add(value, name + " is a table: write 'NAME: value' below it, or {NAME: value}");
     else if (key.value == "expression" ||
              (key.value == "expression | motion" && value.value != "motion"))
-      check_names(reader_, value, known_, defects_);
+      check_names(reader_, value, table == "outputs.*" ? in_outputs_ : known_, defects_);
     else if (key.value.starts_with("expressions") || key.value.starts_with("[expression"))
       for (const CaseNode &item : value.items)
         check_names(reader_, item, known_, defects_);
@@ -129,7 +132,7 @@ private:
 
   const Reader &reader_;
   Defects &defects_;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_, in_outputs_;
 };
 
 } // namespace

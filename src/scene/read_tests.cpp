@@ -38,6 +38,18 @@ void read_place(const Reader &reader, const std::string &name, const CaseNode &n
   test.at[name] = value;
 }
 
+/// Throws bad_input where there is none.
+void check_output(const std::string &name, const Scene &scene) {
+  std::vector<std::string> names;
+  for (const OutputColumn &column : output_columns())
+    names.push_back(column.name);
+  for (const OutputForm &output : scene.outputs)
+    names.push_back(output.name);
+  if (std::ranges::find(names, name) == names.end())
+    throw bad_input("there is no output '" + name + "': the nearest is '" +
+                    nearest_name(name, names) + "'");
+}
+
 SceneTest test_in(const Reader &reader, const std::string &name, const CaseNode &node,
                   const Scene &scene, Defects &defects) {
   SceneTest test{name};
@@ -50,7 +62,8 @@ SceneTest test_in(const Reader &reader, const std::string &name, const CaseNode 
   if (expect.entries.empty()) throw bad_input("a test expects an output: {normal_force: 1.5}");
   for (const auto &[output, value] : expect.entries)
     defects.collect(value, [&, &own = output, &number = value] {
-      test.expected[output_column(own).name] = number_in(reader, number);
+      check_output(own, scene);
+      test.expected[own] = number_in(reader, number);
     });
   test.tolerance = number_in(reader, entry(node, "tolerance"));
   if (!(test.tolerance > 0)) throw bad_input("the tolerance of a test is positive");

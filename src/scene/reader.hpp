@@ -79,6 +79,8 @@ void read_facts(const Reader &reader, const CaseNode &mesh, MeshRecipe &recipe, 
 void read_motion(Reader &reader, Scene &scene, Defects &defects);
 void read_physics(Reader &reader, Scene &scene, Defects &defects);
 void read_contact(Reader &reader, Scene &scene, Defects &defects);
+/// After contact.
+void read_outputs(Reader &reader, Scene &scene, Defects &defects);
 
 /// Defaults outside of their limits and of those that what they are gives them. After
 /// all sections.

@@ -329,6 +329,7 @@ HfSolution HighFidelity::solve(const Mu &mu, const Vector &slip) {
   if (condensed) complete_compliance();
   MethodResult result = problem_.free_bodies().empty() ? run(mu, op, slip) : run_free(mu, op, slip);
   result.u = whole_displacement(problem_, mu, result.free_u.get());
+  add_named_outputs(problem_, op.mu, result.u, result.lambda, result.outputs);
   if (problem_.scene().components == 1) result.outputs.min_u = result.u.minCoeff();
   result.outputs.seconds = MPI_Wtime() - start;
   check_finite(result.outputs);

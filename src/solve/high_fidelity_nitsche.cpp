@@ -30,6 +30,7 @@ HfSolution HighFidelity::solve_nitsche(const Mu &mu, const Operators &op) {
   solution.lambda = nitsche_multiplier(layer, op.mu, found.layer);
   nitsche_outputs(layer, op.mu, nitsche_faces(layer, op.mu, layer.cells, found.layer), found.layer,
                   found.pressures, solution.outputs);
+  add_named_outputs(problem_, op.mu, solution.u, solution.lambda, solution.outputs);
   solution.kkt.stationarity = found.residual;
   solution.outputs.energy = scene.mirror_images * (found.energy + op.imposed_energy);
   solution.residual = *(solution.outputs.kkt_residual = found.residual);

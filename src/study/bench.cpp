@@ -89,7 +89,7 @@ std::string solver_name(const Problem &problem, const HfOptions &options, bool c
 /// sum += weight * outputs, quantities alone.
 void add_outputs(double weight, const Outputs &outputs, Outputs &sum) {
   for (const OutputColumn &column : output_columns())
-    if (const std::optional<double> value = outputs.*column.value;
+    if (const std::optional<double> value = column.of(outputs);
         value && column.kind == OutputKind::quantity)
       sum.*column.value = (sum.*column.value).value_or(0) + weight * *value;
 }

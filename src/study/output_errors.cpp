@@ -9,13 +9,11 @@ namespace rbvi {
 
 namespace {
 
-using Member = std::optional<double> Outputs::*;
-
 /// The largest magnitude of a column: of a component of a force, that of the force.
 double magnitude(const OutputColumn &column, const std::vector<Outputs> &truth) {
   double largest = 0;
   for (const Outputs &row : truth) {
-    largest = std::max(largest, std::abs((row.*column.value).value_or(0)));
+    largest = std::max(largest, std::abs(column.of(row).value_or(0)));
     if (column.value == &Outputs::horizontal_reaction)
       largest = std::max(largest, std::abs(row.normal_force.value_or(0)));
   }
@@ -27,11 +25,14 @@ OutputError error_of(const OutputColumn &column, const std::vector<Outputs> &red
                      const std::vector<Outputs> &truth) {
   std::vector<double> all, values, errors;
   for (std::size_t p = 0; p < truth.size(); ++p) {
-    if (!(truth[p].*column.value)) continue;
-    all.push_back(*(truth[p].*column.value));
-    if (p >= reduced.size() || !(reduced[p].*column.value)) continue;
-    values.push_back(all.back());
-    errors.push_back(std::abs(*(reduced[p].*column.value) - values.back()));
+    const std::optional<double> known = column.of(truth[p]);
+    if (!known) continue;
+    all.push_back(*known);
+    const std::optional<double> found =
+        p < reduced.size() ? column.of(reduced[p]) : std::optional<double>();
+    if (!found) continue;
+    values.push_back(*known);
+    errors.push_back(std::abs(*found - *known));
   }
   const auto [low, high] = std::minmax_element(all.begin(), all.end());
   const double least = 1e-2 * magnitude(column, truth);
@@ -52,9 +53,8 @@ OutputError error_of(const OutputColumn &column, const std::vector<Outputs> &red
   return result;
 }
 
-bool has(const std::vector<Outputs> &rows, Member member) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [&](const Outputs &row) { return (row.*member).has_value(); });
+bool has(const std::vector<Outputs> &rows, const OutputColumn &column) {
+  return std::ranges::any_of(rows, [&](const Outputs &row) { return column.of(row).has_value(); });
 }
 
 } // namespace
@@ -87,9 +87,9 @@ std::vector<OutputError> output_errors(const std::vector<Outputs> &reduced,
     throw failure("outputs of " + std::to_string(reduced.size()) + " reduced answers and " +
                   std::to_string(truth.size()) + " high-fidelity ones");
   std::vector<OutputError> errors;
-  for (const OutputColumn &column : output_columns())
+  for (const OutputColumn &column : columns_of(truth))
     if (column.value != &Outputs::seconds && column.value != &Outputs::iterations &&
-        has(truth, column.value) && has(reduced, column.value))
+        has(reduced, column))
       errors.push_back(error_of(column, reduced, truth));
   return errors;
 }

@@ -175,13 +175,15 @@ std::vector<int> missing_samples(MPI_Comm world, const Wanted &wanted, SweepRepo
 }
 
 /// The samples that are there, and the reasons of those that are not. Collective.
-void collect(MPI_Comm world, const Wanted &wanted, Sweep &sweep) {
+void collect(MPI_Comm world, const Problem &problem, const Wanted &wanted, Sweep &sweep) {
   collectively(world, [&] {
     for (const Mu &mu : wanted.set) {
       const fs::path file = sample_file(wanted.store.directory, mu);
       if (fs::exists(file)) {
         try {
-          sweep.samples.push_back(read_sample(file, wanted.settings));
+          Sample &sample = sweep.samples.emplace_back(read_sample(file, wanted.settings));
+          add_named_outputs(problem, expand(problem.scene().parameters, mu), sample.u,
+                            sample.lambda, sample.outputs);
           if (wanted.store.fields == Fields::in_files) sweep.samples.back().u = Vector();
         } catch (const DamagedFile &error) { // since the sweep began
           throw failure(error.what());
@@ -348,7 +350,7 @@ Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const Hf
   const double start = MPI_Wtime();
   solve_missing(world, groups, problem, options, wanted, missing);
   sweep.report.seconds = MPI_Wtime() - start;
-  collect(world, wanted, sweep);
+  collect(world, problem, wanted, sweep);
   sweep.report.reused = static_cast<int>(set.size() - missing.size());
   sweep.report.solved = static_cast<int>(missing.size() - sweep.report.failed.size());
   sweep.report.seconds_per_solve = median_seconds(sweep.samples, set, missing);

@@ -33,7 +33,7 @@ Mu place_of(const SceneTest &test, const ParameterSpace &space) {
 /// Prints one comparison; returns whether it passes.
 bool compare(const SceneTest &test, const std::string &output, double expected,
              const Outputs &outputs) {
-  const std::optional<double> found = outputs.*output_column(output).value;
+  const std::optional<double> found = output_column(output).of(outputs);
   const double size = expected == 0 ? 1 : std::abs(expected);
   const double off = found ? std::abs(*found - expected) / size : INFINITY;
   const bool passed = off <= test.tolerance;

@@ -83,7 +83,7 @@ void print_help(const Registry &registry, const std::string &scene, const std::s
     print_scene(entry);
   std::printf("\nOutputs (columns of tables):\n");
   for (const OutputColumn &column : output_columns())
-    std::printf("  %-25s %s\n", column.name, column.says);
+    std::printf("  %-25s %s\n", column.name.c_str(), column.says);
   print_solver_objects();
   std::printf(
       "\nExit status: 0 done, 1 it failed or some samples did, 2 the input is wrong (nothing is\n"

@@ -28,6 +28,11 @@ Named<PointValue> point_value_of(const Formula &value);
 /// Components that are left out are 0.
 Named<PointMap> point_map_of(const Formula &components);
 Named<Traction> traction_of(const Formula &components);
+/// What outputs may name beside parameters: x, y (where the map takes the point), ux, uy (the
+/// displacement, with the motion), pressure, gap, tangential (the tangential stress).
+const std::vector<std::string> &output_fields();
+/// Two values in them: of an output, and whether it is asked for there (not 0).
+Named<FieldValues> field_values_of(const Formula &values);
 /// Throws bad_input with the message of the first of these conditions that is 0 or NaN;
 /// {expression} in it becomes the value.
 Named<Check> check_of(const Formula &conditions, const std::vector<std::string> &messages);

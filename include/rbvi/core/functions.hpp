@@ -50,9 +50,12 @@ using Kernel = void(const FullMu &mu, const Cell &cell, double *values); ///< se
 /// A force per length or area at a point x of the mapped boundary, n its unit normal outwards.
 using Traction = Point(const FullMu &mu, const Point &x, const Point &n);
 
-using AnyMaker =
-    std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
-                 Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>, Maker<Traction>>;
+/// Values in those of fields at a point (core/formula.hpp).
+using FieldValues = void(const FullMu &mu, const double *fields, double *results);
+
+using AnyMaker = std::variant<Maker<NumberMap>, Maker<Coefficient>, Maker<Check>, Maker<PointValue>,
+                              Maker<PointMap>, Maker<Surface>, Maker<Material>, Maker<Kernel>,
+                              Maker<Traction>, Maker<FieldValues>>;
 using FunctionLibrary = std::vector<AnyMaker>;
 
 /// The makers of the functions below.

@@ -12,6 +12,11 @@
 
 namespace rbvi {
 
+struct NamedOutput {
+  std::string name;
+  double value;
+};
+
 /// A quantity that a scene does not have stays unset and has no column.
 struct Outputs {
   std::optional<double> energy;       ///< J(u) = a(u,u)/2 - f(u)
@@ -54,6 +59,7 @@ struct Outputs {
   /// Large deformations: the change in the last step over that in the one before.
   std::optional<double> contraction;
   std::optional<double> seconds;
+  std::vector<NamedOutput> named{};  ///< of the scene's own (Scene::outputs), in their order
   std::string name{};                ///< of the contact interface, where they are of one alone
   std::vector<Outputs> interfaces{}; ///< of contact, each apart; empty: there is one
 };
@@ -70,17 +76,20 @@ enum class OutputKind {
 };
 
 struct OutputColumn {
-  const char *name;
-  std::optional<double> Outputs::*value;
+  std::string name;
+  std::optional<double> Outputs::*value; ///< null: one of Outputs::named
   OutputKind kind;
   const char *says; ///< its definition, one line
+  std::optional<double> of(const Outputs &outputs) const;
 };
 
-/// All columns in the order of every table.
+/// All columns but those of named outputs, in the order of every table.
 const std::vector<OutputColumn> &output_columns();
+/// The columns that some of these answers have; named outputs stand last.
+std::vector<OutputColumn> columns_of(const std::vector<Outputs> &rows);
 
-/// The one of this name. Throws bad_input if there is none.
-const OutputColumn &output_column(const std::string &name);
+/// The one of this name; of none that is known that of a named output.
+OutputColumn output_column(const std::string &name);
 
 /// Measured errors of outputs by column name, absolute.
 using ErrorOfOutput = std::map<std::string, double>;

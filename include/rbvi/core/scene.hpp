@@ -91,6 +91,15 @@ struct BodyMaterial {
   Named<Material> of_cell;
 };
 
+/// An output of the scene's own, over contact interfaces (contact/named_outputs.hpp).
+struct OutputForm {
+  enum class Kind { integral, mean, max, min, measure };
+  std::string name;
+  Kind kind = Kind::integral;
+  std::vector<std::string> at{}; ///< names of contacts
+  Named<FieldValues> values{};   ///< what is integrated, ..., and where
+};
+
 /// Outputs of one full solve that are known.
 struct SceneTest {
   std::string name;
@@ -143,6 +152,7 @@ struct Scene {
   Sum f;         ///< empty: no load
   Sum v_product; ///< inner product of V, exact terms; mu is empty there
 
+  std::vector<OutputForm> outputs{};
   std::vector<SceneTest> tests{};
 };
 

@@ -135,4 +135,8 @@ private:
   Operators operators_;
 };
 
+/// Sets Outputs::named of an answer whose u is at all dofs in natural order. Not collective.
+void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u,
+                       const Vector &lambda, Outputs &outputs);
+
 } // namespace rbvi

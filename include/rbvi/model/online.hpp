@@ -49,6 +49,9 @@ private:
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
 
+  void add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
+                            Outputs &outputs) const;
+
   const ReducedModel &model_;
   const Scene scene_; ///< with_imposed_loads
   const Sum imposed_energy_;

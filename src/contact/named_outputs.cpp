@@ -1,0 +1,177 @@
+#include "rbvi/contact/named_outputs.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace rbvi {
+
+namespace {
+
+/// In the order of output_fields().
+constexpr Index of_u = 2, of_pressure = 4, of_gap = 5, of_tangential = 6, places = 7;
+
+/// Fields at the vertices of an interface, a column each, and its pieces.
+struct Traces {
+  Matrix at;              ///< vertices x places
+  std::vector<int> edges; ///< two vertices each
+};
+
+/// NaN where the grid has none of this name.
+Vector field_of(const Grid &grid, const std::string &name) {
+  const auto found = std::ranges::find(grid.of_nodes, name, &Field::name);
+  return found != grid.of_nodes.end()
+             ? found->values
+             : Vector::Constant(grid.points.rows(), std::numeric_limits<double>::quiet_NaN());
+}
+
+Traces traces_of(const Grid &grid) {
+  if (grid.per_cell != 2) throw bad_input("outputs of a case are over contact along curves");
+  Traces traces{Matrix(grid.points.rows(), places), grid.cells};
+  const Vector moved = field_of(grid, "u");
+  traces.at.leftCols(2) = grid.points.leftCols(2);
+  for (Index i = 0; i < grid.points.rows(); ++i)
+    traces.at.row(i).segment<2>(of_u) = moved.segment<2>(3 * i).transpose();
+  traces.at.col(of_pressure) = field_of(grid, "pressure");
+  traces.at.col(of_gap) = field_of(grid, "gap");
+  traces.at.col(of_tangential) = field_of(grid, "tangential_stress");
+  return traces;
+}
+
+/// The value and whether the condition holds, at points of the pieces.
+class OnPieces {
+public:
+  OnPieces(const Named<FieldValues> &values, const FullMu &mu, const Traces &traces)
+      : values_(values), mu_(mu), traces_(traces) {}
+
+  Index pieces() const { return std::ssize(traces_.edges) / 2; }
+  double length(Index piece) const {
+    return (end(piece, 1).head<2>() - end(piece, 0).head<2>()).norm();
+  }
+  /// At 0 <= s <= 1 on a piece: value and condition.
+  std::array<double, 2> at(Index piece, double s) const {
+    const Vector fields = (1 - s) * end(piece, 0) + s * end(piece, 1);
+    std::array<double, 2> result{0, 1};
+    values_(mu_, fields.data(), result.data());
+    return result;
+  }
+  bool holds(Index piece, double s) const { return at(piece, s)[1] != 0; }
+
+  /// Calls use(from, to) for the parts of a piece on which the condition holds.
+  template <class Use> void parts(Index piece, const Use &use) const {
+    constexpr int samples = 8; // crossings closer to each other than that are not seen
+    bool held = holds(piece, 0);
+    double from = 0;
+    for (int k = 1; k <= samples; ++k) {
+      const double s = double(k) / samples;
+      const bool now = holds(piece, s);
+      if (now != held) {
+        const double crossing = crossing_in(piece, double(k - 1) / samples, s);
+        if (held) use(from, crossing);
+        from = crossing;
+        held = now;
+      }
+    }
+    if (held) use(from, 1.0);
+  }
+
+private:
+  Vector end(Index piece, Index which) const {
+    return traces_.at.row(traces_.edges[2 * piece + which]).transpose();
+  }
+  double crossing_in(Index piece, double low, double high) const {
+    const bool held = holds(piece, low);
+    for (int step = 0; step < 50; ++step) {
+      const double middle = (low + high) / 2;
+      (holds(piece, middle) == held ? low : high) = middle;
+    }
+    return (low + high) / 2;
+  }
+
+  const Named<FieldValues> &values_;
+  const FullMu &mu_;
+  const Traces &traces_;
+};
+
+struct FormSums {
+  double measure = 0, integral = 0;
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+};
+
+/// Three Gauss points on each part.
+void add(const OnPieces &on, FormSums &sums) {
+  const double away = std::sqrt(0.15);
+  const std::array<double, 3> points{0.5 - away, 0.5, 0.5 + away},
+      weights{5.0 / 18, 8.0 / 18, 5.0 / 18};
+  for (Index piece = 0; piece < on.pieces(); ++piece)
+    on.parts(piece, [&](double from, double to) {
+      const double length = (to - from) * on.length(piece);
+      sums.measure += length;
+      for (std::size_t q = 0; q < 3; ++q)
+        sums.integral += weights[q] * length * on.at(piece, from + (to - from) * points[q])[0];
+      for (const double s : {from, (from + to) / 2, to}) {
+        const double value = on.at(piece, s)[0];
+        sums.least = std::min(sums.least, value);
+        sums.largest = std::max(sums.largest, value);
+      }
+    });
+}
+
+double value_of(const OutputForm &form, const FormSums &sums, double images) {
+  switch (form.kind) {
+  case OutputForm::Kind::integral:
+    return images * sums.integral;
+  case OutputForm::Kind::measure:
+    return images * sums.measure;
+  case OutputForm::Kind::mean:
+    return sums.integral / sums.measure;
+  case OutputForm::Kind::min:
+    return sums.least;
+  case OutputForm::Kind::max:
+    return sums.largest;
+  }
+  return 0;
+}
+
+} // namespace
+
+void check_outputs(const Scene &scene) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+    names.push_back(contact_name(scene, i));
+  for (const OutputForm &form : scene.outputs)
+    for (const std::string &at : form.at)
+      if (std::ranges::find(names, at) == names.end())
+        throw bad_input("the output '" + form.name + "' is over '" + at +
+                        "', which is no contact: the nearest is '" + nearest_name(at, names) + "'");
+}
+
+void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu &mu,
+                       const InterfaceDisplacement &u, const Vector &lambda, Outputs &outputs) {
+  outputs.named.clear();
+  if (scene.outputs.empty()) return;
+  std::vector<std::optional<Traces>> traces(contact.interfaces.size());
+  for (const OutputForm &form : scene.outputs) {
+    FormSums sums;
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      if (std::ranges::find(form.at, contact.names[i]) == form.at.end()) continue;
+      ContactInterface &interface = *contact.interfaces[i];
+      if (!traces[i])
+        traces[i] = traces_of(interface.fields(
+            mu, u(i), lambda.segment(contact.first_row[i], interface.dual().size())));
+      add(OnPieces(form.values, mu, *traces[i]), sums);
+    }
+    const double value = value_of(form, sums, scene.mirror_images);
+    if (!std::isfinite(value))
+      throw failure("the output '" + form.name +
+                    "' has no value: nothing is where its condition holds, or a field is not "
+                    "there (tangential needs friction)");
+    outputs.named.push_back({form.name, value});
+  }
+}
+
+} // namespace rbvi
