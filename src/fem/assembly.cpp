@@ -60,6 +60,12 @@ MappedVertices map_vertices(const Scene &scene, const FullMu &mu, const Mesh &me
          ++v)
       vertices.push_back(mesh.points[v]);
     mapped = images(scene.map, mu, vertices);
+    for (std::size_t v = 0; scene.axisymmetric && v < mapped.size(); ++v)
+      if (const bool on = mesh.boundary.at(axis_of_turning)[v];
+          on != !(mapped[v][0] > 1e-12 * norm(mapped[v])))
+        throw failure("the map takes a point " + std::string(on ? "off" : "to or beyond") +
+                      " the axis x = 0 at " + describe(scene.parameters, mu) +
+                      ": it must leave the axis where it is");
     for (std::size_t k = 0; k < mesh.cells.size(); ++k)
       check_orientation(scene, mu, cell_of(mesh, k, mapped));
   });

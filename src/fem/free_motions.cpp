@@ -35,14 +35,15 @@ struct Bodies {
   std::vector<Point> at;    ///< per local node of an owned cell
   std::vector<int> of_node; ///< -1: of no owned cell
   std::vector<Body> all;
+  bool turned = false; ///< about x = 0: the one rigid motion is along it
 
-  int modes() const { return dofs.components == 1 ? 1 : mesh.dim == 2 ? 3 : 6; }
+  int modes() const { return dofs.components == 1 || turned ? 1 : mesh.dim == 2 ? 3 : 6; }
   /// The rigid motions of the body of a node there, rotations about the centre.
   Vector motions(std::size_t node, int component) const {
     const Body &body = all[of_node[node]];
     const Point x = (at[node] - body.centre()) / body.size();
     return Vector::NullaryExpr(modes(), [&](Index mode) {
-      return rigid_displacement(mesh.dim, static_cast<int>(mode), component, x);
+      return rigid_displacement(mesh.dim, turned ? 1 : static_cast<int>(mode), component, x);
     });
   }
   std::size_t dof(std::size_t node, int c) const {
@@ -51,9 +52,11 @@ struct Bodies {
 };
 
 /// `mapped`: where the vertices are; empty: as in the reference mesh. Collective.
-Bodies find_bodies(const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped) {
+Bodies find_bodies(const Scene &scene, const Mesh &mesh, const Dofs &dofs,
+                   const MappedVertices &mapped) {
   const std::size_t nodes = mesh.points.size();
-  Bodies bodies{mesh, dofs, std::vector<Point>(nodes), std::vector<int>(nodes, -1), {}};
+  Bodies bodies{
+      mesh, dofs, std::vector<Point>(nodes), std::vector<int>(nodes, -1), {}, scene.axisymmetric};
   const auto count = static_cast<Index>(mesh.bodies);
   Matrix highest = Matrix::Constant(6, count, -std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
@@ -180,6 +183,7 @@ std::string turn_text(const Bodies &bodies, const Body &body, const Matrix &turn
 
 /// "move along (0, 1) and turn about (0.5, 0)".
 std::string motions_text(const Bodies &bodies, const Body &body, const Matrix &free) {
+  if (bodies.turned) return "move along (0, 1)";
   if (free.cols() == bodies.modes()) return free.cols() == 1 ? "move" : "move and turn";
   const Index dim = bodies.mesh.dim;
   // Combinations without a turn are the translations, those at right angles to them turn.
@@ -222,12 +226,12 @@ std::vector<std::string> names_of(const Bodies &bodies) {
 } // namespace
 
 void check_held(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
-  if (std::ranges::none_of(free_motions(held_by_displacements(find_bodies(mesh, dofs, {}))),
+  if (std::ranges::none_of(free_motions(held_by_displacements(find_bodies(scene, mesh, dofs, {}))),
                            is_free))
     return;
   const FullMu mu = generic_point(scene.parameters);
   const MappedVertices mapped = map_vertices(scene, mu, mesh);
-  const Bodies bodies = find_bodies(mesh, dofs, mapped);
+  const Bodies bodies = find_bodies(scene, mesh, dofs, mapped);
   Grams grams = held_by_displacements(bodies);
   for (const Term &term : scene.a)
     add_energy(bodies, term, mu, mapped, grams);

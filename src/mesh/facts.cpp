@@ -293,6 +293,7 @@ void check_recipe(const Scene &scene) {
   std::vector<std::string> known = scene.mesh.regions, used = scene.mesh.curved;
   known.insert(known.end(), scene.mesh.boundaries.begin(), scene.mesh.boundaries.end());
   known.emplace_back("");
+  if (scene.axisymmetric) known.emplace_back(axis_of_turning);
   for (const MeshFact &fact : scene.mesh.facts)
     used.insert(used.end(), {fact.part, fact.within});
   for (const ContactRecipe &contact : scene.contacts)

@@ -1,5 +1,6 @@
 #include "rbvi/mesh/surface.hpp"
 
+#include "axis.hpp"
 #include "facets.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -89,7 +90,11 @@ SerialMesh mesh_with_groups(const Scene &scene, const std::string &file) {
 
 MeshSurface surface_of(const SerialMesh &mesh, const Scene &scene) {
   MeshSurface surface{outer_facets(mesh), {}, {}};
-  surface.free.assign(surface.facets.size(), true);
+  const auto at_axis = [&, extent = extent_of(mesh)](int vertex) {
+    return on_axis(mesh.points[vertex][0], extent);
+  };
+  for (const Facet &facet : surface.facets) // the axis is inside of the body in space
+    surface.free.push_back(!scene.axisymmetric || !at_axis(facet[0]) || !at_axis(facet[1]));
   const std::set<std::string> named = named_boundaries(scene);
   for (const auto &[name, ignored] : mesh.boundary) {
     std::vector<bool> &in = surface.groups[name];

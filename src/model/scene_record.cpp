@@ -131,6 +131,8 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
   store.number("dim", scene.dim);
   store.number("components", scene.components);
   store.number("degree", scene.degree);
+  if (store.has("axisymmetric", scene.axisymmetric))
+    store.number("axisymmetric", scene.axisymmetric);
   store.number("symmetric", scene.symmetric);
   store.number("skewed_by", scene.skewed_by);
   store.number("mirror_images", scene.mirror_images);

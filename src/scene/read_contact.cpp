@@ -162,6 +162,8 @@ ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const C
   const CaseNode *disk = against.find("disk"), *plane = against.find("plane");
   if ((disk == nullptr) == (plane == nullptr))
     throw bad_input("against: a boundary, {disk: {...}} or {plane: {...}}");
+  if (scene.axisymmetric && yes_or(node, "lumped", false))
+    throw bad_input("vertex quadrature sees nothing on the axis: leave out lumped");
   const Side side = side_of(reader, entry(node, "at").value, scene);
   const RigidContact rigid = disk != nullptr ? disk_contact(reader, node, *disk, side, scene)
                                              : plane_contact(reader, node, *plane, side, scene);

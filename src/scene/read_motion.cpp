@@ -47,6 +47,7 @@ std::vector<Expression> derived_motion(Reader &reader, const Scene &scene) {
   if (scene.components != 2 || all.size() != 1) return {};
   const Imposed imposed = imposed_in(reader, all.front().second, 2, {});
   if (!imposed[0] || !imposed[1] || (is_zero(*imposed[0]) && is_zero(*imposed[1]))) return {};
+  if (scene.axisymmetric && !is_zero(*imposed[0])) return {}; // widens the body
   std::vector<Expression> motion{*imposed[0], *imposed[1]};
   return depends_on_point(formula_of(reader, motion)) ? std::vector<Expression>{} : motion;
 }
@@ -114,6 +115,7 @@ void read_motion(Reader &reader, Scene &scene, Defects &defects) {
     }
     if (!motion.empty()) scene.motion = point_map_of(formula_of(reader, motion));
   });
+  if (scene.axisymmetric) scene.fixed.push_back({axis_of_turning, {0}});
   for (const auto &[name, node] : section(reader, "imposed").entries)
     defects.collect(node, [&, &value = node] {
       for (const std::string &boundary : names_in(entry(value, "at"))) {

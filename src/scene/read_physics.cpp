@@ -1,6 +1,7 @@
 #include "reader.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/axisymmetric_forms.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
@@ -45,18 +46,37 @@ Factor shear_factor(Reader &reader, const Expression &nu) {
   return factor;
 }
 
+Form stiffness(const std::string &region, const Named<Material> &material, const Scene &scene) {
+  return scene.axisymmetric ? axisymmetric_elasticity(region, material, scene.degree)
+                            : elasticity(region, material, scene.degree);
+}
+
+/// How a stiffness depends on the map, where it is exact: a similarity of the plane leaves it as it
+/// is, of a body that is turned it is in proportion to the scale about a point of the axis. Empty:
+/// the map changes more.
+std::optional<std::vector<Factor>> factors_of_map(Reader &reader, const Scene &scene) {
+  if (!scene.axisymmetric)
+    return is_similarity(reader, scene) ? std::optional(std::vector<Factor>()) : std::nullopt;
+  if (const CaseNode *scale = section(reader, "map").find("scale"))
+    return std::vector{factor_of(reader, expression_in(reader, *scale))};
+  return map_of(reader).empty() ? std::optional(std::vector<Factor>()) : std::nullopt;
+}
+
 /// Exact terms of a material on one region: E(mu, x) separates, nu is one number.
 void add_exact_stiffness(Reader &reader, const std::vector<Product> &young, const Expression &nu,
-                         const std::string &region, bool plane_stress, Scene &scene) {
+                         const std::string &region, const std::vector<Factor> &of_map,
+                         Scene &scene) {
+  const bool plane_stress = section(reader, "physics").value == "plane_stress";
   for (const Product &product : young) {
-    const Named<PointValue> factor = point_value_of(formula_of(reader, {product.at_point}));
-    std::vector<Factor> with_lambda = product.factors, with_shear = product.factors;
-    with_lambda.push_back(lambda_factor(reader, nu, plane_stress));
-    with_shear.push_back(shear_factor(reader, nu));
-    scene.a.push_back(
-        exact_term(elasticity(region, lambda_alone(factor), scene.degree), with_lambda));
-    scene.a.push_back(
-        exact_term(elasticity(region, shear_alone(factor), scene.degree), with_shear));
+    const Named<PointValue> at_point = point_value_of(formula_of(reader, {product.at_point}));
+    const auto add = [&](const Named<Material> &material, const Factor &of_ratio) {
+      std::vector<Factor> factors = product.factors;
+      factors.push_back(of_ratio);
+      factors.insert(factors.end(), of_map.begin(), of_map.end());
+      scene.a.push_back(exact_term(stiffness(region, material, scene), factors));
+    };
+    add(lambda_alone(at_point), lambda_factor(reader, nu, plane_stress));
+    add(shear_alone(at_point), shear_factor(reader, nu));
   }
 }
 
@@ -71,7 +91,7 @@ void check_new_material(const std::vector<std::string> &regions, const Scene &sc
   }
 }
 
-void read_material(Reader &reader, const CaseNode &node, bool similar, Scene &scene) {
+void read_material(Reader &reader, const CaseNode &node, Scene &scene) {
   const bool plane_stress = section(reader, "physics").value == "plane_stress";
   const Expression young = expression_in(reader, entry(node, "E")),
                    nu = expression_in(reader, entry(node, "nu"));
@@ -89,14 +109,15 @@ void read_material(Reader &reader, const CaseNode &node, bool similar, Scene &sc
   check_new_material(own.regions, scene);
   scene.materials.push_back(own);
   const auto products = products_of(reader, young);
+  const auto of_map = factors_of_map(reader, scene);
   for (const std::string &region : regions) {
-    if (similar && products && !depends_on_point(of_nu)) {
-      add_exact_stiffness(reader, *products, nu, region, plane_stress, scene);
+    if (of_map && products && !depends_on_point(of_nu)) {
+      add_exact_stiffness(reader, *products, nu, region, *of_map, scene);
       continue;
     }
     std::vector<int> positions = mapped_dependence(reader, of_young);
     add(positions, dependence_of(of_nu));
-    scene.a.push_back(mapped_term(elasticity(region, material, scene.degree), positions));
+    scene.a.push_back(mapped_term(stiffness(region, material, scene), positions));
   }
 }
 
@@ -153,9 +174,10 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
     return;
   for (const std::string &part : regions_in(node)) {
     const auto form = [&](const Formula &formula) {
-      return force != nullptr
-                 ? body_load(part, point_map_of(formula), scene.components, scene.degree)
-                 : traction_load(part, traction_of(formula), scene.components, scene.degree);
+      return force != nullptr ? body_load(part, point_map_of(formula), scene.components,
+                                          scene.degree, scene.axisymmetric)
+                              : traction_load(part, traction_of(formula), scene.components,
+                                              scene.degree, scene.axisymmetric);
     };
     if (force == nullptr && part.empty())
       throw bad_input("pressures and tractions act on boundaries: name one");
@@ -170,10 +192,11 @@ void read_physics(Reader &reader, Scene &scene, Defects &defects) {
   const bool membrane = physics.value == "membrane";
   scene.dim = 2;
   scene.components = membrane ? 1 : 2;
-  const bool similar = is_similarity(reader, scene);
+  scene.axisymmetric = physics.value == "axisymmetric";
   if (membrane) {
-    const Form form = laplace("", scene.degree); // a similarity of the plane leaves it as it is
-    scene.a = {similar ? exact_term(form) : mapped_term(form, dependence_of_map(reader))};
+    const Form form = laplace("", scene.degree);
+    const auto of_map = factors_of_map(reader, scene);
+    scene.a = {of_map ? exact_term(form, *of_map) : mapped_term(form, dependence_of_map(reader))};
   }
   const CaseNode &materials = section(reader, "materials");
   if (membrane != materials.entries.empty())
@@ -181,10 +204,12 @@ void read_physics(Reader &reader, Scene &scene, Defects &defects) {
                 membrane ? "a membrane has no materials" : "an elastic body needs 'materials:'");
   if (!membrane)
     for (const auto &[name, node] : materials.entries)
-      defects.collect(node, [&, &value = node] { read_material(reader, value, similar, scene); });
+      defects.collect(node, [&, &value = node] { read_material(reader, value, scene); });
   for (const auto &[name, node] : section(reader, "loads").entries)
     defects.collect(node, [&, &value = node] { read_load(reader, value, scene); });
-  scene.v_product = {exact_term(h1_product(1, scene.components, scene.degree))};
+  scene.v_product = {exact_term(scene.axisymmetric
+                                    ? axisymmetric_h1_product(1, scene.degree)
+                                    : h1_product(1, scene.components, scene.degree))};
 }
 
 } // namespace rbvi

@@ -127,6 +127,21 @@ TEST(Case, PlaneStressIsThatOfAThinPlate) {
   EXPECT_FALSE(is_plane_stress(thick.materials[0].of_cell));
 }
 
+TEST(Case, AnAxisymmetricStiffnessScalesWithTheBody) {
+  const auto turned = [](const std::string &map) {
+    return scene_of({{"physics", "axisymmetric"}, {"map", map}});
+  };
+  const Scene still = turned(""), scaled = turned("{scale: depth}"), raised = turned("[x, y + k]");
+  EXPECT_TRUE(still.axisymmetric);
+  EXPECT_EQ(still.fixed.front().name, axis_of_turning);
+  EXPECT_EQ(still.a.front().theta->size(), 2U);
+  ASSERT_EQ(scaled.a.size(), 2U);
+  for (const Term &term : scaled.a)
+    EXPECT_EQ(term.theta->back().value({0.07, 1, 0.3}), 0.07);
+  EXPECT_FALSE(raised.a.front().theta);
+  EXPECT_FALSE(scene_of().axisymmetric);
+}
+
 /// Where the map turns or stretches a circle, its normals are not those of the body.
 TEST(Case, NormalsOfCirclesAreTakenWhereTheMapKeepsThem) {
   const auto normal = [](const std::string &map, const std::string &choice) {

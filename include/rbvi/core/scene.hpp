@@ -85,7 +85,7 @@ struct Coordinate {
 };
 
 /// A material of an elastic body: Lame's constants at the centre of a reference cell, constant on
-/// the cell; in 2D plane strain.
+/// the cell; in 2D of plane strain, or of a body that is turned.
 struct BodyMaterial {
   std::vector<std::string> regions; ///< of this material; none: the whole mesh
   Named<Material> of_cell;
@@ -99,12 +99,18 @@ struct SceneTest {
   double tolerance = 0;                     ///< relative; of an output that is 0 absolute
 };
 
+/// The nodes at x = 0, in the meshes of axisymmetric scenes.
+constexpr const char *axis_of_turning = "x = 0";
+
 struct Scene {
   std::string name;
   std::string summary; ///< one line
   int dim = 2;
   int components = 1; ///< of the displacement
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
+  /// Of a body that is turned about x = 0: x >= 0 is the radius, and every integral is over the
+  /// whole circumference. Nodes at x = 0 are the boundary `axis_of_turning`, which `fixed` holds.
+  bool axisymmetric = false;
   SceneOptions options;
   std::optional<UnitSystem> units; ///< of numbers with a unit that a run gives
   ParameterSpace parameters;
