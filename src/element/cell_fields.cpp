@@ -76,9 +76,16 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
       for (std::size_t i = 0; i < per_cell; ++i)
         gradient(2, 2) += values[i] * displacement[3 * nodes[i]] / radius;
     }
-    const Named<Material> &material = scene.materials[materials.empty() ? 0 : materials[k]].of_cell;
-    Tensor sigma = stress(material(all_parameters, reference_centre(cell)), gradient);
-    if (is_plane_stress(material)) sigma(2, 2) = 0;
+    const auto &[regions, material, free_strain] =
+        scene.materials[materials.empty() ? 0 : materials[k]];
+    const Point x = reference_centre(cell);
+    const Lame constants = material(all_parameters, x);
+    const bool flat = is_plane_stress(material);
+    Tensor sigma = stress(constants, gradient);
+    if (free_strain)
+      sigma -=
+          swelling_modulus(constants, flat) * free_strain(all_parameters, x) * Tensor::Identity();
+    if (flat) sigma(2, 2) = 0;
     for (Index c = 0; c < result.cols(); ++c) {
       const auto [i, j] = places[c];
       result(k, c) = sigma(i, j);

@@ -143,6 +143,8 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
     name_record(part, "material");
     part.texts("regions", material.regions);
     part.function("of_cell", material.of_cell);
+    if (part.has("free_strain", static_cast<bool>(material.free_strain)))
+      part.function("free_strain", material.free_strain);
   });
   function_if("check", scene.check_parameters);
   store.items("contact", scene.contacts, [](const Store &part, auto &recipe) {

@@ -296,6 +296,8 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
                     [&](const Draw &at, std::vector<double> &values) {
                       const auto [lambda, shear] = scene.materials[m].of_cell(at.mu, at.x);
                       values = {lambda, shear};
+                      if (scene.materials[m].free_strain)
+                        values.push_back(scene.materials[m].free_strain(at.mu, at.x));
                     });
   add_fixed(scene, text);
   add_contact(scene, contact, text);

@@ -72,7 +72,15 @@ TEST(WrongCase, Keys) {
       {{{"contact", "{floor: {against: {plane: {normal: [0, -1], position: 0}}}}"}},
        "'at' is missing"},
       {{{"imposed", "{top: {at: top, uz: 0}}"}}, "unknown key 'uz' of imposed"},
-      {{{"materials", "{rubber: {at: all, E: 15}}"}}, "'nu' is missing (expression"},
+      {{{"materials", "{rubber: {at: all, E: 15}}"}}, "'nu' is missing"},
+      {{{"materials", "{rubber: {at: all, lambda: 15}}"}}, "'mu' is missing"},
+      {{{"materials", "{rubber: {at: all, lambda: 15, mu: 5, E: 3}}"}},
+       "E and nu, or lambda and mu"},
+      {{{"materials", "{rubber: {at: all, E: 15, nu: nu, expansion: 1}}"}}, "belong together"},
+      {{{"materials", "{rubber: {at: all, E: 15, nu: nu, expansion: 1, temperature: 1}}"},
+        {"contact", "{f: {at: contact, formulation: nitsche, against: {plane: {normal: [0, -1], "
+                    "position: 0}}}}"}},
+       "has no stress of a temperature"},
       {{{"free", "{depth: 1}"}}, "free is no table"},
   });
 }

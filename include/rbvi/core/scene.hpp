@@ -89,6 +89,9 @@ struct Coordinate {
 struct BodyMaterial {
   std::vector<std::string> regions; ///< of this material; none: the whole mesh
   Named<Material> of_cell;
+  /// At a point of the reference domain, the same in all directions: the strain that has no stress,
+  /// such as a thermal one. Empty: none.
+  Named<PointValue> free_strain{};
 };
 
 /// Outputs of one full solve that are known.
