@@ -2,10 +2,12 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
+#include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace rbvi {
@@ -145,6 +147,33 @@ void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Do
     if (region == nullptr || (*region)[k]) visit(cell_of(mesh, k, mapped), k, all);
 }
 
+/// The sum of some means as a functional of the local dofs (node * components + component): what
+/// the facets of this rank give of it. Collective.
+Vector mean_functional(const std::vector<Mean> &means, const Mesh &mesh, const Dofs &dofs) {
+  Vector sum = Vector::Zero(std::ssize(dofs.free));
+  for (const Mean &mean : means) {
+    const Named<Traction> unit = [&](const FullMu &, const Point &, const Point &) {
+      return mean.direction;
+    };
+    const Form load =
+        traction_load(mean.boundary, unit, dofs.components, mesh.degree, mean.axisymmetric);
+    Vector own = Vector::Zero(sum.size());
+    std::vector<double> size{0}; // times |direction|^2
+    visit_values(load, {}, mesh, dofs, {},
+                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+                   const auto nodes = nodes_of(mesh, cell);
+                   for (const int i : local) {
+                     const int c = i % dofs.components;
+                     own[Index{nodes[i / dofs.components]} * dofs.components + c] += *values;
+                     size[0] += mean.direction[c] * *values++;
+                   }
+                 });
+    over_ranks(mesh.comm, MPI_SUM, size);
+    sum += std::pow(norm(mean.direction), 2) / size[0] * own;
+  }
+  return sum;
+}
+
 } // namespace
 
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
@@ -169,7 +198,14 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   CellRows rows{};
-  for (const WeightedForm &weighted : forms)
+  for (const WeightedForm &weighted : forms) {
+    if (!weighted.form->means.empty()) {
+      const Vector of_means = mean_functional(weighted.form->means, mesh, dofs);
+      for (Index i = 0; i < of_means.size(); ++i)
+        if (of_means[i] != 0)
+          RBVI_CALL(VecSetValue(vector, dofs.free[i], weighted.weight * of_means[i], ADD_VALUES));
+      continue;
+    }
     visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    cell_rows(mesh, dofs, cell, rows);
@@ -177,6 +213,7 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
                      RBVI_CALL(
                          VecSetValue(vector, rows[i], weighted.weight * *values++, ADD_VALUES));
                  });
+  }
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));
 }

@@ -98,6 +98,29 @@ Grams held_by_displacements(const Bodies &bodies) {
   return grams;
 }
 
+/// What motions differ by on the boundaries that move as one, from their mean there. Collective.
+void add_tied(const Bodies &bodies, const std::vector<TiedBoundary> &tied, Grams &grams) {
+  const Index modes = bodies.modes();
+  for (const auto &[name, component] : tied) {
+    Matrix sums = Matrix::Zero(modes + 1, (modes + 1) * std::ssize(bodies.all)); // of (motions, 1)
+    for (std::size_t node = 0; node < bodies.of_node.size(); ++node) {
+      const int body = bodies.of_node[node];
+      if (body < 0 || !bodies.mesh.boundary.at(name)[node]) continue;
+      Vector here(modes + 1);
+      here << bodies.motions(node, component), 1;
+      sums.middleCols(body * (modes + 1), modes + 1) += here * here.transpose();
+    }
+    over_ranks(bodies.mesh.comm, MPI_SUM, sums);
+    for (Index body = 0; body < std::ssize(bodies.all); ++body) {
+      const Matrix own = sums.middleCols(body * (modes + 1), modes + 1);
+      if (own(modes, modes) == 0) continue;
+      const Vector whole = own.col(modes).head(modes);
+      grams.middleCols(body * modes, modes) +=
+          own.topLeftCorner(modes, modes) - whole * whole.transpose() / own(modes, modes);
+    }
+  }
+}
+
 /// Energies of motions by a term, relative to that of a rough field in the same body. Collective.
 void add_energy(const Bodies &bodies, const Term &term, const FullMu &mu,
                 const MappedVertices &mapped, Grams &grams) {
@@ -233,6 +256,7 @@ void check_held(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
   const MappedVertices mapped = map_vertices(scene, mu, mesh);
   const Bodies bodies = find_bodies(scene, mesh, dofs, mapped);
   Grams grams = held_by_displacements(bodies);
+  add_tied(bodies, scene.tied, grams);
   for (const Term &term : scene.a)
     add_energy(bodies, term, mu, mapped, grams);
   const std::vector<Matrix> free = free_motions(grams);

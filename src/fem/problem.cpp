@@ -55,7 +55,7 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
     : given_(checked(std::move(scene))), mesh_options_(options),
       scene_(std::make_unique<const Scene>(with_imposed_loads(given_))),
       mesh_(make_mesh(comm, *scene_, options)),
-      dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
+      dofs_(number_dofs(mesh_, scene_->components, scene_->fixed, scene_->tied)),
       places_(place_interfaces(mesh_, dofs_, *scene_)),
       contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
       contact_gather_(contact_gather),

@@ -50,8 +50,11 @@ std::set<std::string> named_boundaries(const Scene &scene) {
   for (const FixedBoundary &fixed : scene.fixed)
     names.insert(fixed.name);
   for (const Sum *sum : {&scene.a, &scene.f})
-    for (const Term &term : *sum)
+    for (const Term &term : *sum) {
       names.insert(term.form.boundary);
+      for (const Mean &mean : term.form.means)
+        names.insert(mean.boundary);
+    }
   for (const ContactRecipe &contact : scene.contacts)
     if (contact.entities.kind != InterfaceEntities::Kind::cells)
       names.insert(contact.entities.parts.begin(), contact.entities.parts.end());

@@ -95,7 +95,7 @@ template <class Store, class Of> void list_theta(const Store &store, Of &term) {
 /// `with_kernel`: of an exact term, too.
 template <class Store, class Of> void list_term(const Store &store, Of &term, bool with_kernel) {
   list_theta(store, term);
-  if (!store.has("kernel", !term.theta || with_kernel)) return;
+  if (!store.has("kernel", term.form.kernel && (!term.theta || with_kernel))) return;
   store.text("region", term.form.region);
   store.text("boundary", term.form.boundary);
   store.function("kernel", term.form.kernel);

@@ -78,6 +78,13 @@ struct FixedBoundary {
   std::vector<ImposedTerm> values = {};
 };
 
+/// A boundary that moves as one along an axis: its nodes have one unknown displacement there. What
+/// moves it is a load on the mean.
+struct TiedBoundary {
+  std::string name;
+  int component;
+};
+
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
 /// decreasing, value = back(x).
 struct Coordinate {
@@ -131,6 +138,7 @@ struct Scene {
   std::function<Point(const Point &)> snap;
 
   std::vector<FixedBoundary> fixed;
+  std::vector<TiedBoundary> tied = {};
   /// Rigid motion of each body at a point of the reference domain, which the displacement is
   /// measured from: u = motion + w, w = 0 (or FixedBoundary::values) where it is fixed. Costs
   /// nothing, unlike other Dirichlet data; empty: zero.
