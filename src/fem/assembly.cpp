@@ -2,12 +2,11 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
-#include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/facets.hpp"
+#include "rbvi/fem/means.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace rbvi {
@@ -25,6 +24,20 @@ std::size_t cell_rows(const Mesh &mesh, const Dofs &dofs, std::size_t cell, Cell
     for (std::size_t c = 0; c < components; ++c)
       rows[count++] = dofs.free[static_cast<std::size_t>(nodes[i]) * components + c];
   return count;
+}
+
+/// Calls visit(coupling, i) for the rows of all couplings that this rank owns.
+template <class Visit> void visit_couplings(const Dofs &dofs, Visit &&visit) {
+  const PetscInt end = dofs.first_free + static_cast<PetscInt>(dofs.natural_owned.size());
+  for (const Coupling &coupling : dofs.couplings)
+    for (std::size_t i = 0; i < coupling.rows.size(); ++i)
+      if (coupling.rows[i] >= dofs.first_free && coupling.rows[i] < end) visit(coupling, i);
+}
+
+bool are_same(const std::vector<Mean> &some, const std::vector<Mean> &others) {
+  return std::ranges::equal(some, others, [](const Mean &one, const Mean &other) {
+    return one.boundary == other.boundary && one.direction == other.direction;
+  });
 }
 
 } // namespace
@@ -97,6 +110,10 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs) {
         columns.push_back(cell[j]);
       }
   }
+  visit_couplings(dofs, [&](const Coupling &coupling, std::size_t i) {
+    rows.insert(rows.end(), coupling.rows.size(), coupling.rows[i]);
+    columns.insert(columns.end(), coupling.rows.begin(), coupling.rows.end());
+  });
   RBVI_CALL(MatSetPreallocationCOO(matrix.get(), static_cast<PetscCount>(rows.size()), rows.data(),
                                    columns.data()));
   RBVI_CALL(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
@@ -147,33 +164,6 @@ void visit_values(const Form &form, const FullMu &mu, const Mesh &mesh, const Do
     if (region == nullptr || (*region)[k]) visit(cell_of(mesh, k, mapped), k, all);
 }
 
-/// The sum of some means as a functional of the local dofs (node * components + component): what
-/// the facets of this rank give of it. Collective.
-Vector mean_functional(const std::vector<Mean> &means, const Mesh &mesh, const Dofs &dofs) {
-  Vector sum = Vector::Zero(std::ssize(dofs.free));
-  for (const Mean &mean : means) {
-    const Named<Traction> unit = [&](const FullMu &, const Point &, const Point &) {
-      return mean.direction;
-    };
-    const Form load =
-        traction_load(mean.boundary, unit, dofs.components, mesh.degree, mean.axisymmetric);
-    Vector own = Vector::Zero(sum.size());
-    std::vector<double> size{0}; // times |direction|^2
-    visit_values(load, {}, mesh, dofs, {},
-                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
-                   const auto nodes = nodes_of(mesh, cell);
-                   for (const int i : local) {
-                     const int c = i % dofs.components;
-                     own[Index{nodes[i / dofs.components]} * dofs.components + c] += *values;
-                     size[0] += mean.direction[c] * *values++;
-                   }
-                 });
-    over_ranks(mesh.comm, MPI_SUM, size);
-    sum += std::pow(norm(mean.direction), 2) / size[0] * own;
-  }
-  return sum;
-}
-
 } // namespace
 
 void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Mesh &mesh,
@@ -181,15 +171,24 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
   const auto count =
       static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
   std::vector<PetscScalar> all(mesh.cells.size() * count * count, 0);
+  visit_couplings(dofs, [&](const Coupling &coupling, std::size_t i) {
+    double weight = 0;
+    for (const WeightedForm &weighted : forms)
+      if (are_same(weighted.form->means, coupling.means))
+        weight += weighted.weight * coupling.values[i];
+    for (const double value : coupling.values)
+      all.push_back(weight * value);
+  });
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, mapped,
-                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
-                   double *block = all.data() + cell * count * count;
-                   for (const int i : local)
-                     for (const int j : local)
-                       block[static_cast<std::size_t>(i) * count + static_cast<std::size_t>(j)] +=
-                           weighted.weight * *values++;
-                 });
+    if (weighted.form->means.empty())
+      visit_values(*weighted.form, mu, mesh, dofs, mapped,
+                   [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+                     double *block = all.data() + cell * count * count;
+                     for (const int i : local)
+                       for (const int j : local)
+                         block[static_cast<std::size_t>(i) * count + static_cast<std::size_t>(j)] +=
+                             weighted.weight * *values++;
+                   });
   RBVI_CALL(MatSetValuesCOO(matrix, all.data(), INSERT_VALUES));
 }
 

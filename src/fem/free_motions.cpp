@@ -4,6 +4,7 @@
 #include "rbvi/core/text.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/imposed.hpp"
+#include "rbvi/fem/means.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -160,6 +161,39 @@ std::vector<Matrix> free_motions(const Grams &grams) {
   return free;
 }
 
+/// Takes from the free motions of all bodies together those that stretch a spring. Collective.
+void hold_by_couplings(const Bodies &bodies, std::vector<Matrix> &free) {
+  constexpr double stretched = 1e-6; // of the size of a motion
+  std::vector<Index> first{0};
+  for (const Matrix &motions : free)
+    first.push_back(first.back() + motions.cols());
+  const std::vector<Coupling> &couplings = bodies.dofs.couplings;
+  if (couplings.empty() || first.back() == 0) return;
+  Matrix stretches = Matrix::Zero(std::ssize(couplings), first.back());
+  for (Index k = 0; k < stretches.rows(); ++k) {
+    const Vector functional = mean_functional(couplings[k].means, bodies.mesh, bodies.dofs);
+    for (Index i = 0; i < functional.size(); ++i) {
+      const auto node = static_cast<std::size_t>(i / bodies.dofs.components);
+      const int body = bodies.of_node[node];
+      if (functional[i] == 0 || body < 0 || free[body].cols() == 0) continue;
+      const Vector motions = bodies.motions(node, static_cast<int>(i % bodies.dofs.components));
+      stretches.row(k).segment(first[body], free[body].cols()) +=
+          functional[i] * motions.transpose() * free[body];
+    }
+  }
+  over_ranks(bodies.mesh.comm, MPI_SUM, stretches);
+  const Eigen::JacobiSVD<Matrix> svd(stretches, Eigen::ComputeFullV);
+  const auto held_ones = (svd.singularValues().array() > stretched).count();
+  const Matrix left = svd.matrixV().rightCols(first.back() - held_ones);
+  for (std::size_t body = 0; body < free.size(); ++body) {
+    if (left.cols() == 0) free[body].resize(Eigen::NoChange, 0);
+    if (free[body].cols() == 0) continue;
+    const Matrix own = free[body] * left.middleRows(first[body], free[body].cols());
+    const Eigen::JacobiSVD<Matrix> range(own, Eigen::ComputeThinU);
+    free[body] = range.matrixU().leftCols((range.singularValues().array() > stretched).count());
+  }
+}
+
 bool is_free(const Matrix &motions) {
   return motions.cols() > 0;
 }
@@ -258,8 +292,9 @@ void check_held(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
   Grams grams = held_by_displacements(bodies);
   add_tied(bodies, scene.tied, grams);
   for (const Term &term : scene.a)
-    add_energy(bodies, term, mu, mapped, grams);
-  const std::vector<Matrix> free = free_motions(grams);
+    if (term.form.means.empty()) add_energy(bodies, term, mu, mapped, grams);
+  std::vector<Matrix> free = free_motions(grams);
+  hold_by_couplings(bodies, free);
   const long all = std::ranges::count_if(free, is_free);
   if (all == 0) return;
   const std::vector<std::string> names = names_of(bodies);

@@ -210,6 +210,7 @@ void read_sections(Reader &reader, Scene &scene, Defects &defects) {
   if (!defects.none()) return;
   read_physics(reader, scene, defects);
   read_motion(reader, scene, defects);
+  read_springs(reader, scene, defects);
   read_contact(reader, scene, defects);
   read_requirements(reader, scene, defects);
   read_symmetry(reader, scene, defects);

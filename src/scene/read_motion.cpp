@@ -46,7 +46,8 @@ Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
 /// The motion that moves the one body as what is imposed moves its boundary; empty: none.
 std::vector<Expression> derived_motion(Reader &reader, const Scene &scene) {
   const auto &all = section(reader, "imposed").entries;
-  if (scene.components != 2 || all.size() != 1) return {};
+  const bool springs = !section(reader, "springs").entries.empty(); // which it would stretch
+  if (scene.components != 2 || all.size() != 1 || springs) return {};
   const Imposed imposed = imposed_in(reader, all.front().second, 2, {});
   if (!imposed[0] || !imposed[1] || (is_zero(*imposed[0]) && is_zero(*imposed[1]))) return {};
   if (scene.axisymmetric && !is_zero(*imposed[0])) return {}; // widens the body

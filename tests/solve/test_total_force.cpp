@@ -70,6 +70,30 @@ TEST(TotalForce, IsBalancedAndMovesTheBoundaryAsOne) {
   EXPECT_NEAR(other.outputs.normal_force.value(), s.outputs.normal_force.value(), 1e-11);
 }
 
+/// Two half-spheres, pressed together by a force on the whole face and held by a spring on it.
+TEST(TotalForce, IsThatOfTheWholeCircumference) {
+  const Scene scene = make_scene(
+      read_case(
+          "rbvi: 1\nphysics: axisymmetric\nmesh: {built_in: two_quarter_discs, degree: 1}\n"
+          "map: [x, 'y > 0 ? y - 0.5 : y + 0.5']\n"
+          "parameters: {f: {range: [0.001, 0.01], default: 0.005}}\n"
+          "materials: {steel: {at: all, E: 1, nu: 0.3}}\n"
+          "imposed: {top: {at: top, ux: 0, force_y: -f}, bottom: {at: bottom, ux: 0, uy: 0}}\n"
+          "springs: {hold: {at: top, stiffness: 0.01}}\n"
+          "contact: {balls: {at: slave, against: master}}\n",
+          "case.yaml"),
+      {});
+  Problem problem(PETSC_COMM_SELF, scene, {});
+  const HfSolution s = HighFidelity(problem, {}).solve({0.004});
+  const Mesh &mesh = problem.mesh();
+  std::size_t node = 0;
+  while (!mesh.boundary.at("top")[node])
+    ++node;
+  const double lift = s.u[2 * mesh.natural_node[node] + 1];
+  EXPECT_LT(lift, -0.01);
+  EXPECT_NEAR(s.outputs.normal_force.value(), 0.004 + 0.01 * lift, 1e-13);
+}
+
 TEST(TotalForce, IsTheSameOnAnyNumberOfRanks) {
   const Scene scene = wheel("ux: 0, force_y: f*2");
   Problem whole(PETSC_COMM_SELF, scene, {}), parts(PETSC_COMM_WORLD, scene, {});

@@ -10,6 +10,13 @@
 
 namespace rbvi {
 
+/// A term of a that couples all dofs of some boundaries, by the sum of some means (Form::means).
+struct Coupling {
+  std::vector<Mean> means;
+  std::vector<PetscInt> rows; ///< of all ranks, increasing
+  std::vector<double> values; ///< of the functional there
+};
+
 /// A dof's natural number is natural_node * components + component. Matrices and vectors hold the
 /// free dofs alone; the fixed ones are zero. All dofs that a boundary ties are one row, of the
 /// lowest natural number among them.
@@ -27,6 +34,7 @@ struct Dofs {
   /// Natural numbers of the dofs that have no row of their own, and of those whose row they share;
   /// on every rank.
   std::map<PetscInt, PetscInt> tied;
+  std::vector<Coupling> couplings; ///< see fem/means.hpp
 
   /// The natural number of the row of a dof, of a local node and a component.
   PetscInt natural(const Mesh &mesh, std::size_t node, int component) const {
