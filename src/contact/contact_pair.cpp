@@ -173,7 +173,7 @@ PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
   const Index count = multiplier_count(slave.nodes(), space, slave.degree());
   PairOperators result;
   result.g = result.weights = Vector::Zero(count);
-  const Vector whole = whole_weights(partners.lengths, space, slave.degree());
+  const Vector whole = whole_weights(partners.hats, space, slave.degree());
   std::vector<const PairPoint *> of_edge{partners.points.data()}; // from its first point on
   const PairPoint *const end = of_edge[0] + partners.points.size();
   for (Index edge = 0; edge < slave.edges(); ++edge)
@@ -206,10 +206,11 @@ PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
 }
 
 Partners vertical_partners(std::vector<Point> slave_nodes, std::vector<Point> master_nodes,
-                           PairQuadrature quadrature, int degree) {
+                           PairQuadrature quadrature, int degree, bool axisymmetric) {
   Partners result{{std::move(slave_nodes), degree}, {std::move(master_nodes), degree}};
   const Graph slave(result.slave, "slave"), master(result.master, "master");
   result.lengths = result.slave.lengths();
+  result.hats = result.slave.hats(axisymmetric);
   result.cuts = vertical_cuts(slave, master);
   const Cuts &cuts = result.cuts;
   result.vertices = cuts.at_vertices();
@@ -226,8 +227,9 @@ Partners vertical_partners(std::vector<Point> slave_nodes, std::vector<Point> ma
   }
   for (std::vector<PairPoint> *points : {&result.points, &result.vertices})
     for (PairPoint &p : *points) {
-      p.t = master.coordinate(p.master_edge, slave.abscissa(p.slave_edge, p.s));
-      p.weight *= result.lengths[p.slave_edge];
+      const double x = slave.abscissa(p.slave_edge, p.s);
+      p.t = master.coordinate(p.master_edge, x);
+      p.weight *= result.lengths[p.slave_edge] * circumference(axisymmetric, {x, 0, 0});
       p.normal = {0, 1, 0};
       p.gap = slave.height(p.slave_edge, p.s) - master.height(p.master_edge, p.t);
     }
@@ -249,13 +251,15 @@ Index macro_edge_of(Index edge, Index slave_nodes, int degree) {
                   multiplier_count(slave_nodes, MultiplierSpace::macro_edges, degree) - 1);
 }
 
-Vector whole_weights(const std::vector<double> &lengths, MultiplierSpace space, int degree) {
-  const Index edges = std::ssize(lengths);
+Vector whole_weights(const std::vector<std::array<double, 2>> &hats, MultiplierSpace space,
+                     int degree) {
+  const Index edges = std::ssize(hats);
   Vector whole = Vector::Zero(multiplier_count(degree * edges + 1, space, degree));
   for (Index i = 0; i < whole.size(); ++i) {
     const EdgeRange own = support(i, edges, space, degree);
     for (Index e = own.first; e < own.last; ++e)
-      whole[i] += space == MultiplierSpace::nodes ? lengths[e] / 2 : lengths[e];
+      whole[i] +=
+          space == MultiplierSpace::nodes ? hats[e][e == i ? 0 : 1] : hats[e][0] + hats[e][1];
   }
   return whole;
 }
@@ -282,13 +286,13 @@ double ends_in_contact(const Vector &whole, const Vector &weights, const Vector 
   return (carries_from(0, 1) ? 1.0 : 0.0) + (carries_from(count - 1, -1) ? 1.0 : 0.0);
 }
 
-SparseMatrix multiplier_product(const std::vector<Point> &nodes, MultiplierSpace space,
-                                int degree) {
+SparseMatrix multiplier_product(const std::vector<Point> &nodes, MultiplierSpace space, int degree,
+                                bool axisymmetric) {
   const NodalCurve curve(nodes, degree);
   const Graph slave(curve, "slave");
   if (space == MultiplierSpace::nodes)
-    return linear_gram({nodes.begin(), nodes.begin() + slave.edges() + 1}, 1);
-  const Vector whole = whole_weights(curve.lengths(), space, degree);
+    return linear_gram({nodes.begin(), nodes.begin() + slave.edges() + 1}, 1, axisymmetric);
+  const Vector whole = whole_weights(curve.hats(axisymmetric), space, degree);
   SparseMatrix product(whole.size(), whole.size());
   product.reserve(Eigen::VectorXi::Constant(whole.size(), 3));
   for (Index i = 0; i < whole.size(); ++i)
@@ -304,7 +308,7 @@ std::vector<Point> multiplier_points(const std::vector<Point> &nodes, Multiplier
   const Graph slave(curve, "slave");
   if (space == MultiplierSpace::nodes) return {nodes.begin(), nodes.begin() + slave.edges() + 1};
   const std::vector<double> lengths = curve.lengths();
-  const Vector whole = whole_weights(lengths, space, degree);
+  const Vector whole = whole_weights(curve.hats(false), space, degree);
   std::vector<Point> points;
   for (Index i = 0; i < whole.size(); ++i) {
     auto [edge, last] = support(i, slave.edges(), space, degree);

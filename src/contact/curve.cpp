@@ -24,6 +24,12 @@ Vector means_at_nodes(const Matrix &points, const Vector &of_edges) {
 
 } // namespace
 
+std::array<double, 2> hat_weights(const Point &begin, const Point &end, bool axisymmetric) {
+  const double half = edge_length(begin, end) / 2;
+  return {half * circumference(axisymmetric, (2 * begin + end) / 3),
+          half * circumference(axisymmetric, (begin + 2 * end) / 3)};
+}
+
 NodalCurve::NodalCurve(std::vector<Point> nodes, int degree)
     : nodes_(std::move(nodes)), degree_(degree), edges_((std::ssize(nodes_) - 1) / degree) {}
 
@@ -33,6 +39,13 @@ std::vector<double> NodalCurve::lengths() const {
   for (Index e = 0; e < edges_; ++e)
     lengths.push_back(edge_length(nodes_[e], nodes_[e + 1]));
   return lengths;
+}
+
+std::vector<std::array<double, 2>> NodalCurve::hats(bool axisymmetric) const {
+  std::vector<std::array<double, 2>> hats;
+  for (Index e = 0; e < edges_; ++e)
+    hats.push_back(hat_weights(nodes_[e], nodes_[e + 1], axisymmetric));
+  return hats;
 }
 
 Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string &name) {
@@ -68,17 +81,25 @@ Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string
   return vertices;
 }
 
-SparseMatrix linear_gram(const std::vector<Point> &points, int copies) {
+SparseMatrix linear_gram(const std::vector<Point> &points, int copies, bool axisymmetric) {
   const auto vertices = static_cast<Index>(points.size()), rows = vertices * copies;
   const auto length_of = [&](Index edge) { return edge_length(points[edge], points[edge + 1]); };
+  const auto around = [&](const Point &x) { return circumference(axisymmetric, x); };
   SparseMatrix product(rows, rows);
   product.reserve(Eigen::VectorXi::Constant(rows, 3));
+  // The mean radius that the product of two hats sees on an edge is that of 3 parts of its end to
+  // one of the other for a square, else that of the middle.
   for (Index row = 0; row < rows; ++row) {
     const Index i = row % vertices;
-    const double before = i > 0 ? length_of(i - 1) : 0, after = i + 1 < vertices ? length_of(i) : 0;
-    if (i > 0) product.insert(row, row - 1) = before / 6;
-    product.insert(row, row) = (before + after) / 3;
-    if (i + 1 < vertices) product.insert(row, row + 1) = after / 6;
+    double diagonal = 0;
+    for (const Index other : {i - 1, i + 1}) {
+      if (other < 0 || other >= vertices) continue;
+      const Point &x = points[i], &y = points[other];
+      const double length = length_of(std::min(i, other));
+      product.insert(row, row + other - i) = length / 6 * around((x + y) / 2);
+      diagonal += length * around((3 * x + y) / 4);
+    }
+    product.insert(row, row) = diagonal / 3;
   }
   product.makeCompressed();
   return product;

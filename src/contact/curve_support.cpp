@@ -1,11 +1,12 @@
 // Contact of a curve with something rigid by multipliers: integrals over its edges, which ask at
 // each of their points what it faces, and the outputs.
+#include "trace_points.hpp"
+
 #include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
-#include "rbvi/element/quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,43 +16,6 @@ namespace rbvi {
 
 namespace {
 
-/// A quadrature point of every edge; the weights sum to 1.
-struct TracePoint {
-  double s; ///< along the edge, 0 ... 1
-  double weight;
-  std::array<double, 2> eta; ///< of both multipliers: 1 - s and s
-  std::array<double, 3> phi; ///< of the displacements: vertices, middle
-};
-
-TracePoint trace_point(int degree, const EdgePoint &at) {
-  return {at.s, at.weight, {1 - at.s, at.s}, edge_functions(degree, at.s)};
-}
-
-/// Four Gauss points, or the two vertices: there only the vertex itself moves, a middle is free.
-std::vector<TracePoint> trace_points(int degree, bool lumped) {
-  if (lumped) return {trace_point(degree, {0, 0.5}), trace_point(degree, {1, 0.5})};
-  std::vector<TracePoint> points;
-  for (const EdgePoint &at : edge_quadrature)
-    points.push_back(trace_point(degree, at));
-  return points;
-}
-
-/// The point of an edge, reference coordinates.
-Point point_on(const Cell &edge, const TracePoint &at) {
-  const Point &begin = edge.reference[0], &end = edge.reference[1];
-  return {at.eta[0] * begin[0] + at.eta[1] * end[0], at.eta[0] * begin[1] + at.eta[1] * end[1], 0};
-}
-
-double length_of(const Cell &edge) {
-  return edge_length(edge.mapped[0], edge.mapped[1]);
-}
-
-/// n . the normal of the mapped edge that points down where the edge goes to the right.
-double downwards(const Cell &edge, const Point &n) {
-  const Point &begin = edge.mapped[0], &end = edge.mapped[1];
-  return n[0] * (end[1] - begin[1]) - n[1] * (end[0] - begin[0]);
-}
-
 class CurveSupport : public EntitySum {
 public:
   /// Throws bad_input unless the mesh is a curve with displacements of two components.
@@ -59,7 +23,8 @@ public:
 
   void integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const override;
   void weigh(const FullMu &, const Cell &edge, EntityValues &values) const override {
-    values.weights.setConstant(length_of(edge) / 2);
+    const auto [begin, end] = hat_weights(edge.mapped[0], edge.mapped[1], scene_.axisymmetric);
+    values.weights << begin, end;
   }
   FrictionBound bound(const FullMu &mu) const override { return friction_bound(friction_, mu); }
   PointConstraint constraint_at(const FullMu &mu, const Point &x, const Point &,
@@ -84,9 +49,10 @@ private:
     Vector horizontal, vertical; ///< B e_x and B e_y
   };
   struct AtRest {
-    double length = 0;               ///< of the edge, mapped
-    std::vector<PlacedPoint> points; ///< of quadrature
+    std::vector<double> weights; ///< of the points of quadrature on the mapped edge
+    std::vector<PlacedPoint> points;
   };
+  double weight_at(const Cell &edge, double length, const TracePoint &at) const;
   void find_side();
   Cell mapped_edge(const FullMu &mu, Index edge) const;
   Point sum(const Cell &edge, const std::array<double, 3> &coefficients) const;
@@ -114,8 +80,16 @@ CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
                     ": a rigid support is for displacements of two components");
   const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
   set_dual(vertices, copies, rigid.lumped,
-           linear_gram({mesh_.points.begin(), mesh_.points.begin() + vertices}, copies));
+           linear_gram({mesh_.points.begin(), mesh_.points.begin() + vertices}, copies,
+                       scene.axisymmetric));
   find_side();
+}
+
+/// Of the integral over a mapped edge of this length.
+double CurveSupport::weight_at(const Cell &edge, double length, const TracePoint &at) const {
+  return at.weight * length *
+         circumference(scene_.axisymmetric,
+                       at.eta[0] * edge.mapped[0] + at.eta[1] * edge.mapped[1]);
 }
 
 /// On which side of the curve the body ends, as the normal of the edge that is nearest to what it
@@ -187,7 +161,7 @@ void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &v
   values.b.setZero();
   values.g.setZero();
   for (const TracePoint &at : points_) {
-    const double weight = at.weight * whole;
+    const double weight = weight_at(edge, whole, at);
     const FacedPoint here = faced_at(mu, edge, at);
     for (Index a = 0; a < 2; ++a) {
       const double eta = weight * at.eta[a];
@@ -227,9 +201,10 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
       // Tresca's traction acts without pressure, too.
       const bool pressed = at.eta[0] * pressure(0) + at.eta[1] * pressure(1) > 0;
       if (pressed && side_ != 0) check_pressed_side(side_ * downwards(edge, n), point_on(edge, at));
+      const double weight = weight_at(edge, whole, at);
       for (std::size_t a = 0; a < 2; ++a) {
         if (rows[a] < 0) continue;
-        const double eta = at.weight * whole * at.eta[a];
+        const double eta = weight * at.eta[a];
         result.horizontal[rows[a]] += eta * n[0];
         result.vertical[rows[a]] += eta * n[1];
         if (dual_.components == 1) continue;
@@ -249,6 +224,7 @@ void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
   support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
                    mapped(dual_.vertices, Eigen::all)},
                   outputs);
+  if (scene_.axisymmetric) drop_plane_outputs(outputs);
   const auto [first, last] = mesh_.closed(0);
   if (first && last) return;
   outputs.ends_in_contact =
@@ -272,7 +248,7 @@ Curvature CurveSupport::curvature(const FullMu &mu, const ContactState &state,
       for (std::size_t k = 0; k < columns.size(); ++k)
         if (columns[k] >= 0)
           along_tau.emplace_back(std::ssize(weights), columns[k], at.phi[k / 2] * tau[k % 2]);
-      weights.push_back(at.weight * length_of(edge) * here.curvature *
+      weights.push_back(weight_at(edge, length_of(edge), at) * here.curvature *
                         (at.eta[0] * pressure(0) + at.eta[1] * pressure(1)) / 2);
     }
   }
@@ -294,7 +270,7 @@ SparseMatrix CurveSupport::averages() const {
     for (const TracePoint &at : points_)
       for (std::size_t a = 0; a < 2; ++a) {
         if (rows[a] < 0) continue;
-        const double eta = at.weight * length_of(edge) * at.eta[a];
+        const double eta = weight_at(edge, length_of(edge), at) * at.eta[a];
         weights[rows[a]] += eta;
         for (std::size_t k = 0; k < columns.size(); ++k)
           if (columns[k] >= 0)
@@ -330,7 +306,7 @@ void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const
                  slip = here.slip + slip_along(n, displacement);
     double pressure = 0, shear = 0;
     for (std::size_t a = 0; a < 2; ++a) {
-      const double eta = at.weight * rest.length * at.eta[a];
+      const double eta = rest.weights[i] * at.eta[a];
       condition.w[dual[a]] += eta * distance;
       condition.normal(0, dual[a]) += eta * n[0];
       condition.normal(1, dual[a]) += eta * n[1];
@@ -340,7 +316,7 @@ void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const
       shear += at.eta[a] * x[dual[2 + a]];
     }
     if (pressure == 0 && shear == 0) continue;
-    const double weight = at.weight * rest.length;
+    const double weight = rest.weights[i];
     for (std::size_t a = 0; a < 2; ++a)
       condition.rotation[dual[a]] += weight * at.eta[a] * pressure * here.curvature;
     const std::array<double, 2> traction{weight * (pressure * n[0] - shear * n[1]),
@@ -366,9 +342,10 @@ NodalEvaluation CurveSupport::nodal_at(const FullMu &mu) const {
       AtRest &edge = rest[e];
       if (edge.points.empty()) {
         const Cell cell = mapped_edge(mu, e);
-        edge.length = length_of(cell);
-        for (const TracePoint &at : points_)
+        for (const TracePoint &at : points_) {
+          edge.weights.push_back(weight_at(cell, length_of(cell), at));
           edge.points.push_back(place(scene_, facing_, mu, point_on(cell, at)));
+        }
       }
       add_edge(mu, e, edge, state, x, condition);
     }

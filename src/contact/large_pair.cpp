@@ -154,6 +154,9 @@ private:
 LargePairInterface::LargePairInterface(const Scene &scene, InterfaceMesh interface_mesh,
                                        const LargePair &pair)
     : TwoCurves(scene, std::move(interface_mesh), pair.multiplier) {
+  if (scene.axisymmetric)
+    throw bad_input("two bodies that are turned (axisymmetric) meet with small kinematics alone: "
+                    "leave out kinematics: large");
   if (mesh_.components != 2)
     throw bad_input("two deformed bodies meet with displacements of two components");
 }
@@ -173,8 +176,11 @@ Partners LargePairInterface::curves(const FullMu &mu, const ContactState &state,
     nodes.push_back(y);
   }
   const auto master = nodes.begin() + mesh_.parts[0];
-  return {
-      {{nodes.begin(), master}, mesh_.degree}, {{master, nodes.end()}, mesh_.degree}, lengths(mu)};
+  const NodalCurve rest = slave_at_rest(mu);
+  return {{{nodes.begin(), master}, mesh_.degree},
+          {{master, nodes.end()}, mesh_.degree},
+          rest.lengths(),
+          rest.hats(false)};
 }
 
 /// Ends of the master curve that move vertically alone.

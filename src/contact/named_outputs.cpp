@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace rbvi {
 
@@ -51,6 +52,9 @@ public:
   Index pieces() const { return std::ssize(traces_.edges) / 2; }
   double length(Index piece) const {
     return (end(piece, 1).head<2>() - end(piece, 0).head<2>()).norm();
+  }
+  double abscissa(Index piece, double s) const {
+    return (1 - s) * end(piece, 0)[0] + s * end(piece, 1)[0];
   }
   /// At 0 <= s <= 1 on a piece: value and condition.
   std::array<double, 2> at(Index piece, double s) const {
@@ -102,17 +106,21 @@ struct FormSums {
   double least = std::numeric_limits<double>::infinity(), largest = -least;
 };
 
-/// Three Gauss points on each part.
-void add(const OnPieces &on, FormSums &sums) {
+/// Three Gauss points on each part, of a length or (`turned` about x = 0) an area.
+void add(const OnPieces &on, bool turned, FormSums &sums) {
   const double away = std::sqrt(0.15);
   const std::array<double, 3> points{0.5 - away, 0.5, 0.5 + away},
       weights{5.0 / 18, 8.0 / 18, 5.0 / 18};
   for (Index piece = 0; piece < on.pieces(); ++piece)
     on.parts(piece, [&](double from, double to) {
       const double length = (to - from) * on.length(piece);
-      sums.measure += length;
-      for (std::size_t q = 0; q < 3; ++q)
-        sums.integral += weights[q] * length * on.at(piece, from + (to - from) * points[q])[0];
+      for (std::size_t q = 0; q < 3; ++q) {
+        const double s = from + (to - from) * points[q];
+        const double weight =
+            weights[q] * length * (turned ? 2 * std::numbers::pi * on.abscissa(piece, s) : 1);
+        sums.measure += weight;
+        sums.integral += weight * on.at(piece, s)[0];
+      }
       for (const double s : {from, (from + to) / 2, to}) {
         const double value = on.at(piece, s)[0];
         sums.least = std::min(sums.least, value);
@@ -163,7 +171,7 @@ void add_named_outputs(const Scene &scene, const Contact &contact, const FullMu 
       if (!traces[i])
         traces[i] = traces_of(interface.fields(
             mu, u(i), lambda.segment(contact.first_row[i], interface.dual().size())));
-      add(OnPieces(form.values, mu, *traces[i]), sums);
+      add(OnPieces(form.values, mu, *traces[i]), scene.axisymmetric, sums);
     }
     const double value = value_of(form, sums, scene.mirror_images);
     if (!std::isfinite(value))

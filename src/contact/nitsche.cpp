@@ -12,10 +12,16 @@ namespace rbvi {
 
 namespace {
 
+/// What a point of a cell sees of its nodes.
+struct NodeValues {
+  std::array<double, most_nodes> values{};
+  std::array<std::array<double, 3>, most_nodes> gradients{};
+  std::array<double, most_nodes> hoop{}; ///< strain by u_x, of a body that is turned
+};
+
 /// Stress on the body's normal and displacement at a point, along n and tau, by the dofs of the
-/// cell: values and gradients of its nodes.
-void set_functionals(std::size_t nodes, std::span<const double> values,
-                     std::span<const std::array<double, 3>> gradients, const Lame &material,
+/// cell.
+void set_functionals(std::size_t nodes, const NodeValues &at, const Lame &material,
                      NitschePoint &point) {
   const Point &face = point.body_normal, &n = point.facing.normal, tau{-n[1], n[0], 0};
   const auto [lambda, shear] = material;
@@ -24,16 +30,18 @@ void set_functionals(std::size_t nodes, std::span<const double> values,
   for (NitschePoint::Row *row : {&point.sigma_n, &point.sigma_tau, &point.n, &point.tau})
     row->setZero();
   for (std::size_t i = 0; i < nodes; ++i) {
-    const auto &g = gradients[i];
+    const auto &g = at.gradients[i];
     const double along_n = g[0] * n[0] + g[1] * n[1], along_tau = g[0] * tau[0] + g[1] * tau[1];
     const double outwards = g[0] * face[0] + g[1] * face[1];
     for (std::size_t c = 0; c < 2; ++c) {
       const auto dof = static_cast<Index>(2 * i + c);
-      point.sigma_n[dof] = lambda * g[c] * turned_n + shear * (outwards * n[c] + along_n * face[c]);
+      const double growth = g[c] + (c == 0 ? at.hoop[i] : 0);
+      point.sigma_n[dof] =
+          lambda * growth * turned_n + shear * (outwards * n[c] + along_n * face[c]);
       point.sigma_tau[dof] =
-          lambda * g[c] * turned_tau + shear * (outwards * tau[c] + along_tau * face[c]);
-      point.n[dof] = values[i] * n[c];
-      point.tau[dof] = values[i] * tau[c];
+          lambda * growth * turned_tau + shear * (outwards * tau[c] + along_tau * face[c]);
+      point.n[dof] = at.values[i] * n[c];
+      point.tau[dof] = at.values[i] * tau[c];
     }
   }
 }
@@ -75,8 +83,10 @@ NitschePoint nitsche_point(const Scene &scene, const Facing &facing, const FullM
   const auto &reference = at.cell.reference, &mapped = at.cell.mapped;
   const Point x{(1 - s) * reference[begin][0] + s * reference[end][0],
                 (1 - s) * reference[begin][1] + s * reference[end][1], 0};
+  const Point y = (1 - s) * mapped[begin] + s * mapped[end];
   // Made in place: copies of what has just been written stall the processor.
-  NitschePoint point{.weight = edge_length(mapped[begin], mapped[end]),
+  NitschePoint point{.weight = edge_length(mapped[begin], mapped[end]) *
+                               circumference(scene.axisymmetric, y),
                      .place = place(scene, facing, mu, x),
                      .facing = facing.at(mu, point.place, {}),
                      .body_normal = facing.body_normal ? facing.body_normal(mu, x)
@@ -84,11 +94,12 @@ NitschePoint nitsche_point(const Scene &scene, const Facing &facing, const FullM
   std::array<double, 3> barycentric{};
   barycentric[begin] = 1 - s;
   barycentric[end] = s;
-  std::array<double, most_nodes> values{};
-  std::array<std::array<double, 3>, most_nodes> gradients{};
-  lagrange_values(2, scene.degree, barycentric, values);
-  lagrange_gradients(2, scene.degree, barycentric, at.geometry, gradients);
-  set_functionals(nodes_per_cell(2, scene.degree), values, gradients, at.material, point);
+  NodeValues nodes;
+  lagrange_values(2, scene.degree, barycentric, nodes.values);
+  lagrange_gradients(2, scene.degree, barycentric, at.geometry, nodes.gradients);
+  for (std::size_t i = 0; scene.axisymmetric && i < most_nodes; ++i) // on the axis u_x = 0: a slope
+    nodes.hoop[i] = y[0] > 0 ? nodes.values[i] / y[0] : nodes.gradients[i][0];
+  set_functionals(nodes_per_cell(2, scene.degree), nodes, at.material, point);
   return point;
 }
 

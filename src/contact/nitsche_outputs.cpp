@@ -125,6 +125,7 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
     const CurveFields fields = nitsche_fields(layer, k, mu, u);
     Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
     nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
+    if (layer.scene.axisymmetric) drop_plane_outputs(one);
     const std::array<bool, 2> closed = layer.curves[k].closed_ends;
     if (!closed[0] || !closed[1]) one.ends_in_contact = ends_in_contact(fields, closed);
     if (&one == &part) {

@@ -58,7 +58,7 @@ public:
     for (const Index node : dual_.vertices)
       dual_.points.push_back(mesh_.points[node]);
     dual_.components = layer_.friction() ? 2 : 1;
-    dual_.gram = linear_gram(dual_.points, dual_.components);
+    dual_.gram = linear_gram(dual_.points, dual_.components, scene.axisymmetric);
     layer_.curves.front().closed_ends = mesh_.closed(0);
   }
 

@@ -35,7 +35,7 @@ PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &
   PairOperators pair;
   try {
     pair = pair_operators(vertical_partners({mapped.begin(), master}, {master, mapped.end()},
-                                            quadrature_, mesh_.degree),
+                                            quadrature_, mesh_.degree, scene_.axisymmetric),
                           space_, vertical_, mesh_.columns);
   } catch (const Error &error) { // the fault of this mu, not of the input
     throw failure(std::string(error.what()) + ", mapped at " + describe(scene_.parameters, mu));

@@ -7,6 +7,7 @@
 #include "rbvi/contact/surfaces.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
+#include "rbvi/element/axisymmetric_forms.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
@@ -22,8 +23,9 @@ Registry registry_of(std::vector<SceneEntry> scenes) {
   const auto add = [&](const FunctionLibrary &more) {
     registry.functions.insert(registry.functions.end(), more.begin(), more.end());
   };
-  for (const FunctionLibrary &more : {scalar_functions(), elastic_functions(), facet_functions(),
-                                      formula_functions(), surface_functions()})
+  for (const FunctionLibrary &more :
+       {scalar_functions(), elastic_functions(), axisymmetric_functions(), facet_functions(),
+        formula_functions(), surface_functions()})
     add(more);
   for (const SceneEntry &scene : registry.scenes)
     add(scene.functions);

@@ -45,6 +45,12 @@ double direction_count(const Vector &tangential, const Vector &pressure) {
   return in_contact(tangential.array() > 0) + in_contact(tangential.array() < 0);
 }
 
+void drop_plane_outputs(Outputs &outputs) {
+  for (const auto member : {&Outputs::horizontal_reaction, &Outputs::contact_half_width,
+                            &Outputs::stick_half_width, &Outputs::centre_pressure})
+    (outputs.*member).reset();
+}
+
 void support_outputs(const SupportState &state, Outputs &outputs) {
   const Index count = state.weights.size();
   const Vector pressure = state.lambda.head(count);

@@ -10,19 +10,20 @@ TwoCurves::TwoCurves(const Scene &scene, InterfaceMesh interface_mesh, Multiplie
   (void)check_curve(mesh_, 1, "master curve");
   slave_.assign(mesh_.points.begin(), mesh_.points.begin() + mesh_.parts[0]);
   dual_.points = multiplier_points(slave_, space, mesh_.degree);
-  dual_.gram = multiplier_product(slave_, space, mesh_.degree);
+  dual_.gram = multiplier_product(slave_, space, mesh_.degree, scene.axisymmetric);
 }
 
-std::vector<double> TwoCurves::lengths(const FullMu &mu) const {
-  return NodalCurve(images(scene_.map, mu, slave_), mesh_.degree).lengths();
+NodalCurve TwoCurves::slave_at_rest(const FullMu &mu) const {
+  return {images(scene_.map, mu, slave_), mesh_.degree};
 }
 
 void TwoCurves::outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
                         double least, Outputs &outputs) const {
   pressure_outputs(scene_.mirror_images, operators.weights, lambda, least, outputs);
+  const Vector whole =
+      whole_weights(slave_at_rest(mu).hats(scene_.axisymmetric), space_, mesh_.degree);
   outputs.ends_in_contact =
-      ends_in_contact(whole_weights(lengths(mu), space_, mesh_.degree), operators.weights, lambda,
-                      least, {mesh_.closed(0), mesh_.closed(1)});
+      ends_in_contact(whole, operators.weights, lambda, least, {mesh_.closed(0), mesh_.closed(1)});
 }
 
 Grid TwoCurves::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {

@@ -50,6 +50,10 @@ Stored part(const Stored &stored, const std::string &name) {
   return {part(stored.record, name), stored.registry};
 }
 
+bool is_set(const Record &record, const std::string &name) {
+  return record.numbers.contains(name) && number(record, name) != 0;
+}
+
 bool is_complete(const Record &record) {
   return !record.name.empty() &&
          std::ranges::all_of(record.parts, [](const auto &p) { return is_complete(p.second); });

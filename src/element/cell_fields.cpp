@@ -60,6 +60,7 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
   const std::vector<double> centre(static_cast<std::size_t>(scene.dim) + 1, 1.0 / (scene.dim + 1));
   std::array<std::array<double, 3>, most_nodes> gradients{};
+  std::array<double, most_nodes> values{};
   Matrix result(static_cast<Index>(cells.size() / per_cell), component_count(scene.dim));
   for (Index k = 0; k < result.rows(); ++k) {
     const int *nodes = cells.data() + static_cast<std::size_t>(k) * per_cell;
@@ -69,9 +70,22 @@ Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const M
     for (std::size_t i = 0; i < per_cell; ++i)
       gradient += displacement.segment<3>(3 * nodes[i]) *
                   Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
-    const Named<Material> &material = scene.materials[materials.empty() ? 0 : materials[k]].of_cell;
-    Tensor sigma = stress(material(all_parameters, reference_centre(cell)), gradient);
-    if (is_plane_stress(material)) sigma(2, 2) = 0;
+    if (scene.axisymmetric) { // the hoop strain
+      const double radius = point_at(cell.mapped, {centre[0], centre[1], centre[2], 0}, 3)[0];
+      lagrange_values(2, scene.degree, centre, values);
+      for (std::size_t i = 0; i < per_cell; ++i)
+        gradient(2, 2) += values[i] * displacement[3 * nodes[i]] / radius;
+    }
+    const auto &[regions, material, free_strain] =
+        scene.materials[materials.empty() ? 0 : materials[k]];
+    const Point x = reference_centre(cell);
+    const Lame constants = material(all_parameters, x);
+    const bool flat = is_plane_stress(material);
+    Tensor sigma = stress(constants, gradient);
+    if (free_strain)
+      sigma -=
+          swelling_modulus(constants, flat) * free_strain(all_parameters, x) * Tensor::Identity();
+    if (flat) sigma(2, 2) = 0;
     for (Index c = 0; c < result.cols(); ++c) {
       const auto [i, j] = places[c];
       result(k, c) = sigma(i, j);

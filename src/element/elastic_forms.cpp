@@ -5,6 +5,8 @@
 #include "rbvi/element/lagrange.hpp"
 #include "rbvi/element/quadrature.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -74,11 +76,15 @@ const Maker<Kernel> elasticity_maker{"elasticity", 1, [](const Stored &of) {
                                                              integer(of, "degree"));
                                      }};
 
-Lame lame_of(double young, double poisson, bool plane_stress) {
-  Lame material = lame(young, poisson);
+Lame in_plane_stress(Lame material) {
   auto &[lambda, shear] = material;
-  if (plane_stress) lambda *= 2 * shear / (lambda + 2 * shear);
+  lambda *= 2 * shear / (lambda + 2 * shear);
   return material;
+}
+
+Lame lame_of(double young, double poisson, bool plane_stress) {
+  const Lame material = lame(young, poisson);
+  return plane_stress ? in_plane_stress(material) : material;
 }
 
 const Maker<Material> isotropic_maker{
@@ -89,6 +95,56 @@ const Maker<Material> isotropic_maker{
         return lame_of(young(mu, x), poisson(mu, x), plane_stress);
       };
     }};
+
+std::function<Material> of_constants(const std::function<PointValue> &lambda,
+                                     const std::function<PointValue> &shear, bool plane_stress) {
+  return [=](const FullMu &mu, const Point &x) {
+    const Lame material{lambda(mu, x), shear(mu, x)};
+    if (!(material.shear > 0 && swelling_modulus(material, false) > 0))
+      throw bad_input("Lame's constants are lambda = " + short_number(material.lambda) +
+                      " and mu = " + short_number(material.shear) +
+                      ": mu and 3 lambda + 2 mu must be positive");
+    return plane_stress ? in_plane_stress(material) : material;
+  };
+}
+
+const Maker<Material> constants_maker{"lame_constants", 1, [](const Stored &of) {
+                                        return of_constants(made<PointValue>(part(of, "lambda")),
+                                                            made<PointValue>(part(of, "shear")),
+                                                            is_set(of, "plane_stress"));
+                                      }};
+
+std::function<Kernel> strain_kernel(const std::function<PointValue> &modulus,
+                                    const std::function<PointValue> &strain, int degree,
+                                    bool axisymmetric) {
+  check_degree(degree);
+  return [=, rule = radon_quadrature()](const FullMu &mu, const Cell &cell, double *values) {
+    const Simplex geometry = simplex(2, cell.mapped);
+    const double stiffness = geometry.volume * modulus(mu, reference_centre(cell));
+    const int nodes = nodes_per_cell(2, degree);
+    std::fill_n(values, 2 * nodes, 0.0);
+    std::array<double, most_nodes> functions{};
+    std::array<std::array<double, 3>, most_nodes> gradients{};
+    for (const QuadraturePoint &at : rule) {
+      lagrange_values(2, degree, {at.barycentric.data(), 3}, functions);
+      lagrange_gradients(2, degree, {at.barycentric.data(), 3}, geometry, gradients);
+      const Point x = point_at(cell.mapped, at.barycentric, 3);
+      const double stress = stiffness * at.weight * circumference(axisymmetric, x) *
+                            strain(mu, point_at(cell.reference, at.barycentric, 3));
+      for (int i = 0; i < nodes; ++i) {
+        values[2 * i] += stress * (gradients[i][0] + (axisymmetric ? functions[i] / x[0] : 0));
+        values[2 * i + 1] += stress * gradients[i][1];
+      }
+    }
+  };
+}
+
+const Maker<Kernel> strain_maker{"strain_load", 1, [](const Stored &of) {
+                                   return strain_kernel(made<PointValue>(part(of, "modulus")),
+                                                        made<PointValue>(part(of, "strain")),
+                                                        integer(of, "degree"),
+                                                        is_set(of, "axisymmetric"));
+                                 }};
 
 std::function<Material> alone(const std::function<PointValue> &factor, bool shear) {
   return [=](const FullMu &mu, const Point &x) {
@@ -149,9 +205,27 @@ Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue
       {{"young", young.record}, {"poisson", poisson.record}});
 }
 
+Named<Material> of_lame(const Named<PointValue> &lambda, const Named<PointValue> &shear,
+                        bool plane_stress) {
+  return constants_maker.named(of_constants(lambda, shear, plane_stress),
+                               {{"plane_stress", {double(plane_stress)}}},
+                               {{"lambda", lambda.record}, {"shear", shear.record}});
+}
+
+double swelling_modulus(const Lame &material, bool plane_stress) {
+  return (plane_stress ? 2 : 3) * material.lambda + 2 * material.shear;
+}
+
 bool is_plane_stress(const Named<Material> &material) {
-  const auto found = material.record.numbers.find("plane_stress");
-  return found != material.record.numbers.end() && found->second.front() != 0;
+  return is_set(material.record, "plane_stress");
+}
+
+Form strain_load(const std::string &region, const Named<PointValue> &modulus,
+                 const Named<PointValue> &strain, int degree, bool axisymmetric) {
+  return {region, strain_maker.named(
+                      strain_kernel(modulus, strain, degree, axisymmetric),
+                      {{"degree", {double(degree)}}, {"axisymmetric", {double(axisymmetric)}}},
+                      {{"modulus", modulus.record}, {"strain", strain.record}})};
 }
 
 Named<Material> lambda_alone(const Named<PointValue> &factor) {
@@ -174,7 +248,8 @@ Named<Coefficient> lame_shear(const Named<Coefficient> &poisson) {
 }
 
 FunctionLibrary elastic_functions() {
-  return {elasticity_maker, isotropic_maker, alone_maker, lambda_maker, shear_maker};
+  return {elasticity_maker, isotropic_maker, constants_maker, alone_maker,
+          lambda_maker,     shear_maker,     strain_maker};
 }
 
 } // namespace rbvi

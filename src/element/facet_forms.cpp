@@ -35,23 +35,17 @@ std::array<std::vector<FacetPoint>, 2> facet_rules(int degree) {
   return {facet_points(2, degree), facet_points(3, degree)};
 }
 
-Point mapped_point(const Cell &cell, const FacetPoint &point) {
-  Point x{};
-  for (int i = 0; i < cell.dim; ++i)
-    x = x + point.barycentric[i] * cell.mapped[i];
-  return x;
-}
-
 std::function<Kernel> traction_kernel(const std::function<Traction> &traction, int components,
-                                      int degree) {
-  return [traction, count = static_cast<std::size_t>(components),
+                                      int degree, bool axisymmetric) {
+  return [traction, axisymmetric, count = static_cast<std::size_t>(components),
           rules = facet_rules(degree)](const FullMu &mu, const Cell &cell, double *values) {
     const std::vector<FacetPoint> &rule = rules[static_cast<std::size_t>(cell.dim) - 2];
     const FacetMeasure facet = facet_measure(cell.dim, cell.mapped);
     const std::size_t nodes = rule.front().values.size();
     std::fill_n(values, nodes * count, 0.0);
     for (const FacetPoint &point : rule) {
-      const Point t = traction(mu, mapped_point(cell, point), facet.normal);
+      const Point x = point_at(cell.mapped, point.barycentric, cell.dim),
+                  t = circumference(axisymmetric, x) * traction(mu, x, facet.normal);
       for (std::size_t i = 0; i < nodes; ++i)
         for (std::size_t c = 0; c < count; ++c)
           values[i * count + c] += facet.size * point.weight * point.values[i] * t[c];
@@ -83,11 +77,11 @@ const Maker<Traction> pressure_maker{
       };
     }};
 
-const Maker<Kernel> traction_maker{"traction_load", 1, [](const Stored &of) {
-                                     return traction_kernel(made<Traction>(part(of, "traction")),
-                                                            integer(of, "components"),
-                                                            integer(of, "degree"));
-                                   }};
+const Maker<Kernel> traction_maker{
+    "traction_load", 1, [](const Stored &of) {
+      return traction_kernel(made<Traction>(part(of, "traction")), integer(of, "components"),
+                             integer(of, "degree"), is_set(of, "axisymmetric"));
+    }};
 
 const Maker<Kernel> spring_maker{"spring", 1, [](const Record &record) {
                                    return spring_kernel(number(record, "stiffness"),
@@ -102,12 +96,15 @@ FunctionLibrary facet_functions() {
 }
 
 Form traction_load(const std::string &boundary, const Named<Traction> &traction, int components,
-                   int degree) {
-  return {"",
-          traction_maker.named(traction_kernel(traction, components, degree),
-                               {{"components", {double(components)}}, {"degree", {double(degree)}}},
-                               {{"traction", traction.record}}),
-          boundary};
+                   int degree, bool axisymmetric) {
+  Form form{
+      "",
+      traction_maker.named(traction_kernel(traction, components, degree, axisymmetric),
+                           {{"components", {double(components)}}, {"degree", {double(degree)}}},
+                           {{"traction", traction.record}}),
+      boundary};
+  if (axisymmetric) form.kernel.record.numbers["axisymmetric"] = {1};
+  return form;
 }
 
 Form pressure_load(const std::string &boundary, double value, int components, int degree) {

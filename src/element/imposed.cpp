@@ -222,7 +222,7 @@ Scene with_imposed_loads(Scene scene) {
   if (!imposes_values(scene)) return scene;
   Sum loads;
   for (const Term &a : scene.a)
-    add_loads(scene, a, loads);
+    if (a.form.kernel) add_loads(scene, a, loads); // nothing is imposed where there are means
   for (Term &load : loads) {
     load.of_imposed = true;
     scene.f.push_back(std::move(load));
@@ -236,6 +236,7 @@ Sum imposed_energy(const Scene &scene) {
   const bool exact = !has_mapped_values(scene);
   const std::vector<ExactValue> values = exact_values(scene);
   for (const Term &a : scene.a) {
+    if (!a.form.kernel) continue;
     if (!a.theta || !exact) {
       const Part all = sum_part(scene, true);
       energy.push_back(mapped_with(scene, a, work_of(scene, a, all, all, 0.5)));
@@ -249,7 +250,7 @@ Sum imposed_energy(const Scene &scene) {
             together(*a.theta, together(*values[p].term->theta, *values[q].term->theta))));
   }
   for (const Term &f : scene.f) {
-    if (f.of_imposed) continue;
+    if (f.of_imposed || !f.form.kernel) continue;
     if (f.theta && exact)
       for (const ExactValue &value : values)
         energy.push_back(exact_term(work_of_load(scene, without_theta(f), part_of(value)),

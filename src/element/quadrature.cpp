@@ -58,4 +58,18 @@ std::vector<QuadraturePoint> positive_quadrature(int dim) {
   return points;
 }
 
+std::vector<QuadraturePoint> radon_quadrature() {
+  const double root = std::sqrt(15.0);
+  std::vector<QuadraturePoint> points{{{1.0 / 3, 1.0 / 3, 1.0 / 3, 0}, 9.0 / 40}};
+  for (const double sign : {-1.0, 1.0}) {
+    const double near = (6 + sign * root) / 21;
+    for (std::size_t i = 0; i < 3; ++i) {
+      QuadraturePoint point{{near, near, near, 0}, (155 + sign * root) / 1200};
+      point.barycentric[i] = 1 - 2 * near;
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
 } // namespace rbvi

@@ -99,14 +99,11 @@ std::vector<LoadPoint> load_points(int dim, int degree) {
 }
 
 Point mapped_point(const Cell &cell, const QuadraturePoint &point) {
-  Point x{};
-  for (int i = 0; i <= cell.dim; ++i)
-    x = x + point.barycentric[i] * cell.mapped[i];
-  return x;
+  return point_at(cell.mapped, point.barycentric, cell.dim + 1);
 }
 
-std::function<Kernel> body_kernel(const std::function<PointMap> &force, int components,
-                                  int degree) {
+std::function<Kernel> body_kernel(const std::function<PointMap> &force, int components, int degree,
+                                  bool axisymmetric) {
   check_degree(degree);
   return [=, points = of_both([&](int dim) { return load_points(dim, degree); })](
              const FullMu &mu, const Cell &cell, double *values) {
@@ -114,7 +111,9 @@ std::function<Kernel> body_kernel(const std::function<PointMap> &force, int comp
     const Index nodes = of(points, cell).front().values.size();
     std::fill_n(values, nodes * components, 0.0);
     for (const LoadPoint &point : of(points, cell)) {
-      const Point f = volume * point.at.weight * force(mu, mapped_point(cell, point.at));
+      const Point x = mapped_point(cell, point.at);
+      const double weight = volume * point.at.weight * circumference(axisymmetric, x);
+      const Point f = weight * force(mu, x);
       for (Index i = 0; i < nodes; ++i)
         for (int c = 0; c < components; ++c)
           values[i * components + c] += point.values[i] * f[c];
@@ -122,11 +121,11 @@ std::function<Kernel> body_kernel(const std::function<PointMap> &force, int comp
   };
 }
 
-const Maker<Kernel> body_load_maker{"body_load", 1, [](const Stored &of) {
-                                      return body_kernel(made<PointMap>(part(of, "force")),
-                                                         integer(of, "components"),
-                                                         integer(of, "degree"));
-                                    }};
+const Maker<Kernel> body_load_maker{
+    "body_load", 1, [](const Stored &of) {
+      return body_kernel(made<PointMap>(part(of, "force")), integer(of, "components"),
+                         integer(of, "degree"), is_set(of, "axisymmetric"));
+    }};
 
 } // namespace
 
@@ -134,12 +133,14 @@ FunctionLibrary scalar_functions() {
   return {laplace_maker, constant_load_maker, body_load_maker};
 }
 
-Form body_load(const std::string &region, const Named<PointMap> &force, int components,
-               int degree) {
-  return {region, body_load_maker.named(
-                      body_kernel(force, components, degree),
-                      {{"components", {double(components)}}, {"degree", {double(degree)}}},
-                      {{"force", force.record}})};
+Form body_load(const std::string &region, const Named<PointMap> &force, int components, int degree,
+               bool axisymmetric) {
+  Form form{region, body_load_maker.named(
+                        body_kernel(force, components, degree, axisymmetric),
+                        {{"components", {double(components)}}, {"degree", {double(degree)}}},
+                        {{"force", force.record}})};
+  if (axisymmetric) form.kernel.record.numbers["axisymmetric"] = {1};
+  return form;
 }
 
 Form laplace(const std::string &region, int degree) {

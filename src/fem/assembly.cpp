@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
 #include "rbvi/element/facets.hpp"
+#include "rbvi/fem/means.hpp"
 #include "rbvi/par/collective.hpp"
 
 #include <algorithm>
@@ -25,16 +26,18 @@ std::size_t cell_rows(const Mesh &mesh, const Dofs &dofs, std::size_t cell, Cell
   return count;
 }
 
-/// Entries in the rows of this rank that no cell makes.
-std::size_t coupled_entries(const Dofs &dofs) {
-  const auto end = dofs.first_free + static_cast<PetscInt>(dofs.natural_owned.size());
-  std::size_t entries = 0;
-  for (const std::vector<PetscInt> &coupled : dofs.coupled)
-    entries +=
-        coupled.size() * static_cast<std::size_t>(std::ranges::count_if(coupled, [&](PetscInt row) {
-          return row >= dofs.first_free && row < end;
-        }));
-  return entries;
+/// Calls visit(coupling, i) for the rows of all couplings that this rank owns.
+template <class Visit> void visit_couplings(const Dofs &dofs, Visit &&visit) {
+  const PetscInt end = dofs.first_free + static_cast<PetscInt>(dofs.natural_owned.size());
+  for (const Coupling &coupling : dofs.couplings)
+    for (std::size_t i = 0; i < coupling.rows.size(); ++i)
+      if (coupling.rows[i] >= dofs.first_free && coupling.rows[i] < end) visit(coupling, i);
+}
+
+bool are_same(const std::vector<Mean> &some, const std::vector<Mean> &others) {
+  return std::ranges::equal(some, others, [](const Mean &one, const Mean &other) {
+    return one.boundary == other.boundary && one.direction == other.direction;
+  });
 }
 
 } // namespace
@@ -72,6 +75,12 @@ MappedVertices map_vertices(const Scene &scene, const FullMu &mu, const Mesh &me
          ++v)
       vertices.push_back(mesh.points[v]);
     mapped = images(scene.map, mu, vertices);
+    for (std::size_t v = 0; scene.axisymmetric && v < mapped.size(); ++v)
+      if (const bool on = mesh.boundary.at(axis_of_turning)[v];
+          on != !(mapped[v][0] > 1e-12 * norm(mapped[v])))
+        throw failure("the map takes a point " + std::string(on ? "off" : "to or beyond") +
+                      " the axis x = 0 at " + describe(scene.parameters, mu) +
+                      ": it must leave the axis where it is");
     for (std::size_t k = 0; k < mesh.cells.size(); ++k)
       check_orientation(scene, mu, cell_of(mesh, k, mapped));
   });
@@ -101,13 +110,10 @@ Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs) {
         columns.push_back(cell[j]);
       }
   }
-  for (const std::vector<PetscInt> &coupled : dofs.coupled)
-    for (const PetscInt row : coupled)
-      for (const PetscInt column : coupled)
-        if (row >= dofs.first_free && row < dofs.first_free + owned) {
-          rows.push_back(row);
-          columns.push_back(column);
-        }
+  visit_couplings(dofs, [&](const Coupling &coupling, std::size_t i) {
+    rows.insert(rows.end(), coupling.rows.size(), coupling.rows[i]);
+    columns.insert(columns.end(), coupling.rows.begin(), coupling.rows.end());
+  });
   RBVI_CALL(MatSetPreallocationCOO(matrix.get(), static_cast<PetscCount>(rows.size()), rows.data(),
                                    columns.data()));
   RBVI_CALL(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
@@ -164,16 +170,25 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
               const Dofs &dofs, const MappedVertices &mapped, Mat matrix) {
   const auto count =
       static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree) * dofs.components);
-  std::vector<PetscScalar> all(mesh.cells.size() * count * count + coupled_entries(dofs), 0);
+  std::vector<PetscScalar> all(mesh.cells.size() * count * count, 0);
+  visit_couplings(dofs, [&](const Coupling &coupling, std::size_t i) {
+    double weight = 0;
+    for (const WeightedForm &weighted : forms)
+      if (are_same(weighted.form->means, coupling.means))
+        weight += weighted.weight * coupling.values[i];
+    for (const double value : coupling.values)
+      all.push_back(weight * value);
+  });
   for (const WeightedForm &weighted : forms)
-    visit_values(*weighted.form, mu, mesh, dofs, mapped,
-                 [&](std::size_t cell, const std::vector<int> &local, const double *values) {
-                   double *block = all.data() + cell * count * count;
-                   for (const int i : local)
-                     for (const int j : local)
-                       block[static_cast<std::size_t>(i) * count + static_cast<std::size_t>(j)] +=
-                           weighted.weight * *values++;
-                 });
+    if (weighted.form->means.empty())
+      visit_values(*weighted.form, mu, mesh, dofs, mapped,
+                   [&](std::size_t cell, const std::vector<int> &local, const double *values) {
+                     double *block = all.data() + cell * count * count;
+                     for (const int i : local)
+                       for (const int j : local)
+                         block[static_cast<std::size_t>(i) * count + static_cast<std::size_t>(j)] +=
+                             weighted.weight * *values++;
+                   });
   RBVI_CALL(MatSetValuesCOO(matrix, all.data(), INSERT_VALUES));
 }
 
@@ -182,7 +197,14 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
   RBVI_CALL(VecZeroEntries(vector));
   RBVI_CALL(VecSetOption(vector, VEC_IGNORE_NEGATIVE_INDICES, PETSC_TRUE));
   CellRows rows{};
-  for (const WeightedForm &weighted : forms)
+  for (const WeightedForm &weighted : forms) {
+    if (!weighted.form->means.empty()) {
+      const Vector of_means = mean_functional(weighted.form->means, mesh, dofs);
+      for (Index i = 0; i < of_means.size(); ++i)
+        if (of_means[i] != 0)
+          RBVI_CALL(VecSetValue(vector, dofs.free[i], weighted.weight * of_means[i], ADD_VALUES));
+      continue;
+    }
     visit_values(*weighted.form, mu, mesh, dofs, mapped,
                  [&](std::size_t cell, const std::vector<int> &local, const double *values) {
                    cell_rows(mesh, dofs, cell, rows);
@@ -190,6 +212,7 @@ void assemble(const std::vector<WeightedForm> &forms, const FullMu &mu, const Me
                      RBVI_CALL(
                          VecSetValue(vector, rows[i], weighted.weight * *values++, ADD_VALUES));
                  });
+  }
   RBVI_CALL(VecAssemblyBegin(vector));
   RBVI_CALL(VecAssemblyEnd(vector));
 }

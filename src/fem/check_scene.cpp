@@ -206,7 +206,7 @@ void visit_terms(const Scene &scene, Cells &&cells, Check &&check) {
   for (const auto &[sum, name] :
        {std::pair{&scene.a, "a"}, {&scene.f, "f"}, {&scene.v_product, "the product of V"}})
     for (std::size_t i = 0; i < sum->size(); ++i)
-      if (const Term &term = (*sum)[i]; !term.of_imposed)
+      if (const Term &term = (*sum)[i]; !term.of_imposed && term.form.means.empty())
         check(SampledTerm{scene, term,
                           "scene " + scene.name + ": term " + std::to_string(i + 1) + " of " + name,
                           sum != &scene.f, cells(term.form)},

@@ -1,8 +1,10 @@
 #include "rbvi/fem/dofs.hpp"
 
 #include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
+#include "rbvi/par/gather.hpp"
 
 #include <algorithm>
 
@@ -65,20 +67,73 @@ std::vector<int> imposing_boundaries(const Mesh &mesh, int components,
   return result;
 }
 
+/// Dofs::tied. `is_fixed`: per local node * components + component. Collective.
+std::map<PetscInt, PetscInt> tied_dofs(const Mesh &mesh, int components,
+                                       const std::vector<bool> &is_fixed,
+                                       const std::vector<TiedBoundary> &tied) {
+  std::map<PetscInt, PetscInt> all;
+  for (const TiedBoundary &part : tied) {
+    std::vector<PetscInt> numbers;
+    collectively(mesh.comm, [&] {
+      for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        if (!mesh.boundary.at(part.name)[v]) continue;
+        numbers.push_back(mesh.natural_node[v] * components + part.component);
+        const std::size_t dof = v * static_cast<std::size_t>(components);
+        if (is_fixed[dof + static_cast<std::size_t>(part.component)] ||
+            all.contains(numbers.back()))
+          throw bad_input("the boundary '" + part.name + "' moves as one along " +
+                          "xyz"[part.component] + ", but at (" + short_number(mesh.points[v][0]) +
+                          ", " + short_number(mesh.points[v][1]) +
+                          ") that displacement is given, or another boundary's");
+      }
+    });
+    numbers = gather_all(mesh.comm, numbers, MPIU_INT);
+    for (const PetscInt number : numbers)
+      all[number] = *std::ranges::min_element(numbers);
+  }
+  return all;
+}
+
+/// Of the ranks that own them. Collective.
+void share_tied_rows(const Mesh &mesh, Dofs &dofs) {
+  std::map<PetscInt, std::size_t> place; // of the numbers that have the rows
+  for (const auto &[number, with_row] : dofs.tied)
+    place.emplace(with_row, place.size());
+  if (place.empty()) return;
+  std::vector<PetscInt> rows(place.size(), -1);
+  for (std::size_t k = 0; k < dofs.natural_owned.size(); ++k)
+    if (const auto found = place.find(dofs.natural_owned[k]); found != place.end())
+      rows[found->second] = dofs.first_free + static_cast<PetscInt>(k);
+  over_ranks(mesh.comm, MPI_MAX, rows);
+  const auto count = static_cast<std::size_t>(dofs.components);
+  for (std::size_t i = 0; i < dofs.free.size(); ++i)
+    if (const auto found = place.find(dofs.natural(mesh, i / count, static_cast<int>(i % count)));
+        found != place.end())
+      dofs.free[i] = rows[found->second];
+}
+
 } // namespace
 
-Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBoundary> &fixed) {
+Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBoundary> &fixed,
+                 const std::vector<TiedBoundary> &tied) {
   Dofs dofs;
   dofs.comm = mesh.comm;
   dofs.components = components;
   dofs.total = mesh.total_nodes * components;
   const std::vector<bool> is_fixed = fixed_components(mesh, components, fixed);
   dofs.imposed_by = imposing_boundaries(mesh, components, fixed);
+  dofs.tied = tied_dofs(mesh, components, is_fixed, tied);
+  std::erase_if(dofs.tied, [](const auto &pair) { return pair.first == pair.second; });
   const std::size_t nodes = mesh.points.size(), count = static_cast<std::size_t>(components);
+  std::vector<bool> has_row;
+  for (std::size_t i = 0; i < is_fixed.size(); ++i)
+    has_row.push_back(!is_fixed[i] &&
+                      !dofs.tied.contains(mesh.natural_node[i / count] * components +
+                                          static_cast<PetscInt>(i % count)));
 
   PetscInt owned = 0;
   for (std::size_t i = 0; i < is_fixed.size(); ++i)
-    if (mesh.owned_node[i / count] && !is_fixed[i]) ++owned;
+    if (mesh.owned_node[i / count] && has_row[i]) ++owned;
   MPI_Exscan(&owned, &dofs.first_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
   MPI_Allreduce(&owned, &dofs.total_free, 1, MPIU_INT, MPI_SUM, mesh.comm);
 
@@ -88,7 +143,7 @@ Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBounda
     if (!mesh.owned_node[v]) continue;
     first_row[v] = next;
     for (std::size_t c = 0; c < count; ++c) {
-      if (is_fixed[v * count + c]) continue;
+      if (!has_row[v * count + c]) continue;
       dofs.natural_owned.push_back(mesh.natural_node[v] * components + static_cast<PetscInt>(c));
       ++next;
     }
@@ -98,8 +153,9 @@ Dofs number_dofs(const Mesh &mesh, int components, const std::vector<FixedBounda
   for (std::size_t v = 0; v < nodes; ++v) {
     PetscInt row = first_row[v];
     for (std::size_t c = 0; c < count; ++c)
-      dofs.free.push_back(is_fixed[v * count + c] ? -1 : row++);
+      dofs.free.push_back(has_row[v * count + c] ? row++ : -1);
   }
+  share_tied_rows(mesh, dofs);
   return dofs;
 }
 
@@ -117,6 +173,8 @@ Vector to_natural(const Dofs &dofs, Vec free) {
   Vector natural = Vector::Zero(dofs.total);
   natural(dofs.natural_owned) = local_values(free);
   over_ranks(dofs.comm, MPI_SUM, natural);
+  for (const auto &[number, with_row] : dofs.tied)
+    natural[number] = natural[with_row];
   return natural;
 }
 

@@ -7,6 +7,7 @@
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/element/scalar_forms.hpp"
 #include "rbvi/fem/imposed.hpp"
+#include "rbvi/fem/means.hpp"
 #include "rbvi/fem/rigid_body_modes.hpp"
 #include "rbvi/par/collective.hpp"
 
@@ -29,14 +30,15 @@ struct Bodies {
   std::vector<Point> at;    ///< per local node of an owned cell
   std::vector<int> of_node; ///< -1: of no owned cell
   std::vector<MeshPart> all;
+  bool turned = false; ///< about x = 0: the one rigid motion is along it
 
-  int modes() const { return dofs.components == 1 ? 1 : mesh.dim == 2 ? 3 : 6; }
+  int modes() const { return dofs.components == 1 || turned ? 1 : mesh.dim == 2 ? 3 : 6; }
   /// The rigid motions of the body of a node there, rotations about the centre.
   Vector motions(std::size_t node, int component) const {
     const MeshPart &body = all[of_node[node]];
     const Point x = (at[node] - body.centre()) / body.size();
     return Vector::NullaryExpr(modes(), [&](Index mode) {
-      return rigid_displacement(mesh.dim, static_cast<int>(mode), component, x);
+      return rigid_displacement(mesh.dim, turned ? 1 : static_cast<int>(mode), component, x);
     });
   }
   std::size_t dof(std::size_t node, int c) const {
@@ -45,9 +47,11 @@ struct Bodies {
 };
 
 /// `mapped`: where the vertices are; empty: as in the reference mesh. Collective.
-Bodies find_bodies(const Mesh &mesh, const Dofs &dofs, const MappedVertices &mapped) {
+Bodies find_bodies(const Scene &scene, const Mesh &mesh, const Dofs &dofs,
+                   const MappedVertices &mapped) {
   const std::size_t nodes = mesh.points.size();
-  Bodies bodies{mesh, dofs, std::vector<Point>(nodes), std::vector<int>(nodes, -1), {}};
+  Bodies bodies{
+      mesh, dofs, std::vector<Point>(nodes), std::vector<int>(nodes, -1), {}, scene.axisymmetric};
   const auto count = static_cast<Index>(mesh.bodies);
   Matrix highest = Matrix::Constant(6, count, -std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < mesh.cells.size(); ++k) {
@@ -89,6 +93,29 @@ Grams held_by_displacements(const Bodies &bodies) {
   return grams;
 }
 
+/// What motions differ by on the boundaries that move as one, from their mean there. Collective.
+void add_tied(const Bodies &bodies, const std::vector<TiedBoundary> &tied, Grams &grams) {
+  const Index modes = bodies.modes();
+  for (const auto &[name, component] : tied) {
+    Matrix sums = Matrix::Zero(modes + 1, (modes + 1) * std::ssize(bodies.all)); // of (motions, 1)
+    for (std::size_t node = 0; node < bodies.of_node.size(); ++node) {
+      const int body = bodies.of_node[node];
+      if (body < 0 || !bodies.mesh.boundary.at(name)[node]) continue;
+      Vector here(modes + 1);
+      here << bodies.motions(node, component), 1;
+      sums.middleCols(body * (modes + 1), modes + 1) += here * here.transpose();
+    }
+    over_ranks(bodies.mesh.comm, MPI_SUM, sums);
+    for (Index body = 0; body < std::ssize(bodies.all); ++body) {
+      const Matrix own = sums.middleCols(body * (modes + 1), modes + 1);
+      if (own(modes, modes) == 0) continue;
+      const Vector whole = own.col(modes).head(modes);
+      grams.middleCols(body * modes, modes) +=
+          own.topLeftCorner(modes, modes) - whole * whole.transpose() / own(modes, modes);
+    }
+  }
+}
+
 /// Energies of motions by a term, relative to that of a rough field in the same body. Collective.
 void add_energy(const Bodies &bodies, const Term &term, const FullMu &mu,
                 const MappedVertices &mapped, Grams &grams) {
@@ -126,6 +153,39 @@ std::vector<Matrix> free_motions(const Grams &grams) {
         (eigen.eigenvalues().array() <= motion_is_held * std::max(1.0, gram.trace())).count()));
   }
   return free;
+}
+
+/// Takes from the free motions of all bodies together those that stretch a spring. Collective.
+void hold_by_couplings(const Bodies &bodies, std::vector<Matrix> &free) {
+  constexpr double stretched = 1e-6; // of the size of a motion
+  std::vector<Index> first{0};
+  for (const Matrix &motions : free)
+    first.push_back(first.back() + motions.cols());
+  const std::vector<Coupling> &couplings = bodies.dofs.couplings;
+  if (couplings.empty() || first.back() == 0) return;
+  Matrix stretches = Matrix::Zero(std::ssize(couplings), first.back());
+  for (Index k = 0; k < stretches.rows(); ++k) {
+    const Vector functional = mean_functional(couplings[k].means, bodies.mesh, bodies.dofs);
+    for (Index i = 0; i < functional.size(); ++i) {
+      const auto node = static_cast<std::size_t>(i / bodies.dofs.components);
+      const int body = bodies.of_node[node];
+      if (functional[i] == 0 || body < 0 || free[body].cols() == 0) continue;
+      const Vector motions = bodies.motions(node, static_cast<int>(i % bodies.dofs.components));
+      stretches.row(k).segment(first[body], free[body].cols()) +=
+          functional[i] * motions.transpose() * free[body];
+    }
+  }
+  over_ranks(bodies.mesh.comm, MPI_SUM, stretches);
+  const Eigen::JacobiSVD<Matrix> svd(stretches, Eigen::ComputeFullV);
+  const auto held_ones = (svd.singularValues().array() > stretched).count();
+  const Matrix left = svd.matrixV().rightCols(first.back() - held_ones);
+  for (std::size_t body = 0; body < free.size(); ++body) {
+    if (left.cols() == 0) free[body].resize(Eigen::NoChange, 0);
+    if (free[body].cols() == 0) continue;
+    const Matrix own = free[body] * left.middleRows(first[body], free[body].cols());
+    const Eigen::JacobiSVD<Matrix> range(own, Eigen::ComputeThinU);
+    free[body] = range.matrixU().leftCols((range.singularValues().array() > stretched).count());
+  }
 }
 
 /// Numbers of the bodies that have a cell in a region.
@@ -218,7 +278,7 @@ void choose_springs(const Bodies &bodies, FreeBody &body) {
 /// theta of the first exact term of a on cells of the body. Collective.
 std::vector<Factor> coefficient_on(const Scene &scene, const Mesh &mesh, int body) {
   for (const Term &term : scene.a) {
-    if (!term.theta || !term.form.boundary.empty()) continue;
+    if (!term.theta || !term.form.boundary.empty() || !term.form.means.empty()) continue;
     if (term.form.region.empty() || bodies_in(mesh, mesh.region.at(term.form.region))[body] != 0)
       return *term.theta;
   }
@@ -229,22 +289,25 @@ std::vector<Factor> coefficient_on(const Scene &scene, const Mesh &mesh, int bod
 
 std::vector<FreeBody> free_bodies(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
   const auto is_free = [](const Matrix &motions) { return motions.cols() > 0; };
-  if (std::ranges::none_of(free_motions(held_by_displacements(find_bodies(mesh, dofs, {}))),
+  if (std::ranges::none_of(free_motions(held_by_displacements(find_bodies(scene, mesh, dofs, {}))),
                            is_free))
     return {};
   const FullMu mu = generic_point(scene.parameters);
   const MappedVertices mapped = map_vertices(scene, mu, mesh);
-  const Bodies bodies = find_bodies(mesh, dofs, mapped);
+  const Bodies bodies = find_bodies(scene, mesh, dofs, mapped);
   Grams grams = held_by_displacements(bodies);
+  add_tied(bodies, scene.tied, grams);
   for (const Term &term : scene.a)
-    add_energy(bodies, term, mu, mapped, grams);
-  const std::vector<Matrix> free = free_motions(grams);
+    if (term.form.means.empty()) add_energy(bodies, term, mu, mapped, grams);
+  std::vector<Matrix> free = free_motions(grams);
+  hold_by_couplings(bodies, free);
   if (std::ranges::none_of(free, is_free)) return {};
   const std::vector<std::string> names = names_of(bodies);
   std::vector<FreeBody> result;
   for (std::size_t body = 0; body < free.size(); ++body)
     if (is_free(free[body]))
-      result.push_back({names[body], static_cast<int>(body), bodies.all[body], free[body]});
+      result.push_back(
+          {names[body], static_cast<int>(body), bodies.turned, bodies.all[body], free[body]});
   return result;
 }
 
@@ -256,13 +319,13 @@ std::vector<FreeBody> add_springs(Scene &scene, const Mesh &mesh, Dofs &dofs) {
         describe(result, mesh.dim, Matrix::Identity(motions_of(result), motions_of(result))) +
         ": impose displacements that prevent it");
   const Bodies bodies =
-      find_bodies(mesh, dofs, map_vertices(scene, generic_point(scene.parameters), mesh));
+      find_bodies(scene, mesh, dofs, map_vertices(scene, generic_point(scene.parameters), mesh));
   for (FreeBody &body : result) {
     choose_springs(bodies, body);
     body.term = static_cast<int>(scene.a.size());
     scene.a.push_back(exact_term(elasticity("", Lame{0, 0}, scene.degree),
                                  coefficient_on(scene, mesh, body.number)));
-    dofs.coupled.push_back(body.rows);
+    dofs.couplings.push_back({{}, body.rows, std::vector<double>(body.rows.size(), 0)});
   }
   scene.f.push_back(exact_term(body_load("", everywhere(Point{}), scene.components, scene.degree)));
   return result;
@@ -270,7 +333,7 @@ std::vector<FreeBody> add_springs(Scene &scene, const Mesh &mesh, Dofs &dofs) {
 
 std::vector<Handle<Vec>> rigid_motions(const std::vector<FreeBody> &bodies, const Scene &scene,
                                        const FullMu &mu, const Mesh &mesh, const Dofs &dofs) {
-  const Bodies parts = find_bodies(mesh, dofs, map_vertices(scene, mu, mesh));
+  const Bodies parts = find_bodies(scene, mesh, dofs, map_vertices(scene, mu, mesh));
   const std::vector<Matrix> free = free_motions(held_by_displacements(parts));
   std::vector<Handle<Vec>> result;
   for (const FreeBody &body : bodies) {
@@ -308,7 +371,9 @@ std::string describe(const std::vector<FreeBody> &bodies, int dim, const Matrix 
     first += count;
     if (own.cols() == 0 || ++told > most_told) continue;
     text.append(told == 1 ? "" : ", ")
-        .append(body.name + " can " + motions_text(dim, body.part, body.motions * own));
+        .append(
+            body.name + " can " +
+            (body.turned ? "move along (0, 1)" : motions_text(dim, body.part, body.motions * own)));
   }
   if (told > most_told) text.append(" (and " + std::to_string(told - most_told) + " more)");
   return text;

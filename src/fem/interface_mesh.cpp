@@ -295,6 +295,11 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
         found.mesh.dofs.push_back(-1);
         continue;
       }
+      if (dofs.tied.contains(natural) ||
+          std::ranges::any_of(dofs.tied, [&](const auto &pair) { return pair.second == natural; }))
+        throw bad_input("a boundary that moves as one by a force meets " + described(contact) +
+                        " at " + place(found.mesh.points[i / components]) +
+                        ": give them boundaries without common nodes");
       const auto [at, is_new] = column.emplace(natural, static_cast<int>(natural_dofs.size()));
       if (const auto dof = static_cast<std::size_t>(at->second);
           !is_new && dof < first.back() && constrains(contact)) {

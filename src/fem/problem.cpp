@@ -7,6 +7,7 @@
 #include "rbvi/core/validity.hpp"
 #include "rbvi/element/imposed.hpp"
 #include "rbvi/fem/check_scene.hpp"
+#include "rbvi/fem/means.hpp"
 #include "rbvi/method/balance.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/columns.hpp"
@@ -39,6 +40,12 @@ void check_finite(const Scene &scene, const Contact &contact, const Operators &o
   }
 }
 
+Dofs numbered_dofs(const Scene &scene, const Mesh &mesh) {
+  Dofs dofs = number_dofs(mesh, scene.components, scene.fixed, scene.tied);
+  add_couplings(scene, mesh, dofs);
+  return dofs;
+}
+
 Scene checked(Scene scene) {
   check_functions(scene);
   return scene;
@@ -56,8 +63,7 @@ std::vector<ContactPoint> at_rest(const std::vector<Mu> &set) {
 Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index contact_gather)
     : given_(checked(std::move(scene))), mesh_options_(options),
       scene_(std::make_unique<Scene>(with_imposed_loads(given_))),
-      mesh_(make_mesh(comm, *scene_, options)),
-      dofs_(number_dofs(mesh_, scene_->components, scene_->fixed)),
+      mesh_(make_mesh(comm, *scene_, options)), dofs_(numbered_dofs(*scene_, mesh_)),
       free_(add_springs(*scene_, mesh_, dofs_)), places_(place_interfaces(mesh_, dofs_, *scene_)),
       contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
       contact_gather_(contact_gather),

@@ -20,7 +20,9 @@ Handle<MatNullSpace> rigid_body_modes(const Mesh &mesh, const Dofs &dofs) {
       for (int c = 0; c < dofs.components; ++c) {
         const PetscInt row = dofs.free[node * static_cast<std::size_t>(dofs.components) +
                                        static_cast<std::size_t>(c)];
-        if (row < 0 || !mesh.owned_node[node]) continue;
+        if (row < 0 || !mesh.owned_node[node] ||
+            dofs.tied.contains(mesh.natural_node[node] * dofs.components + c))
+          continue;
         RBVI_CALL(VecSetValue(
             v.get(), row, rigid_displacement(mesh.dim, mode, c, mesh.points[node]), INSERT_VALUES));
       }

@@ -80,7 +80,7 @@ Summed<Object> make_summed(const Sum &sum, const ParameterSpace &space, const Me
   if (mapped) result.mapped = make<Object>(mesh, dofs);
   if (mapped && result.exact.empty())
     result.total = share(result.mapped);
-  else if (is_constant(sum, space) && result.exact.size() == 1)
+  else if (!mapped && is_constant(sum, space) && result.exact.size() == 1)
     result.total = share(result.exact.front());
   else
     result.total =

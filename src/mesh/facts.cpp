@@ -187,7 +187,7 @@ void check_outer_boundaries(const Subject &s) {
 void check_covered(const Subject &s) {
   std::vector<bool> covered(s.mesh.cells.size(), s.scene.a.empty());
   for (const Term &term : s.scene.a)
-    if (term.form.boundary.empty())
+    if (term.form.kernel && term.form.boundary.empty())
       for (const int cell : cells_of(s, term.form.region))
         covered[cell] = true;
   const auto bare = std::ranges::find(covered, false);
@@ -293,6 +293,7 @@ void check_recipe(const Scene &scene) {
   std::vector<std::string> known = scene.mesh.regions, used = scene.mesh.curved;
   known.insert(known.end(), scene.mesh.boundaries.begin(), scene.mesh.boundaries.end());
   known.emplace_back("");
+  if (scene.axisymmetric) known.emplace_back(axis_of_turning);
   for (const MeshFact &fact : scene.mesh.facts)
     used.insert(used.end(), {fact.part, fact.within});
   for (const ContactRecipe &contact : scene.contacts)
@@ -300,8 +301,13 @@ void check_recipe(const Scene &scene) {
   for (const FixedBoundary &boundary : scene.fixed)
     used.push_back(boundary.name);
   for (const Sum *sum : {&scene.a, &scene.f, &scene.v_product})
-    for (const Term &term : *sum)
+    for (const Term &term : *sum) {
       used.insert(used.end(), {term.form.region, term.form.boundary});
+      for (const Mean &mean : term.form.means)
+        used.push_back(mean.boundary);
+    }
+  for (const TiedBoundary &boundary : scene.tied)
+    used.push_back(boundary.name);
   for (const std::string &name : used)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw bad_input("scene " + scene.name + " speaks of '" + name +

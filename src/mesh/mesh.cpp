@@ -1,5 +1,6 @@
 #include "rbvi/mesh/mesh.hpp"
 
+#include "axis.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/facets.hpp"
 #include "rbvi/mesh/contact_curves.hpp"
@@ -352,6 +353,7 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
     share(comm, all.facets[name]);
     mesh.facets[name] = own_facets(mesh, cell_of, all.facets[name]);
   }
+  if (scene.axisymmetric) mark_axis(mesh);
   return mesh;
 }
 

@@ -1,5 +1,6 @@
 #include "rbvi/mesh/surface.hpp"
 
+#include "axis.hpp"
 #include "facets.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -49,8 +50,11 @@ std::set<std::string> named_boundaries(const Scene &scene) {
   for (const FixedBoundary &fixed : scene.fixed)
     names.insert(fixed.name);
   for (const Sum *sum : {&scene.a, &scene.f})
-    for (const Term &term : *sum)
+    for (const Term &term : *sum) {
       names.insert(term.form.boundary);
+      for (const Mean &mean : term.form.means)
+        names.insert(mean.boundary);
+    }
   for (const ContactRecipe &contact : scene.contacts)
     if (contact.entities.kind != InterfaceEntities::Kind::cells)
       names.insert(contact.entities.parts.begin(), contact.entities.parts.end());
@@ -89,7 +93,11 @@ SerialMesh mesh_with_groups(const Scene &scene, const std::string &file) {
 
 MeshSurface surface_of(const SerialMesh &mesh, const Scene &scene) {
   MeshSurface surface{outer_facets(mesh), {}, {}};
-  surface.free.assign(surface.facets.size(), true);
+  const auto at_axis = [&, extent = extent_of(mesh)](int vertex) {
+    return on_axis(mesh.points[vertex][0], extent);
+  };
+  for (const Facet &facet : surface.facets) // the axis is inside of the body in space
+    surface.free.push_back(!scene.axisymmetric || !at_axis(facet[0]) || !at_axis(facet[1]));
   const std::set<std::string> named = named_boundaries(scene);
   for (const auto &[name, ignored] : mesh.boundary) {
     std::vector<bool> &in = surface.groups[name];

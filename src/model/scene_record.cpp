@@ -95,7 +95,7 @@ template <class Store, class Of> void list_theta(const Store &store, Of &term) {
 /// `with_kernel`: of an exact term, too.
 template <class Store, class Of> void list_term(const Store &store, Of &term, bool with_kernel) {
   list_theta(store, term);
-  if (!store.has("kernel", !term.theta || with_kernel)) return;
+  if (!store.has("kernel", term.form.kernel && (!term.theta || with_kernel))) return;
   store.text("region", term.form.region);
   store.text("boundary", term.form.boundary);
   store.function("kernel", term.form.kernel);
@@ -131,6 +131,8 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
   store.number("dim", scene.dim);
   store.number("components", scene.components);
   store.number("degree", scene.degree);
+  if (store.has("axisymmetric", scene.axisymmetric))
+    store.number("axisymmetric", scene.axisymmetric);
   store.number("symmetric", scene.symmetric);
   store.number("skewed_by", scene.skewed_by);
   store.number("mirror_images", scene.mirror_images);
@@ -141,6 +143,8 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
     name_record(part, "material");
     part.texts("regions", material.regions);
     part.function("of_cell", material.of_cell);
+    if (part.has("free_strain", static_cast<bool>(material.free_strain)))
+      part.function("free_strain", material.free_strain);
   });
   function_if("check", scene.check_parameters);
   store.items("contact", scene.contacts, [](const Store &part, auto &recipe) {

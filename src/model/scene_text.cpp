@@ -177,7 +177,7 @@ void add_factors(const std::string &name, const std::vector<Factor> &factors, Te
 /// The kernel of a form: rows, or rows x rows values.
 void add_kernel(const std::string &name, const Scene &scene, const Form &form, bool bilinear,
                 Text &text) {
-  if (!form) return;
+  if (!form.kernel) return;
   const int dim = form.boundary.empty() ? scene.dim : scene.dim - 1;
   const auto rows = static_cast<std::size_t>(nodes_per_cell(dim, scene.degree) * scene.components);
   text.add_values(
@@ -194,7 +194,10 @@ void add_sum(const std::string &name, const Scene &scene, const Sum &sum, bool b
   for (const Term &term : sum) {
     if (term.of_imposed) continue; // made of the imposed values and of a
     const std::string own = name + "_" + std::to_string(number++);
-    if (term.theta && term.form) {
+    for (const Mean &mean : term.form.means)
+      text.add(own + " mean of '" + mean.boundary + "'",
+               shortest_number(mean.direction[0]) + ' ' + shortest_number(mean.direction[1]));
+    if (term.theta && term.form.kernel) {
       text.add(own + ".kernel", term.form.kernel.record);
       text.add(own + " over", term.form.region + term.form.boundary);
     }
@@ -204,6 +207,8 @@ void add_sum(const std::string &name, const Scene &scene, const Sum &sum, bool b
 }
 
 void add_fixed(const Scene &scene, Text &text) {
+  for (const TiedBoundary &tied : scene.tied)
+    text.add("tied " + std::to_string(tied.component), tied.name);
   for (std::size_t b = 0; b < scene.fixed.size(); ++b) {
     const FixedBoundary &boundary = scene.fixed[b];
     const std::string name = "fixed_" + std::to_string(b);
@@ -297,6 +302,8 @@ std::string scene_text(const Scene &scene, const Contact &contact) {
                     [&](const Draw &at, std::vector<double> &values) {
                       const auto [lambda, shear] = scene.materials[m].of_cell(at.mu, at.x);
                       values = {lambda, shear};
+                      if (scene.materials[m].free_strain)
+                        values.push_back(scene.materials[m].free_strain(at.mu, at.x));
                     });
   add_fixed(scene, text);
   add_contact(scene, contact, text);

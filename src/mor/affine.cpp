@@ -189,7 +189,7 @@ SampleMesh sample_domain(const Problem &problem, const Sum &sum, const std::vect
     std::vector<PetscInt> rows;
     for (const int node : nodes)
       for (int c = 0; c < components; ++c)
-        rows.push_back(mesh.natural_node[node] * components + c);
+        rows.push_back(problem.dofs().natural(mesh, static_cast<std::size_t>(node), c));
     cell.entries = touched(entries, rows, matrix ? rows : std::vector<PetscInt>{0});
     if (!cell.entries.empty()) mine.push_back(std::move(cell));
   });

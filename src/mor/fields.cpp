@@ -8,6 +8,7 @@
 #include "rbvi/par/gather.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -34,13 +35,20 @@ std::vector<double> gathered(MPI_Comm comm, const std::vector<double> &records) 
 Matrix rows_of_basis(const Problem &problem, const BorrowedRows::LocalRows &local, Index first,
                      Index count) {
   std::vector<double> records;
-  const std::vector<PetscInt> &numbers = problem.dofs().natural_owned;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (numbers[i] < first || numbers[i] >= first + count) continue;
-    records.push_back(static_cast<double>(numbers[i] - first));
+  const auto add = [&](PetscInt number, std::size_t i) {
+    if (number < first || number >= first + count) return;
+    records.push_back(static_cast<double>(number - first));
     const auto row = local.row(i);
     records.insert(records.end(), row.begin(), row.end());
+  };
+  const std::vector<PetscInt> &numbers = problem.dofs().natural_owned;
+  std::map<PetscInt, std::size_t> row_of;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    add(numbers[i], i);
+    if (!problem.dofs().tied.empty()) row_of[numbers[i]] = i;
   }
+  for (const auto &[number, with_row] : problem.dofs().tied)
+    if (const auto found = row_of.find(with_row); found != row_of.end()) add(number, found->second);
   const std::vector<double> all = gathered(problem.comm(), records);
   if (rank_of(problem.comm()) != 0) return {};
   Matrix rows = Matrix::Zero(count, local.cols());

@@ -172,6 +172,9 @@ void read_symmetry(const Reader &reader, Scene &scene, Defects &defects) {
     const auto found = std::ranges::find(reader.parameters, node.value);
     const CaseNode *declared = section(reader, "parameters").find(node.value);
     scene.symmetric = declared != nullptr || is_yes(node);
+    if (scene.symmetric && scene.axisymmetric)
+      throw bad_input("an axisymmetric body is one half, without data beyond x = 0: leave out "
+                      "symmetric");
     if (found != reader.parameters.end())
       scene.skewed_by = static_cast<int>(found - reader.parameters.begin());
   });
@@ -207,6 +210,7 @@ void read_sections(Reader &reader, Scene &scene, Defects &defects) {
   if (!defects.none()) return;
   read_physics(reader, scene, defects);
   read_motion(reader, scene, defects);
+  read_springs(reader, scene, defects);
   read_contact(reader, scene, defects);
   read_outputs(reader, scene, defects);
   read_requirements(reader, scene, defects);
@@ -237,7 +241,8 @@ void check_version(const CaseNode &root, Defects &defects) {
     defects.add(*version, "rbvi is '" + version->value + "': this build reads version 1");
   if (const CaseNode *physics = root.find("physics"); physics != nullptr && physics->is_value())
     defects.collect(*physics, [&] {
-      (void)choice_or(root, "physics", "", {"membrane", "plane_strain", "plane_stress"});
+      (void)choice_or(root, "physics", "",
+                      {"membrane", "plane_strain", "plane_stress", "axisymmetric"});
     });
 }
 

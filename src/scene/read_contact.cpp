@@ -162,11 +162,16 @@ ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const C
   const CaseNode *disk = against.find("disk"), *plane = against.find("plane");
   if ((disk == nullptr) == (plane == nullptr))
     throw bad_input("against: a boundary, {disk: {...}} or {plane: {...}}");
+  if (scene.axisymmetric && yes_or(node, "lumped", false))
+    throw bad_input("vertex quadrature sees nothing on the axis: leave out lumped");
   const Side side = side_of(reader, entry(node, "at").value, scene);
   const RigidContact rigid = disk != nullptr ? disk_contact(reader, node, *disk, side, scene)
                                              : plane_contact(reader, node, *plane, side, scene);
   if (choice_or(node, "formulation", "mixed", {"mixed", "nitsche"}) == "mixed")
     return by_multipliers(rigid);
+  if (std::ranges::any_of(scene.materials,
+                          [](const BodyMaterial &m) { return static_cast<bool>(m.free_strain); }))
+    throw bad_input("formulation: nitsche has no stress of a temperature: leave it out");
   const double gamma0 = number_or(reader, node, "nitsche_gamma0", usual_gamma0);
   if (!(gamma0 >= gamma0_range.lower && gamma0 <= gamma0_range.upper))
     throw bad_input("nitsche_gamma0 is " + short_number(gamma0) + ": it lies between 0.1 and 2000");

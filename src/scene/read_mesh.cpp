@@ -29,6 +29,10 @@ MeshRecipe recipe_of_sections(const Reader &reader) {
     add(node, "at", node.find("force") != nullptr ? recipe.regions : recipe.boundaries);
   for (const auto &[name, node] : section(reader, "imposed").entries)
     add(node, "at", recipe.boundaries);
+  for (const auto &[name, node] : section(reader, "springs").entries) {
+    add(node, "at", recipe.boundaries);
+    add(node, "between", recipe.boundaries);
+  }
   for (const auto &[name, node] : section(reader, "contact").entries) {
     add(node, "at", node.find("above") != nullptr ? recipe.regions : recipe.boundaries);
     add(node, "against", recipe.boundaries);

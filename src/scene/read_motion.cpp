@@ -8,7 +8,7 @@ namespace rbvi {
 
 namespace {
 
-const std::vector<std::string> displacements{"ux", "uy"};
+const std::vector<std::string> displacements{"ux", "uy"}, forces{"force_x", "force_y"};
 
 bool is_zero(const Expression &value) {
   return value.constant() == 0.0;
@@ -20,7 +20,9 @@ using Imposed = std::vector<std::optional<Expression>>;
 Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
                    const std::vector<Expression> &motion) {
   Imposed imposed;
+  const bool moved = node.find("force_x") != nullptr || node.find("force_y") != nullptr;
   if (components == 1) {
+    if (moved) throw bad_input("a membrane has loads, not force_x and force_y");
     if (node.find("ux") != nullptr || node.find("uy") != nullptr)
       throw bad_input("the displacement of a membrane is u");
     return {expression_in(reader, entry(node, "u"))};
@@ -37,16 +39,18 @@ Imposed imposed_in(const Reader &reader, const CaseNode &node, int components,
     else
       imposed.emplace_back(motion[c]);
   }
-  if (!imposed[0] && !imposed[1]) throw bad_input("neither ux nor uy is imposed");
+  if (!imposed[0] && !imposed[1] && !moved) throw bad_input("neither ux nor uy is imposed");
   return imposed;
 }
 
 /// The motion that moves the one body as what is imposed moves its boundary; empty: none.
 std::vector<Expression> derived_motion(Reader &reader, const Scene &scene) {
   const auto &all = section(reader, "imposed").entries;
-  if (scene.components != 2 || all.size() != 1) return {};
+  const bool springs = !section(reader, "springs").entries.empty(); // which it would stretch
+  if (scene.components != 2 || all.size() != 1 || springs) return {};
   const Imposed imposed = imposed_in(reader, all.front().second, 2, {});
   if (!imposed[0] || !imposed[1] || (is_zero(*imposed[0]) && is_zero(*imposed[1]))) return {};
+  if (scene.axisymmetric && !is_zero(*imposed[0])) return {}; // widens the body
   std::vector<Expression> motion{*imposed[0], *imposed[1]};
   return depends_on_point(formula_of(reader, motion)) ? std::vector<Expression>{} : motion;
 }
@@ -98,6 +102,29 @@ void check_new(const std::vector<FixedBoundary> &fixed, const FixedBoundary &bou
   }
 }
 
+/// The total forces on a boundary, which ties it in their directions.
+void add_forces(Reader &reader, const CaseNode &node, const std::string &boundary, Scene &scene) {
+  for (std::size_t c = 0; c < forces.size(); ++c) {
+    const CaseNode *given = node.find(forces[c]);
+    if (given == nullptr) continue;
+    if (node.find(displacements[c]) != nullptr)
+      throw bad_input(displacements[c] + " is given by " + forces[c] + ": leave out one of them");
+    if (scene.axisymmetric && c == 0)
+      throw bad_input("forces along the radius balance each other: use a pressure");
+    const Expression force = expression_in(reader, *given);
+    if (depends_on_point(formula_of(reader, {force})))
+      throw bad_input(forces[c] + " is the force on the whole boundary: it does not depend on the "
+                                  "place");
+    const auto component = static_cast<int>(c);
+    scene.tied.push_back({boundary, component});
+    Point direction{};
+    direction[c] = 1;
+    Form mean;
+    mean.means = {{boundary, direction, scene.axisymmetric}};
+    scene.f.push_back(exact_term(mean, {factor_of(reader, force)}));
+  }
+}
+
 } // namespace
 
 void read_motion(Reader &reader, Scene &scene, Defects &defects) {
@@ -114,11 +141,16 @@ void read_motion(Reader &reader, Scene &scene, Defects &defects) {
     }
     if (!motion.empty()) scene.motion = point_map_of(formula_of(reader, motion));
   });
+  if (scene.axisymmetric) scene.fixed.push_back({axis_of_turning, {0}});
   for (const auto &[name, node] : section(reader, "imposed").entries)
     defects.collect(node, [&, &value = node] {
       for (const std::string &boundary : names_in(entry(value, "at"))) {
         FixedBoundary fixed = boundary_in(reader, value, motion, scene.components);
         fixed.name = boundary;
+        add_forces(reader, value, boundary, scene);
+        if (value.find("u") == nullptr && value.find("ux") == nullptr &&
+            value.find("uy") == nullptr)
+          continue;
         check_new(scene.fixed, fixed);
         scene.fixed.push_back(std::move(fixed));
       }

@@ -1,6 +1,7 @@
 #include "reader.hpp"
 
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/axisymmetric_forms.hpp"
 #include "rbvi/element/elastic_forms.hpp"
 #include "rbvi/element/facet_forms.hpp"
 #include "rbvi/element/scalar_forms.hpp"
@@ -31,33 +32,120 @@ std::vector<int> mapped_dependence(Reader &reader, const Formula &formula) {
   return positions;
 }
 
-Factor lambda_factor(Reader &reader, const Expression &nu, bool plane_stress) {
-  Factor factor = factor_of(reader, nu);
-  factor.name = "lambda of " + factor.name;
-  factor.value = lame_lambda(factor.value, plane_stress);
-  return factor;
+/// E and nu, or Lame's constants, as they are written.
+struct Constants {
+  bool young = false; ///< first and second are E and nu, else lambda and mu
+  bool plane_stress = false;
+  Expression first, second;
+
+  Named<Material> material(Reader &reader) const;
+  /// Of a strain that has no stress: swelling_modulus().
+  Expression swelling() const;
+};
+
+Named<Material> Constants::material(Reader &reader) const {
+  const Named<PointValue> one = point_value_of(formula_of(reader, {first})),
+                          other = point_value_of(formula_of(reader, {second}));
+  return young ? isotropic(one, other, plane_stress) : of_lame(one, other, plane_stress);
 }
 
-Factor shear_factor(Reader &reader, const Expression &nu) {
-  Factor factor = factor_of(reader, nu);
-  factor.name = "shear of " + factor.name;
-  factor.value = lame_shear(factor.value);
-  return factor;
+Expression quotient(const std::string &over, const std::string &under) {
+  return parse_expression("(" + over + ") / (" + under + ")");
 }
 
-/// Exact terms of a material on one region: E(mu, x) separates, nu is one number.
-void add_exact_stiffness(Reader &reader, const std::vector<Product> &young, const Expression &nu,
-                         const std::string &region, bool plane_stress, Scene &scene) {
-  for (const Product &product : young) {
-    const Named<PointValue> factor = point_value_of(formula_of(reader, {product.at_point}));
-    std::vector<Factor> with_lambda = product.factors, with_shear = product.factors;
-    with_lambda.push_back(lambda_factor(reader, nu, plane_stress));
-    with_shear.push_back(shear_factor(reader, nu));
-    scene.a.push_back(
-        exact_term(elasticity(region, lambda_alone(factor), scene.degree), with_lambda));
-    scene.a.push_back(
-        exact_term(elasticity(region, shear_alone(factor), scene.degree), with_shear));
+Expression Constants::swelling() const {
+  const std::string one = first.text(), other = second.text();
+  if (young) return quotient(one, (plane_stress ? "1 - (" : "1 - 2*(") + other + ")");
+  const std::string whole = "3*(" + one + ") + 2*(" + other + ")";
+  if (!plane_stress) return parse_expression(whole);
+  return quotient("2*(" + other + ")*(" + whole + ")", one + " + 2*(" + other + ")");
+}
+
+Constants constants_in(Reader &reader, const CaseNode &node, Scene &scene) {
+  const bool young = node.find("lambda") == nullptr && node.find("mu") == nullptr;
+  if (!young && (node.find("E") != nullptr || node.find("nu") != nullptr))
+    throw bad_input("a material has E and nu, or lambda and mu");
+  const Constants constants{young, section(reader, "physics").value == "plane_stress",
+                            expression_in(reader, entry(node, young ? "E" : "lambda")),
+                            expression_in(reader, entry(node, young ? "nu" : "mu"))};
+  limit(reader, young ? constants.first : constants.second, young_range, scene);
+  if (!young) return constants;
+  const Expression &nu = constants.second;
+  limit(reader, nu, poisson_range, scene);
+  if (nu.program().size() == 1) // lambda of a ratio that is a parameter is smooth in log(1 - 2 nu)
+    for (const int position : dependence_of(formula_of(reader, {nu})))
+      scene.coordinates[position] = {logarithm_to_half(), exponential_to_half()};
+  return constants;
+}
+
+/// One of Lame's constants as a modulus times a function of Poisson's ratio, where there is one.
+struct Modulus {
+  Expression value;
+  std::optional<Factor> of_ratio{};
+  bool shear = false;
+};
+
+std::array<Modulus, 2> moduli_of(Reader &reader, const Constants &constants) {
+  const auto &[young, plane_stress, first, second] = constants;
+  if (young) {
+    Factor lambda = factor_of(reader, second), shear = lambda;
+    lambda.name = "lambda of " + lambda.name;
+    lambda.value = lame_lambda(lambda.value, plane_stress);
+    shear.name = "shear of " + shear.name;
+    shear.value = lame_shear(shear.value);
+    return {Modulus{first, lambda}, Modulus{first, shear, true}};
   }
+  const std::string one = first.text(), other = second.text();
+  return {Modulus{plane_stress
+                      ? quotient("2*(" + one + ")*(" + other + ")", one + " + 2*(" + other + ")")
+                      : first},
+          Modulus{second, {}, true}};
+}
+
+Form stiffness(const std::string &region, const Named<Material> &material, const Scene &scene) {
+  return scene.axisymmetric ? axisymmetric_elasticity(region, material, scene.degree)
+                            : elasticity(region, material, scene.degree);
+}
+
+/// How a stiffness depends on the map, where it is exact: a similarity of the plane leaves it as it
+/// is, of a body that is turned it is in proportion to the scale about a point of the axis. Empty:
+/// the map changes more.
+std::optional<std::vector<Factor>> factors_of_map(Reader &reader, const Scene &scene) {
+  if (!scene.axisymmetric)
+    return is_similarity(reader, scene) ? std::optional(std::vector<Factor>()) : std::nullopt;
+  if (const CaseNode *scale = section(reader, "map").find("scale"))
+    return std::vector{factor_of(reader, expression_in(reader, *scale))};
+  return map_of(reader).empty() ? std::optional(std::vector<Factor>()) : std::nullopt;
+}
+
+/// Exact terms of a material on each region; empty where it does not separate.
+Sum exact_stiffness(Reader &reader, const Constants &constants,
+                    const std::vector<std::string> &regions, const std::vector<Factor> &of_map,
+                    const Scene &scene) {
+  if (constants.young && depends_on_point(formula_of(reader, {constants.second}))) return {};
+  const std::array<Modulus, 2> moduli = moduli_of(reader, constants);
+  std::array<std::vector<Product>, 2> products;
+  for (std::size_t m = 0; m < 2; ++m) {
+    auto own = products_of(reader, moduli[m].value);
+    if (!own) return {};
+    products[m] = std::move(*own);
+  }
+  Sum terms;
+  for (const std::string &region : regions)
+    for (std::size_t k = 0; k < std::max(products[0].size(), products[1].size()); ++k)
+      for (std::size_t m = 0; m < 2; ++m) {
+        if (k >= products[m].size()) continue;
+        const Named<PointValue> at_point =
+            point_value_of(formula_of(reader, {products[m][k].at_point}));
+        std::vector<Factor> factors = products[m][k].factors;
+        if (moduli[m].of_ratio) factors.push_back(*moduli[m].of_ratio);
+        factors.insert(factors.end(), of_map.begin(), of_map.end());
+        terms.push_back(exact_term(
+            stiffness(region, moduli[m].shear ? shear_alone(at_point) : lambda_alone(at_point),
+                      scene),
+            factors));
+      }
+  return terms;
 }
 
 /// Throws bad_input for a region that has a material already.
@@ -71,33 +159,58 @@ void check_new_material(const std::vector<std::string> &regions, const Scene &sc
   }
 }
 
-void read_material(Reader &reader, const CaseNode &node, bool similar, Scene &scene) {
-  const bool plane_stress = section(reader, "physics").value == "plane_stress";
-  const Expression young = expression_in(reader, entry(node, "E")),
-                   nu = expression_in(reader, entry(node, "nu"));
-  limit(reader, young, young_range, scene);
-  limit(reader, nu, poisson_range, scene);
-  const Formula of_young = formula_of(reader, {young}), of_nu = formula_of(reader, {nu});
-  if (nu.program().size() == 1) // lambda of a ratio that is a parameter is smooth in log(1 - 2 nu)
-    for (const int position : dependence_of(of_nu))
-      scene.coordinates[position] = {logarithm_to_half(), exponential_to_half()};
-  const Named<Material> material =
-      isotropic(point_value_of(of_young), point_value_of(of_nu), plane_stress);
-  const std::vector<std::string> regions = regions_in(node);
-  const bool whole = std::ranges::find(regions, "") != regions.end();
-  const BodyMaterial own{whole ? std::vector<std::string>() : regions, material};
-  check_new_material(own.regions, scene);
-  scene.materials.push_back(own);
-  const auto products = products_of(reader, young);
+/// The load of a strain without stress: exact where the domain does not move and modulus and strain
+/// separate.
+void add_free_strain(Reader &reader, const Expression &modulus, const Expression &strain,
+                     const std::vector<std::string> &regions, Scene &scene) {
+  const auto moduli = products_of(reader, modulus), strains = products_of(reader, strain);
+  const auto form = [&](const std::string &region, const Expression &one, const Expression &other) {
+    return strain_load(region, point_value_of(formula_of(reader, {one})),
+                       point_value_of(formula_of(reader, {other})), scene.degree,
+                       scene.axisymmetric);
+  };
   for (const std::string &region : regions) {
-    if (similar && products && !depends_on_point(of_nu)) {
-      add_exact_stiffness(reader, *products, nu, region, plane_stress, scene);
+    if (!map_of(reader).empty() || !moduli || !strains) {
+      std::vector<int> positions = mapped_dependence(reader, formula_of(reader, {modulus, strain}));
+      scene.f.push_back(mapped_term(form(region, modulus, strain), positions));
       continue;
     }
-    std::vector<int> positions = mapped_dependence(reader, of_young);
-    add(positions, dependence_of(of_nu));
-    scene.a.push_back(mapped_term(elasticity(region, material, scene.degree), positions));
+    for (const Product &one : *moduli)
+      for (const Product &other : *strains) {
+        std::vector<Factor> factors = one.factors;
+        factors.insert(factors.end(), other.factors.begin(), other.factors.end());
+        scene.f.push_back(exact_term(form(region, one.at_point, other.at_point), factors));
+      }
   }
+}
+
+void read_material(Reader &reader, const CaseNode &node, Scene &scene) {
+  const Constants constants = constants_in(reader, node, scene);
+  const std::vector<std::string> regions = regions_in(node);
+  const bool whole = std::ranges::find(regions, "") != regions.end();
+  BodyMaterial own{whole ? std::vector<std::string>() : regions, constants.material(reader)};
+  check_new_material(own.regions, scene);
+  const CaseNode *expansion = node.find("expansion"), *temperature = node.find("temperature");
+  if ((expansion == nullptr) != (temperature == nullptr))
+    throw bad_input("expansion and temperature belong together");
+  if (expansion != nullptr) {
+    const Expression strain =
+        parse_expression("(" + expression_in(reader, *expansion).text() + ") * (" +
+                         expression_in(reader, *temperature).text() + ")");
+    own.free_strain = point_value_of(formula_of(reader, {strain}));
+    add_free_strain(reader, constants.swelling(), strain, regions, scene);
+  }
+  scene.materials.push_back(own);
+  const auto of_map = factors_of_map(reader, scene);
+  Sum terms;
+  if (of_map) terms = exact_stiffness(reader, constants, regions, *of_map, scene);
+  if (terms.empty()) {
+    const std::vector<int> positions =
+        mapped_dependence(reader, formula_of(reader, {constants.first, constants.second}));
+    for (const std::string &region : regions)
+      terms.push_back(mapped_term(stiffness(region, own.of_cell, scene), positions));
+  }
+  scene.a.insert(scene.a.end(), terms.begin(), terms.end());
 }
 
 /// Component c of a vector.
@@ -153,9 +266,10 @@ void read_load(Reader &reader, const CaseNode &node, Scene &scene) {
     return;
   for (const std::string &part : regions_in(node)) {
     const auto form = [&](const Formula &formula) {
-      return force != nullptr
-                 ? body_load(part, point_map_of(formula), scene.components, scene.degree)
-                 : traction_load(part, traction_of(formula), scene.components, scene.degree);
+      return force != nullptr ? body_load(part, point_map_of(formula), scene.components,
+                                          scene.degree, scene.axisymmetric)
+                              : traction_load(part, traction_of(formula), scene.components,
+                                              scene.degree, scene.axisymmetric);
     };
     if (force == nullptr && part.empty())
       throw bad_input("pressures and tractions act on boundaries: name one");
@@ -170,10 +284,11 @@ void read_physics(Reader &reader, Scene &scene, Defects &defects) {
   const bool membrane = physics.value == "membrane";
   scene.dim = 2;
   scene.components = membrane ? 1 : 2;
-  const bool similar = is_similarity(reader, scene);
+  scene.axisymmetric = physics.value == "axisymmetric";
   if (membrane) {
-    const Form form = laplace("", scene.degree); // a similarity of the plane leaves it as it is
-    scene.a = {similar ? exact_term(form) : mapped_term(form, dependence_of_map(reader))};
+    const Form form = laplace("", scene.degree);
+    const auto of_map = factors_of_map(reader, scene);
+    scene.a = {of_map ? exact_term(form, *of_map) : mapped_term(form, dependence_of_map(reader))};
   }
   const CaseNode &materials = section(reader, "materials");
   if (membrane != materials.entries.empty())
@@ -181,10 +296,12 @@ void read_physics(Reader &reader, Scene &scene, Defects &defects) {
                 membrane ? "a membrane has no materials" : "an elastic body needs 'materials:'");
   if (!membrane)
     for (const auto &[name, node] : materials.entries)
-      defects.collect(node, [&, &value = node] { read_material(reader, value, similar, scene); });
+      defects.collect(node, [&, &value = node] { read_material(reader, value, scene); });
   for (const auto &[name, node] : section(reader, "loads").entries)
     defects.collect(node, [&, &value = node] { read_load(reader, value, scene); });
-  scene.v_product = {exact_term(h1_product(1, scene.components, scene.degree))};
+  scene.v_product = {exact_term(scene.axisymmetric
+                                    ? axisymmetric_h1_product(1, scene.degree)
+                                    : h1_product(1, scene.components, scene.degree))};
 }
 
 } // namespace rbvi

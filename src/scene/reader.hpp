@@ -78,6 +78,8 @@ void read_mesh(Reader &reader, Scene &scene, Defects &defects);
 void read_facts(const Reader &reader, const CaseNode &mesh, MeshRecipe &recipe, Defects &defects);
 void read_motion(Reader &reader, Scene &scene, Defects &defects);
 void read_physics(Reader &reader, Scene &scene, Defects &defects);
+/// After the physics.
+void read_springs(Reader &reader, Scene &scene, Defects &defects);
 void read_contact(Reader &reader, Scene &scene, Defects &defects);
 /// After contact.
 void read_outputs(Reader &reader, Scene &scene, Defects &defects);

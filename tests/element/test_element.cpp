@@ -1,8 +1,8 @@
 // Quadrature, simplex geometry and maps: against closed forms.
-#include "tests/catalogue.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/geometry.hpp"
 #include "rbvi/element/quadrature.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -105,6 +105,20 @@ TEST(MapCell, RefusesAnInvertedCell) {
   scene.map = [](const FullMu &, const Point &x) { return Point{-x[0], x[1], 0}; };
   Cell cell{2, {Point{0, 0, 0}, Point{1, 0, 0}, Point{0, 1, 0}, Point{}}, {}};
   EXPECT_THROW(map_cell(scene, {0.2, 0, 0}, cell), Error);
+}
+
+/// int x^i y^j over the unit triangle is i! j! / (i + j + 2)!.
+TEST(Element, RadonsRuleIsExactToDegreeFive) {
+  for (int i = 0; i <= 5; ++i)
+    for (int j = 0; i + j <= 5; ++j) {
+      double sum = 0;
+      for (const QuadraturePoint &at : radon_quadrature()) {
+        EXPECT_GT(at.weight, 0);
+        EXPECT_GT(std::min({at.barycentric[0], at.barycentric[1], at.barycentric[2]}), 0);
+        sum += at.weight / 2 * std::pow(at.barycentric[1], i) * std::pow(at.barycentric[2], j);
+      }
+      EXPECT_NEAR(sum, factorial(i) * factorial(j) / factorial(i + j + 2), 1e-15);
+    }
 }
 
 } // namespace

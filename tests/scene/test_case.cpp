@@ -127,6 +127,53 @@ TEST(Case, PlaneStressIsThatOfAThinPlate) {
   EXPECT_FALSE(is_plane_stress(thick.materials[0].of_cell));
 }
 
+/// By both pairs of constants the same, exact where they separate; in plane stress lambda is no
+/// sum.
+TEST(Case, LamesConstantsAreAMaterial) {
+  const FullMu mu{0.05, 2, 0.3};
+  for (const std::string physics : {"plane_strain", "plane_stress", "axisymmetric"}) {
+    const auto made = [&](const std::string &constants) {
+      return scene_of({{"physics", physics},
+                       {"materials", "{rubber: {at: all, " + constants + "}}"},
+                       {"require", "{all: {that: k + nu > 0, says: no}}"}});
+    };
+    const Scene one = made("E: young*k, nu: nu"),
+                other = made("lambda: young*k*nu/((1+nu)*(1-2*nu)), mu: young*k/(2*(1+nu))");
+    const auto [lambda, shear] = one.materials[0].of_cell(mu, {});
+    const Lame found = other.materials[0].of_cell(mu, {});
+    EXPECT_NEAR(found.lambda, lambda, 1e-12);
+    EXPECT_NEAR(found.shear, shear, 1e-12);
+    ASSERT_EQ(other.a.size(), 2U);
+    double sum = 0;
+    for (const Term &term : other.a) {
+      double theta = 1;
+      for (const Factor &factor : *term.theta)
+        theta *= factor.value(mu);
+      sum += theta;
+    }
+    EXPECT_NEAR(sum, lambda + shear, 1e-12) << physics;
+    EXPECT_EQ(is_plane_stress(other.materials[0].of_cell), physics == "plane_stress");
+  }
+  const Scene placed = scene_of(
+      {{"physics", "plane_stress"}, {"materials", "{rubber: {at: all, lambda: k*x, mu: nu}}"}});
+  EXPECT_FALSE(placed.a.front().theta);
+}
+
+TEST(Case, AnAxisymmetricStiffnessScalesWithTheBody) {
+  const auto turned = [](const std::string &map) {
+    return scene_of({{"physics", "axisymmetric"}, {"map", map}});
+  };
+  const Scene still = turned(""), scaled = turned("{scale: depth}"), raised = turned("[x, y + k]");
+  EXPECT_TRUE(still.axisymmetric);
+  EXPECT_EQ(still.fixed.front().name, axis_of_turning);
+  EXPECT_EQ(still.a.front().theta->size(), 2U);
+  ASSERT_EQ(scaled.a.size(), 2U);
+  for (const Term &term : scaled.a)
+    EXPECT_EQ(term.theta->back().value({0.07, 1, 0.3}), 0.07);
+  EXPECT_FALSE(raised.a.front().theta);
+  EXPECT_FALSE(scene_of().axisymmetric);
+}
+
 /// Where the map turns or stretches a circle, its normals are not those of the body.
 TEST(Case, NormalsOfCirclesAreTakenWhereTheMapKeepsThem) {
   const auto normal = [](const std::string &map, const std::string &choice) {

@@ -82,7 +82,7 @@ PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
 
 /// Vertical pairing.
 Partners vertical_partners(std::vector<Point> slave, std::vector<Point> master,
-                           PairQuadrature quadrature, int degree);
+                           PairQuadrature quadrature, int degree, bool axisymmetric = false);
 
 /// Vertices of a curve by its number of nodes.
 Index vertex_count(Index nodes, int degree);
@@ -94,8 +94,10 @@ Index multiplier_count(Index slave_nodes, MultiplierSpace space, int degree = 1)
 /// The macro-edge that holds a slave edge.
 Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
 
-/// The integral of each multiplier's function over the whole slave curve.
-Vector whole_weights(const std::vector<double> &lengths, MultiplierSpace space, int degree);
+/// The integral of each multiplier's function over the whole slave curve, from those of the hats
+/// of its edges.
+Vector whole_weights(const std::vector<std::array<double, 2>> &hats, MultiplierSpace space,
+                     int degree);
 
 /// Whether a multiplier has no partner somewhere: its weight, and `whole`, which it would have with
 /// one everywhere.
@@ -112,10 +114,10 @@ struct ClosedEnds {
 double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
                        double least, const ClosedEnds &closed);
 
-/// Gram matrix of the multipliers in L2 of the slave polygon; an entry (possibly zero) for every
-/// pair of neighbours.
+/// Gram matrix of the multipliers in L2 of the slave polygon (see linear_gram); an entry (possibly
+/// zero) for every pair of neighbours.
 SparseMatrix multiplier_product(const std::vector<Point> &slave, MultiplierSpace space,
-                                int degree = 1);
+                                int degree = 1, bool axisymmetric = false);
 
 /// Where a multiplier is drawn: the middle of its macro-edge, by arc length, or its vertex.
 std::vector<Point> multiplier_points(const std::vector<Point> &slave, MultiplierSpace space,

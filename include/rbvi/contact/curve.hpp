@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rbvi/contact/interface.hpp"
+#include "rbvi/element/geometry.hpp"
 
 namespace rbvi {
 
@@ -10,6 +11,10 @@ inline double edge_length(const Point &begin, const Point &end) {
   const double x = end[0] - begin[0], y = end[1] - begin[1];
   return std::sqrt(x * x + y * y);
 }
+
+/// Integrals of the hats of both ends over a straight edge, of a body that is turned over the
+/// surface that the edge makes.
+std::array<double, 2> hat_weights(const Point &begin, const Point &end, bool axisymmetric);
 
 /// The nodal functions of an edge (its vertices, then of degree 2 its middle) at 0 <= s <= 1, and
 /// their derivatives by s.
@@ -34,7 +39,8 @@ public:
   Index per_edge() const { return degree_ + 1; } ///< nodes
   Index node(Index edge, Index local) const { return local < 2 ? edge + local : edges_ + 1 + edge; }
   const Point &point(Index node) const { return nodes_[node]; }
-  std::vector<double> lengths() const; ///< of the straight edges
+  std::vector<double> lengths() const;                              ///< of the straight edges
+  std::vector<std::array<double, 2>> hats(bool axisymmetric) const; ///< hat_weights of each edge
   Point at(Index edge, double s) const { return sum(edge, edge_functions(degree_, s), nodes_); }
   Point tangent(Index edge, double s) const { return sum(edge, edge_slopes(degree_, s), nodes_); }
   /// Sum of nodal vectors (one for each node of the curve).
@@ -57,8 +63,9 @@ private:
 /// vertex e to e + 1, x increasing. Returns its number of vertices.
 Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string &name);
 
-/// Gram matrix in L2 of the polygon through `points` of its hat functions, `copies` blocks.
-SparseMatrix linear_gram(const std::vector<Point> &points, int copies);
+/// Gram matrix in L2 of the polygon through `points` of its hat functions, `copies` blocks; of a
+/// body that is turned in L2 of the surface that it makes.
+SparseMatrix linear_gram(const std::vector<Point> &points, int copies, bool axisymmetric = false);
 
 /// The polygon through these nodes of an interface, mapped, with the field "u" (motion + u). `u`:
 /// at the nodes of the mesh.

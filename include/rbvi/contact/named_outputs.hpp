@@ -2,7 +2,7 @@
 // measures over contact interfaces of expressions in what is there, of full and of reduced answers
 // alike. An interface is its vertices with straight pieces between them, on which pressure, gap,
 // tangential stress and displacement are linear, so that a part on which a condition holds ends
-// inside a piece, and its measure is continuous in mu.
+// inside a piece, and its measure is continuous in mu. Axisymmetric: of the whole circumference.
 #pragma once
 
 #include "rbvi/contact/contact.hpp"

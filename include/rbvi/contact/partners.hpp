@@ -14,7 +14,7 @@ namespace rbvi {
 struct PairPoint {
   int slave_edge, master_edge;
   double s, t = 0;   ///< of the point and of its partner, 0 to 1 along their edges
-  double weight = 0; ///< share of the slave edge; then the undeformed length
+  double weight = 0; ///< share of the slave edge; then of the integral over it, undeformed
   double gap = 0;    ///< along the normal, without displacements
   Point normal{};    ///< of length 1, towards the slave; tau = (n_y, -n_x)
 };
@@ -49,8 +49,9 @@ struct Cuts {
 
 /// Two curves with what the search has found.
 struct Partners {
-  NodalCurve slave, master;      ///< where they are
-  std::vector<double> lengths{}; ///< of the straight slave edges, undeformed
+  NodalCurve slave, master;                  ///< where they are
+  std::vector<double> lengths{};             ///< of the straight slave edges, undeformed
+  std::vector<std::array<double, 2>> hats{}; ///< hat_weights of them
   Cuts cuts{};
   std::vector<PairPoint> points{};   ///< of quadrature, with their weights
   std::vector<Bend> bends{};         ///< at their partners; empty where nothing asks for them

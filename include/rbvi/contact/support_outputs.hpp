@@ -24,6 +24,10 @@ struct SupportState {
 /// The signs, 0 to 2 of them, that the tangential stress has where there is pressure.
 double direction_count(const Vector &tangential, const Vector &pressure);
 
+/// Those of a section of the plane, which a body that is turned does not have: horizontal_reaction,
+/// contact_half_width, stick_half_width, centre_pressure.
+void drop_plane_outputs(Outputs &outputs);
+
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
 /// horizontal_reaction, peak_pressure, centre_pressure, the numbers of nodes and, with friction,
 /// tangential_force, stick_half_width, friction_violation (a pressure). A node sticks where it is

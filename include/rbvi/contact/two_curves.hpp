@@ -20,8 +20,7 @@ protected:
   /// Throws bad_input unless the mesh is two curves.
   TwoCurves(const Scene &scene, InterfaceMesh mesh, MultiplierSpace space);
   virtual PairOperators operators_at(const FullMu &mu, const ContactState &state) const = 0;
-  /// Of the straight slave edges, undeformed.
-  std::vector<double> lengths(const FullMu &mu) const;
+  NodalCurve slave_at_rest(const FullMu &mu) const;
 
   MultiplierSpace space_;
 

@@ -37,6 +37,8 @@ const std::vector<double> &numbers(const Record &record, const std::string &name
 const std::string &text(const Record &record, const std::string &name);
 const Record &part(const Record &record, const std::string &name);
 Stored part(const Stored &stored, const std::string &name);
+/// Whether the record has a number that is not 0; without it: no.
+bool is_set(const Record &record, const std::string &name);
 
 /// Whether the record and all its parts have names; else "map", "contact 0/height", ...: the first
 /// part that has none.

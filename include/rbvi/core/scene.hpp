@@ -78,6 +78,13 @@ struct FixedBoundary {
   std::vector<ImposedTerm> values = {};
 };
 
+/// A boundary that moves as one along an axis: its nodes have one unknown displacement there. What
+/// moves it is a load on the mean.
+struct TiedBoundary {
+  std::string name;
+  int component;
+};
+
 /// A coordinate of a parameter in which the solutions vary smoothly: x = of(value), increasing or
 /// decreasing, value = back(x).
 struct Coordinate {
@@ -85,10 +92,13 @@ struct Coordinate {
 };
 
 /// A material of an elastic body: Lame's constants at the centre of a reference cell, constant on
-/// the cell; in 2D plane strain.
+/// the cell; in 2D of plane strain, or of a body that is turned.
 struct BodyMaterial {
   std::vector<std::string> regions; ///< of this material; none: the whole mesh
   Named<Material> of_cell;
+  /// At a point of the reference domain, the same in all directions: the strain that has no stress,
+  /// such as a thermal one. Empty: none.
+  Named<PointValue> free_strain{};
 };
 
 /// An output of the scene's own, over contact interfaces (contact/named_outputs.hpp).
@@ -108,12 +118,18 @@ struct SceneTest {
   double tolerance = 0;                     ///< relative; of an output that is 0 absolute
 };
 
+/// The nodes at x = 0, in the meshes of axisymmetric scenes.
+constexpr const char *axis_of_turning = "x = 0";
+
 struct Scene {
   std::string name;
   std::string summary; ///< one line
   int dim = 2;
   int components = 1; ///< of the displacement
   int degree = 1;     ///< of the displacement on each cell: 1 or 2
+  /// Of a body that is turned about x = 0: x >= 0 is the radius, and every integral is over the
+  /// whole circumference. Nodes at x = 0 are the boundary `axis_of_turning`, which `fixed` holds.
+  bool axisymmetric = false;
   SceneOptions options;
   std::optional<UnitSystem> units; ///< of numbers with a unit that a run gives
   ParameterSpace parameters;
@@ -131,6 +147,7 @@ struct Scene {
   std::function<Point(const Point &)> snap;
 
   std::vector<FixedBoundary> fixed;
+  std::vector<TiedBoundary> tied = {};
   /// Rigid motion of each body at a point of the reference domain, which the displacement is
   /// measured from: u = motion + w, w = 0 (or FixedBoundary::values) where it is fixed. Costs
   /// nothing, unlike other Dirichlet data; empty: zero.

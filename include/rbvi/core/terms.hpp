@@ -13,6 +13,13 @@
 
 namespace rbvi {
 
+/// The mean of direction . u over a boundary of the mesh, by its area there.
+struct Mean {
+  std::string boundary;
+  Point direction;
+  bool axisymmetric = false;
+};
+
 /// An integral over the cells of a region or over the facets of a boundary, one by one.
 /// A bilinear form fills rows * columns values (row-major), a linear form rows values: rows for the
 /// functions of the cell that it tests with, columns for those it couples them with, nodes *
@@ -25,7 +32,10 @@ struct Form {
   /// Not "": over the facets of this boundary. `cell` is then the one behind the facet, whose
   /// vertices come first and see it outwards (facet_measure); the nodes are the facet's alone.
   std::string boundary = "";
-  explicit operator bool() const { return static_cast<bool>(kernel); }
+  /// Not empty: no integral of a kernel but, with the sum m of these means, m(u) m(v) of a bilinear
+  /// form, m(v) of a linear one. Of exact terms alone.
+  std::vector<Mean> means = {};
+  explicit operator bool() const { return kernel || !means.empty(); }
 };
 
 /// A factor of a coefficient.

@@ -8,8 +8,8 @@
 
 namespace rbvi {
 
-/// Names of the components of a stress tensor that a plane (dim 2: plane strain) or solid body has,
-/// in the order of the columns of centre_stresses().
+/// Names of the components of a stress tensor that a plane (dim 2: plane strain; axisymmetric: zz
+/// is the hoop) or solid body has, in the order of the columns of centre_stresses().
 std::vector<std::string> stress_components(int dim);
 
 /// Cauchy stress (Pa) at the centre of each cell: cells x stress_components(scene.dim). `points`:

@@ -29,7 +29,16 @@ Form elasticity(const std::string &region, const Named<Material> &material, int 
 Named<Material> isotropic(const Named<PointValue> &young, const Named<PointValue> &poisson,
                           bool plane_stress);
 
-/// Whether a material is one of isotropic() in plane stress: sigma_zz is 0 there.
+/// Of Lame's constants; `plane_stress` as above. Throws bad_input where asked unless the shear
+/// modulus and 3 lambda + 2 shear are positive.
+Named<Material> of_lame(const Named<PointValue> &lambda, const Named<PointValue> &shear,
+                        bool plane_stress);
+
+/// What a strain that is the same in all directions makes of stress where nothing moves: 3 lambda +
+/// 2 shear; in plane stress, in its lambda, 2 lambda + 2 shear.
+double swelling_modulus(const Lame &material, bool plane_stress);
+
+/// Whether a material is one of isotropic() or of_lame() in plane stress: sigma_zz is 0 there.
 bool is_plane_stress(const Named<Material> &material);
 
 /// One constant alone, `factor`; the other is 0.
@@ -39,6 +48,13 @@ Named<Material> shear_alone(const Named<PointValue> &factor);
 /// The same constants of a Young's modulus 1.
 Named<Coefficient> lame_lambda(const Named<Coefficient> &poisson, bool plane_stress = false);
 Named<Coefficient> lame_shear(const Named<Coefficient> &poisson);
+
+/// int modulus strain div v, div in space: the load of a strain without stress, such as a thermal
+/// one, in triangles. `modulus` at the middle of a cell of the mesh, as materials are; `strain` at
+/// its points. Exact where the strain is of degree 4 (axisymmetric: 3) less that of v. Throws
+/// bad_input for a degree other than 1 and 2.
+Form strain_load(const std::string &region, const Named<PointValue> &modulus,
+                 const Named<PointValue> &strain, int degree, bool axisymmetric);
 
 /// The makers of these functions.
 FunctionLibrary elastic_functions();

@@ -6,9 +6,10 @@
 
 namespace rbvi {
 
-/// int t . v, exact where t is of degree 3. Throws bad_input for a degree other than 1 and 2.
+/// int t . v, exact where t is of degree 3 (axisymmetric: 2). Throws bad_input for a degree other
+/// than 1 and 2.
 Form traction_load(const std::string &boundary, const Named<Traction> &traction, int components,
-                   int degree);
+                   int degree, bool axisymmetric = false);
 
 /// - int value n . v: a pressure pushes. Throws likewise.
 Form pressure_load(const std::string &boundary, double value, int components, int degree);

@@ -4,7 +4,18 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/scene.hpp"
 
+#include <numbers>
+
 namespace rbvi {
+
+/// The point of the simplex of the first `count` vertices with these barycentric coordinates.
+inline Point point_at(const std::array<Point, 4> &vertices,
+                      const std::array<double, 4> &barycentric, int count) {
+  Point x{};
+  for (int i = 0; i < count; ++i)
+    x = x + barycentric[i] * vertices[i];
+  return x;
+}
 
 /// Volume and gradients of the barycentric (P1) functions of a simplex.
 struct Simplex {
@@ -17,6 +28,12 @@ Simplex simplex(int dim, const std::array<Point, 4> &vertices);
 
 /// The volume alone.
 double volume_of(int dim, const std::array<Point, 4> &vertices);
+
+/// What integrals over a plane domain are weighted by at a point of it: 1, of a body that is turned
+/// about x = 0 the length of the circle on which the point lies.
+inline double circumference(bool axisymmetric, const Point &x) {
+  return axisymmetric ? 2 * std::numbers::pi * x[0] : 1;
+}
 
 /// Mean of the reference vertices.
 Point reference_centre(const Cell &cell);

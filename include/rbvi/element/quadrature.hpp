@@ -18,6 +18,9 @@ std::vector<QuadraturePoint> simplex_quadrature(int dim, int degree);
 /// Exact to degree 2: dim + 1 points inside, each of weight 1 / (dim + 1). dim = 1, 2, 3.
 std::vector<QuadraturePoint> positive_quadrature(int dim);
 
+/// Triangles, exact to degree 5 (Radon 1948): 7 points inside of positive weights.
+std::vector<QuadraturePoint> radon_quadrature();
+
 /// A point s of [0, 1].
 struct EdgePoint {
   double s, weight;

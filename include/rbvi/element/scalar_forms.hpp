@@ -23,9 +23,10 @@ Form h1_product(double length, int components = 1, int degree = 1);
 /// value * int v over the mapped cells (2.38): nodes. Of degree 1 and value 1 the integrals of eta.
 Form constant_load(const std::string &region, double value, int degree = 1);
 
-/// int force . v over the mapped cells, exact where the force is of degree 3 in x, a point of them:
-/// local dof = node * components + component.
-Form body_load(const std::string &region, const Named<PointMap> &force, int components, int degree);
+/// int force . v over the mapped cells, exact where the force is of degree 3 (axisymmetric: 2) in
+/// x, a point of them: local dof = node * components + component.
+Form body_load(const std::string &region, const Named<PointMap> &force, int components, int degree,
+               bool axisymmetric = false);
 
 /// int eta_i eta_j over the reference cells: vertices x vertices.
 Form l2_product(const std::string &region);

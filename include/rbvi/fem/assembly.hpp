@@ -32,7 +32,7 @@ struct WeightedForm {
 /// All terms of a sum with the weight 1, whatever their coefficients. `sum` must outlive them.
 std::vector<WeightedForm> forms_of(const Sum &sum);
 
-/// A square matrix of free dofs whose pattern is that of all cells. Collective.
+/// A square matrix of free dofs whose pattern is that of all cells and couplings. Collective.
 Handle<Mat> make_matrix(const Mesh &mesh, const Dofs &dofs);
 
 /// Overwrites the values of a matrix by the sum of bilinear forms. Collective.

@@ -27,6 +27,7 @@ struct MeshPart {
 struct FreeBody {
   std::string name; ///< "the body", or which of several
   int number;       ///< Mesh::body of its cells
+  bool turned;      ///< axisymmetric: its motion is along the axis
   MeshPart part;    ///< at a generic point of the parameters, as `motions`
   Matrix motions;   ///< modes x k: of rigid_displacement() about the centre, in sizes; orthonormal
   int term = -1;    ///< of Scene::a, which has the springs and their theta

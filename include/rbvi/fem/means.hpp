@@ -1,0 +1,17 @@
+// Means of the displacement over boundaries (Form::means), as functionals of its dofs.
+#pragma once
+
+#include "rbvi/fem/dofs.hpp"
+
+namespace rbvi {
+
+/// The sum of some means by local node * components + component, fixed dofs included: what the
+/// facets of this rank give of it. Collective.
+Vector mean_functional(const std::vector<Mean> &means, const Mesh &mesh, const Dofs &dofs);
+
+/// Fills in Dofs::couplings for the terms of a that have means. Throws bad_input for boundaries of
+/// more dofs than a dense block should have, for one on which displacements are imposed that are
+/// not zero, and for a mean that the motion of the scene changes. Collective.
+void add_couplings(const Scene &scene, const Mesh &mesh, Dofs &dofs);
+
+} // namespace rbvi
