@@ -106,6 +106,9 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "lumped", "no | yes", "vertex quadrature in b and g"},
     {"contact.*", "multiplier", "p0 | p1",
      "two bodies: constant on pairs of edges (of degree 2 on edges), or continuous"},
+    {"contact.*", "projection", "normal | vertical",
+     "two bodies: partners along the averaged normals of the second boundary, or (small "
+     "kinematics) below the points of the first"},
     {"contact.*", "integration", "intersection | direct",
      "two bodies: edges intersected, or Gauss points of the first alone"},
     {"contact.*.against", "disk", "table", "a rigid disk"},
