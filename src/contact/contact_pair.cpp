@@ -113,8 +113,8 @@ void DifferenceRows::add(const PairPoint &point, double factor) {
 
 void DifferenceRows::add(Side &side, Index edge, double s, const Point &vector) {
   const bool is_first = side.last_vertex < side.first_vertex;
-  const auto [low, high] =
-      std::ranges::minmax({side.curve.node(edge, 0), side.curve.node(edge, 1)});
+  const auto &[a, b] = side.curve.shape().ends[edge];
+  const Index low = std::min(a, b), high = std::max(a, b);
   side.first_vertex = is_first ? low : std::min(side.first_vertex, low);
   side.last_vertex = is_first ? high : std::max(side.last_vertex, high);
   side.first_edge = is_first ? edge : std::min(side.first_edge, edge);
@@ -199,10 +199,9 @@ PairOperators pair_operators(const Partners &partners, const PairMultipliers &mu
   return result;
 }
 
-Partners find_partners(const NodalCurve &slave, const NodalCurve &master,
-                       const PairDiscretisation &how, MasterField field,
-                       const std::vector<double> &lengths) {
-  Partners result{slave, master, lengths};
+Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisation &how,
+                       MasterField field, const std::vector<double> &lengths) {
+  Partners result{std::move(slave), std::move(master), lengths};
   const PartnerSearch search(result.slave, result.master, std::move(field));
   result.segments = search.segments();
   result.vertices = search.at_vertices();
@@ -213,7 +212,7 @@ Partners find_partners(const NodalCurve &slave, const NodalCurve &master,
     result.points = search.on_parts(rule);
   } else {
     std::vector<CurvePlace> places;
-    for (Index e = 0; e < slave.edges(); ++e)
+    for (Index e = 0; e < result.slave.edges(); ++e)
       for (const EdgePoint &at : rule)
         places.push_back({e, at.s});
     result.points = search.at(places);

@@ -54,9 +54,11 @@ std::vector<std::array<int, 2>> edges_of(const InterfaceMesh &mesh,
 } // namespace
 
 CurveShape::CurveShape(std::vector<CurveChain> chains) : pieces(std::move(chains)) {
-  for (const CurveChain &piece : pieces)
+  for (const CurveChain &piece : pieces) {
+    vertices_ += piece.vertices();
     for (Index k = 0; k < piece.edges; ++k)
       ends.push_back({piece.first_vertex + k, piece.first_vertex + (k + 1) % piece.vertices()});
+  }
 }
 
 ChainedEdges chained(const std::vector<std::array<int, 2>> &edges) {

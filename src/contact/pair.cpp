@@ -5,6 +5,8 @@
 #include "rbvi/core/formula.hpp"
 #include "rbvi/element/imposed.hpp"
 
+#include <algorithm>
+
 namespace rbvi {
 
 namespace {
@@ -56,13 +58,16 @@ private:
   PairMultipliers multipliers_;
   std::vector<CurveSection> sections_; ///< of the master curve
   std::vector<int> fixed_;             ///< per node of the master: bits of its components
+  bool imposes_;                       ///< values on displacements that the kernels see
 };
 
 PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, const Pair &pair)
     : ContactInterface(scene, std::move(interface_mesh)), pair_(pair),
       slave_(std::make_shared<CurveShape>(curve_shape(mesh_, 0, "slave curve"))),
       master_(std::make_shared<CurveShape>(curve_shape(mesh_, 1, "master curve"))),
-      multipliers_(*slave_, pair.discretisation.multiplier, mesh_.degree) {
+      multipliers_(*slave_, pair.discretisation.multiplier, mesh_.degree),
+      imposes_(!is_of_heights(pair) &&
+               std::ranges::any_of(mesh_.imposed_by, [](int boundary) { return boundary >= 0; })) {
   if (mesh_.components != 2)
     throw bad_input("two bodies meet with displacements of two components");
   for (Index i = 0; i < mesh_.nodes(); ++i) {
@@ -95,9 +100,10 @@ PairInterface::Curves PairInterface::curves(const std::vector<Point> &nodes) con
 
 /// Of the nodes: the motion and the imposed values; empty: none.
 std::vector<Point> PairInterface::moves(const FullMu &mu) const {
-  if (!scene_.motion && mesh_.imposed_by.empty()) return {};
+  if (!scene_.motion && !imposes_) return {};
   std::vector<Point> result(mesh_.points.size(), Point{});
   if (scene_.motion) result = images(scene_.motion, mu, mesh_.points);
+  if (!imposes_) return result;
   const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
   for (Index k = 0; k < imposed.size(); ++k)
     result[k / 2][k % 2] += imposed[k];
@@ -107,31 +113,31 @@ std::vector<Point> PairInterface::moves(const FullMu &mu) const {
 /// With gaps and slips but for the displacements of the columns.
 Partners PairInterface::partners(const FullMu &mu, const ContactState &state) const {
   const std::vector<Point> rest = images(scene_.map, mu, mesh_.points), moved = moves(mu);
-  const auto sum = [](std::vector<Point> nodes, const std::vector<Point> &more) {
-    for (std::size_t i = 0; i < more.size(); ++i)
-      nodes[i] = nodes[i] + more[i];
-    return nodes;
-  };
   Curves at_rest = curves(rest);
   const std::vector<double> lengths = at_rest.slave.lengths();
-  if (is_vertical(pair_))
-    at_rest = {as_graph(at_rest.slave, "slave"), as_graph(at_rest.master, "master")};
-  Curves now = at_rest;
-  if (pair_.large) {
-    std::vector<Point> nodes = sum(rest, moved);
-    for (std::size_t k = 0; k < mesh_.dofs.size() && state.displacement.size() > 0; ++k)
-      if (const int dof = mesh_.dofs[k]; dof >= 0) nodes[k / 2][k % 2] += state.displacement[dof];
-    now = curves(nodes);
+  const bool vertical = is_vertical(pair_);
+  if (vertical)
+    at_rest = {as_graph(std::move(at_rest.slave), "slave"),
+               as_graph(std::move(at_rest.master), "master")};
+  const auto found_between = [&](Curves at) {
+    MasterField field{sections_,
+                      vertical ? vertical_normals(at.master)
+                               : averaged_normals(at.master, sections_, fixed_),
+                      vertical};
+    return find_partners(std::move(at.slave), std::move(at.master), pair_.discretisation,
+                         std::move(field), lengths);
+  };
+  std::vector<Point> nodes = pair_.large ? rest : std::vector<Point>();
+  for (std::size_t k = 0; k < 2 * nodes.size(); ++k) {
+    if (!moved.empty()) nodes[k / 2][k % 2] += moved[k / 2][k % 2];
+    if (const int dof = mesh_.dofs[k]; dof >= 0 && state.displacement.size() > 0)
+      nodes[k / 2][k % 2] += state.displacement[dof];
   }
-  Partners found = find_partners(now.slave, now.master, pair_.discretisation,
-                                 {sections_, is_vertical(pair_)
-                                                 ? vertical_normals(now.master)
-                                                 : averaged_normals(now.master, sections_, fixed_)},
-                                 lengths);
-  if (moved.empty() && !pair_.large) return found;
-  const Curves by = curves(moved.empty() ? std::vector<Point>(rest.size(), Point{}) : moved);
+  Partners found = found_between(pair_.large ? curves(nodes) : std::move(at_rest));
   for (std::vector<PairPoint> *points : {&found.points, &found.vertices}) {
-    set_gaps(at_rest.slave, at_rest.master, *points);
+    if (pair_.large) set_gaps(at_rest.slave, at_rest.master, *points);
+    if (moved.empty()) continue;
+    const Curves by = curves(moved);
     for (PairPoint &p : *points) {
       const Point apart = by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t);
       p.gap += dot(p.normal, apart);
@@ -262,6 +268,8 @@ ContactRecipe two_bodies(Pair pair) {
   if (pair.large && pair.discretisation.quadrature == PairQuadrature::direct)
     throw bad_input("integration: direct is for small deformations: leave it out with "
                     "kinematics: large");
+  // There is no traction through the air, nor where no partner is faced.
+  pair.friction.only_in_contact = pair.friction.law == FrictionLaw::tresca;
   ContactRecipe recipe;
   recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {}, true};
   if (is_of_heights(pair)) recipe.entities.components = {1};

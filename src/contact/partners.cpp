@@ -14,93 +14,15 @@ namespace {
 
 constexpr double least_part = 1e-12; ///< of a slave edge: less is round-off
 
-/// A quarter turn to the left of a tangent, of length 1.
-Point leftwards(const Point &tangent) {
-  const double length = norm(tangent);
-  if (!(length > 0)) throw failure("an edge of a contact curve has lost its length");
-  return {-tangent[1] / length, tangent[0] / length, 0};
-}
-
-Point mean(const Point &a, const Point &b) {
-  const Point sum = a + b;
-  const double length = norm(sum);
-  if (!(length > 1e-3)) throw failure("a contact curve has folded back on itself");
-  return sum / length;
-}
-
-bool is_sharp(const Point &before, const Point &after) {
-  return std::atan2(norm(cross(before, after)), dot(before, after)) > sharp_turn;
-}
-
 FacedPart cut(const FacedPart &part, const CurvePlace &begin, const CurvePlace &end) {
   return {part.master_edge, begin, end, part.t_at(begin), part.t_at(end)};
 }
 
-std::string place_text(const Point &x) {
-  return std::string("(").append(short_number(x[0])) + ", " + short_number(x[1]) + ")";
-}
-
 } // namespace
 
-std::vector<CurveSection> sections_of(const NodalCurve &curve, bool whole) {
-  std::vector<CurveSection> sections;
-  for (const CurveChain &piece : curve.shape().pieces) {
-    const auto edge = [&](Index k) { return piece.first_edge + k % piece.edges; };
-    const auto corner_before = [&](Index k) { // or an end
-      if (k % piece.edges == 0 && !piece.loop) return true;
-      return !whole &&
-             is_sharp(curve.tangent(edge(k + piece.edges - 1), 1), curve.tangent(edge(k), 0));
-    };
-    Index first = 0;
-    while (first < piece.edges && !corner_before(first))
-      ++first;
-    if (first == piece.edges) {
-      CurveSection &all = sections.emplace_back(CurveSection{{}, true});
-      for (Index k = 0; k < piece.edges; ++k)
-        all.edges.push_back(edge(k));
-      continue;
-    }
-    for (Index k = first; k < first + piece.edges; ++k) {
-      if (corner_before(k)) sections.emplace_back();
-      sections.back().edges.push_back(edge(k));
-    }
-  }
-  return sections;
-}
-
-EdgeNormals averaged_normals(const NodalCurve &curve, const std::vector<CurveSection> &sections,
-                             const std::vector<int> &fixed) {
-  EdgeNormals normals(curve.edges());
-  for (Index e = 0; e < curve.edges(); ++e)
-    normals[e] = {leftwards(curve.tangent(e, 0)), leftwards(curve.tangent(e, 1)),
-                  leftwards(curve.tangent(e, 0.5))};
-  const auto mirrored = [&](Index vertex, Point &n) {
-    if (fixed[vertex] != 1 && fixed[vertex] != 2) return;
-    const Point image = fixed[vertex] == 1 ? Point{-n[0], n[1], 0} : Point{n[0], -n[1], 0};
-    if (!is_sharp(n, image)) n = mean(n, image);
-  };
-  for (const auto &[edges, loop] : sections) {
-    for (std::size_t k = loop ? 0 : 1; k < edges.size(); ++k) {
-      Point &before = normals[edges[(k + edges.size() - 1) % edges.size()]][1],
-            &after = normals[edges[k]][0];
-      before = after = mean(before, after);
-    }
-    if (loop) continue;
-    mirrored(curve.node(edges.front(), 0), normals[edges.front()][0]);
-    mirrored(curve.node(edges.back(), 1), normals[edges.back()][1]);
-  }
-  return normals;
-}
-
-EdgeNormals vertical_normals(const NodalCurve &curve) {
-  const Point up{0, 1, 0};
-  return EdgeNormals(curve.edges(), {up, up, up});
-}
-
 /// > 0: a point of the slave curve is to the right of the normal at an end of a master edge.
-double PartnerSearch::beside(Index master_edge, Index end, Index slave_edge, double s) const {
-  return cross(slave_.at(slave_edge, s) - master_.end(master_edge, end),
-               field_.normals[master_edge][end])[2];
+double PartnerSearch::beside(Index master_edge, Index end, const Point &x) const {
+  return cross(x - master_.end(master_edge, end), field_.normals[master_edge][end])[2];
 }
 
 /// Whether a slave edge runs as the master curve does at an end of its edge.
@@ -153,9 +75,12 @@ private:
   Index last_edge(Index from) const {
     return piece_.loop ? from + piece_.edges : piece_.first_edge + piece_.edges - 1;
   }
-  double beside(Index v, Index e, double s) const {
+  double beside(Index v, const Point &x) const {
     const auto [master_edge, end] = vertex(v);
-    return search_.beside(master_edge, end, edge(e), s);
+    return search_.beside(master_edge, end, x);
+  }
+  double beside(Index v, Index e, Index end) const {
+    return beside(v, search_.slave_.end(edge(e), end));
   }
   bool alike(Index v, Index e) const {
     const auto [master_edge, end] = vertex(v);
@@ -191,14 +116,16 @@ private:
     while (from < last && beside(v, from, 1) <= round_off && alike(v, from + 1))
       ++from;
     if (beside(v, from, 1) < -round_off) return {};
+    constexpr double settled = 1e-14;
     const auto [master_edge, end] = vertex(v);
     const Point &n = search_.field_.normals[master_edge][end];
-    double low = 0, high = 1, s = 0.5; // safeguarded Newton steps
-    for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
-      const double value = beside(v, from, s);
-      if (std::abs(value) <= 1e-15 * size_) break;
+    const double a = beside(v, from, 0), b = beside(v, from, 1);
+    double low = 0, high = 1, s = a < 0 && b > 0 ? a / (a - b) : a < 0 ? 1 : 0;
+    for (int k = 0; k < 60 && high - low > 1e-15; ++k) { // safeguarded Newton steps
+      const double value = beside(v, search_.slave_.at(edge(from), s));
       (value > 0 ? high : low) = s;
       const double step = s - value / cross(search_.slave_.tangent(edge(from), s), n)[2];
+      if (std::abs(step - s) <= settled) break;
       s = step > low && step < high ? step : 0.5 * (low + high);
     }
     return CurvePlace{from, s};
@@ -220,9 +147,10 @@ private:
 
   /// One master edge is longer than all of the piece that runs as it does.
   void add_inside_of_an_edge() {
+    const auto middle = [&](Index e) { return search_.slave_.at(edge(e), 0.5); };
     for (Index v = 0; v < std::ssize(section_.edges); ++v)
       for (Index e = piece_.first_edge; e < piece_.first_edge + piece_.edges; ++e)
-        if (alike(v, e) && beside(v, e, 0.5) > 0 && beside(v + 1, e, 0.5) < 0)
+        if (alike(v, e) && beside(v, middle(e)) > 0 && beside(v + 1, middle(e)) < 0)
           return add(section_.edges[v], begin_of(v, e), end_of(v, e));
   }
 
@@ -251,6 +179,7 @@ private:
 
 PartnerSearch::PartnerSearch(const NodalCurve &slave, const NodalCurve &master, MasterField field)
     : slave_(slave), master_(master), field_(std::move(field)) {
+  parts_.reserve(static_cast<std::size_t>(slave.edges() + master.edges()));
   for (const CurveChain &piece : slave.shape().pieces)
     for (const CurveSection &section : field_.sections)
       Sweep(*this, piece, section).run();
@@ -262,7 +191,7 @@ void PartnerSearch::sort_parts() {
   const auto later = [](const FacedPart &a, const FacedPart &b) {
     return a.begin.minus(b.begin) < 0;
   };
-  std::ranges::stable_sort(parts_, later);
+  if (!std::ranges::is_sorted(parts_, later)) std::ranges::stable_sort(parts_, later);
   std::vector<FacedPart> sorted;
   sorted.reserve(parts_.size());
   for (std::size_t k = 0; k < parts_.size(); ++k) {
@@ -369,6 +298,12 @@ Bend PartnerSearch::project(PairPoint &point) const {
     return result;
   };
   const Point y = slave_.at(point.slave_edge, point.s);
+  if (field_.vertical) { // both are linear in x
+    const double begin = master_.end(master_edge, 0)[0], end = master_.end(master_edge, 1)[0];
+    point.t = (y[0] - begin) / (end - begin);
+    point.normal = {0, 1, 0};
+    return {};
+  }
   double t = std::clamp(point.t, 0.0, 1.0), last = 1;
   for (int k = 0; k < 30; ++k) {
     const Point away = y - master_.at(master_edge, t);
@@ -389,8 +324,9 @@ Bend PartnerSearch::project(PairPoint &point) const {
     const Point tau{point.normal[1], -point.normal[0], 0};
     return {stretch, -(tau[0] * turn[0] + tau[1] * turn[1]) / (size * stretch)};
   }
-  throw failure("the bodies do not face each other at " + place_text(y) +
-                " of the first contact curve, which has no projection onto the second one there: "
+  throw failure("the bodies do not face each other at (" + short_number(y[0]) + ", " +
+                short_number(y[1]) +
+                ") of the first contact curve, which has no projection onto the second one there: "
                 "try a smaller indentation, or more -nonlinear_load_steps");
 }
 

@@ -124,7 +124,8 @@ const std::vector<CaseKey> all_keys{
     {"contact.*.friction", "coulomb", "expression", "the coefficient", false, "1"},
     {"contact.*.friction", "tresca", "expression", "the threshold, a pressure", false, "N/m^2"},
     {"contact.*.friction", "bound", "everywhere | contact",
-     "where Tresca's threshold holds: on the whole boundary, or where there is contact"},
+     "where Tresca's threshold holds: on the whole boundary, or where there is contact (between "
+     "bodies always)"},
     {"require.*", "that", "expression", "in parameters: it must hold", true},
     {"require.*", "says", "text", "what to tell where it does not", true},
     {"curves.*", "circle", "[x, y, radius]", "in the mesh", true, "m"},

@@ -133,6 +133,26 @@ TEST(NormalPair, TurnsWithTheBodies) {
     }
 }
 
+/// On flat curves vertical pairing is the same, with friction too.
+TEST(NormalPair, IsVerticalPairingOnFlatCurves) {
+  for (const int degree : {1, 2})
+    for (const MultiplierSpace space : spaces) {
+      Random random(degree + 3);
+      const InterfaceMesh mesh =
+          mesh_of({{straight(random, 7, 0, 2, 0.3)}}, {{straight(random, 5, 0.1, 2, 0)}}, degree);
+      Pair vertical{"slave", "master", {.multiplier = space}};
+      vertical.discretisation.projection = PairProjection::vertical;
+      vertical.friction = {FrictionLaw::coulomb, [](const FullMu &) { return 0.3; }};
+      Scene scene = scene_of(degree);
+      scene.motion = [](const FullMu &, const Point &x) { return Point{x[1], 0.1 * x[1], 0}; };
+      const ContactOperators op = at(scene, two_bodies(vertical), mesh),
+                             other = at(scene, pair_of(space, true), mesh);
+      EXPECT_LT((op.g - other.g).norm(), 1e-14);
+      EXPECT_LT((Matrix(op.b) - Matrix(other.b)).norm(), 1e-13);
+      EXPECT_EQ(op.uncovered, other.uncovered);
+    }
+}
+
 /// Flat boundaries at the same place, upright too, with other vertices or the same ones: no gap,
 /// everything faces a partner, and a jump along the interface is the slip.
 TEST(NormalPair, WhereTheBodiesTouchTheJumpIsNormalAndSlip) {

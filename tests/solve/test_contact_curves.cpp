@@ -1,9 +1,11 @@
 // Contact along curves that are no graphs over x: turned, upright, in pieces, closed; and two
 // bodies with partners along averaged normals, with friction.
 #include "drawn_bodies.hpp"
+#include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/largest.hpp"
 #include "rbvi/element/elastic_forms.hpp"
+#include "tests/catalogue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +13,7 @@
 #include <iomanip>
 #include <sstream>
 
-namespace rbvi::contact_curves_test {
+namespace rbvi::contact_of_curves_test {
 namespace {
 
 const std::vector<double> angles{0, 37 * std::numbers::pi / 180, std::numbers::pi / 2,
@@ -125,6 +127,42 @@ TEST(FrictionOfTwoBodies, SticksAsOneBodyAndSlidesAtItsBound) {
                 EXPECT_NEAR(s.u[mesh.natural_node[v] * 2 + c], u[c], 1e-13);
             }
           }
+}
+
+/// Where the first boundary reaches beyond the second one, or faces nothing at all, it is free:
+/// condensed and eliminated, from a coarser start too.
+TEST(FrictionOfTwoBodies, EndsWhereNoPartnerIs) {
+  for (const std::string law : {"{coulomb: 0.3}", "{tresca: 0.1}"})
+    for (const std::string space : {"p0", "p1"})
+      for (const auto &[width, shift] : {std::pair{0.55, 0.0}, {1.0, -1.5}}) { // of the lower body
+        std::vector<Outputs> outputs;
+        for (const HfContact how : {HfContact::condensed, HfContact::eliminated}) {
+          Scene scene = make_scene("patch");
+          scene.motion = [](const FullMu &mu, const Point &x) {
+            return x[1] > 0 ? Point{0.03, -mu[0], 0} : Point{};
+          };
+          scene.map = [width, shift](const FullMu &, const Point &x) {
+            return x[1] > 0 ? Point{x[0], x[1] - 0.25, 0}
+                            : Point{width * x[0] + shift, x[1] + 0.25, 0};
+          };
+          const bool coulomb = law.starts_with("{coulomb");
+          scene.contacts = {
+              two_bodies({"slave",
+                          "master",
+                          {space == "p0" ? MultiplierSpace::macro_edges : MultiplierSpace::nodes},
+                          false,
+                          {coulomb ? FrictionLaw::coulomb : FrictionLaw::tresca,
+                           [coulomb](const FullMu &) { return coulomb ? 0.3 : 0.1; }}})};
+          scene.a = {mapped_term(elasticity("", lame(15, 0.35), 1))};
+          HfOptions options;
+          options.contact = how;
+          outputs.push_back(solve({scene, {"", 1}}, {0.06}, options).outputs);
+        }
+        EXPECT_NEAR(*outputs[0].normal_force, *outputs[1].normal_force, 1e-11);
+        EXPECT_NEAR(*outputs[0].tangential_force, *outputs[1].tangential_force, 1e-11);
+        EXPECT_EQ(*outputs[0].contact_nodes > 0, shift == 0);
+        EXPECT_LE(*outputs[0].contact_measure, 0.62);
+      }
 }
 
 /// A drawn scene at some angle, and its answer.
@@ -336,4 +374,4 @@ TEST(NormalPairing, TheOrderOfFacetsDoesNotMatter) {
 }
 
 } // namespace
-} // namespace rbvi::contact_curves_test
+} // namespace rbvi::contact_of_curves_test

@@ -123,9 +123,8 @@ PairOperators pair_operators(const Partners &partners, const PairMultipliers &mu
 /// Finds the partners of two curves: along the field of normals, or vertically, then the curves
 /// must be graphs (as_graph). Gaps are those of the curves. `lengths`: of the slave edges, that the
 /// integrals are over.
-Partners find_partners(const NodalCurve &slave, const NodalCurve &master,
-                       const PairDiscretisation &how, MasterField field,
-                       const std::vector<double> &lengths);
+Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisation &how,
+                       MasterField field, const std::vector<double> &lengths);
 
 /// The gaps between other places of both curves.
 void set_gaps(const NodalCurve &slave, const NodalCurve &master, std::vector<PairPoint> &points);

@@ -39,10 +39,13 @@ struct CurveShape {
 
   explicit CurveShape(std::vector<CurveChain> chains);
   Index edges() const { return std::ssize(ends); }
-  Index vertices() const { return pieces.back().first_vertex + pieces.back().vertices(); }
+  Index vertices() const { return vertices_; }
   Index node(Index edge, Index local) const {
-    return local < 2 ? ends[edge][local] : vertices() + edge;
+    return local < 2 ? ends[edge][local] : vertices_ + edge;
   }
+
+private:
+  Index vertices_ = 0;
 };
 
 /// Successive edges with their shape, whatever the numbers of their vertices.

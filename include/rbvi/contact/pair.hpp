@@ -26,8 +26,8 @@ namespace rbvi {
 struct Pair {
   std::string slave, master; ///< boundaries
   PairDiscretisation discretisation{};
-  bool large = false; ///< where the bodies now are
-  Friction friction{};
+  bool large = false;  ///< where the bodies now are
+  Friction friction{}; ///< Tresca's threshold holds where there is contact
 };
 
 /// Throws bad_input for large deformations with friction, along e_y or without intersection.

@@ -22,7 +22,8 @@ struct PairPoint {
   Point normal{};  ///< of length 1, towards the slave; tau = (n_y, -n_x)
 };
 
-/// Of the master curve at a partner: |dy / dt|, and k of its field of normals n, tau' = k n.
+/// Of the master curve at a partner: |dy / dt|, and k of its field of normals n, tau' = k n; not
+/// found of vertical pairing.
 struct Bend {
   double stretch, curvature;
 };
@@ -66,6 +67,7 @@ EdgeNormals vertical_normals(const NodalCurve &curve);
 struct MasterField {
   const std::vector<CurveSection> &sections;
   EdgeNormals normals;
+  bool vertical = false; ///< e_y everywhere, and curves that are graphs as as_graph makes them
 };
 
 /// The search. Curves and sections must outlive it.
@@ -86,7 +88,7 @@ public:
 private:
   /// One piece of the slave with one section of the master.
   class Sweep;
-  double beside(Index master_edge, Index end, Index slave_edge, double s) const;
+  double beside(Index master_edge, Index end, const Point &x) const;
   bool alike(Index master_edge, Index end, Index slave_edge) const;
   void sort_parts();
   double gap_at(const FacedPart &part, const CurvePlace &place) const;
