@@ -12,106 +12,96 @@ namespace {
 
 constexpr double round_off = 1e-9; ///< of the weight of a multiplier
 
-/// Successive edges [first, last) of a curve.
-struct EdgeRange {
-  Index first, last;
-};
-
-/// Edges of a macro-edge but perhaps the last.
-Index macro_size(int degree) {
-  return degree == 1 ? 2 : 1;
-}
-
-/// The edges on which a multiplier does not vanish.
-EdgeRange support(Index multiplier, Index edges, MultiplierSpace space, int degree) {
-  if (space == MultiplierSpace::nodes)
-    return {std::max<Index>(multiplier - 1, 0), std::min(multiplier + 1, edges)};
-  const Index size = macro_size(degree), count = std::max<Index>(1, edges / size);
-  return {size * multiplier, multiplier + 1 == count ? edges : size * (multiplier + 1)};
-}
-
-double multiplier_value(Index multiplier, MultiplierSpace space, const PairPoint &point) {
-  if (space == MultiplierSpace::macro_edges) return 1;
-  return point.slave_edge == multiplier ? 1 - point.s : point.s;
-}
-
-/// A curve as a graph over x.
-class Graph {
-public:
-  /// `curve` must outlive it.
-  Graph(const NodalCurve &curve, const std::string &name);
-
-  Index edges() const { return curve_.edges(); }
-  double x(Index node) const { return curve_.point(node)[0]; }
-  double abscissa(Index edge, double s) const { return (1 - s) * x(edge) + s * x(edge + 1); }
-  /// 0 to 1 along the edge.
-  double coordinate(Index edge, double at) const {
-    return (at - x(edge)) / (x(edge + 1) - x(edge));
-  }
-  double height(Index edge, double s) const {
-    const double on_chord = (1 - s) * curve_.point(edge)[1] + s * curve_.point(edge + 1)[1];
-    return on_chord + (bulge_.empty() ? 0 : 4 * s * (1 - s) * bulge_[edge]);
-  }
-
-private:
-  const NodalCurve &curve_;
-  std::vector<double> bulge_; ///< degree 2: height of the parabola over the middle of the chord
-};
-
-Graph::Graph(const NodalCurve &curve, const std::string &name) : curve_(curve) {
-  const int degree = curve.degree();
-  check_degree(degree);
-  if (edges() < 1 || curve.nodes() != edges() * degree + 1)
-    throw bad_input("the " + name + " curve needs " +
-                    (degree == 1 ? "at least 2 nodes" : "an odd number of nodes, at least 3") +
-                    ", not " + std::to_string(curve.nodes()));
-  const auto check = [&](Index before, Index i) {
-    if (!(x(before) < x(i)))
-      throw bad_input("x must increase along the " + name + " curve, but node " +
-                      std::to_string(i) + " at x = " + short_number(x(i)) +
-                      " follows x = " + short_number(x(before)));
-  };
-  for (Index e = 0; e < edges(); ++e)
-    check(e, e + 1);
-  std::vector<double> bulge;
-  bulge.reserve(edges());
-  for (Index e = 0; e < edges() && degree == 2; ++e) {
-    const Index middle = curve.node(e, 2);
-    check(e, middle);
-    check(middle, e + 1);
-    const double s = coordinate(e, x(middle));
-    bulge.push_back((curve.point(middle)[1] - height(e, s)) / (4 * s * (1 - s)));
-  }
-  bulge_ = std::move(bulge);
-}
-
-/// The vertices of the master curve by their abscissae.
-Cuts vertical_cuts(const Graph &slave, const Graph &master) {
-  constexpr double at_end = 1e-12; // of an edge
-  const auto edges = static_cast<int>(slave.edges());
-  Cuts cuts{{}, edges};
-  int edge = 0;
-  for (Index v = 0; v <= master.edges(); ++v) {
-    const double x = master.x(v);
-    while (edge + 1 < edges && slave.x(edge + 1) <= x)
-      ++edge;
-    const double s = slave.coordinate(edge, x);
-    const int beyond = s < -at_end ? -1 : edges + 1;
-    cuts.places.push_back(s < -at_end || s > 1 + at_end ? CurvePlace{beyond} : CurvePlace{edge, s});
-  }
-  return cuts;
-}
-
 /// Gauss of two points on (0, 1): exact for integrands that are cubic in x on every piece.
 constexpr std::array<EdgePoint, 2> two_points{
     {{0.21132486540518711775, 0.5}, {0.78867513459481288225, 0.5}}};
 
+/// With -tau of the slave for the normal towards it, as the slip is the other way round.
+PairPoint turned(PairPoint point) {
+  point.normal = {-point.normal[1], point.normal[0], 0};
+  return point;
+}
+
 } // namespace
 
+PairMultipliers::PairMultipliers(const CurveShape &slave, MultiplierSpace space, int degree)
+    : space_(space) {
+  if (space == MultiplierSpace::nodes) {
+    on_edge_ = slave.ends;
+    edges_.resize(static_cast<std::size_t>(slave.vertices()));
+    for (Index e = 0; e < slave.edges(); ++e)
+      for (const Index vertex : slave.ends[e])
+        edges_[vertex].push_back(e);
+    return;
+  }
+  const Index size = degree == 1 ? 2 : 1;
+  for (const CurveChain &piece : slave.pieces) {
+    const Index first = count(), macros = std::max<Index>(1, piece.edges / size);
+    edges_.resize(static_cast<std::size_t>(first + macros));
+    for (Index k = 0; k < piece.edges; ++k) {
+      const Index macro = first + std::min(k / size, macros - 1);
+      edges_[macro].push_back(piece.first_edge + k);
+      on_edge_.push_back({macro, macro});
+    }
+  }
+}
+
+Vector PairMultipliers::whole_weights(const HatWeights &hats) const {
+  Vector whole = Vector::Zero(count());
+  for (std::size_t e = 0; e < on_edge_.size(); ++e)
+    for (std::size_t end = 0; end < 2; ++end)
+      whole[on_edge_[e][end]] += hats[e][end];
+  return whole;
+}
+
+SparseMatrix PairMultipliers::gram(const NodalCurve &slave, int copies, bool axisymmetric) const {
+  std::vector<Point> vertices;
+  for (Index v = 0; v < slave.shape().vertices(); ++v)
+    vertices.push_back(slave.point(v));
+  if (space_ == MultiplierSpace::nodes)
+    return linear_gram(vertices, slave.shape(), copies, axisymmetric);
+  const Vector whole = whole_weights(slave.hats(axisymmetric));
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index k = 0; k < copies; ++k) {
+    const Index first = k * count();
+    for (Index i = 0; i < count(); ++i)
+      entries.emplace_back(first + i, first + i, whole[i]);
+    for (const CurveChain &piece : slave.shape().pieces)
+      for (Index e = 0; e + (piece.loop ? 0 : 1) < piece.edges; ++e) {
+        const Index i = first + on_edge_[piece.first_edge + e][0],
+                    j = first + on_edge_[piece.first_edge + (e + 1) % piece.edges][0];
+        if (i == j) continue;
+        entries.emplace_back(i, j, 0.0);
+        entries.emplace_back(j, i, 0.0);
+      }
+  }
+  SparseMatrix product(copies * count(), copies * count());
+  product.setFromTriplets(entries.begin(), entries.end());
+  return product;
+}
+
+std::vector<Point> PairMultipliers::points(const NodalCurve &slave) const {
+  std::vector<Point> points;
+  const std::vector<double> lengths = slave.lengths();
+  for (Index i = 0; i < count(); ++i) {
+    if (space_ == MultiplierSpace::nodes) {
+      points.push_back(slave.point(i));
+      continue;
+    }
+    double rest = 0; // to the middle, along the curve
+    for (const Index e : edges_[i])
+      rest += lengths[e] / 2;
+    auto edge = edges_[i].begin();
+    for (; edge + 1 != edges_[i].end() && rest > lengths[*edge]; ++edge)
+      rest -= lengths[*edge];
+    points.push_back(slave.at(*edge, rest / lengths[*edge]));
+  }
+  return points;
+}
+
 DifferenceRows::DifferenceRows(const Partners &of, const std::vector<int> &dofs, Index columns)
-    : dofs_(dofs), size_(columns),
-      components_(std::ssize(dofs) / (of.slave.nodes() + of.master.nodes())), slave_{of.slave, 0},
-      master_{of.master, of.slave.nodes()}, row_(dofs.size(), 0.0) {
+    : dofs_(dofs), size_(columns), slave_{of.slave, 0}, master_{of.master, of.slave.nodes()},
+      row_(dofs.size(), 0.0) {
   columns_.reserve(4 * dofs.size());
   values_.reserve(4 * dofs.size());
 }
@@ -123,19 +113,23 @@ void DifferenceRows::add(const PairPoint &point, double factor) {
 }
 
 void DifferenceRows::add(Side &side, Index edge, double s, const Point &vector) {
-  const bool first = side.last < side.first;
-  side.first = first ? edge : std::min(side.first, edge);
-  side.last = first ? edge : std::max(side.last, edge);
+  const bool is_first = side.last_vertex < side.first_vertex;
+  const auto &[a, b] = side.curve.shape().ends[edge];
+  const Index low = std::min(a, b), high = std::max(a, b);
+  side.first_vertex = is_first ? low : std::min(side.first_vertex, low);
+  side.last_vertex = is_first ? high : std::max(side.last_vertex, high);
+  side.first_edge = is_first ? edge : std::min(side.first_edge, edge);
+  side.last_edge = is_first ? edge : std::max(side.last_edge, edge);
   const std::array<double, 3> functions = edge_functions(side.curve.degree(), s);
   for (Index k = 0; k < side.curve.per_edge(); ++k) {
-    double *const node = row_.data() + components_ * (side.first_node + side.curve.node(edge, k));
-    if (components_ == 2) node[0] += functions[k] * vector[0];
-    node[components_ - 1] += functions[k] * vector[1];
+    double *const node = row_.data() + 2 * (side.first_node + side.curve.node(edge, k));
+    node[0] += functions[k] * vector[0];
+    node[1] += functions[k] * vector[1];
   }
 }
 
-void DifferenceRows::end_nodes(Index begin, Index end) {
-  for (Index i = components_ * begin; i < components_ * end; ++i) {
+void DifferenceRows::end_nodes(Index first, Index last) {
+  for (Index i = 2 * first; i < 2 * last + 2; ++i) {
     if (row_[i] != 0 && dofs_[i] >= 0) {
       if (std::ssize(columns_) > begins_.back() && columns_.back() > dofs_[i]) sorted_ = false;
       columns_.push_back(dofs_[i]);
@@ -147,12 +141,11 @@ void DifferenceRows::end_nodes(Index begin, Index end) {
 
 void DifferenceRows::end_row() {
   for (Side *side : {&slave_, &master_}) {
-    if (side->last < side->first) continue;
-    const Index vertex = side->first_node + side->first, count = side->last - side->first + 1;
-    end_nodes(vertex, vertex + count + 1);
-    const Index middle = vertex + side->curve.edges() + 1;
-    if (side->curve.degree() == 2) end_nodes(middle, middle + count);
-    side->last = side->first - 1;
+    if (side->last_vertex < side->first_vertex) continue;
+    end_nodes(side->first_node + side->first_vertex, side->first_node + side->last_vertex);
+    const Index middles = side->first_node + side->curve.shape().vertices();
+    if (side->curve.degree() == 2) end_nodes(middles + side->first_edge, middles + side->last_edge);
+    side->last_vertex = side->first_vertex - 1;
   }
   begins_.push_back(static_cast<int>(columns_.size()));
 }
@@ -167,29 +160,31 @@ SparseMatrix DifferenceRows::matrix() const {
   return Eigen::SparseMatrix<double, Eigen::ColMajor>(rows); // sorts each row
 }
 
-PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
-                             const std::vector<int> &dofs, Index columns) {
-  const NodalCurve &slave = partners.slave;
-  const Index count = multiplier_count(slave.nodes(), space, slave.degree());
+PairOperators pair_operators(const Partners &partners, const PairMultipliers &multipliers,
+                             const std::vector<int> &dofs, Index columns, bool friction) {
+  const Index count = multipliers.count();
   PairOperators result;
-  result.g = result.weights = Vector::Zero(count);
-  const Vector whole = whole_weights(partners.hats, space, slave.degree());
+  result.weights = Vector::Zero(count);
+  result.g = Vector::Zero(friction ? 2 * count : count);
+  const Vector whole = multipliers.whole_weights(partners.hats);
   std::vector<const PairPoint *> of_edge{partners.points.data()}; // from its first point on
   const PairPoint *const end = of_edge[0] + partners.points.size();
-  for (Index edge = 0; edge < slave.edges(); ++edge)
+  for (Index edge = 0; edge < partners.slave.edges(); ++edge)
     of_edge.push_back(
         std::find_if(of_edge.back(), end, [&](const PairPoint &p) { return p.slave_edge > edge; }));
   DifferenceRows weak(partners, dofs, columns), nodal(partners, dofs, columns);
-  for (Index i = 0; i < count; ++i) {
-    const EdgeRange edges = support(i, slave.edges(), space, slave.degree());
-    for (const PairPoint *p = of_edge[edges.first]; p != of_edge[edges.last]; ++p) {
-      const double weight = p->weight * multiplier_value(i, space, *p);
-      weak.add(*p, weight);
-      result.g[i] += weight * p->gap;
-      result.weights[i] += weight;
-    }
+  for (Index row = 0; row < result.g.size(); ++row) {
+    const bool tangential = row >= count;
+    const Index i = row % count;
+    for (const Index edge : multipliers.edges_of(i))
+      for (const PairPoint *p = of_edge[edge]; p != of_edge[edge + 1]; ++p) {
+        const double weight = p->weight * multipliers.value(i, edge, p->s);
+        weak.add(tangential ? turned(*p) : *p, weight);
+        result.g[row] += tangential ? -weight * p->slip : weight * p->gap;
+        if (!tangential) result.weights[i] += weight;
+      }
     weak.end_row();
-    if (is_partial(result.weights[i], whole[i])) result.uncovered.push_back(i);
+    if (!tangential && is_partial(result.weights[i], whole[i])) result.uncovered.push_back(i);
   }
   result.b = weak.matrix();
   result.nodal_gap.resize(std::ssize(partners.vertices));
@@ -198,127 +193,112 @@ PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
     nodal.add(p, 1);
     nodal.end_row();
     result.nodal_gap[std::ssize(result.paired)] = p.gap;
-    result.paired.push_back(p.slave_edge + (p.s > 0.5 ? 1 : 0));
+    result.paired.push_back(partners.slave.node(p.slave_edge, p.s > 0.5 ? 1 : 0));
     result.normals.push_back({-p.normal[0], -p.normal[1], 0});
   }
   result.nodal_b = nodal.matrix();
   return result;
 }
 
-Partners vertical_partners(std::vector<Point> slave_nodes, std::vector<Point> master_nodes,
-                           PairQuadrature quadrature, int degree, bool axisymmetric) {
-  Partners result{{std::move(slave_nodes), degree}, {std::move(master_nodes), degree}};
-  const Graph slave(result.slave, "slave"), master(result.master, "master");
-  result.lengths = result.slave.lengths();
-  result.hats = result.slave.hats(axisymmetric);
-  result.cuts = vertical_cuts(slave, master);
-  const Cuts &cuts = result.cuts;
-  result.vertices = cuts.at_vertices();
-  if (quadrature == PairQuadrature::intersection) {
-    result.points = cuts.on_pieces(two_points);
+Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisation &how,
+                       MasterField field, const HatWeights &hats) {
+  Partners result{std::move(slave), std::move(master), hats};
+  const PartnerSearch search(result.slave, result.master, std::move(field));
+  result.segments = search.segments();
+  result.vertices = search.at_vertices();
+  const std::span<const EdgePoint> rule = how.projection == PairProjection::vertical
+                                              ? std::span<const EdgePoint>(two_points)
+                                              : std::span<const EdgePoint>(edge_quadrature);
+  if (how.quadrature == PairQuadrature::intersection) {
+    result.points = search.on_parts(rule);
   } else {
     std::vector<CurvePlace> places;
-    for (int e = 0; e < cuts.slave_edges; ++e)
-      for (const EdgePoint &at : two_points)
+    for (Index e = 0; e < result.slave.edges(); ++e)
+      for (const EdgePoint &at : rule)
         places.push_back({e, at.s});
-    result.points = cuts.at(places);
+    result.points = search.at(places);
     for (PairPoint &p : result.points)
-      p.weight = 0.5;
+      p.weight = std::ranges::find(rule, p.s, &EdgePoint::s)->weight;
   }
-  for (std::vector<PairPoint> *points : {&result.points, &result.vertices})
-    for (PairPoint &p : *points) {
-      const double x = slave.abscissa(p.slave_edge, p.s);
-      p.t = master.coordinate(p.master_edge, x);
-      p.weight *= result.lengths[p.slave_edge] * circumference(axisymmetric, {x, 0, 0});
-      p.normal = {0, 1, 0};
-      p.gap = slave.height(p.slave_edge, p.s) - master.height(p.master_edge, p.t);
-    }
+  result.bends.reserve(result.points.size());
+  for (PairPoint &p : result.points) {
+    result.bends.push_back(search.project(p));
+    const auto [first, last] = hats[p.slave_edge]; // of a weight that is linear along the edge
+    p.weight *= (1 - p.s) * (4 * first - 2 * last) + p.s * (4 * last - 2 * first);
+  }
+  for (PairPoint &p : result.vertices)
+    (void)search.project(p);
+  set_gaps(result.slave, result.master, result.points);
+  set_gaps(result.slave, result.master, result.vertices);
   return result;
 }
 
-Index vertex_count(Index nodes, int degree) {
-  return (nodes - 1) / degree + 1;
+void set_gaps(const NodalCurve &slave, const NodalCurve &master, std::vector<PairPoint> &points) {
+  for (PairPoint &p : points)
+    p.gap = dot(p.normal, slave.at(p.slave_edge, p.s) - master.at(p.master_edge, p.t));
 }
 
-Index multiplier_count(Index slave_nodes, MultiplierSpace space, int degree) {
-  const Index vertices = vertex_count(slave_nodes, degree);
-  return space == MultiplierSpace::nodes ? vertices
-                                         : std::max<Index>(1, (vertices - 1) / macro_size(degree));
-}
-
-Index macro_edge_of(Index edge, Index slave_nodes, int degree) {
-  return std::min(edge / macro_size(degree),
-                  multiplier_count(slave_nodes, MultiplierSpace::macro_edges, degree) - 1);
-}
-
-Vector whole_weights(const std::vector<std::array<double, 2>> &hats, MultiplierSpace space,
-                     int degree) {
-  const Index edges = std::ssize(hats);
-  Vector whole = Vector::Zero(multiplier_count(degree * edges + 1, space, degree));
-  for (Index i = 0; i < whole.size(); ++i) {
-    const EdgeRange own = support(i, edges, space, degree);
-    for (Index e = own.first; e < own.last; ++e)
-      whole[i] +=
-          space == MultiplierSpace::nodes ? hats[e][e == i ? 0 : 1] : hats[e][0] + hats[e][1];
+NodalCurve as_graph(NodalCurve curve, const std::string &name) {
+  check_degree(curve.degree());
+  const int degree = curve.degree();
+  if (curve.edges() < 1 ||
+      curve.nodes() != curve.shape().vertices() + (degree == 2 ? curve.edges() : Index{0}))
+    throw bad_input("the " + name + " curve needs " +
+                    (degree == 1 ? "at least 2 nodes" : "an odd number of nodes, at least 3") +
+                    ", not " + std::to_string(curve.nodes()));
+  const auto check = [&](Index before, Index i) {
+    const double x = curve.point(i)[0], last = curve.point(before)[0];
+    if (!(last < x))
+      throw bad_input("x must increase along the " + name + " curve, but node " +
+                      std::to_string(i) + " at x = " + short_number(x) +
+                      " follows x = " + short_number(last));
+  };
+  std::vector<Point> nodes;
+  for (Index i = 0; i < curve.nodes(); ++i)
+    nodes.push_back(curve.point(i));
+  for (Index e = 0; e < curve.edges(); ++e) {
+    check(curve.node(e, 0), curve.node(e, 1));
+    if (degree == 1) continue;
+    const Index middle = curve.node(e, 2);
+    check(curve.node(e, 0), middle);
+    check(middle, curve.node(e, 1));
+    const Point &a = curve.end(e, 0), &b = curve.end(e, 1), &x = curve.point(middle);
+    const double s = (x[0] - a[0]) / (b[0] - a[0]);
+    const double bulge = (x[1] - (1 - s) * a[1] - s * b[1]) / (4 * s * (1 - s));
+    nodes[middle] = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2 + bulge, 0};
   }
-  return whole;
+  return {std::move(nodes), degree, curve.shared_shape()};
 }
 
 bool is_partial(double weight, double whole) {
   return !(weight > (1 - round_off) * whole);
 }
 
-double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
-                       double least, const ClosedEnds &closed) {
-  const Index count = whole.size();
-  const auto carries_from = [&](Index first, Index step) {
-    Index row = first;
-    while (row >= 0 && row < count && !(weights[row] > round_off * whole[row]))
-      row += step;
-    const auto &ends = row == first ? closed.slave : closed.master;
-    if (ends[step > 0 ? 0 : 1] || row < 0 || row >= count) return false;
-    do {
-      if (lambda[row] > least) return true;
-      row += step;
-    } while (row >= 0 && row < count && is_partial(weights[row], whole[row]));
-    return false;
-  };
-  return (carries_from(0, 1) ? 1.0 : 0.0) + (carries_from(count - 1, -1) ? 1.0 : 0.0);
-}
-
-SparseMatrix multiplier_product(const std::vector<Point> &nodes, MultiplierSpace space, int degree,
-                                bool axisymmetric) {
-  const NodalCurve curve(nodes, degree);
-  const Graph slave(curve, "slave");
-  if (space == MultiplierSpace::nodes)
-    return linear_gram({nodes.begin(), nodes.begin() + slave.edges() + 1}, 1, axisymmetric);
-  const Vector whole = whole_weights(curve.hats(axisymmetric), space, degree);
-  SparseMatrix product(whole.size(), whole.size());
-  product.reserve(Eigen::VectorXi::Constant(whole.size(), 3));
-  for (Index i = 0; i < whole.size(); ++i)
-    for (Index j = std::max<Index>(i - 1, 0); j < std::min(i + 2, whole.size()); ++j)
-      product.insert(i, j) = i == j ? whole[i] : 0;
-  product.makeCompressed();
-  return product;
-}
-
-std::vector<Point> multiplier_points(const std::vector<Point> &nodes, MultiplierSpace space,
-                                     int degree) {
-  const NodalCurve curve(nodes, degree);
-  const Graph slave(curve, "slave");
-  if (space == MultiplierSpace::nodes) return {nodes.begin(), nodes.begin() + slave.edges() + 1};
-  const std::vector<double> lengths = curve.lengths();
-  const Vector whole = whole_weights(curve.hats(false), space, degree);
-  std::vector<Point> points;
-  for (Index i = 0; i < whole.size(); ++i) {
-    auto [edge, last] = support(i, slave.edges(), space, degree);
-    double rest = whole[i] / 2; // to the middle, along the curve
-    for (; edge + 1 < last && rest > lengths[edge]; ++edge)
-      rest -= lengths[edge];
-    const double s = rest / lengths[edge];
-    points.push_back({slave.abscissa(edge, s), slave.height(edge, s), 0});
+double ends_in_contact(const PairMultipliers &multipliers, const CurveShape &slave,
+                       const HatWeights &hats, const Vector &weights, const Vector &lambda,
+                       double least, const std::vector<std::array<bool, 2>> &closed) {
+  const Vector whole = multipliers.whole_weights(hats);
+  double ends = 0;
+  for (std::size_t k = 0; k < slave.pieces.size(); ++k) {
+    const CurveChain &piece = slave.pieces[k];
+    if (piece.loop) continue;
+    const Index begin = multipliers.on_edge(piece.first_edge)[0],
+                end = multipliers.on_edge(piece.first_edge + piece.edges - 1)[1];
+    const auto carries_from = [&](Index first, Index step) {
+      const auto inside = [&](Index row) { return row >= begin && row <= end; };
+      Index row = first;
+      while (inside(row) && !(weights[row] > round_off * whole[row]))
+        row += step;
+      if ((row == first ? closed[k] : closed.back())[step > 0 ? 0 : 1] || !inside(row)) return 0.0;
+      do {
+        if (lambda[row] > least) return 1.0;
+        row += step;
+      } while (inside(row) && is_partial(weights[row], whole[row]));
+      return 0.0;
+    };
+    ends += carries_from(begin, 1) + carries_from(end, -1);
   }
-  return points;
+  return ends;
 }
 
 } // namespace rbvi

@@ -1,28 +1,95 @@
 #include "rbvi/contact/curve.hpp"
 
 #include "rbvi/core/error.hpp"
-#include "rbvi/core/text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace rbvi {
 
 namespace {
 
 /// Values of the edges of a polyline at its nodes, weighted by length.
-Vector means_at_nodes(const Matrix &points, const Vector &of_edges) {
-  Vector sum = Vector::Zero(points.rows()), weight = Vector::Zero(points.rows());
+Vector means_at_nodes(const Grid &grid, const Vector &of_edges) {
+  Vector sum = Vector::Zero(grid.points.rows()), weight = sum;
   for (Index e = 0; e < of_edges.size(); ++e) {
-    const double length = (points.row(e + 1) - points.row(e)).norm();
-    sum.segment<2>(e).array() += length * of_edges[e];
-    weight.segment<2>(e).array() += length;
+    const int a = grid.cells[2 * e], b = grid.cells[2 * e + 1];
+    const double length = (grid.points.row(b) - grid.points.row(a)).norm();
+    for (const int node : {a, b}) {
+      sum[node] += length * of_edges[e];
+      weight[node] += length;
+    }
   }
-  return sum.cwiseQuotient(weight);
+  return (weight.array() > 0).select(sum.array() / weight.array(), 0.0);
+}
+
+/// The numbers of the nodes of a part begin here; of a mesh without parts there is one.
+int first_node(const InterfaceMesh &mesh, std::size_t part) {
+  return std::accumulate(mesh.parts.begin(), mesh.parts.begin() + static_cast<std::ptrdiff_t>(part),
+                         0);
+}
+
+/// The edges of a part.
+std::vector<Index> edges_of(const InterfaceMesh &mesh, std::size_t part) {
+  const int first = first_node(mesh, part),
+            end = mesh.parts.empty() ? static_cast<int>(mesh.nodes()) : first + mesh.parts[part];
+  std::vector<Index> edges;
+  for (Index e = 0; e < mesh.count(); ++e)
+    if (const int node = mesh.nodes_of(e)[0]; node >= first && node < end) edges.push_back(e);
+  return edges;
+}
+
+/// The nodes of some edges, of cells beside a boundary that on it, the body on the left.
+std::vector<std::array<int, 2>> edges_of(const InterfaceMesh &mesh,
+                                         const std::vector<Index> &entities) {
+  std::vector<std::array<int, 2>> edges;
+  for (const Index e : entities) {
+    const auto [i, j] = simplex_edges[mesh.edges.empty() ? 0 : mesh.edges[e]];
+    edges.push_back({mesh.nodes_of(e)[i], mesh.nodes_of(e)[j]});
+  }
+  return edges;
 }
 
 } // namespace
+
+CurveShape::CurveShape(std::vector<CurveChain> chains) : pieces(std::move(chains)) {
+  for (const CurveChain &piece : pieces) {
+    vertices_ += piece.vertices();
+    for (Index k = 0; k < piece.edges; ++k)
+      ends.push_back({piece.first_vertex + k, piece.first_vertex + (k + 1) % piece.vertices()});
+  }
+}
+
+ChainedEdges chained(const std::vector<std::array<int, 2>> &edges) {
+  std::vector<int> vertices;
+  std::vector<CurveChain> pieces;
+  for (std::size_t e = 0; e < edges.size();) {
+    const auto shares = [&](std::size_t one, int end, int other) {
+      return one + 1 < edges.size() && edges[one][end] == edges[one + 1][other];
+    };
+    const int from = shares(e, 1, 0) || !shares(e, 0, 1) ? 0 : 1, to = 1 - from;
+    CurveChain piece{static_cast<Index>(e), 1, std::ssize(vertices)};
+    const int first = edges[e][from];
+    vertices.push_back(first);
+    for (; edges[e][to] != first && shares(e, to, from); ++e, ++piece.edges)
+      vertices.push_back(edges[e][to]);
+    piece.loop = edges[e][to] == first;
+    if (!piece.loop) vertices.push_back(edges[e][to]);
+    pieces.push_back(piece);
+    ++e;
+  }
+  return {std::move(vertices), CurveShape(std::move(pieces))};
+}
+
+NodalCurve::NodalCurve(std::vector<Point> nodes, int degree,
+                       std::shared_ptr<const CurveShape> shape)
+    : nodes_(std::move(nodes)), degree_(degree), shape_(std::move(shape)) {}
+
+NodalCurve::NodalCurve(std::vector<Point> nodes, int degree)
+    : nodes_(std::move(nodes)), degree_(degree),
+      shape_(std::make_shared<CurveShape>(
+          std::vector{CurveChain{0, (std::ssize(nodes_) - 1) / degree, 0}})) {}
 
 std::array<double, 2> hat_weights(const Point &begin, const Point &end, bool axisymmetric) {
   const double half = edge_length(begin, end) / 2;
@@ -30,102 +97,100 @@ std::array<double, 2> hat_weights(const Point &begin, const Point &end, bool axi
           half * circumference(axisymmetric, (begin + 2 * end) / 3)};
 }
 
-NodalCurve::NodalCurve(std::vector<Point> nodes, int degree)
-    : nodes_(std::move(nodes)), degree_(degree), edges_((std::ssize(nodes_) - 1) / degree) {}
-
-std::vector<double> NodalCurve::lengths() const {
-  std::vector<double> lengths;
-  lengths.reserve(edges_);
-  for (Index e = 0; e < edges_; ++e)
-    lengths.push_back(edge_length(nodes_[e], nodes_[e + 1]));
-  return lengths;
-}
-
-std::vector<std::array<double, 2>> NodalCurve::hats(bool axisymmetric) const {
-  std::vector<std::array<double, 2>> hats;
-  for (Index e = 0; e < edges_; ++e)
-    hats.push_back(hat_weights(nodes_[e], nodes_[e + 1], axisymmetric));
+HatWeights NodalCurve::hats(bool axisymmetric) const {
+  HatWeights hats;
+  for (Index e = 0; e < edges(); ++e)
+    hats.push_back(hat_weights(end(e, 0), end(e, 1), axisymmetric));
   return hats;
 }
 
-Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string &name) {
+std::vector<double> NodalCurve::lengths() const {
+  std::vector<double> lengths;
+  lengths.reserve(edges());
+  for (Index e = 0; e < edges(); ++e)
+    lengths.push_back(edge_length(end(e, 0), end(e, 1)));
+  return lengths;
+}
+
+CurveShape curve_shape(const InterfaceMesh &mesh, std::size_t part, const std::string &name) {
   if (mesh.dim != 2)
     throw bad_input("the " + name + " is a curve in two dimensions: the mesh has " +
                     std::to_string(mesh.dim));
   const int nodes = part < mesh.parts.size() ? mesh.parts[part] : 0;
-  if (nodes < 1 + mesh.degree || (nodes - 1) % mesh.degree != 0)
+  std::vector<Index> own;
+  if (nodes > 0 && mesh.per_entity == mesh.degree + 1) own = edges_of(mesh, part);
+  if (own.empty())
     throw bad_input("the " + name + " needs at least one edge, but has " + std::to_string(nodes) +
                     (nodes == 1 ? " node" : " nodes") + " of degree " +
                     std::to_string(mesh.degree));
-  int first = 0, first_edge = 0; // of this part
-  for (std::size_t before = 0; before < part; ++before) {
-    first += mesh.parts[before];
-    first_edge += (mesh.parts[before] - 1) / mesh.degree;
-  }
-  const int vertices = (nodes - 1) / mesh.degree + 1;
-  for (int i = 1; i < vertices; ++i) {
-    const Point &before = mesh.points[first + i - 1], &here = mesh.points[first + i];
-    if (!(before[0] < here[0]))
-      throw bad_input("x must increase along the " + name + ", but vertex " + std::to_string(i) +
-                      " at x = " + short_number(here[0]) +
-                      " follows x = " + short_number(before[0]));
-  }
-  for (int e = 0; e + 1 < vertices; ++e) {
-    const std::array<int, 3> expected{first + e, first + e + 1, first + vertices + e};
-    if (mesh.per_entity != mesh.degree + 1 || first_edge + e >= mesh.count() ||
-        !std::equal(expected.begin(), expected.begin() + mesh.per_entity,
-                    mesh.nodes_of(first_edge + e)))
-      throw bad_input("edge " + std::to_string(e) + " of the " + name +
-                      " does not go from vertex to vertex");
-  }
-  return vertices;
+  const int first = first_node(mesh, part);
+  auto [vertices, shape] = chained(edges_of(mesh, own));
+  const auto count = static_cast<int>(shape.vertices());
+  bool fits = nodes == count + (mesh.degree == 2 ? shape.edges() : Index{0});
+  for (int v = 0; v < count; ++v)
+    fits = fits && vertices[v] == first + v;
+  for (std::size_t e = 0; e < own.size() && mesh.degree == 2; ++e)
+    fits = fits && mesh.nodes_of(own[e])[2] == first + count + static_cast<int>(e);
+  if (!fits)
+    throw bad_input("the edges of the " + name + " do not go from vertex to vertex of its " +
+                    std::to_string(nodes) + " nodes of degree " + std::to_string(mesh.degree));
+  return std::move(shape);
 }
 
-SparseMatrix linear_gram(const std::vector<Point> &points, int copies, bool axisymmetric) {
-  const auto vertices = static_cast<Index>(points.size()), rows = vertices * copies;
-  const auto length_of = [&](Index edge) { return edge_length(points[edge], points[edge + 1]); };
+ChainedEdges first_curve(const InterfaceMesh &mesh) {
+  return chained(edges_of(mesh, edges_of(mesh, 0)));
+}
+
+std::size_t count_pieces(const InterfaceMesh &mesh) {
+  std::vector<Index> all(static_cast<std::size_t>(mesh.count()));
+  std::iota(all.begin(), all.end(), Index{0});
+  return chained(edges_of(mesh, all)).shape.pieces.size();
+}
+
+SparseMatrix linear_gram(const std::vector<Point> &points, const CurveShape &shape, int copies,
+                         bool axisymmetric) {
   const auto around = [&](const Point &x) { return circumference(axisymmetric, x); };
-  SparseMatrix product(rows, rows);
-  product.reserve(Eigen::VectorXi::Constant(rows, 3));
-  // The mean radius that the product of two hats sees on an edge is that of 3 parts of its end to
-  // one of the other for a square, else that of the middle.
-  for (Index row = 0; row < rows; ++row) {
-    const Index i = row % vertices;
-    double diagonal = 0;
-    for (const Index other : {i - 1, i + 1}) {
-      if (other < 0 || other >= vertices) continue;
-      const Point &x = points[i], &y = points[other];
-      const double length = length_of(std::min(i, other));
-      product.insert(row, row + other - i) = length / 6 * around((x + y) / 2);
-      diagonal += length * around((3 * x + y) / 4);
+  const Index vertices = shape.vertices();
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Index k = 0; k < copies; ++k)
+    for (const auto &[a, b] : shape.ends) {
+      const Point &x = points[a], &y = points[b];
+      const double length = edge_length(x, y);
+      const Index i = k * vertices + a, j = k * vertices + b;
+      // The mean radius that the product of two hats sees on an edge is that of 3 parts of its end
+      // to one of the other for a square, else that of the middle.
+      entries.emplace_back(i, i, length / 3 * around((3 * x + y) / 4));
+      entries.emplace_back(j, j, length / 3 * around((x + 3 * y) / 4));
+      entries.emplace_back(i, j, length / 6 * around((x + y) / 2));
+      entries.emplace_back(j, i, length / 6 * around((x + y) / 2));
     }
-    product.insert(row, row) = diagonal / 3;
-  }
-  product.makeCompressed();
+  SparseMatrix product(vertices * copies, vertices * copies);
+  product.setFromTriplets(entries.begin(), entries.end());
   return product;
 }
 
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
               const std::vector<Index> &nodes, const Vector &u) {
   const Vector moved = moved_nodes(scene, mu, mesh, u);
-  const auto count = static_cast<Index>(nodes.size());
+  std::vector<int> shown(mesh.points.size(), -1), edges;
   std::vector<Point> points;
-  std::vector<int> edges;
-  Vector of_nodes(3 * count);
-  for (Index k = 0; k < count; ++k) {
-    const Index node = nodes[k];
+  Vector of_nodes(3 * std::ssize(nodes));
+  for (const Index node : nodes) {
+    const Index k = std::ssize(points);
+    shown[node] = static_cast<int>(k);
     points.push_back(mesh.points[node]);
     of_nodes.segment<3>(3 * k) = moved.segment<3>(3 * node);
-    if (k > 0) edges.insert(edges.end(), {static_cast<int>(k) - 1, static_cast<int>(k)});
   }
+  const auto [vertices, shape] = first_curve(mesh);
+  for (const auto &[a, b] : shape.ends)
+    if (const int i = shown[vertices[a]], j = shown[vertices[b]]; i >= 0 && j >= 0)
+      edges.insert(edges.end(), {i, j});
   return {mapped_points(scene, mu, points), edges, 2, {{"u", of_nodes, "m"}}, {}, {}};
 }
 
-void add_pressure(const Vector &values, Grid &grid) {
-  const bool of_edges = values.size() < grid.points.rows();
-  if (of_edges) grid.of_cells.push_back({"pressure", values, "Pa"});
-  grid.of_nodes.push_back(
-      {"pressure", of_edges ? means_at_nodes(grid.points, values) : values, "Pa"});
+void add_stress(const std::string &name, const Vector &values, bool of_edges, Grid &grid) {
+  if (of_edges) grid.of_cells.push_back({name, values, "Pa"});
+  grid.of_nodes.push_back({name, of_edges ? means_at_nodes(grid, values) : values, "Pa"});
 }
 
 } // namespace rbvi

@@ -1,20 +1,55 @@
 // Contact of a curve with something rigid by multipliers: integrals over its edges, which ask at
 // each of their points what it faces, and the outputs.
-#include "trace_points.hpp"
-
 #include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/entity_sum.hpp"
 #include "rbvi/contact/support.hpp"
 #include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
+#include "rbvi/element/quadrature.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace rbvi {
 
 namespace {
+
+/// A quadrature point of every edge; the weights sum to 1.
+struct TracePoint {
+  double s; ///< along the edge, 0 ... 1
+  double weight;
+  std::array<double, 2> eta; ///< of both multipliers: 1 - s and s
+  std::array<double, 3> phi; ///< of the displacements: vertices, middle
+};
+
+TracePoint trace_point(int degree, const EdgePoint &at) {
+  return {at.s, at.weight, {1 - at.s, at.s}, edge_functions(degree, at.s)};
+}
+
+/// Four Gauss points, or the two vertices: there only the vertex itself moves, a middle is free.
+std::vector<TracePoint> trace_points(int degree, bool lumped) {
+  if (lumped) return {trace_point(degree, {0, 0.5}), trace_point(degree, {1, 0.5})};
+  std::vector<TracePoint> points;
+  for (const EdgePoint &at : edge_quadrature)
+    points.push_back(trace_point(degree, at));
+  return points;
+}
+
+/// The point of an edge, reference coordinates.
+Point point_on(const Cell &edge, const TracePoint &at) {
+  const Point &begin = edge.reference[0], &end = edge.reference[1];
+  return {at.eta[0] * begin[0] + at.eta[1] * end[0], at.eta[0] * begin[1] + at.eta[1] * end[1], 0};
+}
+
+double length_of(const Cell &edge) {
+  return edge_length(edge.mapped[0], edge.mapped[1]);
+}
+
+/// n . the normal out of the body, as long as the mapped edge.
+double outwards(const Cell &edge, const Point &n) {
+  const Point &begin = edge.mapped[0], &end = edge.mapped[1];
+  return n[0] * (end[1] - begin[1]) - n[1] * (end[0] - begin[0]);
+}
 
 class CurveSupport : public EntitySum {
 public:
@@ -49,11 +84,15 @@ private:
     Vector horizontal, vertical; ///< B e_x and B e_y
   };
   struct AtRest {
-    std::vector<double> weights; ///< of the points of quadrature on the mapped edge
-    std::vector<PlacedPoint> points;
+    double measure;
+    PlacedPoint point;
   };
-  double weight_at(const Cell &edge, double length, const TracePoint &at) const;
-  void find_side();
+  /// The part of an integral over the mapped edge that a point stands for.
+  double measure(const Cell &edge, const TracePoint &at) const {
+    return at.weight * length_of(edge) *
+           circumference(scene_.axisymmetric,
+                         at.eta[0] * edge.mapped[0] + at.eta[1] * edge.mapped[1]);
+  }
   Cell mapped_edge(const FullMu &mu, Index edge) const;
   Point sum(const Cell &edge, const std::array<double, 3> &coefficients) const;
   Point deformed_normal(const FullMu &mu, const Cell &edge, const TracePoint &at,
@@ -61,54 +100,26 @@ private:
   FacedPoint faced_at(const FullMu &mu, const Cell &edge, const TracePoint &at) const;
   Lift lift(const FullMu &mu, const ContactState &state, const Matrix &mapped,
             const Vector &lambda) const;
-  void add_edge(const FullMu &mu, Index edge, const AtRest &rest, const Vector &state,
+  void add_edge(const FullMu &mu, Index edge, const std::vector<AtRest> &rest, const Vector &state,
                 const Vector &x, NodalCondition &condition) const;
 
   Facing facing_;
   Friction friction_;
   std::vector<TracePoint> points_;
-  double side_ = 0; ///< 1: the body is above the curve, -1: below, 0: not known
+  CurveShape shape_;
 };
 
 CurveSupport::CurveSupport(const Scene &scene, InterfaceMesh interface_mesh,
                            const RigidContact &rigid)
     : EntitySum(scene, std::move(interface_mesh), 1), facing_(rigid.facing),
-      friction_(rigid.friction), points_(trace_points(mesh_.degree, rigid.lumped)) {
-  const Index vertices = check_curve(mesh_, 0, "support's boundary");
+      friction_(rigid.friction), points_(trace_points(mesh_.degree, rigid.lumped)),
+      shape_(curve_shape(mesh_, 0, "support's boundary")) {
   if (mesh_.components != 2)
     throw bad_input("scene " + scene.name +
                     ": a rigid support is for displacements of two components");
   const int copies = friction_.law == FrictionLaw::none ? 1 : 2;
-  set_dual(vertices, copies, rigid.lumped,
-           linear_gram({mesh_.points.begin(), mesh_.points.begin() + vertices}, copies,
-                       scene.axisymmetric));
-  find_side();
-}
-
-/// Of the integral over a mapped edge of this length.
-double CurveSupport::weight_at(const Cell &edge, double length, const TracePoint &at) const {
-  return at.weight * length *
-         circumference(scene_.axisymmetric,
-                       at.eta[0] * edge.mapped[0] + at.eta[1] * edge.mapped[1]);
-}
-
-/// On which side of the curve the body ends, as the normal of the edge that is nearest to what it
-/// faces at the values of the scene's parameters says.
-void CurveSupport::find_side() {
-  FullMu mu;
-  for (const Parameter &parameter : scene_.parameters.all)
-    mu.push_back(parameter.value);
-  double nearest = std::numeric_limits<double>::infinity();
-  for (Index e = 0; e < mesh_.count(); ++e) {
-    try {
-      const Cell edge = mapped_edge(mu, e);
-      const FacedPoint here = faced_at(mu, edge, points_.front());
-      if (!(std::abs(here.gap) < nearest)) continue;
-      nearest = std::abs(here.gap);
-      side_ = std::copysign(1, downwards(edge, here.normal));
-    } catch (const std::exception &) { // it faces nothing at these values
-    }
-  }
+  set_dual(shape_.vertices(), copies, rigid.lumped,
+           linear_gram(mesh_.points, shape_, copies, scene.axisymmetric));
 }
 
 Cell CurveSupport::mapped_edge(const FullMu &mu, Index e) const {
@@ -155,13 +166,12 @@ PointConstraint CurveSupport::constraint_at(const FullMu &mu, const Point &x, co
 }
 
 void CurveSupport::integrate(const FullMu &mu, const Cell &edge, EntityValues &values) const {
-  const double whole = length_of(edge);
   const Index columns = values.b.cols(), nodes = columns / 2;
   const bool friction = values.b.rows() > 2;
   values.b.setZero();
   values.g.setZero();
   for (const TracePoint &at : points_) {
-    const double weight = weight_at(edge, whole, at);
+    const double weight = measure(edge, at);
     const FacedPoint here = faced_at(mu, edge, at);
     for (Index a = 0; a < 2; ++a) {
       const double eta = weight * at.eta[a];
@@ -191,20 +201,20 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
       continue;
     Cell edge = reference_entity(e);
     if (follows_state()) set_displacement(mu, e, state, edge, displacement);
-    for (Index i = 0; i < 2; ++i)
-      edge.mapped[i] = {mapped(e + i, 0), mapped(e + i, 1), 0};
-    const double whole = length_of(edge);
+    for (Index i = 0; i < 2; ++i) {
+      const int node = mesh_.nodes_of(e)[i];
+      edge.mapped[i] = {mapped(node, 0), mapped(node, 1), 0};
+    }
     const auto pressure = [&](std::size_t a) { return rows[a] < 0 ? 0 : lambda[rows[a]]; };
     for (const TracePoint &at : points_) {
       const Point n =
           facing_.normal ? facing_.normal(mu, point_on(edge, at)) : faced_at(mu, edge, at).normal;
       // Tresca's traction acts without pressure, too.
       const bool pressed = at.eta[0] * pressure(0) + at.eta[1] * pressure(1) > 0;
-      if (pressed && side_ != 0) check_pressed_side(side_ * downwards(edge, n), point_on(edge, at));
-      const double weight = weight_at(edge, whole, at);
+      if (pressed) check_pressed_side(outwards(edge, n), point_on(edge, at));
       for (std::size_t a = 0; a < 2; ++a) {
         if (rows[a] < 0) continue;
-        const double eta = weight * at.eta[a];
+        const double eta = measure(edge, at) * at.eta[a];
         result.horizontal[rows[a]] += eta * n[0];
         result.vertical[rows[a]] += eta * n[1];
         if (dual_.components == 1) continue;
@@ -218,17 +228,29 @@ CurveSupport::Lift CurveSupport::lift(const FullMu &mu, const ContactState &stat
 
 void CurveSupport::outputs(const FullMu &mu, const ContactOperators &operators,
                            const Vector &lambda, double, Outputs &outputs) const {
-  const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + mesh_.count() + 1);
+  const std::vector<Point> vertices(mesh_.points.begin(), mesh_.points.begin() + shape_.vertices());
   const Matrix mapped = mapped_points(scene_, mu, vertices);
   const Lift unit = lift(mu, operators.state, mapped, lambda);
+  const bool has_middle = shape_.pieces.size() == 1 && !shape_.pieces.front().loop;
   support_outputs({lambda, operators.weights, unit.horizontal, unit.vertical, bound(mu),
-                   mapped(dual_.vertices, Eigen::all)},
+                   has_middle ? Matrix(mapped(dual_.vertices, Eigen::all)) : Matrix()},
                   outputs);
   if (scene_.axisymmetric) drop_plane_outputs(outputs);
-  const auto [first, last] = mesh_.closed(0);
-  if (first && last) return;
-  outputs.ends_in_contact =
-      (!first && lambda[0] > 0 ? 1.0 : 0.0) + (!last && lambda[dual_.nodes() - 1] > 0 ? 1.0 : 0.0);
+  for (std::size_t k = 0; k < shape_.pieces.size(); ++k) {
+    const CurveChain &piece = shape_.pieces[k];
+    const auto carries = [&](Index vertex, Index step) { // the next one that has a multiplier
+      const Index end = piece.first_vertex + piece.vertices();
+      for (; vertex >= piece.first_vertex && vertex < end; vertex += step)
+        if (const Index dual = dual_of_vertex()[vertex]; dual >= 0) return lambda[dual] > 0;
+      return false;
+    };
+    const auto [first, last] = mesh_.closed(k);
+    if (first && last) continue;
+    outputs.ends_in_contact =
+        outputs.ends_in_contact.value_or(0) +
+        (!first && carries(piece.first_vertex, 1) ? 1.0 : 0.0) +
+        (!last && carries(piece.first_vertex + piece.vertices() - 1, -1) ? 1.0 : 0.0);
+  }
 }
 
 Curvature CurveSupport::curvature(const FullMu &mu, const ContactState &state,
@@ -248,7 +270,7 @@ Curvature CurveSupport::curvature(const FullMu &mu, const ContactState &state,
       for (std::size_t k = 0; k < columns.size(); ++k)
         if (columns[k] >= 0)
           along_tau.emplace_back(std::ssize(weights), columns[k], at.phi[k / 2] * tau[k % 2]);
-      weights.push_back(weight_at(edge, length_of(edge), at) * here.curvature *
+      weights.push_back(measure(edge, at) * here.curvature *
                         (at.eta[0] * pressure(0) + at.eta[1] * pressure(1)) / 2);
     }
   }
@@ -270,7 +292,7 @@ SparseMatrix CurveSupport::averages() const {
     for (const TracePoint &at : points_)
       for (std::size_t a = 0; a < 2; ++a) {
         if (rows[a] < 0) continue;
-        const double eta = weight_at(edge, length_of(edge), at) * at.eta[a];
+        const double eta = measure(edge, at) * at.eta[a];
         weights[rows[a]] += eta;
         for (std::size_t k = 0; k < columns.size(); ++k)
           if (columns[k] >= 0)
@@ -285,8 +307,8 @@ SparseMatrix CurveSupport::averages() const {
   return result;
 }
 
-void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const Vector &state,
-                            const Vector &x, NodalCondition &condition) const {
+void CurveSupport::add_edge(const FullMu &mu, Index e, const std::vector<AtRest> &rest,
+                            const Vector &state, const Vector &x, NodalCondition &condition) const {
   const std::span<const int> dual = rows_of(e);
   const int *nodes = mesh_.nodes_of(e);
   const bool friction = dual_.components == 2;
@@ -300,13 +322,13 @@ void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const
     const TracePoint &at = points_[i];
     const Eigen::Vector2d moved = u * Eigen::Vector3d::Map(at.phi.data());
     const Point displacement{moved[0], moved[1], 0};
-    const FacedPoint here = facing_.at(mu, rest.points[i], displacement);
+    const FacedPoint here = facing_.at(mu, rest[i].point, displacement);
     const Point &n = here.normal;
     const double distance = here.gap - dot(n, displacement),
                  slip = here.slip + slip_along(n, displacement);
     double pressure = 0, shear = 0;
     for (std::size_t a = 0; a < 2; ++a) {
-      const double eta = rest.weights[i] * at.eta[a];
+      const double eta = rest[i].measure * at.eta[a];
       condition.w[dual[a]] += eta * distance;
       condition.normal(0, dual[a]) += eta * n[0];
       condition.normal(1, dual[a]) += eta * n[1];
@@ -316,7 +338,7 @@ void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const
       shear += at.eta[a] * x[dual[2 + a]];
     }
     if (pressure == 0 && shear == 0) continue;
-    const double weight = rest.weights[i];
+    const double weight = rest[i].measure;
     for (std::size_t a = 0; a < 2; ++a)
       condition.rotation[dual[a]] += weight * at.eta[a] * pressure * here.curvature;
     const std::array<double, 2> traction{weight * (pressure * n[0] - shear * n[1]),
@@ -329,9 +351,9 @@ void CurveSupport::add_edge(const FullMu &mu, Index e, const AtRest &rest, const
 }
 
 NodalEvaluation CurveSupport::nodal_at(const FullMu &mu) const {
-  return [this, mu, rest = std::vector<AtRest>(mesh_.count())](const Vector &state, const Vector &x,
-                                                               const std::vector<bool> &near,
-                                                               NodalCondition &condition) mutable {
+  return [this, mu, rest = std::vector<std::vector<AtRest>>(mesh_.count())](
+             const Vector &state, const Vector &x, const std::vector<bool> &near,
+             NodalCondition &condition) mutable {
     condition.w.setZero(dual_.size());
     condition.load.setZero(mesh_.columns);
     condition.normal.setZero(2, dual_.nodes());
@@ -339,15 +361,12 @@ NodalEvaluation CurveSupport::nodal_at(const FullMu &mu) const {
     for (Index e = 0; e < mesh_.count(); ++e) {
       const std::span<const int> dual = rows_of(e);
       if (dual[0] < 0 || !(is_wanted(near, dual[0]) || is_wanted(near, dual[1]))) continue;
-      AtRest &edge = rest[e];
-      if (edge.points.empty()) {
+      if (rest[e].empty()) {
         const Cell cell = mapped_edge(mu, e);
-        for (const TracePoint &at : points_) {
-          edge.weights.push_back(weight_at(cell, length_of(cell), at));
-          edge.points.push_back(place(scene_, facing_, mu, point_on(cell, at)));
-        }
+        for (const TracePoint &at : points_)
+          rest[e].push_back({measure(cell, at), place(scene_, facing_, mu, point_on(cell, at))});
       }
-      add_edge(mu, e, edge, state, x, condition);
+      add_edge(mu, e, rest[e], state, x, condition);
     }
   };
 }

@@ -293,22 +293,23 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
                            const Vector &u) {
   const Facing &facing = layer.curves[number].facing;
   const std::span<const CurveCell> cells = layer.cells_of(number);
-  const auto count = static_cast<Index>(cells.size()) + 1;
+  Index count = 0;
+  for (const CurveCell &cell : cells)
+    count = std::max<Index>({count, cell.ends[0] + 1, cell.ends[1] + 1});
   CurveFields fields;
-  for (Vector *field : {&fields.sigma_n, &fields.sigma_tau, &fields.p_n, &fields.p_tau,
-                        &fields.excess, &fields.arc_length})
+  for (Vector *field :
+       {&fields.sigma_n, &fields.sigma_tau, &fields.p_n, &fields.p_tau, &fields.excess})
     *field = Vector::Zero(count);
-  Vector &excess = fields.excess;
+  Vector &excess = fields.excess, arc_length = Vector::Zero(count);
   Vector slip = Vector::Zero(count), gamma = Vector::Zero(count), edges = Vector::Zero(count);
-  for (std::size_t k = 0; k < cells.size(); ++k) {
-    const CurveCellAtMu at = curve_cell_at(layer, mu, cells[k]);
-    const auto ends = simplex_edges[cells[k].edge];
-    const bool forward = at.cell.reference[ends[0]][0] < at.cell.reference[ends[1]][0];
-    const Row here = local(cells[k].dofs, u);
-    for (const double s : {0.0, 1.0}) {
-      NitschePoint point = nitsche_point(layer.scene, facing, mu, at, s);
+  double length = 0;
+  for (const CurveCell &cell : cells) {
+    const CurveCellAtMu at = curve_cell_at(layer, mu, cell);
+    const Row here = local(cell.dofs, u);
+    for (const std::size_t end : {0, 1}) {
+      NitschePoint point = nitsche_point(layer.scene, facing, mu, at, static_cast<double>(end));
       if (facing.follows_state) turn_to(facing, mu, here, point);
-      const Index vertex = static_cast<Index>(k) + ((s == 1) == forward ? 1 : 0);
+      const Index vertex = cell.ends[end];
       fields.sigma_n[vertex] += point.sigma_n.dot(here);
       fields.sigma_tau[vertex] += point.sigma_tau.dot(here);
       excess[vertex] = point.n.dot(here) - point.facing.gap;
@@ -316,14 +317,14 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t number, const 
       gamma[vertex] += at.gamma;
       ++edges[vertex];
     }
-    fields.arc_length[static_cast<Index>(k) + 1] =
-        fields.arc_length[static_cast<Index>(k)] + length_of(at.cell.mapped, cells[k].edge);
+    length += length_of(at.cell.mapped, cell.edge);
+    arc_length[std::max(cell.ends[0], cell.ends[1])] = length;
   }
   for (Vector *sum : {&fields.sigma_n, &fields.sigma_tau, &gamma})
     sum->array() /= edges.array();
   fields.p_n = fields.sigma_n - gamma.cwiseProduct(excess);
   fields.p_tau = fields.sigma_tau - gamma.cwiseProduct(slip);
-  fields.arc_length.array() -= fields.arc_length[count - 1] / 2;
+  if (layer.curves[number].has_middle) fields.arc_length = arc_length.array() - length / 2;
   return fields;
 }
 

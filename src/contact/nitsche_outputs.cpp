@@ -78,9 +78,9 @@ struct LawErrors {
 
 } // namespace
 
-double ends_in_contact(const CurveFields &fields, std::array<bool, 2> closed) {
-  const double last = fields.p_n[fields.p_n.size() - 1];
-  return (!closed[0] && fields.p_n[0] < 0 ? 1.0 : 0.0) + (!closed[1] && last < 0 ? 1.0 : 0.0);
+double ends_in_contact(const CurveFields &fields, const std::vector<int> &open_ends) {
+  return static_cast<double>(
+      std::ranges::count_if(open_ends, [&](int vertex) { return fields.p_n[vertex] < 0; }));
 }
 
 void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures,
@@ -93,10 +93,10 @@ void nitsche_outputs(std::span<const NitscheFace> faces, const Matrix &pressures
   outputs.contact_measure = sums.contact;
   outputs.contact_half_width = sums.contact / 2;
   outputs.peak_pressure = std::max(0.0, -fields.sigma_n.minCoeff());
-  const Index edges = fields.arc_length.size() - 1;
-  outputs.centre_pressure = centre_pressure(
-      sums.edge_pressures, (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2,
-      sums.contact / 2);
+  if (const Index edges = fields.arc_length.size() - 1; edges > 0)
+    outputs.centre_pressure = centre_pressure(
+        sums.edge_pressures, (fields.arc_length.head(edges) + fields.arc_length.tail(edges)) / 2,
+        sums.contact / 2);
   outputs.max_penetration = std::max(0.0, fields.excess.maxCoeff());
   outputs.contact_nodes = static_cast<double>((fields.p_n.array() < 0).count());
   outputs.free_nodes = static_cast<double>(fields.p_n.size()) - *outputs.contact_nodes;
@@ -126,8 +126,8 @@ void nitsche_outputs(const NitscheLayer &layer, const FullMu &mu,
     Outputs part, &one = layer.curves.size() == 1 ? outputs : part;
     nitsche_outputs(own, pressures.middleRows(4 * first, 4 * count), fields, one);
     if (layer.scene.axisymmetric) drop_plane_outputs(one);
-    const std::array<bool, 2> closed = layer.curves[k].closed_ends;
-    if (!closed[0] || !closed[1]) one.ends_in_contact = ends_in_contact(fields, closed);
+    if (const std::vector<int> &open = layer.curves[k].open_ends; !open.empty())
+      one.ends_in_contact = ends_in_contact(fields, open);
     if (&one == &part) {
       part.name = contact_name(layer.scene, k);
       add_contact(part, outputs);

@@ -5,8 +5,6 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/element/lagrange.hpp"
 
-#include <utility>
-
 namespace rbvi {
 
 namespace {
@@ -35,31 +33,34 @@ std::vector<CurveCell> curve_cells(const InterfaceMesh &mesh) {
   return cells;
 }
 
-/// The vertices of the curve, nodes of the mesh, by increasing x.
-std::vector<Index> curve_vertices(const InterfaceMesh &mesh) {
-  std::vector<Index> vertices;
-  for (Index e = 0; e < mesh.count(); ++e) {
-    const auto [i, j] = simplex_edges[mesh.edges[e]];
-    Index a = mesh.nodes_of(e)[i], b = mesh.nodes_of(e)[j];
-    if (mesh.points[a][0] > mesh.points[b][0]) std::swap(a, b);
-    if (e == 0) vertices.push_back(a);
-    vertices.push_back(b);
-  }
-  return vertices;
-}
-
 class NitscheInterface : public ContactInterface {
 public:
   NitscheInterface(const Scene &scene, InterfaceMesh interface_mesh, NitscheCurve curve)
       : ContactInterface(scene, std::move(interface_mesh)), layer_{scene,
                                                                    {std::move(curve)},
                                                                    curve_cells(mesh_)} {
-    dual_.vertices = curve_vertices(mesh_);
-    for (const Index node : dual_.vertices)
+    const auto [vertices, shape] = first_curve(mesh_);
+    std::vector<int> number(mesh_.points.size(), -1);
+    for (const int node : vertices) {
+      number[node] = static_cast<int>(std::ssize(dual_.vertices));
+      dual_.vertices.push_back(node);
       dual_.points.push_back(mesh_.points[node]);
+    }
     dual_.components = layer_.friction() ? 2 : 1;
-    dual_.gram = linear_gram(dual_.points, dual_.components, scene.axisymmetric);
-    layer_.curves.front().closed_ends = mesh_.closed(0);
+    dual_.gram = linear_gram(dual_.points, shape, dual_.components, scene.axisymmetric);
+    for (Index e = 0; e < mesh_.count(); ++e)
+      for (std::size_t end = 0; end < 2; ++end)
+        layer_.cells[e].ends[end] =
+            number[mesh_.nodes_of(e)[simplex_edges[layer_.cells[e].edge][end]]];
+    NitscheCurve &curve_here = layer_.curves.front();
+    curve_here.has_middle = shape.pieces.size() == 1 && !shape.pieces.front().loop;
+    for (std::size_t k = 0; k < shape.pieces.size(); ++k) {
+      const CurveChain &piece = shape.pieces[k];
+      const Index first = piece.first_vertex, last = first + piece.vertices() - 1;
+      for (std::size_t end = 0; end < 2; ++end)
+        if (!mesh_.closed(k)[end])
+          curve_here.open_ends.push_back(static_cast<int>(end == 0 ? first : last));
+    }
   }
 
   const NitscheLayer *nitsche() const override { return &layer_; }

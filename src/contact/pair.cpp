@@ -1,82 +1,313 @@
 #include "rbvi/contact/pair.hpp"
 
-#include "rbvi/contact/two_curves.hpp"
+#include "rbvi/contact/support_outputs.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/formula.hpp"
+#include "rbvi/element/imposed.hpp"
+
+#include <algorithm>
 
 namespace rbvi {
 
 namespace {
 
-class PairInterface : public TwoCurves {
+bool is_vertical(const Pair &pair) {
+  return pair.discretisation.projection == PairProjection::vertical;
+}
+
+/// Whether the kernels see vertical displacements alone.
+bool is_of_heights(const Pair &pair) {
+  return is_vertical(pair) && pair.friction.law == FrictionLaw::none;
+}
+
+class PairInterface : public ContactInterface {
 public:
   PairInterface(const Scene &scene, InterfaceMesh mesh, const Pair &pair);
 
-private:
-  PairOperators operators_at(const FullMu &mu, const ContactState &) const override;
+  void assemble(const FullMu &mu, const ContactState &state, const WantedNodes &,
+                ContactOperators &operators) override {
+    operators = operators_at(mu, state);
+  }
+  bool follows_state() const override { return pair_.large; }
+  bool has_curvature() const override { return pair_.large; }
+  Curvature curvature(const FullMu &mu, const ContactState &state,
+                      const Vector &lambda) const override;
+  FrictionBound bound(const FullMu &mu) const override {
+    return friction_bound(pair_.friction, mu);
+  }
+  std::vector<Index> partly_fixed() const override;
+  void outputs(const FullMu &mu, const ContactOperators &operators, const Vector &lambda,
+               double least, Outputs &outputs) const override;
+  /// The slave curve; without cells where nothing of it faces the master curve.
+  Grid fields(const FullMu &mu, const Vector &u, const Vector &lambda) override;
 
-  PairQuadrature quadrature_;
-  std::vector<int> vertical_; ///< the columns of the nodes
+private:
+  /// Both curves, whose nodes are those of the mesh.
+  struct Curves {
+    NodalCurve slave, master;
+  };
+  Curves curves(const std::vector<Point> &nodes) const;
+  std::vector<Point> moves(const FullMu &mu) const;
+  Partners partners(const FullMu &mu, const ContactState &state) const;
+  PairOperators operators_at(const FullMu &mu, const ContactState &state) const;
+  std::vector<std::array<bool, 2>> closed_ends() const;
+  bool friction() const { return pair_.friction.law != FrictionLaw::none; }
+
+  Pair pair_;
+  std::shared_ptr<const CurveShape> slave_, master_;
+  PairMultipliers multipliers_;
+  std::vector<CurveSection> sections_; ///< of the master curve
+  std::vector<int> fixed_;             ///< per node of the master: bits of its components
+  bool imposes_;                       ///< values on displacements that the kernels see
 };
 
 PairInterface::PairInterface(const Scene &scene, InterfaceMesh interface_mesh, const Pair &pair)
-    : TwoCurves(scene, std::move(interface_mesh), pair.discretisation.multiplier),
-      quadrature_(pair.discretisation.quadrature) {
+    : ContactInterface(scene, std::move(interface_mesh)), pair_(pair),
+      slave_(std::make_shared<CurveShape>(curve_shape(mesh_, 0, "slave curve"))),
+      master_(std::make_shared<CurveShape>(curve_shape(mesh_, 1, "master curve"))),
+      multipliers_(*slave_, pair.discretisation.multiplier, mesh_.degree),
+      imposes_(!is_of_heights(pair) &&
+               std::ranges::any_of(mesh_.imposed_by, [](int boundary) { return boundary >= 0; })) {
+  if (mesh_.components != 2)
+    throw bad_input("two bodies meet with displacements of two components");
+  if (scene.axisymmetric && pair.large)
+    throw bad_input("two bodies that are turned (axisymmetric) meet with small kinematics alone: "
+                    "leave out kinematics: large");
   for (Index i = 0; i < mesh_.nodes(); ++i) {
-    vertical_.push_back(mesh_.components == 2 ? mesh_.dofs[2 * i + 1] : -1);
-    if (vertical_.back() < 0)
+    const int *dofs = mesh_.dofs.data() + 2 * i;
+    if (is_of_heights(pair) && dofs[1] < 0)
       throw bad_input("two bodies meet along curves whose nodes all move vertically");
+    if (i >= mesh_.parts[0]) fixed_.push_back((dofs[0] < 0 ? 1 : 0) + (dofs[1] < 0 ? 2 : 0));
+  }
+  Curves reference = curves(mesh_.points);
+  sections_ = sections_of(reference.master, is_vertical(pair));
+  if (is_vertical(pair)) {
+    try {
+      reference = {as_graph(reference.slave, "slave"), as_graph(reference.master, "master")};
+    } catch (const Error &error) {
+      throw bad_input(std::string(error.what()) +
+                      ": 'projection: vertical' is for a boundary above another one, each with one "
+                      "y for each x; use 'projection: normal'");
+    }
+  }
+  dual_.points = multipliers_.points(reference.slave);
+  dual_.components = friction() ? 2 : 1;
+  dual_.gram = multipliers_.gram(reference.slave, dual_.components, scene.axisymmetric);
+}
+
+PairInterface::Curves PairInterface::curves(const std::vector<Point> &nodes) const {
+  const auto master = nodes.begin() + mesh_.parts[0];
+  return {{{nodes.begin(), master}, mesh_.degree, slave_},
+          {{master, nodes.end()}, mesh_.degree, master_}};
+}
+
+/// Of the nodes: the motion and the imposed values; empty: none.
+std::vector<Point> PairInterface::moves(const FullMu &mu) const {
+  if (!scene_.motion && !imposes_) return {};
+  std::vector<Point> result(mesh_.points.size(), Point{});
+  if (scene_.motion) result = images(scene_.motion, mu, mesh_.points);
+  if (!imposes_) return result;
+  const Vector imposed = imposed_values(scene_, mu, mesh_.points, mesh_.imposed_by);
+  for (Index k = 0; k < imposed.size(); ++k)
+    result[k / 2][k % 2] += imposed[k];
+  return result;
+}
+
+/// With gaps and slips but for the displacements of the columns.
+Partners PairInterface::partners(const FullMu &mu, const ContactState &state) const {
+  const std::vector<Point> rest = images(scene_.map, mu, mesh_.points), moved = moves(mu);
+  Curves at_rest = curves(rest);
+  const HatWeights hats = at_rest.slave.hats(scene_.axisymmetric);
+  const bool vertical = is_vertical(pair_);
+  if (vertical)
+    at_rest = {as_graph(std::move(at_rest.slave), "slave"),
+               as_graph(std::move(at_rest.master), "master")};
+  const auto found_between = [&](Curves at) {
+    MasterField field{sections_,
+                      vertical ? vertical_normals(at.master)
+                               : averaged_normals(at.master, sections_, fixed_),
+                      vertical};
+    return find_partners(std::move(at.slave), std::move(at.master), pair_.discretisation,
+                         std::move(field), hats);
+  };
+  std::vector<Point> nodes = pair_.large ? rest : std::vector<Point>();
+  for (std::size_t k = 0; k < 2 * nodes.size(); ++k) {
+    if (!moved.empty()) nodes[k / 2][k % 2] += moved[k / 2][k % 2];
+    if (const int dof = mesh_.dofs[k]; dof >= 0 && state.displacement.size() > 0)
+      nodes[k / 2][k % 2] += state.displacement[dof];
+  }
+  Partners found = found_between(pair_.large ? curves(nodes) : std::move(at_rest));
+  for (std::vector<PairPoint> *points : {&found.points, &found.vertices}) {
+    if (pair_.large) set_gaps(at_rest.slave, at_rest.master, *points);
+    if (moved.empty()) continue;
+    const Curves by = curves(moved);
+    for (PairPoint &p : *points) {
+      const Point apart = by.slave.at(p.slave_edge, p.s) - by.master.at(p.master_edge, p.t);
+      p.gap += dot(p.normal, apart);
+      p.slip = p.normal[1] * apart[0] - p.normal[0] * apart[1];
+    }
+  }
+  return found;
+}
+
+PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &state) const {
+  try {
+    const Partners found = partners(mu, state);
+    PairOperators operators =
+        pair_operators(found, multipliers_, mesh_.dofs, mesh_.columns, friction());
+    if (!pair_.large) return operators;
+    operators.segments = found.segments;
+    operators.state = state;
+    return operators;
+  } catch (const Error &error) { // the fault of this mu, not of the input
+    if (pair_.large) throw;
+    throw failure(std::string(error.what()) + ", mapped at " + describe(scene_.parameters, mu));
   }
 }
 
-PairOperators PairInterface::operators_at(const FullMu &mu, const ContactState &) const {
-  const std::vector<Point> mapped = images(scene_.map, mu, mesh_.points);
-  const auto master = mapped.begin() + mesh_.parts[0];
-  PairOperators pair;
-  try {
-    pair = pair_operators(vertical_partners({mapped.begin(), master}, {master, mapped.end()},
-                                            quadrature_, mesh_.degree, scene_.axisymmetric),
-                          space_, vertical_, mesh_.columns);
-  } catch (const Error &error) { // the fault of this mu, not of the input
-    throw failure(std::string(error.what()) + ", mapped at " + describe(scene_.parameters, mu));
+/// On an axis of symmetry; a macro-edge always has a node that moves.
+std::vector<Index> PairInterface::partly_fixed() const {
+  std::vector<Index> result;
+  if (multipliers_.space() == MultiplierSpace::nodes && friction())
+    for (Index i = 0; i < multipliers_.count(); ++i)
+      if (mesh_.dofs[2 * i] < 0 || mesh_.dofs[2 * i + 1] < 0) result.push_back(i);
+  return result;
+}
+
+Curvature PairInterface::curvature(const FullMu &mu, const ContactState &state,
+                                   const Vector &lambda) const {
+  const Partners now = partners(mu, state);
+  DifferenceRows along_tau(now, mesh_.dofs, mesh_.columns);
+  std::vector<double> rates;
+  std::vector<Eigen::Triplet<double>> of_partners;
+  for (std::size_t i = 0; i < now.points.size(); ++i) {
+    const PairPoint &p = now.points[i];
+    const auto [stretch, bend] = now.bends[i];
+    const double pressure = multipliers_.sum(lambda, p.slave_edge, p.s);
+    if (pressure == 0) continue;
+    PairPoint tangential = p;
+    tangential.normal = {p.normal[1], -p.normal[0], 0};
+    along_tau.add(tangential, 1);
+    along_tau.end_row();
+    const double weight = p.weight * pressure;
+    const std::array<double, 3> slopes = edge_slopes(mesh_.degree, p.t);
+    for (Index k = 0; k < now.master.per_edge(); ++k)
+      for (Index c = 0; c < 2; ++c)
+        if (const int dof =
+                mesh_.dofs[2 * (mesh_.parts[0] + now.master.node(p.master_edge, k)) + c];
+            dof >= 0)
+          of_partners.emplace_back(std::ssize(rates), dof,
+                                   weight * slopes[k] / stretch * p.normal[c]);
+    rates.push_back(-weight * bend / 2);
   }
-  if (!scene_.motion) return pair;
-  Vector moved = Vector::Zero(mesh_.columns);
-  const std::vector<Point> motion = images(scene_.motion, mu, mesh_.points);
-  for (Index i = 0; i < mesh_.nodes(); ++i)
-    moved[vertical_[i]] = motion[i][1];
-  pair.g -= pair.b * moved;
-  pair.nodal_gap -= pair.nodal_b * moved;
-  return pair;
+  Curvature result{along_tau.matrix(), SparseMatrix(std::ssize(rates), mesh_.columns)};
+  result.e.setFromTriplets(of_partners.begin(), of_partners.end());
+  result.e += Eigen::Map<const Vector>(rates.data(), std::ssize(rates)).asDiagonal() * result.s;
+  return result;
+}
+
+/// Of each piece of the slave curve, then whether all of the master curve are.
+std::vector<std::array<bool, 2>> PairInterface::closed_ends() const {
+  const std::size_t pieces = slave_->pieces.size();
+  std::vector<std::array<bool, 2>> closed(pieces + 1, {true, true});
+  for (std::size_t k = 0; k < pieces + master_->pieces.size(); ++k)
+    for (std::size_t end = 0; end < 2; ++end)
+      if (!mesh_.closed(k)[end]) closed[std::min(k, pieces)][end] = false;
+  return closed;
+}
+
+void PairInterface::outputs(const FullMu &mu, const ContactOperators &operators,
+                            const Vector &lambda, double least, Outputs &outputs) const {
+  const Index count = multipliers_.count();
+  const Vector pressure = lambda.head(count);
+  pressure_outputs(scene_.mirror_images, operators.weights, pressure, least, outputs);
+  const HatWeights hats =
+      curves(images(scene_.map, mu, mesh_.points)).slave.hats(scene_.axisymmetric);
+  outputs.ends_in_contact = ends_in_contact(multipliers_, *slave_, hats, operators.weights,
+                                            pressure, least, closed_ends());
+  if (friction())
+    friction_outputs(scene_.mirror_images, operators.weights, lambda, bound(mu), outputs);
+  if (is_of_heights(pair_)) return;
+  Point force{}; // on the slave
+  for (const PairPoint &p : partners(mu, operators.state).points) {
+    const Point tau{p.normal[1], -p.normal[0], 0};
+    force = force + p.weight * multipliers_.sum(pressure, p.slave_edge, p.s) * p.normal;
+    if (friction())
+      force = force - p.weight * multipliers_.sum(lambda.tail(count), p.slave_edge, p.s) * tau;
+  }
+  outputs.reaction = scene_.mirror_images * force[1];
+  if (scene_.mirror_images == 1) outputs.horizontal_reaction = force[0];
+  if (scene_.axisymmetric) drop_plane_outputs(outputs);
+}
+
+Grid PairInterface::fields(const FullMu &mu, const Vector &u, const Vector &lambda) {
+  const Vector state = at_columns(mesh_, u);
+  const PairOperators pair = operators_at(mu, {state});
+  if (pair.paired.size() < 2) return {};
+  Grid grid = polyline(scene_, mu, mesh_, pair.paired, u);
+  add_gap(pair.nodal_gap - pair.nodal_b * state, pair.normals, grid);
+  const bool constant = multipliers_.space() == MultiplierSpace::macro_edges;
+  std::vector<bool> shown(slave_->vertices(), false);
+  std::vector<Index> of_values; // the multiplier of each edge, or vertex, that is shown
+  for (const Index vertex : pair.paired)
+    shown[vertex] = true;
+  for (Index e = 0; e < slave_->edges() && constant; ++e)
+    if (shown[slave_->ends[e][0]] && shown[slave_->ends[e][1]])
+      of_values.push_back(multipliers_.on_edge(e)[0]);
+  if (!constant) of_values = pair.paired;
+  const Index count = multipliers_.count();
+  add_stress("pressure", lambda.head(count)(of_values), constant, grid);
+  if (friction()) add_stress("tangential_stress", lambda.tail(count)(of_values), constant, grid);
+  return grid;
 }
 
 } // namespace
 
 ContactRecipe two_bodies(Pair pair) {
+  if (pair.large && pair.friction.law != FrictionLaw::none)
+    throw bad_input("two bodies have friction with kinematics: small alone: leave it out, or use "
+                    "small");
+  if (pair.large && is_vertical(pair))
+    throw bad_input("projection: vertical is for small deformations: leave it out with "
+                    "kinematics: large");
+  if (pair.large && pair.discretisation.quadrature == PairQuadrature::direct)
+    throw bad_input("integration: direct is for small deformations: leave it out with "
+                    "kinematics: large");
+  // There is no traction through the air, nor where no partner is faced.
+  pair.friction.only_in_contact = pair.friction.law == FrictionLaw::tresca;
   ContactRecipe recipe;
-  recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {1}, true};
+  recipe.entities = {InterfaceEntities::Kind::curves, {pair.slave, pair.master}, {}, true};
+  if (is_of_heights(pair)) recipe.entities.components = {1};
+  add_friction(pair.friction, recipe);
   recipe.separable = false;
+  recipe.follows_state = pair.large;
   recipe.keeps_nodes = true;
   recipe.make = [pair](const Scene &scene, InterfaceMesh mesh) {
     return std::make_unique<PairInterface>(scene, std::move(mesh), pair);
   };
-  const auto &[multiplier, quadrature] = pair.discretisation;
+  const auto &[multiplier, quadrature, projection] = pair.discretisation;
   recipe.record = {"two_bodies",
-                   3,
+                   4,
                    {{"linear_pressure", {multiplier == MultiplierSpace::nodes ? 1.0 : 0.0}},
-                    {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}}},
+                    {"direct", {quadrature == PairQuadrature::direct ? 1.0 : 0.0}},
+                    {"vertical", {projection == PairProjection::vertical ? 1.0 : 0.0}},
+                    {"large", {pair.large ? 1.0 : 0.0}}},
                    {{"slave", pair.slave}, {"master", pair.master}}};
+  add_friction(pair.friction, recipe.record);
   return recipe;
 }
 
 ContactKind two_bodies_kind() {
-  return {"two_bodies", 3, [](const Record &record) {
-            const bool linear = number(record, "linear_pressure") != 0,
-                       direct = number(record, "direct") != 0;
-            return two_bodies({text(record, "slave"),
-                               text(record, "master"),
-                               {linear ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
-                                direct ? PairQuadrature::direct : PairQuadrature::intersection}});
+  return {"two_bodies", 4, [](const Stored &of) {
+            const auto is = [&](const char *name) { return number(of, name) != 0; };
+            return two_bodies(
+                {text(of, "slave"),
+                 text(of, "master"),
+                 {is("linear_pressure") ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
+                  is("direct") ? PairQuadrature::direct : PairQuadrature::intersection,
+                  is("vertical") ? PairProjection::vertical : PairProjection::normal},
+                 is("large"),
+                 friction_in(of)});
           }};
 }
 

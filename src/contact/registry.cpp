@@ -1,6 +1,5 @@
 #include "rbvi/contact/registry.hpp"
 
-#include "rbvi/contact/large_pair.hpp"
 #include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/contact/pair.hpp"
@@ -15,9 +14,7 @@
 namespace rbvi {
 
 Registry registry_of(std::vector<SceneEntry> scenes) {
-  Registry registry{std::move(scenes),
-                    {obstacle_kind(), two_bodies_kind(), deformed_bodies_kind()},
-                    common_functions()};
+  Registry registry{std::move(scenes), {obstacle_kind(), two_bodies_kind()}, common_functions()};
   for (const ContactKind &kind : rigid_kinds())
     registry.kinds.push_back(kind);
   const auto add = [&](const FunctionLibrary &more) {

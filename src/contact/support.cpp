@@ -97,9 +97,8 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
                                                    grid.points(k, 1) + moved[3 * k + 1], 0});
   }
   add_gap(gap, normals, grid, ways);
-  grid.of_nodes.push_back({"pressure", lambda.head(count), "Pa"});
-  if (lambda.size() > count)
-    grid.of_nodes.push_back({"tangential_stress", lambda.tail(count), "Pa"});
+  add_stress("pressure", lambda.head(count), false, grid);
+  if (lambda.size() > count) add_stress("tangential_stress", lambda.tail(count), false, grid);
   return grid;
 }
 

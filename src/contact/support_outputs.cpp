@@ -54,7 +54,7 @@ void drop_plane_outputs(Outputs &outputs) {
 void support_outputs(const SupportState &state, Outputs &outputs) {
   const Index count = state.weights.size();
   const Vector pressure = state.lambda.head(count);
-  double contact = 0, stick = 0, sticking = 0;
+  double contact = 0;
   for (Index i = 0; i < count; ++i)
     if (pressure[i] > 0) contact += state.weights[i];
   outputs.contact_nodes = static_cast<double>((pressure.array() > 0).count());
@@ -65,21 +65,29 @@ void support_outputs(const SupportState &state, Outputs &outputs) {
   outputs.contact_measure = contact;
   outputs.contact_half_width = contact / 2;
   outputs.peak_pressure = pressure.maxCoeff();
-  outputs.centre_pressure = centre_pressure(pressure, arc_lengths(state.points), contact / 2);
-  if (state.lambda.size() == count) return;
+  if (state.points.rows() > 0)
+    outputs.centre_pressure = centre_pressure(pressure, arc_lengths(state.points), contact / 2);
+  if (state.lambda.size() > count)
+    friction_outputs(1, state.weights, state.lambda, state.bound, outputs);
+}
 
-  const Vector shear = state.lambda.tail(count).cwiseAbs();
-  const Vector bounds = values_of(state.bound, pressure);
+void friction_outputs(double images, const Vector &weights, const Vector &lambda,
+                      const FrictionBound &bound, Outputs &outputs) {
+  const Index count = weights.size();
+  const Vector pressure = lambda.head(count), shear = lambda.tail(count).cwiseAbs(),
+               bounds = values_of(bound, pressure);
+  double stick = 0, sticking = 0;
   const double violation = std::max(0.0, (shear - bounds).maxCoeff());
   for (Index i = 0; i < count; ++i)
     if (pressure[i] > 0 && sticks(shear[i], bounds[i], violation)) {
-      stick += state.weights[i];
+      stick += weights[i];
       ++sticking;
     }
-  outputs.slip_directions = direction_count(state.lambda.tail(count), pressure);
-  outputs.tangential_force = state.weights.dot(shear);
-  outputs.stick_half_width = stick / 2;
-  outputs.stick_nodes = sticking;
+  const double directions = direction_count(lambda.tail(count), pressure);
+  outputs.slip_directions = std::min(images * directions, 2.0); // an image slips the other way
+  outputs.tangential_force = images * weights.dot(shear);
+  outputs.stick_half_width = images * stick / 2;
+  outputs.stick_nodes = images * sticking;
   outputs.friction_violation = violation;
 }
 

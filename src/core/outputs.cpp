@@ -18,9 +18,9 @@ const std::vector<OutputColumn> &output_columns() {
       {"normal_force", &Outputs::normal_force, quantity, "integral of the contact pressure"},
       {"tangential_force", &Outputs::tangential_force, quantity,
        "integral of the magnitude of the tangential stress"},
-      {"reaction", &Outputs::reaction, quantity, "vertical force of the support on the body"},
+      {"reaction", &Outputs::reaction, quantity, "vertical force of contact on the (first) body"},
       {"horizontal_reaction", &Outputs::horizontal_reaction, quantity,
-       "horizontal force of the support on the body, to the right"},
+       "horizontal force of contact on the (first) body, to the right"},
       {"contact_measure", &Outputs::contact_measure, measure,
        "length or area in contact: weights of the nodes with pressure (of the membrane with "
        "-lumped each by its pressure over the largest beside it)"},
@@ -30,7 +30,8 @@ const std::vector<OutputColumn> &output_columns() {
       {"peak_pressure", &Outputs::peak_pressure, quantity,
        "largest pressure at a node, wherever it is"},
       {"centre_pressure", &Outputs::centre_pressure, quantity,
-       "pressure at the middle of the curve, from a fit over the inner 12 % of the contact"},
+       "pressure at the middle of a curve in one open piece, from a fit over the inner 12 % of the "
+       "contact"},
       {"min_u", &Outputs::min_u, quantity, "smallest displacement of the whole field"},
       {"contact_nodes", &Outputs::contact_nodes, check,
        "nodes (-multiplier p0: pairs of edges) with pressure"},

@@ -1,8 +1,8 @@
 #include "rbvi/fem/interface_mesh.hpp"
 
-#include "curve_nodes.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
+#include "rbvi/element/facets.hpp"
 #include "rbvi/fem/materials.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/par/gather.hpp"
@@ -30,32 +30,31 @@ struct SeenCell {
   std::array<int, most_nodes> nodes;
 };
 
-/// Those of all ranks; nodes by increasing natural number, `fixed` a bit for each component.
-struct SeenCells {
-  std::vector<SeenCell> cells;
+/// Nodes of all ranks by increasing natural number; `fixed`: a bit for each component.
+struct SeenNodes {
   std::vector<PetscInt> natural, fixed;
   std::vector<Point> points;
+  Index position(PetscInt number) const {
+    return std::ranges::lower_bound(natural, number) - natural.begin();
+  }
+  const Point &at(PetscInt number) const { return points[position(number)]; }
 };
 
-/// This rank's nodes of some of its cells, each once.
-std::vector<std::size_t> nodes_of_cells(const Mesh &mesh, const std::vector<SeenCell> &mine) {
-  std::vector<bool> seen(mesh.points.size(), false);
-  for (const SeenCell &cell : mine)
-    for (std::size_t i = 0; i < cell.nodes.size() && cell.nodes[i] >= 0; ++i)
-      seen[cell.nodes[i]] = true;
-  std::vector<std::size_t> nodes;
-  for (std::size_t node = 0; node < seen.size(); ++node)
-    if (seen[node]) nodes.push_back(node);
-  return nodes;
-}
+struct SeenCells {
+  std::vector<SeenCell> cells;
+  SeenNodes nodes;
+};
 
-/// Fills in the nodes of all ranks; those on the border of several come from each of them.
-void gather_nodes(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine,
-                  SeenCells &all) {
+/// From this rank's nodes, some of them many times; those on the border of several ranks come from
+/// each of them.
+SeenNodes gather_nodes(const Mesh &mesh, const Dofs &dofs, std::vector<int> mine) {
+  std::ranges::sort(mine);
+  mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
   const auto components = static_cast<std::size_t>(dofs.components);
   std::vector<PetscInt> natural, fixed;
   std::vector<double> x;
-  for (const std::size_t node : nodes_of_cells(mesh, mine)) {
+  for (const int local : mine) {
+    const auto node = static_cast<std::size_t>(local);
     natural.push_back(mesh.natural_node[node]);
     x.insert(x.end(), mesh.points[node].begin(), mesh.points[node].end());
     fixed.push_back(0);
@@ -68,40 +67,83 @@ void gather_nodes(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell
   std::vector<std::size_t> order(natural.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t k) { return natural[k]; });
+  SeenNodes all;
   for (const std::size_t k : order) {
     if (!all.natural.empty() && all.natural.back() == natural[k]) continue;
     all.natural.push_back(natural[k]);
     all.fixed.push_back(fixed[k]);
     all.points.push_back({x[3 * k], x[3 * k + 1], x[3 * k + 2]});
   }
+  return all;
 }
 
 /// `mine`: with this rank's local nodes. Collective.
 SeenCells gather_cells(const Mesh &mesh, const Dofs &dofs, const std::vector<SeenCell> &mine) {
-  SeenCells all;
-  gather_nodes(mesh, dofs, mine, all);
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(mesh.dim, mesh.degree));
+  std::vector<int> nodes;
   std::vector<PetscInt> packed;
   for (const SeenCell &cell : mine) {
+    nodes.insert(nodes.end(), cell.nodes.begin(),
+                 cell.nodes.begin() + static_cast<std::ptrdiff_t>(per_cell));
     packed.insert(packed.end(), {cell.number, cell.edge});
     for (std::size_t i = 0; i < per_cell; ++i)
       packed.push_back(mesh.natural_node[cell.nodes[i]]);
   }
+  SeenCells all{{}, gather_nodes(mesh, dofs, std::move(nodes))};
   packed = gather_all(mesh.comm, packed, MPIU_INT);
   for (std::size_t at = 0; at < packed.size(); at += 2 + per_cell) {
     SeenCell &cell = all.cells.emplace_back(SeenCell{packed[at], packed[at + 1], {}});
     for (std::size_t i = 0; i < per_cell; ++i)
-      cell.nodes[i] = static_cast<int>(std::ranges::lower_bound(all.natural, packed[at + 2 + i]) -
-                                       all.natural.begin());
+      cell.nodes[i] = static_cast<int>(all.nodes.position(packed[at + 2 + i]));
   }
   return all;
+}
+
+/// The pieces of a boundary in the order that InterfaceMesh has, `second` of two; `backwards`: the
+/// body is on the right.
+struct OrderedPiece {
+  CurvePiece chain;
+  bool backwards;
+};
+
+std::vector<OrderedPiece> ordered_pieces(const Mesh &mesh, const SeenNodes &nodes,
+                                         const std::string &boundary, bool alone, bool second) {
+  std::vector<OrderedPiece> pieces;
+  if (mesh.curves.at(boundary).empty())
+    throw bad_input("the contact boundary '" + boundary + "' has no edge");
+  for (CurvePiece piece : mesh.curves.at(boundary)) {
+    const auto x = [&](PetscInt vertex) { return -nodes.at(vertex)[0]; };
+    const auto not_rising = [](double before, double after) { return before >= after; };
+    const bool leftwards = !piece.loop && std::ranges::adjacent_find(piece.vertices, not_rising,
+                                                                     x) == piece.vertices.end();
+    const bool backwards = second || (alone && leftwards);
+    if (backwards) {
+      std::reverse(piece.vertices.begin() + (piece.loop ? 1 : 0), piece.vertices.end());
+      std::swap(piece.closed_ends[0], piece.closed_ends[1]);
+    }
+    pieces.push_back({std::move(piece), backwards});
+  }
+  return pieces;
+}
+
+/// Calls visit(begin, end), natural numbers, for the edges in their order, the body on the left of
+/// each.
+template <class Visit>
+void visit_edges(const std::vector<OrderedPiece> &pieces, const Visit &visit) {
+  for (const auto &[piece, backwards] : pieces) {
+    const std::vector<PetscInt> &v = piece.vertices;
+    for (std::size_t i = 0; i + (piece.loop ? 0 : 1) < v.size(); ++i) {
+      const PetscInt a = v[i], b = v[(i + 1) % v.size()];
+      backwards ? visit(b, a) : visit(a, b);
+    }
+  }
 }
 
 /// Cells in their order.
 Found found_cells(const Mesh &mesh, const Dofs &dofs, SeenCells &&seen) {
   Found found;
   found.mesh.per_entity = nodes_per_cell(mesh.dim, mesh.degree);
-  for (const PetscInt fixed : seen.fixed)
+  for (const PetscInt fixed : seen.nodes.fixed)
     for (int c = 0; c < dofs.components; ++c)
       found.free.push_back((fixed >> c & 1) == 0);
   for (const SeenCell &cell : seen.cells) {
@@ -109,9 +151,9 @@ Found found_cells(const Mesh &mesh, const Dofs &dofs, SeenCells &&seen) {
                                cell.nodes.begin() + found.mesh.per_entity);
     if (cell.edge >= 0) found.mesh.edges.push_back(static_cast<int>(cell.edge));
   }
-  found.mesh.parts = {static_cast<int>(seen.natural.size())};
-  found.mesh.points = std::move(seen.points);
-  found.natural = std::move(seen.natural);
+  found.mesh.parts = {static_cast<int>(seen.nodes.natural.size())};
+  found.mesh.points = std::move(seen.nodes.points);
+  found.natural = std::move(seen.nodes.natural);
   return found;
 }
 
@@ -130,70 +172,108 @@ Found find_region(const Mesh &mesh, const Dofs &dofs, const std::string &name) {
   return found_cells(mesh, dofs, std::move(seen));
 }
 
-/// Local edge of a triangle whose nodes are all on the boundary; -1: none.
-int edge_on(const std::vector<bool> &boundary, const std::array<int, most_nodes> &nodes,
-            int degree) {
-  const auto on = [&](std::size_t i) { return boundary[nodes[i]]; };
-  for (std::size_t e = 0; e < 3; ++e)
-    if (on(simplex_edges[e][0]) && on(simplex_edges[e][1]) && (degree == 1 || on(3 + e)))
-      return static_cast<int>(e);
-  return -1;
+void add_closed_ends(const std::vector<OrderedPiece> &pieces, InterfaceMesh &interface) {
+  for (const OrderedPiece &piece : pieces)
+    for (const bool closed : piece.chain.closed_ends)
+      interface.closed_ends.push_back(closed ? 1 : 0);
 }
 
 Found find_cells_beside(const Mesh &mesh, const Dofs &dofs, const std::string &boundary) {
   std::vector<SeenCell> mine;
-  for (std::size_t k = 0; k < mesh.cells.size(); ++k)
-    if (const int edge = edge_on(mesh.boundary.at(boundary), nodes_of(mesh, k), mesh.degree);
-        edge >= 0)
-      mine.push_back(seen_cell(mesh, k, edge));
-  SeenCells seen = gather_cells(mesh, dofs, mine);
-  if (seen.cells.empty()) throw bad_input("no cell has an edge on the boundary '" + boundary + "'");
-  std::ranges::sort(seen.cells, {}, [&](const SeenCell &cell) {
-    const auto x = [&](int i) { return seen.points[cell.nodes[i]][0]; };
-    const auto [a, b] = simplex_edges[cell.edge];
-    return x(a) + x(b);
-  });
-  return found_cells(mesh, dofs, std::move(seen));
-}
-
-/// Adds the edges of a curve whose nodes begin at `first`: vertices, then middles.
-void add_edges(int first, int nodes, int degree, std::vector<int> &entities) {
-  const int edges = (nodes - 1) / degree;
-  for (int e = 0; e < edges; ++e) {
-    entities.insert(entities.end(), {first + e, first + e + 1});
-    if (degree == 2) entities.push_back(first + edges + 1 + e);
+  for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
+    const std::vector<int> ends = facet_nodes(2, 1, facet);
+    int edge = 0;
+    while (std::ranges::count(ends, simplex_edges[edge][0]) == 0 ||
+           std::ranges::count(ends, simplex_edges[edge][1]) == 0)
+      ++edge;
+    mine.push_back(seen_cell(mesh, cell, edge));
   }
+  SeenCells seen = gather_cells(mesh, dofs, mine);
+  const std::vector<OrderedPiece> pieces = ordered_pieces(mesh, seen.nodes, boundary, true, false);
+  std::map<PetscInt, int> number; // of the edge by where it begins
+  visit_edges(pieces, [&](PetscInt begin, PetscInt) { number.emplace(begin, std::ssize(number)); });
+  std::ranges::sort(seen.cells, {}, [&](const SeenCell &cell) {
+    return number.at(seen.nodes.natural[cell.nodes[simplex_edges[cell.edge][0]]]);
+  });
+  Found found = found_cells(mesh, dofs, std::move(seen));
+  add_closed_ends(pieces, found.mesh);
+  return found;
 }
 
-void add_closed_ends(const Mesh &mesh, const std::string &boundary, InterfaceMesh &interface) {
-  const auto &[first, last] = mesh.closed_ends.at(boundary);
-  interface.closed_ends.insert(interface.closed_ends.end(), {first ? 1 : 0, last ? 1 : 0});
+/// What contact sees of a boundary: its nodes, and the middle of the edge that begins at a vertex.
+struct SeenCurve {
+  SeenNodes nodes;
+  std::map<PetscInt, PetscInt> middle;
+};
+
+/// Collective.
+SeenCurve gather_curve(const Mesh &mesh, const Dofs &dofs, const std::string &boundary) {
+  std::vector<int> mine;
+  std::vector<PetscInt> middles;
+  for (const auto &[cell, facet] : mesh.facets.at(boundary)) {
+    const std::array<int, most_nodes> nodes = nodes_of(mesh, cell);
+    std::vector<int> own;
+    for (const int i : facet_nodes(2, mesh.degree, facet))
+      own.push_back(nodes[i]);
+    mine.insert(mine.end(), own.begin(), own.end());
+    if (mesh.degree == 1) continue;
+    for (const int node : own)
+      middles.push_back(mesh.natural_node[node]);
+  }
+  SeenCurve curve{gather_nodes(mesh, dofs, std::move(mine)), {}};
+  middles = gather_all(mesh.comm, middles, MPIU_INT);
+  for (std::size_t i = 0; i < middles.size(); i += 3)
+    curve.middle[middles[i]] = middles[i + 2];
+  return curve;
+}
+
+/// Adds a boundary, whose nodes begin at `first`: vertices, then middles.
+void add_curve(const Mesh &mesh, const SeenCurve &curve, const std::vector<OrderedPiece> &pieces,
+               Found &found) {
+  const auto first = static_cast<int>(found.natural.size());
+  std::map<PetscInt, int> number;
+  for (const OrderedPiece &piece : pieces)
+    for (const PetscInt vertex : piece.chain.vertices) {
+      number.emplace(vertex, first + static_cast<int>(std::ssize(number)));
+      found.natural.push_back(vertex);
+    }
+  auto middle = first + static_cast<int>(std::ssize(number));
+  visit_edges(pieces, [&](PetscInt begin, PetscInt end) {
+    found.mesh.entities.insert(found.mesh.entities.end(), {number.at(begin), number.at(end)});
+    if (mesh.degree == 1) return;
+    found.mesh.entities.push_back(middle++);
+    found.natural.push_back(curve.middle.at(begin));
+  });
+  found.mesh.parts.push_back(static_cast<int>(found.natural.size()) - first);
+  add_closed_ends(pieces, found.mesh);
 }
 
 Found find_curves(const Mesh &mesh, const Dofs &dofs, const InterfaceEntities &entities,
                   const std::function<Point(const Point &)> &snap) {
-  std::vector<int> components = entities.components;
-  const bool sees_all = components.empty(); // then it takes fixed nodes into account
-  if (sees_all) {
-    components.resize(dofs.components);
-    std::iota(components.begin(), components.end(), 0);
-  }
+  const bool sees_all = entities.components.empty(); // then it takes fixed nodes into account
+  const auto sees = [&](int c) {
+    return sees_all || std::ranges::find(entities.components, c) != entities.components.end();
+  };
   Found found;
   found.mesh.per_entity = mesh.degree + 1;
-  for (const std::string &name : entities.parts) {
-    const std::vector<CurveNode> nodes = gather_curve(mesh, dofs, name, components, sees_all);
-    add_edges(static_cast<int>(found.natural.size()), static_cast<int>(nodes.size()), mesh.degree,
-              found.mesh.entities);
-    found.mesh.parts.push_back(static_cast<int>(nodes.size()));
-    add_closed_ends(mesh, name, found.mesh);
-    for (const CurveNode &node : nodes) {
-      const bool middle = node.natural >= mesh.total_vertices;
-      found.natural.push_back(node.natural);
-      found.mesh.points.push_back(middle && entities.snapped && snap ? snap(node.point)
-                                                                     : node.point);
-      for (int c = 0; c < dofs.components; ++c)
-        found.free.push_back((node.fixed >> c & 1) == 0 &&
-                             std::ranges::find(components, c) != components.end());
+  for (std::size_t part = 0; part < entities.parts.size(); ++part) {
+    const std::string &name = entities.parts[part];
+    const std::size_t first = found.natural.size();
+    const SeenCurve curve = gather_curve(mesh, dofs, name);
+    add_curve(mesh, curve,
+              ordered_pieces(mesh, curve.nodes, name, entities.parts.size() == 1, part > 0), found);
+    for (std::size_t i = first; i < found.natural.size(); ++i) {
+      const Index at = curve.nodes.position(found.natural[i]);
+      const bool middle = found.natural[i] >= mesh.total_vertices;
+      const Point &x = curve.nodes.points[at];
+      found.mesh.points.push_back(middle && entities.snapped && snap ? snap(x) : x);
+      for (int c = 0; c < dofs.components; ++c) {
+        const bool free = (curve.nodes.fixed[at] >> c & 1) == 0;
+        if (!free && sees(c) && !sees_all)
+          throw bad_input("the displacement is fixed on the contact curve '" + name +
+                          "': contact cannot move it");
+        found.free.push_back(free && sees(c));
+      }
     }
   }
   return found;
@@ -208,7 +288,6 @@ Found find_interface(const Mesh &mesh, const Dofs &dofs, const Scene &scene,
   Found found = entities.kind == cells    ? find_region(mesh, dofs, entities.parts.front())
                 : entities.kind == curves ? find_curves(mesh, dofs, entities, scene.snap)
                                           : find_cells_beside(mesh, dofs, entities.parts.front());
-  if (entities.kind == cells_beside) add_closed_ends(mesh, entities.parts.front(), found.mesh);
   found.mesh.dim = mesh.dim;
   found.mesh.degree = mesh.degree;
   found.mesh.components = dofs.components;

@@ -237,6 +237,7 @@ void fill_cell_middles(Mesh &mesh, PetscInt first_vertex) {
 struct Undistributed {
   SerialMesh mesh;
   std::map<std::string, std::vector<SerialFacet>> facets; ///< of every boundary
+  std::map<std::string, std::vector<CurvePiece>> curves;  ///< of those with contact
   std::size_t points = 0;                                 ///< of its DM
   std::map<std::string, std::vector<char>> marks;         ///< per region and boundary, of them
   std::vector<int> bodies;                                ///< of the cells, then 0
@@ -287,14 +288,21 @@ void fill_bodies(Mesh &mesh, const Migration &migration, const std::vector<int> 
   MPI_Allreduce(MPI_IN_PLACE, &mesh.bodies, 1, MPI_INT, MPI_MAX, mesh.comm);
 }
 
-/// As the first rank knows them, which alone has the whole mesh.
-void fill_closed_ends(Mesh &mesh, const Scene &scene, const SerialMesh &whole) {
-  for (const std::string &name : contact_curves(scene)) {
-    std::array<bool, 2> closed{};
-    if (!whole.cells.empty()) closed = closed_ends(whole, name);
-    MPI_Bcast(closed.data(), 2, MPI_CXX_BOOL, 0, mesh.comm);
-    mesh.closed_ends[name] = closed;
+/// The pieces of the first rank, on every rank.
+void share(MPI_Comm comm, std::vector<CurvePiece> &pieces) {
+  std::vector<PetscInt> packed;
+  for (const auto &[vertices, loop, ends] : pieces) {
+    packed.insert(packed.end(),
+                  {static_cast<PetscInt>(vertices.size()), loop, ends[0], ends[1]});
+    packed.insert(packed.end(), vertices.begin(), vertices.end());
   }
+  auto size = static_cast<int>(packed.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+  packed.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(packed.data(), size, MPIU_INT, 0, comm);
+  pieces.clear();
+  for (auto at = packed.begin(); at != packed.end(); at += 4 + at[0])
+    pieces.push_back({{at + 4, at + 4 + at[0]}, at[1] != 0, {at[2] != 0, at[3] != 0}});
 }
 
 std::vector<bool> at_nodes(const Mesh &mesh, const std::vector<char> &marks) {
@@ -320,6 +328,8 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
     fingerprint = fingerprint_of(all.mesh);
     for (const std::string &name : scene.mesh.boundaries)
       if (all.mesh.boundary.contains(name)) all.facets[name] = facets_with_cells(all.mesh, name);
+    for (const std::string &name : contact_curves(scene))
+      all.curves[name] = curve_pieces(all.mesh, name, "the mesh");
   });
 
   Mesh mesh;
@@ -342,7 +352,10 @@ Mesh make_mesh(MPI_Comm comm, const Scene &scene, const MeshOptions &options) {
   const Migration migration(mesh.dm, part, world.size);
   fill_nodes_and_cells(mesh, migration, edges, all.points);
   fill_bodies(mesh, migration, all.bodies);
-  fill_closed_ends(mesh, scene, all.mesh);
+  for (const std::string &name : contact_curves(scene)) {
+    share(comm, all.curves[name]);
+    mesh.curves[name] = all.curves[name];
+  }
   for (const std::string &name : scene.mesh.regions)
     mesh.region[name] = own_region(mesh, migration.arrived(all.marks[name], MPI_CHAR));
   std::unordered_map<PetscInt, std::size_t> cell_of; // by natural number

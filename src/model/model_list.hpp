@@ -4,6 +4,7 @@
 
 #include "model_fields.hpp"
 #include "nitsche_part.hpp"
+#include "rbvi/contact/curve.hpp"
 #include "rbvi/model/packed.hpp"
 
 #include <cmath>
@@ -161,7 +162,7 @@ void list_interface(const Store &store, const std::string &at, Interface &interf
   });
   store(at + "/closed_ends", mesh.closed_ends, Indices{2});
   store.ask(at + "/closed_ends does not fit", [&] {
-    return mesh.closed_ends.empty() || mesh.closed_ends.size() == 2 * mesh.parts.size();
+    return mesh.closed_ends.empty() || mesh.closed_ends.size() == 2 * count_pieces(mesh);
   });
   store(at + "/dofs", mesh.dofs, Indices{mesh.columns, nodes * mesh.components, -1});
   store(at + "/imposed_by", mesh.imposed_by);

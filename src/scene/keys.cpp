@@ -132,6 +132,9 @@ const std::vector<CaseKey> all_keys{
     {"contact.*", "lumped", "no | yes", "vertex quadrature in b and g"},
     {"contact.*", "multiplier", "p0 | p1",
      "two bodies: constant on pairs of edges (of degree 2 on edges), or continuous"},
+    {"contact.*", "projection", "normal | vertical",
+     "two bodies: partners along the averaged normals of the second boundary, or (small "
+     "kinematics) below the points of the first"},
     {"contact.*", "integration", "intersection | direct",
      "two bodies: edges intersected, or Gauss points of the first alone"},
     {"contact.*.against", "disk", "table", "a rigid disk"},
@@ -147,7 +150,8 @@ const std::vector<CaseKey> all_keys{
     {"contact.*.friction", "coulomb", "expression", "the coefficient", false, "1"},
     {"contact.*.friction", "tresca", "expression", "the threshold, a pressure", false, "N/m^2"},
     {"contact.*.friction", "bound", "everywhere | contact",
-     "where Tresca's threshold holds: on the whole boundary, or where there is contact"},
+     "where Tresca's threshold holds: on the whole boundary, or where there is contact (between "
+     "bodies always)"},
     {"outputs.*", "at", "contacts", "over which; default: all"},
     {"outputs.*", "integral", "expression",
      "in parameters, x, y, ux, uy, pressure, gap, tangential (the tangential stress)"},

@@ -1,6 +1,5 @@
 #include "reader.hpp"
 
-#include "rbvi/contact/large_pair.hpp"
 #include "rbvi/contact/nitsche_support.hpp"
 #include "rbvi/contact/obstacle.hpp"
 #include "rbvi/contact/pair.hpp"
@@ -178,22 +177,23 @@ ContactRecipe with_something_rigid(Reader &reader, const CaseNode &node, const C
   return by_nitsche(rigid, gamma0);
 }
 
-ContactRecipe with_another_body(const CaseNode &node, const std::string &master) {
-  check_used(node, "between bodies", {"at", "against", "kinematics", "multiplier", "integration"});
-  const std::string &slave = entry(node, "at").value;
-  const MultiplierSpace space = choice_or(node, "multiplier", "p0", {"p0", "p1"}) == "p1"
-                                    ? MultiplierSpace::nodes
-                                    : MultiplierSpace::macro_edges;
-  const bool direct =
-      choice_or(node, "integration", "intersection", {"intersection", "direct"}) == "direct";
-  if (is_large(node)) {
-    if (direct)
-      throw bad_input("integration: direct is for small deformations: leave it out with "
-                      "kinematics: large");
-    return deformed_bodies({slave, master, space});
-  }
-  return two_bodies(
-      {slave, master, {space, direct ? PairQuadrature::direct : PairQuadrature::intersection}});
+ContactRecipe with_another_body(Reader &reader, const CaseNode &node, const std::string &master,
+                                Scene &scene) {
+  check_used(
+      node, "between bodies",
+      {"at", "against", "kinematics", "multiplier", "integration", "projection", "friction"});
+  const bool continuous = choice_or(node, "multiplier", "p0", {"p0", "p1"}) == "p1",
+             direct = choice_or(node, "integration", "intersection", {"intersection", "direct"}) ==
+                      "direct",
+             vertical =
+                 choice_or(node, "projection", "normal", {"normal", "vertical"}) == "vertical";
+  return two_bodies({entry(node, "at").value,
+                     master,
+                     {continuous ? MultiplierSpace::nodes : MultiplierSpace::macro_edges,
+                      direct ? PairQuadrature::direct : PairQuadrature::intersection,
+                      vertical ? PairProjection::vertical : PairProjection::normal},
+                     is_large(node),
+                     friction_in(reader, node, scene)});
 }
 
 ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
@@ -212,7 +212,7 @@ ContactRecipe contact_in(Reader &reader, const CaseNode &node, Scene &scene) {
                      yes_or(node, "lumped", false)});
   }
   return against->is_table() ? with_something_rigid(reader, node, *against, scene)
-                             : with_another_body(node, against->value);
+                             : with_another_body(reader, node, against->value, scene);
 }
 
 } // namespace

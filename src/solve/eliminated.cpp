@@ -298,10 +298,12 @@ MethodResult Eliminated::solve(const Operators &op, const Vector &start, double 
   const LargestOverRanks largest = [&](Vector &values) {
     over_ranks(layout_.comm, MPI_MAX, values);
   };
+  Vector own_start = start.size() > 0 ? Vector(start(layout_.rows)) : Vector();
+  for (Index row = 0; row < own_start.size(); ++row) // one that faces no partner has no row
+    if (contact.b.row(row).nonZeros() == 0) own_start[row] = 0;
   const FrictionResult found = solve_by_sets(
       solver, diagonal_of(layout_, contact, op.a, result.free_u.get()), own_laws(layout_, op.laws),
-      start.size() > 0 ? Vector(start(layout_.rows)) : Vector(), {.tolerance = accuracy}, largest,
-      by_rule);
+      own_start, {.tolerance = accuracy}, largest, by_rule);
   RBVI_CALL(VecCopy(u_.get(), result.free_u.get()));
   result.iterations = found.iterations;
   result.converged = found.converged;

@@ -69,7 +69,7 @@ Vector rough_start(KSP ksp, Problem &problem, const Operators &op) {
   const DistributedContact contact = distribute(layout, op, op.laws);
   const Handle<Mat> w = distribute(layout, problem.w_product());
   MethodResult found = solve_uzawa(ksp, layout, contact, op.f, w.get(), rough);
-  return found.lambda;
+  return found.lambda.allFinite() ? found.lambda : Vector(); // not finite: B is zero
 }
 
 } // namespace

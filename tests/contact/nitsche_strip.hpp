@@ -39,6 +39,7 @@ inline Strip strip(int degree, const Curve &curve, Side side = Side::above) {
       beside.dofs[2 * i] = static_cast<int>(2 * node);
       beside.dofs[2 * i + 1] = static_cast<int>(2 * node + 1);
     }
+    beside.ends = {static_cast<int>(first), static_cast<int>(second)};
     result.cells.push_back(beside);
   }
   return result;

@@ -27,8 +27,11 @@ struct Stack {
     scene.motion = [](const FullMu &mu, const Point &x) {
       return Point{0, x[1] > 0.5 ? -push * mu[0] : push, 0};
     };
-    scene.contacts = {rigid_support(flat.support), two_bodies({"slave", "master", {}})};
+    scene.contacts = {rigid_support(flat.support),
+                      two_bodies({"slave", "master", {.projection = PairProjection::vertical}})};
     above = support_curve(line(5, 0, 2, 2), 1);
+    for (std::size_t e = 0; e < 5; ++e) // the body is below
+      std::swap(above.entities[2 * e], above.entities[2 * e + 1]);
     pair = support_curve(line(4, 0, 2, 1), 1);
     const InterfaceMesh lower = support_curve(line(3, 0, 1.5, 0), 1);
     for (const int node : lower.entities)

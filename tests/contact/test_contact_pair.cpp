@@ -309,9 +309,10 @@ TEST(Multipliers, MacroEdgesTakeTwoEdgesAndTheLastAThirdIfOdd) {
   EXPECT_EQ(multiplier_count(561, lac), 280);
   EXPECT_EQ(multiplier_count(561, nodes), 561);
   const Curve odd = line(5, 0, 5, 0);
-  EXPECT_EQ(couple(odd, odd, {lac, exact}).weights, (Vector{{2, 3}}));
+  // Where vertices of the master are along the slave is found to round-off.
+  EXPECT_LT((couple(odd, odd, {lac, exact}).weights - Vector{{2, 3}}).norm(), 1e-14);
   const Curve one = line(1, 0, 3, 0);
-  EXPECT_NEAR(couple(one, odd, {lac, exact}).weights[0], 3, 1e-15);
+  EXPECT_NEAR(couple(one, odd, {lac, exact}).weights[0], 3, 1e-14);
   EXPECT_NEAR(couple(one, one, {nodes, direct}).weights[1], 1.5, 1e-15);
 }
 

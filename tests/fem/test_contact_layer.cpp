@@ -178,7 +178,7 @@ std::string refusal(const Disk &d) {
 
 TEST(ContactLayer, NeedsAnEdgeOnTheBoundary) {
   Disk d;
-  d.mesh.boundary.at("contact").assign(d.mesh.points.size(), false);
+  d.mesh.curves.at("contact").clear();
   EXPECT_NE(refusal(d).find("boundary 'contact'"), std::string::npos);
 }
 

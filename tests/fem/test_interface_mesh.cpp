@@ -171,7 +171,8 @@ TEST(InterfaceMesh, TwoInterfacesDoNotConstrainTheSameDisplacement) {
   scene.contacts.push_back(flat_support("slave again"));
   Placed placed(two_supports(), held_above_and_below);
   placed.mesh.boundary["slave again"] = placed.mesh.boundary.at("slave");
-  placed.mesh.closed_ends["slave again"] = placed.mesh.closed_ends.at("slave");
+  placed.mesh.curves["slave again"] = placed.mesh.curves.at("slave");
+  placed.mesh.facets["slave again"] = placed.mesh.facets.at("slave");
   EXPECT_TRUE(refuses("on 'slave' and contact on 'slave again' both constrain the displacement "
                       "along x at (0, 0.25, 0)",
                       [&] { (void)place_interfaces(placed.mesh, placed.dofs, scene); }));

@@ -1,5 +1,6 @@
 // Dirichlet conditions by component and the two contact curves: against the geometry of the quarter
 // discs, at any number of ranks.
+#include "rbvi/contact/curve.hpp"
 #include "rbvi/contact/pair.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/fem/interface_mesh.hpp"
@@ -229,19 +230,28 @@ TEST(ContactCurves, MayBeHeldSidewaysButNotVertically) {
 
 TEST(ContactCurves, NeedAnEdge) {
   Discs d;
-  d.mesh.boundary.at("master").assign(d.mesh.points.size(), false);
+  d.mesh.curves.at("master").clear();
   EXPECT_CONTAINS(refusal([&] { (void)curves_of(d.mesh, d.dofs, d.scene); }),
                   "'master' has no edge");
 }
 
-TEST(ContactCurves, NeedToBeGraphsOverX) {
-  Scene scene = make_scene("patch");
-  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+/// Both upright sides of two blocks, against the foot of the upper one.
+TEST(ContactCurves, MayBeUprightAndInSeveralPieces) {
+  Scene scene = make_scene("patch", {{"degree", "2"}});
   scene.contacts = {two_bodies({"slave", "sides", {}})};
-  const std::string message =
-      refusal([&] { (void)curves_of(mesh, number_dofs(mesh, 2, {}), scene); });
-  EXPECT_CONTAINS(message, "'sides'");
-  EXPECT_CONTAINS(message, "same x");
+  const Mesh mesh = make_mesh(PETSC_COMM_WORLD, scene, {});
+  const InterfacePlaces places = place_interfaces(mesh, number_dofs(mesh, 2, {}), scene);
+  const InterfaceMesh &curves = places.meshes.front();
+  const CurveShape sides = curve_shape(curves, 1, "sides");
+  EXPECT_EQ(sides.pieces.size(), 4U);
+  EXPECT_EQ(curves.closed_ends.size(), 2U + 8U);
+  for (const CurveChain &piece : sides.pieces) { // the body is on the right
+    const auto x = [&](Index k) { return curves.points[curves.parts[0] + piece.first_vertex + k]; };
+    for (Index k = 0; k < piece.edges; ++k) {
+      EXPECT_EQ(x(k)[0], x(k + 1)[0]) << "upright";
+      EXPECT_EQ(x(k)[1] < x(k + 1)[1], x(k)[0] < 0.5);
+    }
+  }
 }
 
 TEST(ContactCurves, AreForTwoDimensions) {

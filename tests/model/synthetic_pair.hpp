@@ -87,7 +87,8 @@ inline PairDiscretisation discretisation_of(const Scene &scene) {
   return {scene.options.at("multiplier") == "p1" ? MultiplierSpace::nodes
                                                  : MultiplierSpace::macro_edges,
           scene.options.at("integration") == "direct" ? PairQuadrature::direct
-                                                      : PairQuadrature::intersection};
+                                                      : PairQuadrature::intersection,
+          PairProjection::vertical};
 }
 
 /// On the forms of two_disks; A has one term. The trace is that of the basis.

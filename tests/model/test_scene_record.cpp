@@ -169,7 +169,7 @@ TEST(SceneRecord, WhatThisBuildDoesNotHaveIsNamed) {
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["contact_0"].name = "glue";
-            }).find("contact 'glue' version 3 is not in this build"),
+            }).find("contact 'glue' version 4 is not in this build"),
             std::string::npos);
   EXPECT_NE(refusal([](Record &r) {
               r.parts["map"].numbers.clear();
@@ -188,7 +188,7 @@ TEST(SceneRecord, ARegistryHasTheFunctionsOfTheLibraryAndOfItsScenes) {
   EXPECT_TRUE(refuses("function 'own/half' version 1 is not in this build", [&] {
     (void)made<PointMap>({half().record, &none});
   }));
-  EXPECT_TRUE(refuses("contact 'two_bodies' version 3 is not in this build",
+  EXPECT_TRUE(refuses("contact 'two_bodies' version 4 is not in this build",
                       [&] { (void)contact_in({own.parts.at("contact_0")}); }));
   EXPECT_EQ(made<Coefficient>({parameter(1).record, &none})(FullMu{0.25, 4}), 4);
   EXPECT_TRUE(refuses("unknown scene 'roller': this build has none",

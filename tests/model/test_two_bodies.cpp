@@ -255,10 +255,10 @@ TEST(OnlinePair, AnInterfaceThatIsNoPairIsRefused) {
     EXPECT_TRUE(refuses(part, [&] { OnlineSolver(model, p0()); }));
   };
   using M = InterfaceMesh;
-  expect_refusal("edge 0 of the slave curve",
+  expect_refusal("the edges of the slave curve do not go",
                  [](M &m) { std::swap(m.entities[0], m.entities[1]); });
-  expect_refusal("x must increase along the master", [](M &m) { m.parts = {11, 10}; });
-  expect_refusal("x must increase along the slave", [](M &m) { m.parts = {21}; });
+  expect_refusal("of its 11 nodes", [](M &m) { m.parts = {11, 10}; });
+  expect_refusal("the master curve needs at least one edge", [](M &m) { m.parts = {21}; });
   expect_refusal("x must increase along the slave",
                  [](M &m) { std::swap(m.points[4], m.points[5]); });
   expect_refusal("move vertically", [](M &m) { m.dofs[5] = -1; });

@@ -1,16 +1,13 @@
-// The operators of two curves in 2D that are in contact, from points of the slave (upper) curve and
-// their partners on the master (lower) one; and vertical pairing, where the partner of a point x is
-// the point phi(x) of the master curve with the same abscissa. The displacements of both satisfy
+// The operators of two curves in 2D that are in contact, from points of the slave curve and their
+// partners on the master curve. With x the point, xi its partner, n the normal out of the slave
+// and tau = (-n_y, n_x) the displacements satisfy
 //
-//   (u_master o phi - u_slave) . e_y <= gap = (x - phi(x)) . e_y,
+//   n . (v(x) - v(xi)) <= gap,   and, with friction, tau . (v(x) - v(xi)) is the slip.
 //
-// which is (2.49) with the slave on top. A curve is the nodes of its edges: the vertices in the
-// order of strictly increasing abscissa, then, of degree 2, a point of each edge near its middle.
-// By degree 1 the gap is that of the polygons. By degree 2 it is that of the parabolas through the
-// three points of each edge, so that bodies with straight edges meet along their true curves if
-// these points are on them; displacements are quadratic in the abscissa, with their third node in
-// the middle of the straight edge. A curve of too few nodes, or of another order, is bad_input that
-// names the curve and the node.
+// Vertical pairing is (2.49), with the slave on top and n = -e_y: the partner has the same
+// abscissa. By degree 1 the gap is that of the polygons. By degree 2 it is that of the curves
+// through the three nodes of each edge, so that bodies with straight edges meet along their true
+// curves if the middles are on them; of vertical pairing these are parabolas over the abscissa.
 #pragma once
 
 #include "rbvi/contact/interface.hpp"
@@ -31,9 +28,52 @@ enum class PairQuadrature {
   direct        ///< Gauss points of the slave edges alone
 };
 
+/// Where the partner of a point is.
+enum class PairProjection {
+  normal,  ///< along the averaged normals of the master curve
+  vertical ///< above or below; of small deformations alone, both curves graphs over x
+};
+
 struct PairDiscretisation {
   MultiplierSpace multiplier = MultiplierSpace::macro_edges;
   PairQuadrature quadrature = PairQuadrature::intersection;
+  PairProjection projection = PairProjection::normal;
+};
+
+/// The multipliers' functions on a slave curve.
+class PairMultipliers {
+public:
+  /// A macro-edge has a node inside and is of one piece: of degree 1 it is two edges, the last one
+  /// of a piece three if their number is odd; of degree 2 it is one edge.
+  PairMultipliers(const CurveShape &slave, MultiplierSpace space, int degree);
+
+  Index count() const { return std::ssize(edges_); }
+  MultiplierSpace space() const { return space_; }
+  /// On which a function does not vanish, increasing.
+  const std::vector<Index> &edges_of(Index multiplier) const { return edges_[multiplier]; }
+  /// Of an edge: of its macro-edge, or of its vertices.
+  const std::array<Index, 2> &on_edge(Index edge) const { return on_edge_[edge]; }
+  double value(Index multiplier, Index edge, double s) const {
+    if (space_ == MultiplierSpace::macro_edges) return 1;
+    return on_edge_[edge][0] == multiplier ? 1 - s : s;
+  }
+  /// Their sum with coefficients.
+  double sum(const Vector &lambda, Index edge, double s) const {
+    const auto [a, b] = on_edge_[edge];
+    return space_ == MultiplierSpace::macro_edges ? lambda[a] : (1 - s) * lambda[a] + s * lambda[b];
+  }
+  /// The integral of each over the whole slave curve, from those of the hats of its edges.
+  Vector whole_weights(const HatWeights &hats) const;
+  /// Gram matrix in L2 of the polygon (linear_gram), `copies` blocks; an entry (possibly zero) for
+  /// every pair of neighbours.
+  SparseMatrix gram(const NodalCurve &slave, int copies, bool axisymmetric = false) const;
+  /// Where each is drawn: the middle of its macro-edge, by arc length, or its vertex.
+  std::vector<Point> points(const NodalCurve &slave) const;
+
+private:
+  MultiplierSpace space_;
+  std::vector<std::vector<Index>> edges_;
+  std::vector<std::array<Index, 2>> on_edge_;
 };
 
 /// The constraint, weak (2.51), (2.52) and at slave vertices. eta are the basis functions of the
@@ -48,8 +88,8 @@ struct PairOperators : ContactOperators {
 /// of each.
 class DifferenceRows {
 public:
-  /// `dofs`: of each node of the slave and then of the master curve the columns of its components,
-  /// both or the vertical one alone; -1: none.
+  /// `dofs`: of each node of the slave and then of the master curve the columns of its components;
+  /// -1: none.
   DifferenceRows(const Partners &of, const std::vector<int> &dofs, Index columns);
   /// Adds factor * normal . (v(partner) - v(point)) to the row.
   void add(const PairPoint &point, double factor);
@@ -58,69 +98,53 @@ public:
   SparseMatrix matrix() const;
 
 private:
-  /// Of the row: the edges that it has of a curve.
+  /// Of the row: the vertices and the edges that it has of a curve.
   struct Side {
     const NodalCurve &curve;
     Index first_node; ///< of the curve, among those of both
-    Index first = 0, last = -1;
+    Index first_vertex = 0, last_vertex = -1, first_edge = 0, last_edge = -1;
   };
   void add(Side &side, Index edge, double s, const Point &vector);
-  void end_nodes(Index begin, Index end);
+  void end_nodes(Index first, Index last);
 
   const std::vector<int> &dofs_;
   Index size_; ///< columns
-  Index components_;
   Side slave_, master_;
-  std::vector<double> row_; ///< by node * components + component
+  std::vector<double> row_; ///< by node * 2 + component
   std::vector<int> columns_, begins_{0};
   std::vector<double> values_;
   bool sorted_ = true; ///< the columns of each row
 };
 
-PairOperators pair_operators(const Partners &partners, MultiplierSpace space,
-                             const std::vector<int> &dofs, Index columns);
+/// Those of the normal multipliers, then with friction of the tangential ones.
+PairOperators pair_operators(const Partners &partners, const PairMultipliers &multipliers,
+                             const std::vector<int> &dofs, Index columns, bool friction);
 
-/// Vertical pairing.
-Partners vertical_partners(std::vector<Point> slave, std::vector<Point> master,
-                           PairQuadrature quadrature, int degree, bool axisymmetric = false);
+/// Finds the partners of two curves: along the field of normals, or vertically, then the curves
+/// must be graphs (as_graph). Gaps are those of the curves. `hats`: of the slave edges, that the
+/// integrals are over.
+Partners find_partners(NodalCurve slave, NodalCurve master, const PairDiscretisation &how,
+                       MasterField field, const HatWeights &hats);
 
-/// Vertices of a curve by its number of nodes.
-Index vertex_count(Index nodes, int degree);
+/// The gaps between other places of both curves.
+void set_gaps(const NodalCurve &slave, const NodalCurve &master, std::vector<PairPoint> &points);
 
-/// Number of multipliers on a slave curve of so many nodes. A macro-edge has a node inside: of
-/// degree 1 it is two edges, the last three if their number is odd; of degree 2 it is one edge.
-Index multiplier_count(Index slave_nodes, MultiplierSpace space, int degree = 1);
-
-/// The macro-edge that holds a slave edge.
-Index macro_edge_of(Index edge, Index slave_nodes, int degree = 1);
-
-/// The integral of each multiplier's function over the whole slave curve, from those of the hats
-/// of its edges.
-Vector whole_weights(const std::vector<std::array<double, 2>> &hats, MultiplierSpace space,
-                     int degree);
+/// A curve with the middles of its edges (degree 2) moved along the parabola over x through the
+/// three nodes of each to the middle of its abscissae. Throws bad_input, naming the curve and the
+/// node, where x does not increase.
+NodalCurve as_graph(NodalCurve curve, const std::string &name);
 
 /// Whether a multiplier has no partner somewhere: its weight, and `whole`, which it would have with
 /// one everywhere.
 bool is_partial(double weight, double whole);
 
-/// Ends of the slave and of the master curve where the body ends (InterfaceMesh::closed).
-struct ClosedEnds {
-  std::array<bool, 2> slave, master;
-};
-
-/// The ends of contact where `lambda` is above `least`: where the slave curve ends, or where the
-/// master curve does and nothing faces the slave from there on (the last multiplier with a partner,
-/// and those before it that do not have one everywhere), unless that end is closed.
-double ends_in_contact(const Vector &whole, const Vector &weights, const Vector &lambda,
-                       double least, const ClosedEnds &closed);
-
-/// Gram matrix of the multipliers in L2 of the slave polygon (see linear_gram); an entry (possibly
-/// zero) for every pair of neighbours.
-SparseMatrix multiplier_product(const std::vector<Point> &slave, MultiplierSpace space,
-                                int degree = 1, bool axisymmetric = false);
-
-/// Where a multiplier is drawn: the middle of its macro-edge, by arc length, or its vertex.
-std::vector<Point> multiplier_points(const std::vector<Point> &slave, MultiplierSpace space,
-                                     int degree = 1);
+/// The ends of contact where `lambda` is above `least`: where a piece of the slave curve ends, or
+/// where the master curve does and nothing faces the slave from there on (the last multiplier with
+/// a partner, and those before it that do not have one everywhere), unless that end is closed.
+/// `closed`: of each piece of the slave curve, then whether all first and all last ends of the
+/// master curve are.
+double ends_in_contact(const PairMultipliers &multipliers, const CurveShape &slave,
+                       const HatWeights &hats, const Vector &weights, const Vector &lambda,
+                       double least, const std::vector<std::array<bool, 2>> &closed);
 
 } // namespace rbvi

@@ -15,6 +15,7 @@ inline double edge_length(const Point &begin, const Point &end) {
 /// Integrals of the hats of both ends over a straight edge, of a body that is turned over the
 /// surface that the edge makes.
 std::array<double, 2> hat_weights(const Point &begin, const Point &end, bool axisymmetric);
+using HatWeights = std::vector<std::array<double, 2>>; ///< of each edge
 
 /// The nodal functions of an edge (its vertices, then of degree 2 its middle) at 0 <= s <= 1, and
 /// their derivatives by s.
@@ -28,19 +29,57 @@ inline std::array<double, 3> edge_slopes(int degree, double s) {
   return {4 * s - 3, 4 * s - 1, 4 - 8 * s};
 }
 
-/// A curve of edges of degree 1 or 2: its vertices in their order, then the middles of the edges.
+/// A chain of edges: edge first_edge + k goes from vertex first_vertex + k to the next one, the
+/// last edge of a closed one back to the first vertex.
+struct CurveChain {
+  Index first_edge, edges, first_vertex;
+  bool loop = false;
+  Index vertices() const { return edges + (loop ? 0 : 1); }
+};
+
+/// How the edges of a curve hang together, in one piece or several, and the numbers of its nodes:
+/// vertices along the pieces, then the middles of the edges.
+struct CurveShape {
+  std::vector<CurveChain> pieces;
+  std::vector<std::array<Index, 2>> ends{}; ///< vertices of each edge, along its piece
+
+  explicit CurveShape(std::vector<CurveChain> chains);
+  Index edges() const { return std::ssize(ends); }
+  Index vertices() const { return vertices_; }
+  Index node(Index edge, Index local) const {
+    return local < 2 ? ends[edge][local] : vertices_ + edge;
+  }
+
+private:
+  Index vertices_ = 0;
+};
+
+/// Successive edges with their shape, whatever the numbers of their vertices.
+struct ChainedEdges {
+  std::vector<int> vertices; ///< those numbers, along the pieces
+  CurveShape shape;
+};
+/// `edges`: in the order of InterfaceMesh.
+ChainedEdges chained(const std::vector<std::array<int, 2>> &edges);
+
+/// A curve of edges of degree 1 or 2.
 class NodalCurve {
 public:
+  NodalCurve(std::vector<Point> nodes, int degree, std::shared_ptr<const CurveShape> shape);
+  /// In one open piece.
   NodalCurve(std::vector<Point> nodes, int degree);
 
   Index nodes() const { return std::ssize(nodes_); }
-  Index edges() const { return edges_; }
+  Index edges() const { return shape_->edges(); }
   int degree() const { return degree_; }
+  const CurveShape &shape() const { return *shape_; }
+  const std::shared_ptr<const CurveShape> &shared_shape() const { return shape_; }
   Index per_edge() const { return degree_ + 1; } ///< nodes
-  Index node(Index edge, Index local) const { return local < 2 ? edge + local : edges_ + 1 + edge; }
+  Index node(Index edge, Index local) const { return shape_->node(edge, local); }
   const Point &point(Index node) const { return nodes_[node]; }
-  std::vector<double> lengths() const;                              ///< of the straight edges
-  std::vector<std::array<double, 2>> hats(bool axisymmetric) const; ///< hat_weights of each edge
+  const Point &end(Index edge, Index local) const { return nodes_[shape_->ends[edge][local]]; }
+  std::vector<double> lengths() const; ///< of the straight edges
+  HatWeights hats(bool axisymmetric) const;
   Point at(Index edge, double s) const { return sum(edge, edge_functions(degree_, s), nodes_); }
   Point tangent(Index edge, double s) const { return sum(edge, edge_slopes(degree_, s), nodes_); }
   /// Sum of nodal vectors (one for each node of the curve).
@@ -56,24 +95,30 @@ public:
 private:
   std::vector<Point> nodes_;
   int degree_;
-  Index edges_;
+  std::shared_ptr<const CurveShape> shape_;
 };
 
-/// Throws bad_input unless part `part` of the mesh is a curve: at least one edge, edge e from
-/// vertex e to e + 1, x increasing. Returns its number of vertices.
-Index check_curve(const InterfaceMesh &mesh, std::size_t part, const std::string &name);
+/// The shape of part `part` of the mesh. Throws bad_input unless it is a curve in the order of
+/// InterfaceMesh, of at least one edge.
+CurveShape curve_shape(const InterfaceMesh &mesh, std::size_t part, const std::string &name);
 
-/// Gram matrix in L2 of the polygon through `points` of its hat functions, `copies` blocks; of a
+/// The edges of the first boundary of a mesh, which may be one of cells beside it.
+ChainedEdges first_curve(const InterfaceMesh &mesh);
+/// Of all boundaries.
+std::size_t count_pieces(const InterfaceMesh &mesh);
+
+/// Gram matrix in L2 of the hat functions of the polygon through `points`, `copies` blocks; of a
 /// body that is turned in L2 of the surface that it makes.
-SparseMatrix linear_gram(const std::vector<Point> &points, int copies, bool axisymmetric = false);
+SparseMatrix linear_gram(const std::vector<Point> &points, const CurveShape &shape, int copies,
+                         bool axisymmetric = false);
 
-/// The polygon through these nodes of an interface, mapped, with the field "u" (motion + u). `u`:
-/// at the nodes of the mesh.
+/// The edges of the first boundary between these nodes of an interface, mapped, with the field "u"
+/// (motion + u). `u`: at the nodes of the mesh.
 Grid polyline(const Scene &scene, const FullMu &mu, const InterfaceMesh &mesh,
               const std::vector<Index> &nodes, const Vector &u);
 
-/// Adds the field "pressure" to a polyline: one value for each node, or for each edge, then also at
-/// the nodes, as the mean of the edges beside them weighted by length.
-void add_pressure(const Vector &values, Grid &grid);
+/// Adds a stress to a polyline: one value for each node, or for each edge, then also at the nodes,
+/// as the mean of the edges beside them weighted by length.
+void add_stress(const std::string &name, const Vector &values, bool of_edges, Grid &grid);
 
 } // namespace rbvi

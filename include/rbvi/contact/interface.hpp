@@ -24,7 +24,11 @@
 namespace rbvi {
 
 /// The entities of an interface with their nodes, in the order of the undistributed mesh: vertices
-/// first, then (degree 2) the middles of edges; two boundaries one after the other.
+/// first, then (degree 2) the middles of edges; two boundaries one after the other. Vertices and
+/// edges of a boundary come piece by piece, along each from left to right if it is a graph over x,
+/// otherwise with the body on the left; those of the first of two boundaries always with the body
+/// on the left, of the second with it on the right, so that they run alike where they face each
+/// other. An edge itself goes from vertex to vertex with the body on its left.
 struct InterfaceMesh {
   int dim = 2, degree = 1;
   int components = 1;        ///< of the displacement
@@ -33,8 +37,8 @@ struct InterfaceMesh {
   int per_entity = 2;
   std::vector<int> edges; ///< cells beside a boundary: the local edge of each that is on it
   std::vector<int> parts; ///< number of nodes of each boundary, or region
-  /// Of each boundary 1 or 0 for its first and for its last end: whether the body ends there, so
-  /// that contact may reach it; empty: nowhere.
+  /// Of each piece of each boundary 1 or 0 for its first and for its last end: whether the body
+  /// ends there, so that contact may reach it; 1 of a closed curve. Empty: of one piece, nowhere.
   std::vector<int> closed_ends = {};
   /// node * components + c: column of B, a contact dof of the problem; -1: fixed, or not seen.
   std::vector<int> dofs;
@@ -49,10 +53,10 @@ struct InterfaceMesh {
   /// Of each entity, a cell or a facet; the first of its nodes.
   int vertices() const { return per_entity == nodes_per_cell(dim, degree) ? dim + 1 : dim; }
   int material_of(Index entity) const { return materials.empty() ? 0 : materials[entity]; }
-  /// Of boundary number `part`.
-  std::array<bool, 2> closed(std::size_t part) const {
+  /// Of a piece, counted over all boundaries.
+  std::array<bool, 2> closed(std::size_t piece) const {
     if (closed_ends.empty()) return {};
-    return {closed_ends[2 * part] != 0, closed_ends[2 * part + 1] != 0};
+    return {closed_ends[2 * piece] != 0, closed_ends[2 * piece + 1] != 0};
   }
   const int *nodes_of(Index entity) const { return entities.data() + entity * per_entity; }
 };
@@ -124,7 +128,7 @@ public:
   const DualSpace &dual() const { return dual_; }
   /// Dual nodes that are fixed in some directions, as on an axis of symmetry: they carry no
   /// tangential traction, which for a symmetric answer is zero there.
-  std::vector<Index> partly_fixed() const;
+  virtual std::vector<Index> partly_fixed() const;
 
   /// All of ContactOperators; by Nitsche's method nodal_b and nodal_gap alone. Rows of dual nodes
   /// that are not wanted may be left zero.

@@ -27,8 +27,9 @@ struct CurveCell {
   Cell cell; ///< reference; mapped alike
   int edge = 0;
   std::array<int, 12> dofs;
-  int curve = 0;    ///< of the layer's
-  int material = 0; ///< of the scene's
+  std::array<int, 2> ends{}; ///< where the edge begins and ends, vertices of the curve
+  int curve = 0;             ///< of the layer's
+  int material = 0;          ///< of the scene's
 };
 
 /// Friction::law with its threshold or coefficient at one mu.
@@ -46,7 +47,8 @@ struct NitscheCurve {
   Friction law;
   Facing facing;
   double gamma0;
-  std::array<bool, 2> closed_ends{}; ///< InterfaceMesh::closed
+  std::vector<int> open_ends{}; ///< vertices where pieces end that are not closed
+  bool has_middle = true;       ///< it is one open piece
   bool friction() const { return law.law != FrictionLaw::none; }
   /// Throws failure, naming the value, for a negative one.
   NitscheLaw law_at(const FullMu &mu) const;
@@ -56,7 +58,7 @@ struct NitscheCurve {
 struct NitscheLayer {
   const Scene &scene;
   std::vector<NitscheCurve> curves;
-  std::vector<CurveCell> cells; ///< curve by curve, along each by increasing x
+  std::vector<CurveCell> cells; ///< curve by curve, in the order of their meshes
   bool friction() const;        ///< of some curve
   bool follows_state() const;   ///< some facing does
   const NitscheCurve &curve_of(const CurveCell &cell) const { return curves[cell.curve]; }
@@ -164,11 +166,11 @@ NitscheLine nitsche_line(const std::vector<NitscheFace> &faces, const Vector &u,
 /// at 0, of which it must be below zero: the minimum along a line of a convex energy. At most 16.
 double line_minimum(double linear, double quadratic, const NitscheLine &line);
 
-/// Fields at the vertices of one curve, by increasing x: stress averaged from the edges that meet
-/// there, the pressures with it, and u_n less the gap.
+/// Fields at the vertices of one curve, in the order of its mesh: stress averaged from the edges
+/// that meet there, the pressures with it, and u_n less the gap.
 struct CurveFields {
   Vector sigma_n, sigma_tau, p_n, p_tau, excess;
-  Vector arc_length; ///< from the middle, mapped
+  Vector arc_length; ///< from the middle, mapped; empty where the curve has none
 };
 CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t curve, const FullMu &mu,
                            const Vector &u);
@@ -177,8 +179,8 @@ CurveFields nitsche_fields(const NitscheLayer &layer, std::size_t curve, const F
 /// multipliers of the mixed method.
 Vector nitsche_multiplier(const NitscheLayer &layer, const FullMu &mu, const Vector &u);
 
-/// How many of the curve's two ends are in contact, of those that are not closed.
-double ends_in_contact(const CurveFields &fields, std::array<bool, 2> closed);
+/// How many of a curve's open ends are in contact.
+double ends_in_contact(const CurveFields &fields, const std::vector<int> &open_ends);
 
 /// Fills forces, half-widths, pressures, penetration and the errors of the laws of one curve; see
 /// support_outputs. `faces`: all of the curve. centre_pressure is that of -[P_n]_- averaged over

@@ -18,7 +18,7 @@ struct SupportState {
   const Vector &push;    ///< multipliers: their work on a unit horizontal displacement, B e_x
   const Vector &lift;    ///< and on a vertical one, B e_y
   FrictionBound bound;
-  const Matrix &points; ///< mapped vertices x dim, in the order of the curve
+  const Matrix &points; ///< mapped vertices x dim, along the curve; empty: it has no middle
 };
 
 /// The signs, 0 to 2 of them, that the tangential stress has where there is pressure.
@@ -28,10 +28,15 @@ double direction_count(const Vector &tangential, const Vector &pressure);
 /// contact_half_width, stick_half_width, centre_pressure.
 void drop_plane_outputs(Outputs &outputs);
 
+/// Of normal and tangential multipliers: tangential_force, stick_half_width, friction_violation (a
+/// pressure), of `images` mirror images together. A node sticks where it is below its bound by more
+/// than that.
+void friction_outputs(double images, const Vector &weights, const Vector &lambda,
+                      const FrictionBound &bound, Outputs &outputs);
+
 /// Fills normal_force, contact_measure, contact_half_width (half of the measure), reaction,
 /// horizontal_reaction, peak_pressure, centre_pressure, the numbers of nodes and, with friction,
-/// tangential_force, stick_half_width, friction_violation (a pressure). A node sticks where it is
-/// below its bound by more than that.
+/// what friction_outputs does.
 void support_outputs(const SupportState &state, Outputs &outputs);
 
 } // namespace rbvi

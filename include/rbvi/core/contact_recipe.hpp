@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,16 @@ enum class Formulation {
   nitsche ///< Nitsche's method: residual and tangent on the cells beside the interface
 };
 
+/// A curve that turns by more, in radians, has a corner there: between the turn of a circle of 12
+/// edges, 30 degrees, and that of a chamfer, 45.
+inline constexpr double sharp_turn = 36 * std::numbers::pi / 180;
+
 /// The part of a mesh that an interface is posed on.
 struct InterfaceEntities {
   enum class Kind {
     cells,       ///< of the region parts[0]
-    curves,      ///< edges of the boundaries `parts`, each a graph over x (2D)
-    cells_beside ///< the boundary parts[0]: cells with an edge on it, a graph over x (2D)
+    curves,      ///< edges of the boundaries `parts` (2D)
+    cells_beside ///< the boundary parts[0]: cells with an edge on it (2D)
   };
   Kind kind = Kind::cells;
   std::vector<std::string> parts;

@@ -18,8 +18,8 @@ struct InterfacePlaces {
 };
 
 /// Collective. Throws bad_input where a part of an interface is not there: no cell in a region, no
-/// edge on a boundary, a boundary that is no graph over x, or that is fixed in some directions
-/// alone; for curves in three dimensions; for a dof that two interfaces constrain.
+/// edge on a boundary, or a boundary that is fixed where its kernels ask for free displacements; for
+/// curves in three dimensions; for a dof that two interfaces constrain.
 InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene &scene);
 
 } // namespace rbvi

@@ -39,6 +39,17 @@ struct CellFacet {
   int facet;
 };
 
+/// A chain of edges of a boundary in two dimensions, from vertex to vertex with the body on the
+/// left.
+struct CurvePiece {
+  std::vector<PetscInt> vertices; ///< natural numbers, each once
+  bool loop = false;              ///< the last vertex is followed by the first
+  /// At the first and the last vertex, whether the body ends there: its surface turns away, at the
+  /// foot of a block or on an axis of symmetry. Where it goes on smoothly, what is beside the
+  /// boundary would touch next. A loop has no ends.
+  std::array<bool, 2> closed_ends{true, true};
+};
+
 /// This rank's part of the mesh: its own cells and their nodes. Nodes are the vertices and, where
 /// the displacement of the scene has degree 2, the middles of the edges behind them. Numbers called
 /// `natural` are those of the undistributed mesh, the same for any number of ranks.
@@ -62,11 +73,10 @@ struct Mesh {
   std::vector<int> body; ///< per owned cell: which of the connected parts of the mesh it is in
   int bodies = 0;        ///< connected parts, by common vertices
 
-  std::map<std::string, std::vector<bool>> region;      ///< per name: owned cells in it
-  std::map<std::string, std::vector<bool>> boundary;    ///< per name: local nodes on it
-  std::map<std::string, std::vector<CellFacet>> facets; ///< per boundary: each has one owner
-  /// Per boundary with contact in 2D, at its first and last end by x: whether the body ends there.
-  std::map<std::string, std::array<bool, 2>> closed_ends;
+  std::map<std::string, std::vector<bool>> region;       ///< per name: owned cells in it
+  std::map<std::string, std::vector<bool>> boundary;     ///< per name: local nodes on it
+  std::map<std::string, std::vector<CellFacet>> facets;  ///< per boundary: each has one owner
+  std::map<std::string, std::vector<CurvePiece>> curves; ///< per boundary with contact in 2D
 };
 
 /// Local nodes of an owned cell in the order of its kernels' dofs (see Form): nodes_per_cell(dim,
