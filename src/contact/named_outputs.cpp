@@ -16,30 +16,39 @@ namespace {
 /// In the order of output_fields().
 constexpr Index of_u = 2, of_pressure = 4, of_gap = 5, of_tangential = 6, places = 7;
 
-/// Fields at the vertices of an interface, a column each, and its pieces.
+/// Fields at both ends of each piece of an interface, a column each.
 struct Traces {
-  Matrix at;              ///< vertices x places
-  std::vector<int> edges; ///< two vertices each
+  Matrix at; ///< places x (2 pieces)
+  Index pieces() const { return at.cols() / 2; }
 };
 
-/// NaN where the grid has none of this name.
-Vector field_of(const Grid &grid, const std::string &name) {
-  const auto found = std::ranges::find(grid.of_nodes, name, &Field::name);
-  return found != grid.of_nodes.end()
-             ? found->values
-             : Vector::Constant(grid.points.rows(), std::numeric_limits<double>::quiet_NaN());
+/// Of a field at vertices, or one that is constant on pieces; NaN where the grid has none of this
+/// name.
+Vector at_ends(const Grid &grid, const std::string &name) {
+  const auto named = [&](const std::vector<Field> &fields) {
+    return std::ranges::find(fields, name, &Field::name);
+  };
+  const auto of_pieces = named(grid.of_cells);
+  const auto of_nodes = named(grid.of_nodes);
+  return Vector::NullaryExpr(std::ssize(grid.cells), [&](Index k) {
+    if (of_pieces != grid.of_cells.end()) return of_pieces->values[k / 2];
+    if (of_nodes != grid.of_nodes.end()) return of_nodes->values[grid.cells[k]];
+    return std::numeric_limits<double>::quiet_NaN();
+  });
 }
 
 Traces traces_of(const Grid &grid) {
   if (grid.per_cell != 2) throw bad_input("outputs of a case are over contact along curves");
-  Traces traces{Matrix(grid.points.rows(), places), grid.cells};
-  const Vector moved = field_of(grid, "u");
-  traces.at.leftCols(2) = grid.points.leftCols(2);
-  for (Index i = 0; i < grid.points.rows(); ++i)
-    traces.at.row(i).segment<2>(of_u) = moved.segment<2>(3 * i).transpose();
-  traces.at.col(of_pressure) = field_of(grid, "pressure");
-  traces.at.col(of_gap) = field_of(grid, "gap");
-  traces.at.col(of_tangential) = field_of(grid, "tangential_stress");
+  Traces traces{Matrix(places, std::ssize(grid.cells))};
+  const auto moved = std::ranges::find(grid.of_nodes, "u", &Field::name);
+  for (Index k = 0; k < traces.at.cols(); ++k) {
+    const Index node = grid.cells[k];
+    traces.at.col(k).head<2>() = grid.points.row(node).head<2>().transpose();
+    traces.at.col(k).segment<2>(of_u) = moved->values.segment<2>(3 * node);
+  }
+  traces.at.row(of_pressure) = at_ends(grid, "pressure").transpose();
+  traces.at.row(of_gap) = at_ends(grid, "gap").transpose();
+  traces.at.row(of_tangential) = at_ends(grid, "tangential_stress").transpose();
   return traces;
 }
 
@@ -49,7 +58,7 @@ public:
   OnPieces(const Named<FieldValues> &values, const FullMu &mu, const Traces &traces)
       : values_(values), mu_(mu), traces_(traces) {}
 
-  Index pieces() const { return std::ssize(traces_.edges) / 2; }
+  Index pieces() const { return traces_.pieces(); }
   double length(Index piece) const {
     return (end(piece, 1).head<2>() - end(piece, 0).head<2>()).norm();
   }
@@ -84,9 +93,7 @@ public:
   }
 
 private:
-  Vector end(Index piece, Index which) const {
-    return traces_.at.row(traces_.edges[2 * piece + which]).transpose();
-  }
+  Vector end(Index piece, Index which) const { return traces_.at.col(2 * piece + which); }
   double crossing_in(Index piece, double low, double high) const {
     const bool held = holds(piece, low);
     for (int step = 0; step < 50; ++step) {

@@ -311,10 +311,10 @@ std::vector<int> imposed_at(const Mesh &mesh, const Dofs &dofs,
   return {found.begin(), found.end()};
 }
 
-/// Whether it constrains displacements one by one. What sees the cells beside a curve does not, and
-/// may share them.
-bool constrains(const ContactRecipe &contact) {
-  return contact.entities.kind != InterfaceEntities::Kind::cells_beside;
+/// Whether it bounds displacements one by one, or over cells: then none is shared. Curves may have
+/// a node in common, but no edge: each constraint is one of the edges beside the node.
+bool bounds_alone(const ContactRecipe &contact) {
+  return contact.entities.kind == InterfaceEntities::Kind::cells || contact.nodal;
 }
 
 /// "contact on 'slave' and contact on 'master' ".
@@ -337,12 +337,14 @@ Error shared_displacement(const ContactRecipe &one, const ContactRecipe &other, 
 /// Whose each edge of a boundary is, by the natural numbers of its ends.
 using Edges = std::map<std::pair<PetscInt, PetscInt>, const ContactRecipe *>;
 
-/// The edges that its cells stand beside are its own. Throws bad_input where one is another
-/// interface's.
+/// The edges of its curves, or that its cells stand beside, are its own. Throws bad_input where one
+/// is another interface's.
 void claim_edges(const Found &found, const ContactRecipe &contact, Edges &edges) {
-  for (std::size_t e = 0; e < found.mesh.edges.size(); ++e) {
-    const int *nodes = found.mesh.nodes_of(static_cast<Index>(e));
-    const auto [i, j] = simplex_edges[found.mesh.edges[e]];
+  if (contact.entities.kind == InterfaceEntities::Kind::cells) return;
+  for (Index e = 0; e < found.mesh.count(); ++e) {
+    const int *nodes = found.mesh.nodes_of(e);
+    const auto [i, j] =
+        found.mesh.edges.empty() ? std::array{0, 1} : simplex_edges[found.mesh.edges[e]];
     const auto a = static_cast<std::size_t>(nodes[i]), b = static_cast<std::size_t>(nodes[j]);
     const auto [known, is_new] =
         edges.emplace(std::minmax({found.natural[a], found.natural[b]}), &contact);
@@ -381,7 +383,7 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
                         ": give them boundaries without common nodes");
       const auto [at, is_new] = column.emplace(natural, static_cast<int>(natural_dofs.size()));
       if (const auto dof = static_cast<std::size_t>(at->second);
-          !is_new && dof < first.back() && constrains(contact)) {
+          !is_new && dof < first.back() && bounds_alone(contact)) {
         const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
         throw shared_displacement(scene.contacts[other], contact, found.mesh.points[i / components],
                                   static_cast<int>(i % components));
