@@ -89,7 +89,7 @@ struct ContactOperators {
   SparseMatrix nodal_b; ///< the constraint at single nodes, nodal_b u <= nodal_gap
   Vector nodal_gap;
   std::vector<Index> uncovered; ///< multipliers that do not face a partner everywhere
-  /// Of two meshes: the slave edge that each master vertex faces, -1 or their number beyond them.
+  /// Of two meshes: the slave edges where each part begins and ends that faces one master edge.
   std::vector<Index> segments;
   ContactState state; ///< where they were evaluated, if the interface follows it
 };
