@@ -18,7 +18,7 @@ inline PairOperators couple(const std::vector<Point> &slave, const std::vector<P
   PairDiscretisation how = discretisation;
   how.projection = PairProjection::vertical;
   return pair_operators(
-      find_partners(above, below, how, {sections, vertical_normals(below), true}, upper.lengths()),
+      find_partners(above, below, how, {sections, vertical_normals(below), true}, upper.hats(false)),
       PairMultipliers(upper.shape(), how.multiplier, degree), dofs, std::ssize(dofs) / 2, false);
 }
 
