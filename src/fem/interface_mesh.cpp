@@ -326,14 +326,6 @@ std::string place(const Point &x) {
   return "(" + short_number(x[0]) + ", " + short_number(x[1]) + ", " + short_number(x[2]) + ")";
 }
 
-/// What to throw for a displacement that two interfaces constrain.
-Error shared_displacement(const ContactRecipe &one, const ContactRecipe &other, const Point &at,
-                          int component) {
-  return bad_input(both(one, other) + "both constrain the displacement along " + "xyz"[component] +
-                   " at " + place(at) +
-                   ": give them boundaries without common nodes, or fix the displacement there");
-}
-
 /// Whose each edge of a boundary is, by the natural numbers of its ends.
 using Edges = std::map<std::pair<PetscInt, PetscInt>, const ContactRecipe *>;
 
@@ -385,8 +377,11 @@ InterfacePlaces place_interfaces(const Mesh &mesh, const Dofs &dofs, const Scene
       if (const auto dof = static_cast<std::size_t>(at->second);
           !is_new && dof < first.back() && bounds_alone(contact)) {
         const auto other = std::ranges::upper_bound(first, dof) - first.begin() - 1;
-        throw shared_displacement(scene.contacts[other], contact, found.mesh.points[i / components],
-                                  static_cast<int>(i % components));
+        throw bad_input(both(scene.contacts[other], contact) +
+                        "both constrain the displacement along " + "xyz"[i % components] + " at " +
+                        place(found.mesh.points[i / components]) +
+                        ": give them boundaries without common nodes, or fix the displacement "
+                        "there");
       }
       if (is_new) natural_dofs.push_back(natural);
       found.mesh.dofs.push_back(at->second);

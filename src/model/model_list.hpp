@@ -116,8 +116,7 @@ template <class Store, class Model> void list_operators(const Store &store, Mode
   const Index motions = std::ssize(body.spring_terms);
   store("springs/terms", body.spring_terms, Indices{std::ssize(model.scene.a)});
   store("springs/reduced", body.springs, Shape{motions > 0 ? n : any_size, motions});
-  store("springs/motions", body.motions,
-        Shape{motions, motions > 0 ? model.made.trained_mu.cols() : any_size});
+  store("springs/motions", body.motions, Shape{motions, any_size});
   auto &energy = model.body.imposed_energy;
   list_terms(store, "imposed_energy", energy, Shape{1, energy.size()}, dim, 1);
 }

@@ -92,10 +92,14 @@ TEST(Springs, AreTheSameOnAnyNumberOfRanks) {
               force_of(PETSC_COMM_WORLD, scene, {7, 0.5, 0.1}), 1e-12);
 }
 
+/// A pair of forces holds nothing: contact alone does, and balances them.
+TEST(Springs, ADeadPairOfForcesIsCarriedByContact) {
+  EXPECT_NEAR(force_of(PETSC_COMM_WORLD, joint("pretension: f"), {1, 0.8, 0.2}), 0.8, 1e-11);
+}
+
 TEST(Springs, WhatTheyDoNotHoldIsRefused) {
   const auto make = [](const Scene &scene) { Problem problem(PETSC_COMM_WORLD, scene, {}); };
   EXPECT_TRUE(refuses("can move along (0, 1)", [&] { make(joint("stiffness: k", "")); }));
-  EXPECT_TRUE(refuses("the body 'upper'", [&] { make(joint("pretension: f")); }));
   EXPECT_TRUE(refuses("meets a boundary that moves",
                       [&] { make(joint("stiffness: k", ", bottom: {at: bottom, uy: q}")); }));
   EXPECT_TRUE(refuses("stretches the spring", [&] {
