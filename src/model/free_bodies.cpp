@@ -4,6 +4,7 @@
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/method/balance.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace rbvi {
@@ -17,8 +18,7 @@ FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws
 
 ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
                              const FullMu &mu) {
-  const Matrix &springs = model.body.springs;
-  if (springs.size() == 0) return method.solve(mu, {});
+  if (model.body.springs.size() == 0) return method.solve(mu, {});
   const Matrix &of_samples = model.body.motions, &at = model.made.trained_mu;
   const Vector start = at.cols() == of_samples.cols() // not before the model is complete
                            ? local_fit(of_samples, parts_of_box(scene.parameters, at),
@@ -26,18 +26,22 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
                            : Vector(of_samples.rowwise().mean());
   ReducedAnswer answer;
   int iterations = 0;
+  double to_other = 0;
   const Balance balance = find_balance(start, [&](const Vector &beta) {
     Vector from = std::move(answer.start);
     answer = method.solve(mu, {beta, std::move(from)});
     iterations += answer.iterations;
+    to_other = std::max(to_other, answer.to_other);
     const FreeMotions &motions = *answer.motions;
     if (iterations == answer.iterations &&
         unbalanced_load(motions.laws, motions.held, motions.load, motions.terms).norm() > 0)
       throw failure("a body that contact alone holds is pushed where no contact and no friction "
                     "can hold it");
-    return SpringState{springs.transpose() * answer.u,
-                       springs.cwiseAbs().colwise().sum().maxCoeff() *
-                           answer.u.lpNorm<Eigen::Infinity>()};
+    // Their lengths are beta and what forces leave, as A_N^-1 springs are rigid motions.
+    return SpringState{
+        beta + motions.load - motions.held.transpose() * answer.lambda,
+        motions.terms.maxCoeff() +
+            (motions.held.cwiseAbs().transpose() * answer.lambda.cwiseAbs()).maxCoeff()};
   });
   if (!balance.converged)
     throw failure("the forces on a body that contact alone holds do not balance in " +
@@ -46,6 +50,7 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
   if (loose_motions(answer.motions->laws, answer.motions->held, answer.lambda).cols() > 0)
     throw failure("at the answer no contact and no friction holds a body: it can move at no cost");
   answer.iterations = iterations;
+  answer.to_other = to_other;
   const Vector theta = spring_coefficients(model, scene, mu);
   answer.energy += theta.dot(balance.beta.cwiseAbs2()) / 2;
   return answer;

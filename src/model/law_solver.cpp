@@ -24,11 +24,13 @@ void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {
   Vector start = answer.start.size() > 0 ? answer.start : starts_.at(answer.mu);
   for (Index i = 0; i < start.size(); ++i)
     if (start[i] > 0 && !contact.faces(i)) start[i] = 0;
-  FrictionAnswer found = friction_answer(columns, law.q, law.laws, start, by_rule_);
+  // Where springs of free bodies change, an answer is continued from the one before.
+  const bool continues = answer.motions && answer.start.size() > 0;
+  FrictionAnswer found = friction_answer(columns, law.q, law.laws, start, by_rule_ && !continues);
   if (!found.converged || !(found.residual <= largest_left))
     throw failure("the law of contact and friction is met to " + short_number(found.residual) +
                   " only: " + found.reason);
-  if (looks_for_others_)
+  if (looks_for_others_ && !continues)
     answer.to_other = distance_to_other_answer(columns, law.q, law.laws, found);
   if (found.has_others) answer.to_other = std::max(answer.to_other, least_distance);
   answer.energy = 0.5 * (found.x.dot(found.w - law.q) - law.load.squaredNorm());
