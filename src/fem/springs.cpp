@@ -79,13 +79,6 @@ Vector spring_coefficients(const std::vector<FreeBody> &bodies, const Scene &sce
   return result;
 }
 
-double spring_size(const std::vector<FreeBody> &bodies) {
-  double largest = 0;
-  for (const FreeBody &body : bodies)
-    largest = std::max(largest, body.springs.cwiseAbs().colwise().sum().maxCoeff());
-  return largest;
-}
-
 Vector spring_lengths(const std::vector<FreeBody> &bodies, Vec u) {
   Vector result(motions_of(bodies));
   Index first = 0;

@@ -3,6 +3,7 @@
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/local_fit.hpp"
 #include "rbvi/method/balance.hpp"
+#include "rbvi/model/law_solver.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -16,14 +17,25 @@ FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws
           motions.cwiseAbs().transpose() * load.cwiseAbs()};
 }
 
+namespace {
+
+/// What the samples predict; of several answers with friction, as for the full model, that from
+/// rest is taken.
+Vector start_of(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
+  const Matrix &of_samples = model.body.motions, &at = model.made.trained_mu;
+  if (has_several_answers(model)) return Vector::Zero(of_samples.rows());
+  if (at.cols() != of_samples.cols()) // before the model is complete
+    return of_samples.rowwise().mean();
+  return local_fit(of_samples, parts_of_box(scene.parameters, at),
+                   parts_of_box(scene.parameters, mu));
+}
+
+} // namespace
+
 ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
                              const FullMu &mu) {
   if (model.body.springs.size() == 0) return method.solve(mu, {});
-  const Matrix &of_samples = model.body.motions, &at = model.made.trained_mu;
-  const Vector start = at.cols() == of_samples.cols() // not before the model is complete
-                           ? local_fit(of_samples, parts_of_box(scene.parameters, at),
-                                       parts_of_box(scene.parameters, mu))
-                           : Vector(of_samples.rowwise().mean());
+  const Vector start = start_of(model, scene, mu);
   ReducedAnswer answer;
   int iterations = 0;
   double to_other = 0;

@@ -4,6 +4,7 @@
 
 #include "rbvi/core/error.hpp"
 #include "rbvi/method/balance.hpp"
+#include "rbvi/method/several_answers.hpp"
 #include "rbvi/par/collective.hpp"
 #include "rbvi/solve/eliminated.hpp"
 #include "rbvi/solve/methods.hpp"
@@ -15,23 +16,26 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
   const int dim = problem_.scene().dim;
   last_.reset(); // what a solve that failed has left
   const Solved *near = nearest(mu);
-  const Vector start = near == nullptr ? Vector::Zero(motions_of(bodies)) : near->beta;
   Operators all;
   collectively(problem_.comm(), [&] { problem_.assemble_contact(mu, all); });
+  // Of several answers with friction that from rest is taken, whatever was solved before.
+  const Vector start = near == nullptr || bounds_follow_pressure(all.laws)
+                           ? Vector(Vector::Zero(motions_of(bodies)))
+                           : near->beta;
   const auto [load, terms] = problem_.pushed(op.mu);
-  const Vector left = unbalanced_load(all.laws, problem_.held_by(all), load, terms);
+  const Matrix held = problem_.held_by(all);
+  const Vector left = unbalanced_load(all.laws, held, load, terms);
   if (left.norm() > 0)
     throw failure(describe(bodies, dim, left) +
                   ", and is pushed where no contact and no friction can hold it: " +
                   describe(problem_.scene().parameters, op.mu));
-  const auto moving = [&](const Vector &lengths) { // the motions that make springs so long
-    Matrix of_motions(lengths.size(), lengths.size());
-    Index k = 0;
-    for (const Handle<Vec> &motion :
-         rigid_motions(bodies, problem_.scene(), op.mu, problem_.mesh(), problem_.dofs()))
-      of_motions.col(k++) = spring_lengths(bodies, motion.get());
-    return lu_solve(of_motions, lengths);
-  };
+  Matrix lengths(start.size(), start.size()); // of the springs by each motion
+  Index k = 0;
+  for (const Handle<Vec> &motion :
+       rigid_motions(bodies, problem_.scene(), op.mu, problem_.mesh(), problem_.dofs()))
+    lengths.col(k++) = spring_lengths(bodies, motion.get());
+  const double stiffness =
+      lengths.norm() * spring_coefficients(bodies, problem_.scene(), op.mu).cwiseAbs().maxCoeff();
   MethodResult result;
   int iterations = 0;
   const Balance balance = find_balance(start, [&](const Vector &beta) {
@@ -39,16 +43,15 @@ MethodResult HighFidelity::run_free(const Mu &mu, const Operators &op, const Vec
     result = run(mu, op, slip);
     iterations += result.iterations;
     last_ = solved(mu, result);
-    PetscReal largest = 0;
-    RBVI_CALL(VecNorm(result.free_u.get(), NORM_INFINITY, &largest));
-    return SpringState{spring_lengths(bodies, result.free_u.get()), largest * spring_size(bodies)};
+    const Vector forces = terms + held.cwiseAbs().transpose() * result.lambda.cwiseAbs();
+    return SpringState{spring_lengths(bodies, result.free_u.get()), forces.maxCoeff() / stiffness};
   });
   last_.reset();
   problem_.relax_springs(Vector::Zero(start.size()));
   if (!balance.converged)
     throw failure("the forces on bodies that contact alone holds do not balance in " +
                   std::to_string(balance.solves) +
-                  " solves: " + describe(bodies, dim, moving(balance.excess)) +
+                  " solves: " + describe(bodies, dim, lu_solve(lengths, balance.excess)) +
                   ": give them friction or displacements that hold them");
   if (grids_ == nullptr) static_cast<ContactOperators &>(all) = op;
   const Matrix loose = loose_motions(all.laws, problem_.held_by(all), result.lambda);

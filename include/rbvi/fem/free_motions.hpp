@@ -52,8 +52,6 @@ Index motions_of(const std::vector<FreeBody> &bodies);
 /// theta of the springs of each motion.
 Vector spring_coefficients(const std::vector<FreeBody> &bodies, const Scene &scene,
                            const FullMu &mu);
-/// The largest sum of sizes in a column of their springs: length of a spring by displacements of 1.
-double spring_size(const std::vector<FreeBody> &bodies);
 /// springs^T u of all bodies. Collective.
 Vector spring_lengths(const std::vector<FreeBody> &bodies, Vec u);
 /// f += springs values. Collective.

@@ -15,7 +15,7 @@
 
 namespace rbvi {
 
-/// Of springs at an answer: their lengths, and the size of displacements in the same units.
+/// Of springs at an answer: their lengths, and how long all forces on the bodies would make them.
 struct SpringState {
   Vector lengths;
   double scale = 0;
