@@ -90,7 +90,7 @@ Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &l
 
 Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths) {
   constexpr int most_solves = 100;
-  constexpr double tolerance = 1e-12, round_off = 1e-10, in_flight = 1e-4, farthest = 1e12;
+  constexpr double tolerance = 1e-12, round_off = 1e-10, in_flight = 0.04, farthest = 1e12;
   Balance result;
   Anderson anderson(beta.size());
   std::vector<Vector> images;

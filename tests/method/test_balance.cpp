@@ -86,7 +86,7 @@ struct Problem {
     EXPECT_TRUE(answer.converged);
     x = answer.x;
     w = answer.w;
-    return {beta + load - held.transpose() * x, load.norm() + x.norm() + beta.norm()};
+    return {beta + load - held.transpose() * x, load.norm() + (held.cwiseAbs().transpose() * x.cwiseAbs()).norm()};
   }
 };
 
