@@ -11,7 +11,7 @@ namespace rbvi {
 namespace {
 
 /// Of springs against the body: balance takes fewer solves the softer they are, and more digits are
-/// lost. Blocks with 3 motions: 10, 7 and 5 solves by 1, 0.1 and 0.01.
+/// lost.
 constexpr double softer = 0.1;
 
 /// Entries of a vector, on every rank. Collective.

@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 
 #include <algorithm>
+#include <limits>
 
 namespace rbvi {
 
@@ -90,7 +91,9 @@ Vector unbalanced_load(const NodeLaws &laws, const Matrix &held, const Vector &l
 
 Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths) {
   constexpr int most_solves = 100;
-  constexpr double tolerance = 1e-12, round_off = 1e-10, in_flight = 0.04, farthest = 1e12;
+  constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e12;
+  // A rate of 0.95 and less is contact that gives way, where acceleration ends in a few solves.
+  constexpr double in_flight = 0.04, longest = 1e4; // changes, and jumps, over the excess
   Balance result;
   Anderson anderson(beta.size());
   std::vector<Vector> images;
@@ -107,7 +110,10 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
     // Where nothing touches, the force of the springs moves by the same again and again.
     const bool flies =
         size > 0 && last.size() > 0 && (result.excess - last).norm() <= in_flight * size;
-    result.converged = !flies && size <= (stalls ? round_off : tolerance) * state.scale;
+    const double resolved =
+        std::numeric_limits<double>::epsilon() * beta.norm(); // of lengths - beta
+    result.converged = !flies && resolved <= round_off * state.scale &&
+                       size <= (stalls ? round_off : tolerance) * state.scale;
     if (result.converged || !(step < farthest)) return result;
     least = result.solves == 1 ? size : std::min(least, size);
     step = flies ? 4 * step : 1;
@@ -121,9 +127,11 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
     images.push_back(state.lengths);
     const Vector shares = anderson.combine(result.excess);
     if (std::ssize(images) > shares.size()) images.erase(images.begin());
-    beta.setZero();
+    Vector jump = -beta;
     for (Index j = 0; j < shares.size(); ++j)
-      beta += shares[j] * images[j];
+      jump += shares[j] * images[j];
+    if (jump.norm() > longest * size) jump *= longest * size / jump.norm();
+    beta += jump;
   }
   return result;
 }

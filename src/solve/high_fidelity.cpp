@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 namespace rbvi {
 
@@ -164,13 +165,18 @@ MethodResult HighFidelity::run_condensed(const Mu &mu, const Operators &op, cons
   };
   result.kkt = residual();
   // H has the round-off of A^-1, which iterative refinement takes out.
-  options = {false, options_.looks_for_others, Vector::Zero(op.g.size())};
+  options = {false, false, Vector::Zero(op.g.size())};
   for (int pass = 0; pass < most_refinements && !(result.kkt.largest() <= refined_above); ++pass) {
     options.correction +=
         op.g - op.b * restrict_to(problem_.trace(), result.free_u.get()) - result.w;
     const Vector from = result.start.size() > 0 ? result.start : result.lambda;
+    const auto [to_other, iterations, columns] =
+        std::tuple{result.to_other, result.iterations, result.columns};
     result = solve_active_set(body, op, from, options);
     if (!result.converged) return result;
+    result.to_other = std::max(to_other, result.to_other);
+    result.iterations += iterations;
+    result.columns += columns;
     result.kkt = residual();
   }
   measure(problem_, op, op.weights, result);

@@ -180,14 +180,21 @@ void collect(MPI_Comm world, const Problem &problem, const Wanted &wanted, Sweep
     for (const Mu &mu : wanted.set) {
       const fs::path file = sample_file(wanted.store.directory, mu);
       if (fs::exists(file)) {
+        Sample sample;
         try {
-          Sample &sample = sweep.samples.emplace_back(read_sample(file, wanted.settings));
-          add_named_outputs(problem, expand(problem.scene().parameters, mu), sample.u,
-                            sample.lambda, sample.outputs);
-          if (wanted.store.fields == Fields::in_files) sweep.samples.back().u = Vector();
+          sample = read_sample(file, wanted.settings);
         } catch (const DamagedFile &error) { // since the sweep began
           throw failure(error.what());
         }
+        try { // outputs of the case may be others than when it was solved
+          add_named_outputs(problem, expand(problem.scene().parameters, mu), sample.u,
+                            sample.lambda, sample.outputs);
+        } catch (const Error &error) {
+          sweep.report.failed.emplace_back(mu, error.what());
+          continue;
+        }
+        if (wanted.store.fields == Fields::in_files) sample.u = Vector();
+        sweep.samples.push_back(std::move(sample));
       } else {
         std::ifstream stream(failure_file(file));
         std::string reason;
@@ -352,7 +359,8 @@ Sweep run_sweep(MPI_Comm world, const Groups &groups, Problem &problem, const Hf
   sweep.report.seconds = MPI_Wtime() - start;
   collect(world, problem, wanted, sweep);
   sweep.report.reused = static_cast<int>(set.size() - missing.size());
-  sweep.report.solved = static_cast<int>(missing.size() - sweep.report.failed.size());
+  sweep.report.solved = static_cast<int>(std::ranges::count_if(
+      missing, [&](int k) { return fs::exists(sample_file(store.directory, set[k])); }));
   sweep.report.seconds_per_solve = median_seconds(sweep.samples, set, missing);
   return sweep;
 }

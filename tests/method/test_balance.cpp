@@ -86,7 +86,8 @@ struct Problem {
     EXPECT_TRUE(answer.converged);
     x = answer.x;
     w = answer.w;
-    return {beta + load - held.transpose() * x, load.norm() + (held.cwiseAbs().transpose() * x.cwiseAbs()).norm()};
+    return {beta + load - held.transpose() * x,
+            load.norm() + (held.cwiseAbs().transpose() * x.cwiseAbs()).norm()};
   }
 };
 
@@ -119,6 +120,14 @@ TEST(Balance, IsFoundForBodiesThatTouchThatOverlapAndThatFly) {
       const Vector w = problem.elastic * problem.x + problem.gap - held * found.beta;
       EXPECT_LE((w - problem.w).norm(), 1e-9 * (1 + gap));
     }
+}
+
+/// So far away that round-off hides what is left.
+TEST(Balance, IsNotWhereLengthsCannotTellIt) {
+  const Balance found = find_balance(Vector::Constant(1, 1e17), [](const Vector &beta) {
+    return SpringState{beta + Vector::Constant(1, 0.6), 1};
+  });
+  EXPECT_FALSE(found.converged);
 }
 
 TEST(Balance, ThatIsNotThereIsNotFound) {
