@@ -84,19 +84,21 @@ Grid support_fields(const ContactInterface &interface, const Scene &scene, const
   const auto count = static_cast<Index>(vertices.size());
   Grid grid = polyline(scene, mu, mesh, vertices, u);
   const Vector moved = grid.of_nodes.front().values;
-  Vector gap(count);
+  Vector gap(count), slip(count);
   std::vector<Point> normals, ways;
   for (Index k = 0; k < count; ++k) {
     const Index node = vertices[k];
     const Point &x = mesh.points[node];
     const PointConstraint at = interface.constraint_at(mu, x, {u[2 * node], u[2 * node + 1], 0});
     gap[k] = at.gap - at.direction[0] * u[2 * node] - at.direction[1] * u[2 * node + 1];
+    slip[k] = slip_along(at.direction, {moved[3 * k], moved[3 * k + 1], 0});
     normals.push_back(at.direction);
     if (facing.partner)
       ways.push_back(facing.partner(mu, x) - Point{grid.points(k, 0) + moved[3 * k],
                                                    grid.points(k, 1) + moved[3 * k + 1], 0});
   }
   add_gap(gap, normals, grid, ways);
+  grid.of_nodes.push_back({"slip", slip, "m"});
   add_stress("pressure", lambda.head(count), false, grid);
   if (lambda.size() > count) add_stress("tangential_stress", lambda.tail(count), false, grid);
   return grid;

@@ -362,8 +362,9 @@ std::vector<Point> images(const std::function<PointMap> &map, const FullMu &mu,
 }
 
 const std::vector<std::string> &output_fields() {
-  static const std::vector<std::string> names{"x",        "y",   "ux",        "uy",
-                                              "pressure", "gap", "tangential"};
+  static const std::vector<std::string> names{
+      "x",  "y",  "ux",       "uy",       "pressure", "gap",      "tangential", "slip",         "u",
+      "nx", "ny", "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "von_mises",  "strain_energy"};
   return names;
 }
 

@@ -30,6 +30,10 @@ Cell cell_of(const Scene &scene, const FullMu &all_parameters, const Matrix &poi
   return cell;
 }
 
+std::size_t vertices_of(int dim) {
+  return static_cast<std::size_t>(dim) + 1;
+}
+
 /// sigma = lambda tr(eps) I + 2 shear eps, for the gradient of a displacement.
 Tensor stress(const Lame &material, const Tensor &gradient) {
   const Tensor strain = (gradient + gradient.transpose()) / 2;
@@ -54,38 +58,58 @@ std::vector<std::string> stress_components(int dim) {
   return {names.begin(), names.begin() + component_count(dim)};
 }
 
+Point displacement_at(const Scene &scene, const DisplacedCell &cell,
+                      const std::array<double, 4> &barycentric) {
+  std::array<double, most_nodes> values{};
+  lagrange_values(scene.dim, scene.degree, {barycentric.data(), vertices_of(scene.dim)}, values);
+  Point u{};
+  for (int i = 0; i < nodes_per_cell(scene.dim, scene.degree); ++i)
+    u = u + values[i] * cell.u[i];
+  return u;
+}
+
+PointStress stress_at(const Scene &scene, const FullMu &all_parameters, const DisplacedCell &cell,
+                      const std::array<double, 4> &barycentric) {
+  const std::size_t vertices = vertices_of(scene.dim);
+  std::array<std::array<double, 3>, most_nodes> gradients{};
+  lagrange_gradients(scene.dim, scene.degree, {barycentric.data(), vertices},
+                     simplex(scene.dim, cell.cell.mapped), gradients);
+  Tensor gradient = Tensor::Zero();
+  for (int i = 0; i < nodes_per_cell(scene.dim, scene.degree); ++i)
+    gradient += Eigen::Map<const Eigen::Vector3d>(cell.u[i].data()) *
+                Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
+  if (scene.axisymmetric) // the hoop strain
+    gradient(2, 2) = displacement_at(scene, cell, barycentric)[0] /
+                     point_at(cell.cell.mapped, barycentric, scene.dim + 1)[0];
+  const auto &[regions, material, free_strain] = scene.materials[cell.material];
+  const Lame constants = material(all_parameters, reference_centre(cell.cell));
+  const bool flat = is_plane_stress(material);
+  Tensor sigma = stress(constants, gradient);
+  if (free_strain) {
+    const double strain =
+        free_strain(all_parameters, point_at(cell.cell.reference, barycentric, scene.dim + 1));
+    sigma -= swelling_modulus(constants, flat) * strain * Tensor::Identity();
+    gradient -= strain * Tensor::Identity();
+  }
+  if (flat) sigma(2, 2) = 0;
+  return {sigma, sigma.cwiseProduct(gradient).sum() / 2};
+}
+
 Matrix centre_stresses(const Scene &scene, const FullMu &all_parameters, const Matrix &points,
                        const std::vector<int> &cells, const std::vector<int> &materials,
                        const Vector &displacement) {
   const auto per_cell = static_cast<std::size_t>(nodes_per_cell(scene.dim, scene.degree));
-  const std::vector<double> centre(static_cast<std::size_t>(scene.dim) + 1, 1.0 / (scene.dim + 1));
-  std::array<std::array<double, 3>, most_nodes> gradients{};
-  std::array<double, most_nodes> values{};
+  std::array<double, 4> centre{};
+  std::fill_n(centre.begin(), vertices_of(scene.dim), 1.0 / (scene.dim + 1));
   Matrix result(static_cast<Index>(cells.size() / per_cell), component_count(scene.dim));
   for (Index k = 0; k < result.rows(); ++k) {
     const int *nodes = cells.data() + static_cast<std::size_t>(k) * per_cell;
-    const Cell cell = cell_of(scene, all_parameters, points, nodes);
-    lagrange_gradients(scene.dim, scene.degree, centre, simplex(scene.dim, cell.mapped), gradients);
-    Tensor gradient = Tensor::Zero();
+    DisplacedCell cell{cell_of(scene, all_parameters, points, nodes),
+                       materials.empty() ? 0 : materials[k]};
     for (std::size_t i = 0; i < per_cell; ++i)
-      gradient += displacement.segment<3>(3 * nodes[i]) *
-                  Eigen::Map<const Eigen::RowVector3d>(gradients[i].data());
-    if (scene.axisymmetric) { // the hoop strain
-      const double radius = point_at(cell.mapped, {centre[0], centre[1], centre[2], 0}, 3)[0];
-      lagrange_values(2, scene.degree, centre, values);
-      for (std::size_t i = 0; i < per_cell; ++i)
-        gradient(2, 2) += values[i] * displacement[3 * nodes[i]] / radius;
-    }
-    const auto &[regions, material, free_strain] =
-        scene.materials[materials.empty() ? 0 : materials[k]];
-    const Point x = reference_centre(cell);
-    const Lame constants = material(all_parameters, x);
-    const bool flat = is_plane_stress(material);
-    Tensor sigma = stress(constants, gradient);
-    if (free_strain)
-      sigma -=
-          swelling_modulus(constants, flat) * free_strain(all_parameters, x) * Tensor::Identity();
-    if (flat) sigma(2, 2) = 0;
+      for (int c = 0; c < 3; ++c)
+        cell.u[i][c] = displacement[3 * Index{nodes[i]} + c];
+    const Tensor sigma = stress_at(scene, all_parameters, cell, centre).sigma;
     for (Index c = 0; c < result.cols(); ++c) {
       const auto [i, j] = places[c];
       result(k, c) = sigma(i, j);

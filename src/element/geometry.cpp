@@ -40,6 +40,16 @@ Simplex simplex(int dim, const std::array<Point, 4> &vertices) {
   return result;
 }
 
+std::array<double, 4> barycentric_of(int dim, const std::array<Point, 4> &vertices,
+                                     const Point &x) {
+  const Simplex geometry = simplex(dim, vertices);
+  std::array<double, 4> result{1, 0, 0, 0};
+  for (int i = 0; i <= dim; ++i)
+    for (int k = 0; k < dim; ++k)
+      result[i] += geometry.gradients(i, k) * (x[k] - vertices[0][k]);
+  return result;
+}
+
 double volume_of(int dim, const std::array<Point, 4> &vertices) {
   return edges_of(dim, vertices).determinant() / (dim == 2 ? 2 : 6);
 }

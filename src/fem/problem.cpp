@@ -66,7 +66,7 @@ Problem::Problem(MPI_Comm comm, Scene scene, const MeshOptions &options, Index c
       mesh_(make_mesh(comm, *scene_, options)), dofs_(numbered_dofs(*scene_, mesh_)),
       free_(add_springs(*scene_, mesh_, dofs_)), places_(place_interfaces(mesh_, dofs_, *scene_)),
       contact_(make_contact(*scene_, std::exchange(places_.meshes, {}))),
-      contact_gather_(contact_gather),
+      output_cells_(cells_of_outputs(*scene_, mesh_, dofs_)), contact_gather_(contact_gather),
       a_(make_summed<Mat>(scene_->a, scene_->parameters, mesh_, dofs_)),
       f_(make_summed<Vec>(scene_->f, scene_->parameters, mesh_, dofs_)) {
   if (!free_.empty()) stiffen_springs();
@@ -202,15 +202,17 @@ Vector Problem::imposed_displacement(const Mu &mu) const {
 void add_named_outputs(const Problem &problem, const FullMu &mu, const Vector &u,
                        const Vector &lambda, Outputs &outputs) {
   const Index components = problem.dofs().components;
-  const auto at_nodes = [&](std::size_t interface) {
-    const std::vector<PetscInt> &nodes = problem.places().natural_nodes[interface];
+  const auto at = [&](const auto &nodes) {
     Vector own(std::ssize(nodes) * components);
     for (std::size_t k = 0; k < nodes.size(); ++k)
       own.segment(static_cast<Index>(k) * components, components) =
           u.segment(nodes[k] * components, components);
     return own;
   };
-  add_named_outputs(problem.scene(), problem.contact(), mu, at_nodes, lambda, outputs);
+  add_named_outputs({problem.scene(), problem.contact(), problem.output_cells()}, mu,
+                    {[&](std::size_t i) { return at(problem.places().natural_nodes[i]); },
+                     [&] { return at(problem.output_cells().nodes); }},
+                    lambda, outputs);
 }
 
 Mat Problem::v_product() {

@@ -58,6 +58,7 @@ ReducedModel leading(const ReducedModel &model, int n, int r) {
   if (model.contact.b.size() > 0)
     result.contact.b.reduced =
         leading_block(model.contact.b.reduced, model.contact.generators, r, n);
+  if (model.outputs.basis.size() > 0) result.outputs.basis = model.outputs.basis.leftCols(n);
   if (model.body.springs.size() > 0) result.body.springs = model.body.springs.topRows(n);
   if (model.body.f.size() > 0) result.body.f.reduced = model.body.f.reduced.topRows(n);
   if (model.contact.g.size() > 0) result.contact.g.reduced = model.contact.g.reduced.topRows(r);

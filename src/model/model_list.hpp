@@ -197,6 +197,38 @@ template <class Store, class Model> void list_contact(const Store &store, Model 
         Shape{partial ? std::ssize(model.contact.trace_dofs) : contact, model.primal_size()});
 }
 
+inline bool fits(const OutputModel &outputs, const Scene &scene, Index cells) {
+  const Index terms = std::ssize(scene.a) + std::ssize(scene.f);
+  return std::ranges::all_of(outputs.cells.parts, [&](const OutputCells::Part &part) {
+    const auto below = [](int i, Index bound) { return i >= 0 && i < bound; };
+    return below(part.output, std::ssize(scene.outputs)) && below(part.cell, cells) &&
+           below(part.facet + 1, 4) && below(part.term, std::max<Index>(terms, 2));
+  });
+}
+
+template <class Store, class Model> void list_outputs(const Store &store, Model &model, int dim) {
+  auto &[cells, basis] = model.outputs;
+  const Index nodes = cells.points.rows(), per_cell = nodes_per_cell(dim, model.scene.degree);
+  store("outputs/points", cells.points, Shape{any_size, nodes > 0 ? dim : any_size});
+  store("outputs/nodes", cells.nodes,
+        Indices{std::numeric_limits<int>::max(), Store::reads ? any_size : nodes});
+  store("outputs/cells", cells.cells, Indices{cells.points.rows()});
+  const Index count = std::ssize(cells.cells) / per_cell;
+  store.ask("outputs/cells is not a list of them",
+            [&] { return count * per_cell == std::ssize(cells.cells); });
+  store("outputs/materials", cells.materials,
+        Indices{std::max<Index>(1, std::ssize(model.scene.materials)),
+                cells.materials.empty() ? 0 : count});
+  store("outputs/imposed_by", cells.imposed_by);
+  list_records(store, "outputs/parts", cells.parts, [](auto &part) {
+    return std::tie(part.output, part.cell, part.facet, part.term, part.held);
+  });
+  store("outputs/basis", basis,
+        Shape{cells.points.rows() * model.scene.components,
+              cells.points.rows() > 0 ? model.primal_size() : any_size});
+  store.ask("outputs do not fit", [&] { return fits(model.outputs, model.scene, count); });
+}
+
 /// `size`: the order of the terms; `blocks`: of how many blocks they come; `contact`: dofs.
 template <class Store, class Operator>
 void list_condensed(const Store &store, Operator &condensed, Index size, Index blocks,
@@ -358,6 +390,7 @@ void list_model(const Store &store, Model &model, StoredBeside &beside) {
   list_operators(store, model, dim);
   list_contact(store, model, dim);
   list_law(store, model);
+  list_outputs(store, model, dim);
   list_history(store, model);
 }
 

@@ -103,20 +103,25 @@ Vector OnlineSolver::contact_gap(const ReducedAnswer &solution) const {
 Vector OnlineSolver::field(const ReducedAnswer &solution) const {
   if (model_.fields.basis.rows() == 0)
     throw failure("the model was read without its fields: no full field can be reconstructed");
-  Vector field = model_.fields.basis * solution.u;
-  if (model_.fields.imposed_by.empty()) return field;
+  return with_imposed(model_.fields.basis * solution.u, solution.mu, model_.fields.points,
+                      model_.fields.imposed_by);
+}
+
+Vector OnlineSolver::with_imposed(Vector u, const FullMu &mu, const Matrix &points,
+                                  const std::vector<int> &imposed_by) const {
+  if (imposed_by.empty()) return u;
   std::vector<Point> nodes;
-  for (Index i = 0; i < model_.fields.points.rows(); ++i)
-    nodes.push_back(point_of(model_.fields.points, i));
-  return field + imposed_values(scene_, solution.mu, nodes, model_.fields.imposed_by);
+  for (Index i = 0; i < points.rows(); ++i)
+    nodes.push_back(point_of(points, i));
+  return u + imposed_values(scene_, mu, nodes, imposed_by);
 }
 
 void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                                         Outputs &outputs) const {
   if (scene_.outputs.empty()) return;
-  const Vector columns = model_.contact.trace * solution.u;
-  const auto at_nodes = [&](std::size_t interface) {
+  const auto of_interface = [&](std::size_t interface) {
     const InterfaceMesh &mesh = contact_.interfaces[interface]->mesh();
+    const Vector columns = model_.contact.trace * solution.u;
     Vector u = Vector::Zero(std::ssize(mesh.dofs));
     for (Index i = 0; i < u.size(); ++i)
       if (const int column = mesh.dofs[i]; column >= 0) u[i] = columns[column];
@@ -124,7 +129,12 @@ void OnlineSolver::add_outputs_of_scene(const ReducedAnswer &solution, const Vec
       u += imposed_values(scene_, solution.mu, mesh.points, mesh.imposed_by);
     return u;
   };
-  add_named_outputs(scene_, contact_, solution.mu, at_nodes, lambda, outputs);
+  const auto &[cells, basis] = model_.outputs;
+  const auto of_cells = [&, &cells = cells, &basis = basis] {
+    return with_imposed(basis * solution.u, solution.mu, cells.points, cells.imposed_by);
+  };
+  add_named_outputs({scene_, contact_, cells}, solution.mu, {of_interface, of_cells}, lambda,
+                    outputs);
 }
 
 Outputs OnlineSolver::outputs(const Mu &mu, const ReducedAnswer &solution) const {

@@ -124,6 +124,34 @@ template <class Store, class Of> void list_coordinates(const Store &store, Of &s
   }
 }
 
+template <class Store> void list_point(const Store &store, const std::string &name, auto &point) {
+  for (std::size_t c = 0; c < 2; ++c)
+    store.number(numbered(name, c), point[c]);
+}
+
+/// What an output has beside its name, its kind and where it is.
+template <class Store, class Of> void list_output(const Store &store, Of &output) {
+  int place = static_cast<int>(output.place);
+  if (store.has("place", has_cells(output))) {
+    store.number("place", place);
+    list_point(store, "vector", output.vector);
+  }
+  if constexpr (Store::reads) output.place = static_cast<OutputForm::Place>(place);
+  if (store.has("conditional", output.conditional)) store.number("conditional", output.conditional);
+  const auto function_if = [&](const std::string &name, auto &function) {
+    if (store.has(name, static_cast<bool>(function))) store.function(name, function);
+  };
+  function_if("values", output.values);
+  function_if("stiffness", output.stiffness);
+  function_if("preload", output.preload);
+  store.items("mean", output.means, [](const Store &part, auto &mean) {
+    name_record(part, "mean");
+    part.text("boundary", mean.boundary);
+    part.number("axisymmetric", mean.axisymmetric);
+    list_point(part, "direction", mean.direction);
+  });
+}
+
 template <class Store, class Of> void list_scene(const Store &store, Of &scene) {
   const auto function_if = [&](const std::string &name, auto &function) {
     if (store.has(name, static_cast<bool>(function))) store.function(name, function);
@@ -161,11 +189,15 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
     part.number("kind", kind);
     if constexpr (Store::reads) output.kind = static_cast<OutputForm::Kind>(kind);
     part.texts("at", output.at);
-    part.function("values", output.values);
+    list_output(part, output);
   });
-  // Loads of imposed values are made again from these values and the kernels of a.
+  // Loads of imposed values are made again from these values and the kernels of a; reactions need
+  // the kernels, too.
   const bool imposes = imposes_values(scene);
-  const auto term = [&](const Store &part, auto &of) { list_term(part, of, imposes); };
+  const bool kernels = imposes || std::ranges::any_of(scene.outputs, [](const OutputForm &output) {
+                         return output.kind == OutputForm::Kind::reaction;
+                       });
+  const auto term = [&](const Store &part, auto &of) { list_term(part, of, kernels); };
   store.items("a", scene.a, term);
   store.items("f", scene.f, term);
   if (imposes || Store::reads)

@@ -260,6 +260,26 @@ void project_springs(const Problem &problem, const std::vector<Sample> &samples,
         bodies, from_natural(problem.dofs(), displacement(problem.comm(), samples[p])).get());
 }
 
+/// The primal basis at the nodes that outputs are taken from. Collective.
+void project_outputs(const Problem &problem, Mat basis, OutputModel &outputs) {
+  outputs.cells = problem.output_cells();
+  const std::vector<int> &nodes = outputs.cells.nodes;
+  if (nodes.empty()) return;
+  const Index components = problem.dofs().components;
+  PetscInt n = 0;
+  RBVI_CALL(MatGetSize(basis, nullptr, &n));
+  outputs.basis.resize(std::ssize(nodes) * components, n);
+  for (PetscInt j = 0; j < n; ++j) {
+    Vec column = nullptr;
+    RBVI_CALL(MatDenseGetColumnVecRead(basis, j, &column));
+    const Vector whole = to_natural(problem.dofs(), column);
+    RBVI_CALL(MatDenseRestoreColumnVecRead(basis, j, &column));
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      outputs.basis.col(j).segment(static_cast<Index>(k) * components, components) =
+          whole.segment(nodes[k] * components, components);
+  }
+}
+
 /// Leaves in the trace of a large pair of spaces the nodes over which contact moves, those that
 /// generators reach and free modes do not, and two layers around them.
 void restrict_trace(Problem &problem, const Mu &any, ReducedModel &model) {
@@ -316,6 +336,7 @@ ReducedModel project(Problem &problem, const std::vector<Sample> &samples,
     project_exact(problem, samples, affine, basis.get(), model);
     project_springs(problem, samples, basis.get(), model.body);
     model.contact.trace = restrict_to(problem.trace(), basis.get());
+    project_outputs(problem, basis.get(), model.outputs);
     project_snapshots(problem, samples, affine, basis.get(), model);
   }
   restrict_trace(problem, samples.front().mu, model);

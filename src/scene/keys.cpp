@@ -152,13 +152,23 @@ const std::vector<CaseKey> all_keys{
     {"contact.*.friction", "bound", "everywhere | contact",
      "where Tresca's threshold holds: on the whole boundary, or where there is contact (between "
      "bodies always)"},
-    {"outputs.*", "at", "contacts", "over which; default: all"},
+    {"outputs.*", "at", "contacts or boundaries",
+     "over which; default: all contacts. Of one name that is both it is the contact"},
+    {"outputs.*", "in", "regions", "over which, or all"},
+    {"outputs.*", "point", "[number, number]", "of the mesh, where a value is taken", false, "m"},
     {"outputs.*", "integral", "expression",
-     "in parameters, x, y, ux, uy, pressure, gap, tangential (the tangential stress)"},
-    {"outputs.*", "mean", "expression", "its integral over the length"},
+     "in parameters, x, y, the displacement ux, uy (of a membrane u); over contacts pressure, gap, "
+     "tangential (the tangential stress) and slip; over boundaries nx, ny (the normal); in the "
+     "body, on boundaries and at points sigma_xx, sigma_yy, sigma_zz, sigma_xy, von_mises, "
+     "strain_energy (elastic energy per volume)"},
+    {"outputs.*", "mean", "expression", "its integral over the length or area"},
     {"outputs.*", "max", "expression", ""},
     {"outputs.*", "min", "expression", ""},
-    {"outputs.*", "measure", "expression", "the length on which a condition holds"},
+    {"outputs.*", "measure", "expression", "the length or area on which a condition holds"},
+    {"outputs.*", "value", "expression", "at a point"},
+    {"outputs.*", "reaction", "[number, number]",
+     "the force along this direction by which boundaries hold the body"},
+    {"outputs.*", "spring", "a spring", "the force with which it pulls"},
     {"outputs.*", "where", "expression", "a condition: the part that counts"},
     {"require.*", "that", "expression", "in parameters: it must hold", true},
     {"require.*", "says", "text", "what to tell where it does not", true},

@@ -37,6 +37,10 @@ MeshRecipe recipe_of_sections(const Reader &reader) {
     add(node, "at", node.find("above") != nullptr ? recipe.regions : recipe.boundaries);
     add(node, "against", recipe.boundaries);
   }
+  for (const auto &[name, node] : section(reader, "outputs").entries) {
+    add(node, "in", recipe.regions);
+    if (!is_over_contacts(reader, node)) add(node, "at", recipe.boundaries);
+  }
   for (const auto &[name, node] : section(reader, "curves").entries)
     if (std::ranges::find(recipe.regions, name) == recipe.regions.end()) {
       add_name(recipe.boundaries, name);

@@ -1,9 +1,10 @@
 #include "reader.hpp"
 
-#include "rbvi/contact/named_outputs.hpp"
 #include "rbvi/core/outputs.hpp"
+#include "rbvi/core/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rbvi {
 
@@ -11,11 +12,12 @@ namespace {
 
 using Kind = OutputForm::Kind;
 
-const std::vector<std::pair<std::string, Kind>> kinds{{"integral", Kind::integral},
-                                                      {"mean", Kind::mean},
-                                                      {"max", Kind::max},
-                                                      {"min", Kind::min},
-                                                      {"measure", Kind::measure}};
+using Place = OutputForm::Place;
+
+const std::vector<std::pair<std::string, Kind>> kinds{
+    {"integral", Kind::integral}, {"mean", Kind::mean},       {"max", Kind::max},
+    {"min", Kind::min},           {"measure", Kind::measure}, {"value", Kind::mean},
+    {"reaction", Kind::reaction}, {"spring", Kind::spring}};
 
 /// Throws bad_input for a name that a table has already.
 void check_name(const std::string &name, const Scene &scene) {
@@ -26,10 +28,40 @@ void check_name(const std::string &name, const Scene &scene) {
     throw bad_input("tables have a column '" + name + "' already: give the output another name");
 }
 
-/// Throws bad_input where a parameter or a let is called like a field.
-void check_fields(const Reader &reader, const Expression &value) {
+std::string contact_names(const Scene &scene) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+    names.push_back(contact_name(scene, i));
+  return joined(names);
+}
+
+/// Whether there is a field where an output is.
+bool is_there(const std::string &name, Place place, bool membrane) {
+  const auto is_one_of = [&](std::size_t first, std::size_t last) {
+    const auto begin = output_fields().begin();
+    const auto at = static_cast<std::size_t>(std::ranges::find(output_fields(), name) - begin);
+    return at >= first && at <= last;
+  };
+  if (is_one_of(field::pressure, field::slip)) return place == Place::contact;
+  if (is_one_of(field::nx, field::ny)) return place == Place::boundary;
+  if (is_one_of(field::sigma_xx, field::strain_energy)) return place != Place::contact && !membrane;
+  return is_one_of(field::u, field::u) ? membrane : is_one_of(field::x, field::y) || !membrane;
+}
+
+/// Throws bad_input for a field that is not there, and where a parameter or a let is called like
+/// one.
+void check_fields(const Reader &reader, const Scene &scene, const OutputForm &form,
+                  const Expression &value) {
   for (const std::string &name : value.free_names()) {
     if (std::ranges::find(output_fields(), name) == output_fields().end()) continue;
+    if (!is_there(name, form.place, scene.components == 1))
+      throw bad_input("there is no '" + name + "' " +
+                      (form.at.empty() ? "there" : "at '" + joined(form.at, "', '") + "'") +
+                      ": pressure, gap, tangential and slip are over contacts (" +
+                      contact_names(scene) +
+                      "), nx and ny over boundaries, stresses and "
+                      "strain_energy over boundaries, regions and at points of elastic bodies, u "
+                      "is that of a membrane, ux and uy of others");
     if (std::ranges::find(reader.parameters, name) != reader.parameters.end() ||
         std::ranges::find(reader.lets, name, &Let::name) != reader.lets.end())
       throw bad_input("in outputs '" + name +
@@ -38,47 +70,122 @@ void check_fields(const Reader &reader, const Expression &value) {
   }
 }
 
-OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &node,
-                     const Scene &scene) {
-  check_name(name, scene);
-  OutputForm form{name};
-  const CaseNode *value = nullptr;
+/// The one key that says what the output is.
+std::string kind_of(const CaseNode &node) {
+  std::vector<std::string> names, found;
   for (const auto &[key, kind] : kinds) {
-    const CaseNode *found = node.find(key);
-    if (found == nullptr) continue;
-    if (value != nullptr) throw bad_input("an output is one of integral, mean, max, min, measure");
-    value = found;
-    form.kind = kind;
+    names.push_back(key);
+    if (node.find(key) != nullptr) found.push_back(key);
   }
-  if (value == nullptr)
-    throw bad_input("an output is an integral, a mean, a max or a min of an expression, or the "
-                    "measure of a condition");
+  if (found.size() != 1)
+    throw bad_input("an output is one of " + joined(names) + ": it has " +
+                    (found.empty() ? "none" : joined(found, " and ")));
+  return found.front();
+}
+
+/// Contacts, boundaries, regions or a point.
+void put_place(const Reader &reader, const CaseNode &node, const Scene &scene, OutputForm &form) {
+  const CaseNode *at = node.find("at"), *in = node.find("in"), *point = node.find("point");
+  if ((at != nullptr) + (in != nullptr) + (point != nullptr) > 1)
+    throw bad_input("an output has one place: 'at' contacts or boundaries, 'in' regions, or a "
+                    "'point'");
+  if ((point != nullptr) != (node.find("value") != nullptr))
+    throw bad_input("a value is that at a point: {value: EXPRESSION, point: [x, y]}");
+  if (point != nullptr) {
+    const std::vector<double> x = numbers_in(reader, *point, 2);
+    form.place = Place::point;
+    form.vector = {x[0], x[1], 0};
+  } else if (in != nullptr) {
+    form.place = Place::region;
+    form.at = names_in(*in);
+    if (std::ranges::find(form.at, std::string("all")) != form.at.end()) form.at.clear();
+  } else if (at == nullptr) {
+    for (std::size_t i = 0; i < scene.contacts.size(); ++i)
+      form.at.push_back(contact_name(scene, i));
+  } else {
+    form.at = names_in(*at);
+    if (!is_over_contacts(reader, node)) form.place = Place::boundary;
+  }
+}
+
+void put_values(Reader &reader, const CaseNode &node, const CaseNode &value, const Scene &scene,
+                OutputForm &form) {
   const CaseNode *where = node.find("where");
-  const Expression one = parse_expression("1"), of = expression_in(reader, *value);
+  const Expression one = parse_expression("1"), of = expression_in(reader, value);
   const bool measures = form.kind == Kind::measure;
   if (measures && where != nullptr)
     throw bad_input("a measure is that of its condition: write 'A and B' in place of 'where'");
-  for (const CaseNode *given : {value, where})
-    if (given != nullptr) check_fields(reader, expression_in(reader, *given));
+  for (const CaseNode *given : {&value, where})
+    if (given != nullptr) check_fields(reader, scene, form, expression_in(reader, *given));
+  form.conditional = measures || where != nullptr;
   form.values = field_values_of(
       formula_of(reader, {measures ? one : of, measures           ? of
                                                : where != nullptr ? expression_in(reader, *where)
                                                                   : one}));
-  if (const CaseNode *at = node.find("at"))
-    form.at = names_in(*at);
-  else
-    for (std::size_t i = 0; i < scene.contacts.size(); ++i)
-      form.at.push_back(contact_name(scene, i));
+}
+
+void put_reaction(const Reader &reader, const CaseNode &node, OutputForm &form) {
+  if (node.find("at") == nullptr || node.find("in") != nullptr || node.find("where") != nullptr)
+    throw bad_input("a reaction is that of boundaries, whole: {reaction: [0, 1], at: BOUNDARY}");
+  const std::vector<double> direction = numbers_in(reader, entry(node, "reaction"), 2);
+  form.vector = {direction[0], direction[1], 0};
+  if (!(std::abs(norm(form.vector) - 1) <= 1e-6))
+    throw bad_input("the direction of a reaction has the length 1");
+  form.place = Place::boundary;
+  form.at = names_in(entry(node, "at"));
+}
+
+void put_spring(Reader &reader, const CaseNode &node, const Scene &scene, OutputForm &form) {
+  for (const char *other : {"at", "in", "point", "where"})
+    if (node.find(other) != nullptr)
+      throw bad_input("the force of a spring is that of the whole spring: {spring: NAME}");
+  const std::string name = entry(node, "spring").value;
+  const CaseNode &springs = section(reader, "springs");
+  if (springs.find(name) == nullptr) throw bad_input("there is no spring '" + name + "'");
+  const Spring spring = spring_in(reader, *springs.find(name), scene);
+  form.place = Place::boundary;
+  form.means = spring.means;
+  const auto coefficient = [&](const std::string &text) {
+    return coefficient_of(formula_of(reader, {parse_expression(text)}));
+  };
+  if (spring.stiffness) form.stiffness = coefficient(spring.stiffness->text());
+  if (spring.preload) form.preload = coefficient(*spring.preload);
+}
+
+OutputForm output_in(Reader &reader, const std::string &name, const CaseNode &node,
+                     const Scene &scene) {
+  check_name(name, scene);
+  const std::string kind = kind_of(node);
+  OutputForm form{name};
+  form.kind = std::ranges::find(kinds, kind, &std::pair<std::string, Kind>::first)->second;
+  if (form.kind == Kind::reaction) {
+    put_reaction(reader, node, form);
+  } else if (form.kind == Kind::spring) {
+    put_spring(reader, node, scene, form);
+  } else {
+    put_place(reader, node, scene, form);
+    put_values(reader, node, entry(node, kind), scene, form);
+  }
   return form;
 }
 
 } // namespace
 
+bool is_over_contacts(const Reader &reader, const CaseNode &output) {
+  if (output.find("reaction") != nullptr) return false;
+  const CaseNode *at = output.find("at");
+  if (at == nullptr || at->is_table()) return true;
+  const std::vector<std::string> names = names_in(*at);
+  const auto is_contact = [&](const std::string &name) {
+    return section(reader, "contact").find(name) != nullptr;
+  };
+  return std::ranges::all_of(names, is_contact);
+}
+
 void read_outputs(Reader &reader, Scene &scene, Defects &defects) {
   for (const auto &[name, node] : section(reader, "outputs").entries)
     defects.collect(node, [&, &own = name, &value = node] {
       scene.outputs.push_back(output_in(reader, own, value, scene));
-      check_outputs(scene);
     });
 }
 

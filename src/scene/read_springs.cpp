@@ -8,8 +8,8 @@ namespace rbvi {
 
 namespace {
 
-/// The displacement that stretches the spring: a mean, less another one.
-Form stretch_of(const Reader &reader, const CaseNode &node, const Scene &scene) {
+/// Their sum stretches the spring: a mean, less another one.
+std::vector<Mean> means_of(const Reader &reader, const CaseNode &node, const Scene &scene) {
   Point direction{0, 1, 0};
   if (const CaseNode *given = node.find("direction")) {
     const std::vector<double> d = numbers_in(reader, *given, 2);
@@ -25,11 +25,9 @@ Form stretch_of(const Reader &reader, const CaseNode &node, const Scene &scene) 
   if (names.size() != (at != nullptr ? 1U : 2U))
     throw bad_input(at != nullptr ? "a spring to the ground is at one boundary: give each its entry"
                                   : "a spring is between two boundaries: [one, other]");
-  Form stretch;
-  stretch.means = {{names.front(), direction, scene.axisymmetric}};
-  if (between != nullptr)
-    stretch.means.push_back({names.back(), -1.0 * direction, scene.axisymmetric});
-  return stretch;
+  std::vector<Mean> means{{names.front(), direction, scene.axisymmetric}};
+  if (between != nullptr) means.push_back({names.back(), -1.0 * direction, scene.axisymmetric});
+  return means;
 }
 
 /// The factor of an expression in parameters alone.
@@ -40,28 +38,42 @@ Factor force_factor(Reader &reader, const std::string &text) {
   return factor_of(reader, value);
 }
 
+Form form_of(const Spring &spring) {
+  Form form;
+  form.means = spring.means;
+  return form;
+}
+
 void read_spring(Reader &reader, const CaseNode &node, Scene &scene) {
-  const Form stretch = stretch_of(reader, node, scene);
+  if (scene.components == 1) throw bad_input("a membrane has no springs");
+  const Spring spring = spring_in(reader, node, scene);
+  if (spring.stiffness) {
+    limit(reader, *spring.stiffness, {0, 1e15}, scene);
+    scene.a.push_back(
+        exact_term(form_of(spring), {force_factor(reader, spring.stiffness->text())}));
+  }
+  if (spring.preload)
+    scene.f.push_back(
+        exact_term(form_of(spring), {force_factor(reader, "-(" + *spring.preload + ")")}));
+}
+
+} // namespace
+
+Spring spring_in(const Reader &reader, const CaseNode &node, const Scene &scene) {
+  Spring spring{means_of(reader, node, scene), {}, {}};
   const CaseNode *stiffness = node.find("stiffness"), *pretension = node.find("pretension"),
                  *settled = node.find("settled");
-  if (scene.components == 1) throw bad_input("a membrane has no springs");
   if (stiffness == nullptr && pretension == nullptr)
     throw bad_input("a spring has a stiffness, or a pretension, or both");
   if (settled != nullptr && (stiffness == nullptr || pretension == nullptr))
     throw bad_input("settled is where a spring with a stiffness has its pretension: give both");
-  std::string force; // on the first boundary along the direction, beside the stiffness
-  if (pretension != nullptr) force = "-(" + expression_in(reader, *pretension).text() + ")";
-  if (stiffness != nullptr) {
-    const Expression value = expression_in(reader, *stiffness);
-    limit(reader, value, {0, 1e15}, scene);
-    scene.a.push_back(exact_term(stretch, {force_factor(reader, value.text())}));
-    if (settled != nullptr)
-      force += " + (" + value.text() + ") * (" + expression_in(reader, *settled).text() + ")";
-  }
-  if (!force.empty()) scene.f.push_back(exact_term(stretch, {force_factor(reader, force)}));
+  if (stiffness != nullptr) spring.stiffness = expression_in(reader, *stiffness);
+  if (pretension != nullptr) spring.preload = expression_in(reader, *pretension).text();
+  if (settled != nullptr)
+    *spring.preload +=
+        " - (" + spring.stiffness->text() + ") * (" + expression_in(reader, *settled).text() + ")";
+  return spring;
 }
-
-} // namespace
 
 void read_springs(Reader &reader, Scene &scene, Defects &defects) {
   for (const auto &[name, node] : section(reader, "springs").entries)

@@ -70,6 +70,15 @@ struct Product {
 };
 std::optional<std::vector<Product>> products_of(Reader &reader, const Expression &value);
 
+/// An entry of `springs`: it pulls the first boundary against the direction of the first mean with
+/// stiffness m(u) + preload, m the sum of the means.
+struct Spring {
+  std::vector<Mean> means;
+  std::optional<Expression> stiffness;
+  std::optional<std::string> preload; ///< an expression
+};
+Spring spring_in(const Reader &reader, const CaseNode &node, const Scene &scene);
+
 /// Sections, in the order in which they depend on each other. They throw bad_input, or collect
 /// defects one by one.
 void read_parameters(Reader &reader, Scene &scene, Defects &defects);
@@ -83,6 +92,9 @@ void read_springs(Reader &reader, Scene &scene, Defects &defects);
 void read_contact(Reader &reader, Scene &scene, Defects &defects);
 /// After contact.
 void read_outputs(Reader &reader, Scene &scene, Defects &defects);
+
+/// Whether an output is over contacts: where its places are their names, or there are none.
+bool is_over_contacts(const Reader &reader, const CaseNode &output);
 
 /// Defaults outside of their limits and of those that what they are gives them. After
 /// all sections.

@@ -40,7 +40,15 @@ const std::string all_kinds = "  force: {integral: pressure, at: floor}\n"
                               "  first: {min: x, where: x >= level}\n"
                               "  shear: {max: abs(tangential)}\n"
                               "  sunk: {min: uy}\n"
-                              "  open: {max: gap}\n";
+                              "  open: {max: gap}\n"
+                              "  corner: {value: ux, point: [1, 0.5]}\n"
+                              "  inside: {value: sigma_xy, point: [0.37, 0.21]}\n"
+                              "  top: {mean: uy, at: top}\n"
+                              "  pull: {integral: sigma_xy*nx + sigma_yy*ny, at: [top, contact]}\n"
+                              "  half: {integral: x, at: top, where: x < level}\n"
+                              "  stored: {integral: strain_energy, in: all}\n"
+                              "  stress: {max: von_mises, in: all}\n"
+                              "  deep: {min: 'uy*y', in: all}\n";
 
 std::map<std::string, double> values_of(const Outputs &outputs) {
   std::map<std::string, double> values;
@@ -52,7 +60,22 @@ std::map<std::string, double> values_of(const Outputs &outputs) {
 void expect_exact(const Mu &mu, const Outputs &outputs) {
   const double p = mu[0], t = mu[1], level = mu[2], near = 1e-9;
   std::map<std::string, double> found = values_of(outputs);
-  ASSERT_EQ(found.size(), 9U);
+  const double young = 15, poisson = 0.3, away = 1 - 2 * poisson, side = poisson / (1 - poisson),
+               shear = 2 * t * (1 + poisson) / young,
+               strain = -p * (1 + poisson) * away / (young * (1 - poisson));
+  ASSERT_EQ(found.size(), 17U);
+  EXPECT_NEAR(found["corner"], shear / 2, near);
+  EXPECT_NEAR(found["inside"], t, near);
+  EXPECT_NEAR(found["top"], strain / 2, near);
+  EXPECT_NEAR(found["pull"], 0, near);
+  EXPECT_NEAR(found["half"], level * level / 2, near) << "ends inside an edge";
+  EXPECT_NEAR(found["stored"], (t * shear - p * strain) / 4, near);
+  const double xx = -side * p, zz = poisson * (xx - p);
+  EXPECT_NEAR(found["stress"],
+              std::sqrt(((xx + p) * (xx + p) + (zz + p) * (zz + p) + (xx - zz) * (xx - zz)) / 2 +
+                        3 * t * t),
+              near);
+  EXPECT_NEAR(found["deep"], strain / 4, near) << "at the top";
   EXPECT_NEAR(found["force"], p, near);
   EXPECT_NEAR(found["moment"], p / 2, near);
   EXPECT_NEAR(found["left"], level, near) << "ends inside an edge";
@@ -92,6 +115,93 @@ TEST(NamedOutputs, AMeasureIsContinuous) {
   HighFidelity solver(problem, {});
   for (double level = 0.2; level < 0.8; level += 0.013)
     EXPECT_NEAR(values_of(solver.solve({1, 0.1, level}).outputs)["left"], level, 1e-9);
+}
+
+/// Pressed onto the floor and sheared by what is imposed on its top, with a load that is fixed
+/// there in part, or by a spring; `map` scales it.
+Scene pressed(const std::string &hold, const std::string &outputs, const std::string &physics,
+              const std::string &map = "",
+              const std::string &friction = ", friction: {coulomb: 0.4}") {
+  const std::string text =
+      "rbvi: 1\nphysics: " + physics + "\nmesh: {built_in: one_block, degree: 2}\n" + map +
+      "parameters: {d: {range: [0.02, 0.1], default: 0.05}, young: {range: [10, 20], default: "
+      "15}}\n"
+      "materials: {rubber: {at: all, E: young, nu: 0.3}}\n" +
+      hold + "contact: {floor: {at: contact, against: {plane: {normal: [0, -1], position: 0}}" +
+      friction + "}}\noutputs:\n  pressed: {integral: pressure}\n" +
+      (friction.empty() ? "" : "  sheared: {integral: tangential}\n") + outputs;
+  return make_scene(read_case(text, "block.yaml"), {});
+}
+
+/// The same of a full answer and of a model, at a parameter that was no sample.
+void compare_balance(const Scene &scene, const Mu &mu,
+                     const std::function<void(std::map<std::string, double>)> &expect) {
+  {
+    Problem problem(PETSC_COMM_WORLD, scene, {});
+    expect(values_of(HighFidelity(problem, {}).solve(mu).outputs));
+  }
+  Reduced made(scene, "grid:3,3");
+  made.reduce(testing_reduced::everything());
+  if (rank_of(PETSC_COMM_WORLD) != 0) return;
+  OnlineSolver online(made.model);
+  expect(values_of(online.outputs(mu, online.solve(mu))));
+}
+
+TEST(NamedOutputs, AReactionBalancesContactAndLoads) {
+  const std::string hold = "imposed: {top: {at: top, ux: 0.3*d, uy: -d}}\n"
+                           "loads: {weight: {at: all, force: [0, -2*d]}, "
+                           "edge: {at: top, traction: [0.5, 0]}}\n";
+  const std::string outputs = "  up: {reaction: [0, 1], at: top}\n"
+                              "  aside: {reaction: [1, 0], at: top}\n";
+  const Mu mu{0.047, 13};
+  const auto balance = [&](double area) {
+    return [=](std::map<std::string, double> found) {
+      EXPECT_NEAR(found["up"] + found["pressed"], 2 * mu[0] * 0.5 * area, 1e-9);
+      EXPECT_NEAR(std::abs(found["aside"] + 0.5 * std::sqrt(area)), std::abs(found["sheared"]),
+                  1e-9);
+      EXPECT_GT(found["pressed"], 0.1);
+    };
+  };
+  compare_balance(pressed(hold, outputs, "plane_strain"), mu, balance(1));
+  compare_balance(pressed(hold, outputs, "plane_strain", "map: [1.5*x, 1.5*y]\n"), mu,
+                  balance(1.5 * 1.5));
+}
+
+TEST(NamedOutputs, ASpringPullsWithWhatContactCarries) {
+  const std::string hold = "springs: {bolt: {at: top, stiffness: 3, pretension: 20*d, "
+                           "settled: -0.1*d}}\n"
+                           "imposed: {sides: {at: sides, ux: 0}}\n";
+  compare_balance(
+      pressed(hold, "  bolt: {spring: bolt}\n  top: {mean: uy, at: top}\n", "plane_strain"),
+      {0.047, 13}, [](std::map<std::string, double> found) {
+        EXPECT_NEAR(found["bolt"], found["pressed"], 1e-9);
+        EXPECT_NEAR(found["bolt"], 20 * 0.047 + 3 * (found["top"] + 0.0047), 1e-9);
+        EXPECT_LT(found["top"], -0.001);
+      });
+}
+
+/// Without friction the block follows its top aside, and spreads by as much to both sides.
+TEST(NamedOutputs, TheSlipIsTheWayAlongTheFloor) {
+  const std::string hold = "imposed: {top: {at: top, ux: 3*d, uy: -d}}\n";
+  compare_balance(
+      pressed(hold, "  slip: {mean: slip, at: floor}\n", "plane_strain", "", ""), {0.05, 12},
+      [](std::map<std::string, double> found) { EXPECT_NEAR(found["slip"], 0.15, 1e-9); });
+}
+
+TEST(NamedOutputs, AreRefusedWhereTheyAreNotKnown) {
+  const std::string hold = "imposed: {top: {at: top, ux: 0, uy: -d}, sides: {at: sides, ux: 0}}\n";
+  const auto expect_refused = [&](const std::string &output, const std::string &words) {
+    try {
+      const Problem problem(PETSC_COMM_WORLD, pressed(hold, output, "plane_strain"), {});
+      FAIL() << output;
+    } catch (const Error &error) {
+      EXPECT_EQ(error.status(), Status::bad_input);
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  expect_refused("  far: {value: ux, point: [3, 0.2]}\n", "which no cell of the mesh has");
+  expect_refused("  side: {reaction: [0, 1], at: sides}\n", "which is not held in its direction");
+  expect_refused("  side: {reaction: [1, 0], at: sides}\n", "which shares nodes with 'contact'");
 }
 
 TEST(NamedOutputs, OverNothingHaveNoValue) {

@@ -28,8 +28,33 @@ Named<PointValue> point_value_of(const Formula &value);
 /// Components that are left out are 0.
 Named<PointMap> point_map_of(const Formula &components);
 Named<Traction> traction_of(const Formula &components);
-/// What outputs may name beside parameters: x, y (where the map takes the point), ux, uy (the
-/// displacement, with the motion), pressure, gap, tangential (the tangential stress).
+/// What outputs may name beside parameters, in the order of output_fields(); what there is not at
+/// some place is NaN there. x, y: where the map takes the point; ux, uy, of a membrane u: the
+/// displacement, with the motion; of contact pressure, gap, tangential stress and slip; on
+/// boundaries the normal outwards; of the body stresses and the elastic energy of a volume.
+namespace field {
+enum : std::size_t {
+  x,
+  y,
+  ux,
+  uy,
+  pressure,
+  gap,
+  tangential,
+  slip,
+  u,
+  nx,
+  ny,
+  sigma_xx,
+  sigma_yy,
+  sigma_zz,
+  sigma_xy,
+  von_mises,
+  strain_energy,
+  count
+};
+}
+using OutputFields = std::array<double, field::count>;
 const std::vector<std::string> &output_fields();
 /// Two values in them: of an output, and whether it is asked for there (not 0).
 Named<FieldValues> field_values_of(const Formula &values);

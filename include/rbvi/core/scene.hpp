@@ -101,13 +101,27 @@ struct BodyMaterial {
   Named<PointValue> free_strain{};
 };
 
-/// An output of the scene's own, over contact interfaces (contact/named_outputs.hpp).
+/// An output of the scene's own (contact/named_outputs.hpp).
 struct OutputForm {
-  enum class Kind { integral, mean, max, min, measure };
+  enum class Kind {
+    integral,
+    mean, ///< at a point the value there
+    max,
+    min,
+    measure,
+    reaction, ///< a(u, l) - f(l), l a unit displacement of fixed boundaries, zero at other nodes
+    spring    ///< stiffness m(u) + preload, m the sum of some means
+  };
+  enum class Place { contact, boundary, region, point };
   std::string name;
   Kind kind = Kind::integral;
-  std::vector<std::string> at{}; ///< names of contacts
+  Place place = Place::contact;
+  std::vector<std::string> at{}; ///< contacts, boundaries or regions; no region: the whole mesh
   Named<FieldValues> values{};   ///< what is integrated, ..., and where
+  bool conditional = false;      ///< it is not asked for everywhere
+  Point vector{};                ///< the point, or the direction of a reaction
+  std::vector<Mean> means{};     ///< of a spring
+  Named<Coefficient> stiffness{}, preload{}; ///< of a spring; empty: 0
 };
 
 /// Outputs of one full solve that are known.

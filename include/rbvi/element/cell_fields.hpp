@@ -4,9 +4,31 @@
 #include "rbvi/core/dense.hpp"
 #include "rbvi/core/scene.hpp"
 
+#include "rbvi/element/lagrange.hpp"
+
 #include <vector>
 
 namespace rbvi {
+
+/// A cell with its displacement, three components at each node, the motion among them.
+struct DisplacedCell {
+  Cell cell; ///< mapped
+  int material = 0;
+  std::array<Point, most_nodes> u{};
+};
+
+/// u at a point.
+Point displacement_at(const Scene &scene, const DisplacedCell &cell,
+                      const std::array<double, 4> &barycentric);
+
+/// Cauchy stress (Pa; of a plane or turned body zz is out of the plane) and elastic energy of a
+/// volume at a point. Constants are those at the centre of the cell.
+struct PointStress {
+  Eigen::Matrix3d sigma;
+  double strain_energy = 0;
+};
+PointStress stress_at(const Scene &scene, const FullMu &all_parameters, const DisplacedCell &cell,
+                      const std::array<double, 4> &barycentric);
 
 /// Names of the components of a stress tensor that a plane (dim 2: plane strain; axisymmetric: zz
 /// is the hoop) or solid body has, in the order of the columns of centre_stresses().

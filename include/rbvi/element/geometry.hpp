@@ -26,6 +26,9 @@ struct Simplex {
 /// From dim + 1 vertices, dim = 2 or 3.
 Simplex simplex(int dim, const std::array<Point, 4> &vertices);
 
+/// Coordinates of a point: of the vertices of the simplex at it.
+std::array<double, 4> barycentric_of(int dim, const std::array<Point, 4> &vertices, const Point &x);
+
 /// The volume alone.
 double volume_of(int dim, const std::array<Point, 4> &vertices);
 

@@ -16,6 +16,7 @@
 #include "rbvi/fem/distributed_contact.hpp"
 #include "rbvi/fem/free_motions.hpp"
 #include "rbvi/fem/imposed.hpp"
+#include "rbvi/fem/output_cells.hpp"
 #include "rbvi/fem/summed.hpp"
 
 #include <memory>
@@ -73,6 +74,7 @@ public:
   const InterfacePlaces &places() const { return places_; }
   const Contact &contact() const { return contact_; }
   const Trace &trace() const { return places_.trace; }
+  const OutputCells &output_cells() const { return output_cells_; }
   Index dual_size() const { return contact_.dual_size(); }
 
   /// Collective. `mu`: the free parameters, inside or outside the box. A and F are assembled again
@@ -123,6 +125,7 @@ private:
   std::vector<FreeBody> free_;
   InterfacePlaces places_;
   Contact contact_;
+  OutputCells output_cells_;
   Index contact_gather_;
   std::optional<DualLayout> dual_layout_;
   MappedVertices mapped_;

@@ -16,6 +16,7 @@
 #include "rbvi/contact/contact.hpp"
 #include "rbvi/core/outputs.hpp"
 #include "rbvi/core/scene.hpp"
+#include "rbvi/element/output_cells.hpp"
 #include "rbvi/model/chebyshev.hpp"
 #include "rbvi/model/nitsche_model.hpp"
 
@@ -215,6 +216,12 @@ struct ModelFields {
   std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty where nothing is imposed
 };
 
+/// What named outputs apart from contact are taken from; empty without any.
+struct OutputModel {
+  OutputCells cells;
+  Matrix basis; ///< the primal basis at cells.nodes: (nodes * components) x n
+};
+
 /// How a model was made, and what was found out about it.
 struct ModelHistory {
   std::map<std::string, std::string> settings; ///< tolerances and options that made it
@@ -234,6 +241,7 @@ struct ReducedModel {
   Scene scene;
   BodyModel body;
   ContactModel contact;
+  OutputModel outputs;
   ModelFields fields;
   ModelHistory made;
 
@@ -244,7 +252,7 @@ struct ReducedModel {
   bool evaluates_contact() const { return contact.b.size() == 0 && has_multipliers(); }
 };
 
-inline constexpr int model_schema = 19;
+inline constexpr int model_schema = 20;
 
 /// Throws failure, naming the member, if sizes do not agree, an index points nowhere or a number is
 /// not finite (fields may all be empty).

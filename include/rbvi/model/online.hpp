@@ -49,6 +49,9 @@ private:
   /// weights, nodal_b and nodal_gap.
   ContactOperators nodal_operators(const ReducedAnswer &solution, const Vector &lambda) const;
 
+  /// u at nodes, with what boundaries impose there.
+  Vector with_imposed(Vector u, const FullMu &mu, const Matrix &points,
+                      const std::vector<int> &imposed_by) const;
   void add_outputs_of_scene(const ReducedAnswer &solution, const Vector &lambda,
                             Outputs &outputs) const;
 

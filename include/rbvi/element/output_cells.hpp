@@ -1,0 +1,37 @@
+// Cells of the mesh that outputs of a scene apart from contact are taken from, whole meshes apart.
+#pragma once
+
+#include "rbvi/core/dense.hpp"
+#include "rbvi/core/scene.hpp"
+
+#include <vector>
+
+namespace rbvi {
+
+struct OutputCells {
+  /// What of a cell belongs to an output.
+  struct Part {
+    int output = 0; ///< number in Scene::outputs
+    int cell = 0;
+    int facet = -1; ///< -1: the whole cell
+    int term = 0;   ///< of a reaction: in a, then in f; of a spring: its mean
+    int held = 0;   ///< of a reaction: a bit for each node of the cell on its boundary
+  };
+  Matrix points;               ///< nodes x dim, reference coordinates
+  std::vector<int> nodes;      ///< their numbers in the whole mesh
+  std::vector<int> cells;      ///< node numbers of each, nodes_per_cell of them
+  std::vector<int> materials;  ///< of each cell (Scene::materials); empty: the first
+  std::vector<int> imposed_by; ///< Cell::imposed_by of each dof; empty: nothing is imposed
+  std::vector<Part> parts;     ///< by output
+};
+
+/// Whether an output needs cells.
+bool has_cells(const OutputForm &output);
+
+/// Value of output number `output` of these cells. `u`: at the nodes, node * components + c, with
+/// imposed values and without the motion. Not finite where there is nothing, or a field is not
+/// there.
+double cell_output(const Scene &scene, int output, const FullMu &mu, const OutputCells &cells,
+                   const Vector &u);
+
+} // namespace rbvi

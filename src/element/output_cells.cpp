@@ -1,0 +1,260 @@
+#include "rbvi/element/output_cells.hpp"
+
+#include "rbvi/element/cell_fields.hpp"
+#include "rbvi/element/facets.hpp"
+#include "rbvi/element/lagrange.hpp"
+#include "rbvi/element/output_sums.hpp"
+#include "rbvi/element/quadrature.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace rbvi {
+
+namespace {
+
+using OutputPart = OutputCells::Part;
+using Barycentric = std::array<double, 4>;
+
+/// Cells with a displacement at one mu.
+struct OutputState {
+  const Scene &scene;
+  const FullMu &mu;
+  const OutputCells &cells;
+  const Vector &u;
+
+  int per_cell() const { return nodes_per_cell(scene.dim, scene.degree); }
+  const int *nodes(int cell) const { return cells.cells.data() + Index{cell} * per_cell(); }
+  Cell cell(int number) const {
+    Cell cell{scene.dim, {}, {}};
+    for (int i = 0; i <= scene.dim; ++i)
+      for (Index k = 0; k < cells.points.cols(); ++k)
+        cell.reference[i][k] = cells.points(nodes(number)[i], k);
+    map_cell(scene, mu, cell);
+    return cell;
+  }
+  /// With the motion.
+  Point at_node(int node) const {
+    Point value{};
+    if (scene.motion) {
+      Point x{};
+      for (Index k = 0; k < cells.points.cols(); ++k)
+        x[k] = cells.points(node, k);
+      value = scene.motion(mu, x);
+    }
+    for (int c = 0; c < scene.components; ++c)
+      value[c] += u[Index{node} * scene.components + c];
+    return value;
+  }
+  DisplacedCell displaced(int number) const {
+    DisplacedCell result{cell(number), cells.materials.empty() ? 0 : cells.materials[number], {}};
+    for (int i = 0; i < per_cell(); ++i)
+      result.u[i] = at_node(nodes(number)[i]);
+    return result;
+  }
+};
+
+OutputFields fields_at(const Scene &scene, const FullMu &mu, const DisplacedCell &cell,
+                       const Barycentric &at) {
+  OutputFields fields;
+  fields.fill(std::numeric_limits<double>::quiet_NaN());
+  const Point x = point_at(cell.cell.mapped, at, 3), u = displacement_at(scene, cell, at);
+  fields[field::x] = x[0];
+  fields[field::y] = x[1];
+  if (scene.components == 1) {
+    fields[field::u] = u[0];
+    return fields;
+  }
+  fields[field::ux] = u[0];
+  fields[field::uy] = u[1];
+  if (scene.materials.empty()) return fields;
+  const PointStress stress = stress_at(scene, mu, cell, at);
+  const auto &s = stress.sigma;
+  fields[field::sigma_xx] = s(0, 0);
+  fields[field::sigma_yy] = s(1, 1);
+  fields[field::sigma_zz] = s(2, 2);
+  fields[field::sigma_xy] = s(0, 1);
+  const Eigen::Matrix3d deviator = s - s.trace() / 3 * Eigen::Matrix3d::Identity();
+  fields[field::von_mises] = std::sqrt(1.5) * deviator.norm();
+  fields[field::strain_energy] = stress.strain_energy;
+  return fields;
+}
+
+void add_facet(const OutputState &state, const OutputPart &part, OutputLines &lines) {
+  const DisplacedCell cell = state.displaced(part.cell);
+  const std::vector<int> ends = facet_nodes(2, 1, part.facet);
+  const auto [length, normal] = facet_measure(2, facet_cell(cell.cell, part.facet).mapped);
+  lines.add(
+      [&, &normal = normal](double s) {
+        Barycentric at{};
+        at[ends[0]] = 1 - s;
+        at[ends[1]] = s;
+        OutputFields fields = fields_at(state.scene, state.mu, cell, at);
+        fields[field::nx] = normal[0];
+        fields[field::ny] = normal[1];
+        return fields;
+      },
+      [&, size = length](const OutputFields &fields) {
+        return size * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
+      });
+}
+
+/// A triangle by lines at the shares r of the way from its first vertex to the opposite edge: of
+/// Gauss, where they are summed, else from end to end.
+void add_triangle(const OutputState &state, const OutputPart &part, bool extreme,
+                  OutputLines &lines) {
+  const double away = std::sqrt(0.15);
+  const std::array<std::array<double, 2>, 3> summed{
+      {{0.5 - away, 5.0 / 18}, {0.5, 8.0 / 18}, {0.5 + away, 5.0 / 18}}},
+      ends{{{0, 0}, {0.5, 0}, {1, 0}}};
+  const DisplacedCell cell = state.displaced(part.cell);
+  const double area = volume_of(2, cell.cell.mapped);
+  for (const auto &[r, weight] : extreme ? ends : summed)
+    lines.add(
+        [&, r = r](double s) {
+          return fields_at(state.scene, state.mu, cell, {1 - r, r * (1 - s), r * s, 0});
+        },
+        [&, size = 2 * area * r * weight](const OutputFields &fields) {
+          return size * circumference(state.scene.axisymmetric, {fields[field::x], 0, 0});
+        });
+}
+
+void add_point(const OutputState &state, const OutputPart &part, const Point &point,
+               OutputLines &lines) {
+  const DisplacedCell cell = state.displaced(part.cell);
+  const Barycentric at = barycentric_of(2, cell.cell.reference, point);
+  lines.add([&](double) { return fields_at(state.scene, state.mu, cell, at); },
+            [](const OutputFields &) { return 1.0; });
+}
+
+/// Values of a kernel of a or f on a part, and what belongs to its rows.
+struct LocalForm {
+  std::vector<double> values;
+  std::vector<int> nodes; ///< positions in the cell
+};
+
+LocalForm local_form(const OutputState &state, const OutputPart &part, const Term &term,
+                     bool bilinear) {
+  const Cell cell = state.cell(part.cell);
+  LocalForm local;
+  if (part.facet < 0)
+    for (int i = 0; i < state.per_cell(); ++i)
+      local.nodes.push_back(i);
+  else
+    local.nodes = facet_nodes(2, state.scene.degree, part.facet);
+  Cell of_kernel = part.facet < 0 ? cell : facet_cell(cell, part.facet);
+  if (term.theta) of_kernel.mapped = of_kernel.reference;
+  const std::size_t rows = local.nodes.size() * static_cast<std::size_t>(state.scene.components);
+  local.values.resize(bilinear ? rows * rows : rows);
+  term.form.kernel(term.theta ? FullMu{} : state.mu, of_kernel, local.values.data());
+  return local;
+}
+
+/// a(u, l) or -f(l) on a part, without the factor of the term.
+double tested(const OutputState &state, const OutputPart &part, const Point &direction) {
+  const auto bilinear = part.term < std::ssize(state.scene.a);
+  const Term &term =
+      bilinear ? state.scene.a[part.term] : state.scene.f[part.term - std::ssize(state.scene.a)];
+  const LocalForm local = local_form(state, part, term, bilinear);
+  const auto components = static_cast<std::size_t>(state.scene.components);
+  const std::size_t rows = local.nodes.size() * components;
+  double sum = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const int held = (part.held >> local.nodes[i / components]) & 1;
+    const double l = held * direction[i % components];
+    if (l == 0) continue;
+    if (!bilinear) sum -= l * local.values[i];
+    for (std::size_t j = 0; bilinear && j < rows; ++j)
+      sum += l * local.values[i * rows + j] *
+             state.u[Index{state.nodes(part.cell)[local.nodes[j / components]]} *
+                         state.scene.components +
+                     static_cast<Index>(j % components)];
+  }
+  return sum * (term.theta ? coefficient_of(term, state.mu) : 1);
+}
+
+/// The integral of direction . u over a facet of the reference domain, and its size.
+std::array<double, 2> facet_mean(const OutputState &state, const OutputPart &part,
+                                 const Mean &mean) {
+  const DisplacedCell cell = state.displaced(part.cell);
+  const std::vector<int> ends = facet_nodes(2, 1, part.facet);
+  const double length = facet_measure(2, facet_cell(cell.cell, part.facet).reference).size;
+  std::array<double, 2> sums{};
+  for (const auto &[s, weight] : edge_quadrature) {
+    Barycentric at{};
+    at[ends[0]] = 1 - s;
+    at[ends[1]] = s;
+    const Point x = point_at(cell.cell.reference, at, 3);
+    const double size = weight * length * circumference(mean.axisymmetric, x);
+    sums[0] += size * dot(mean.direction, displacement_at(state.scene, cell, at));
+    sums[1] += size;
+  }
+  return sums;
+}
+
+double spring_force(const OutputState &state, const OutputForm &form,
+                    std::span<const OutputPart> parts) {
+  std::vector<std::array<double, 2>> means(form.means.size());
+  for (const OutputPart &part : parts) {
+    const auto [integral, size] = facet_mean(state, part, form.means[part.term]);
+    means[part.term][0] += integral;
+    means[part.term][1] += size;
+  }
+  double stretch = 0;
+  for (const auto &[integral, size] : means)
+    stretch += integral / size;
+  return (form.stiffness ? form.stiffness(state.mu) * stretch : 0) +
+         (form.preload ? form.preload(state.mu) : 0);
+}
+
+} // namespace
+
+bool has_cells(const OutputForm &output) {
+  return output.place != OutputForm::Place::contact;
+}
+
+double output_value(const OutputForm &form, const OutputSums &sums, double images) {
+  switch (form.kind) {
+  case OutputForm::Kind::integral:
+    return images * sums.integral;
+  case OutputForm::Kind::measure:
+    return images * sums.measure;
+  case OutputForm::Kind::mean:
+    return sums.integral / sums.measure;
+  case OutputForm::Kind::min:
+    return sums.least;
+  case OutputForm::Kind::max:
+    return sums.largest;
+  default:
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+double cell_output(const Scene &scene, int output, const FullMu &mu, const OutputCells &cells,
+                   const Vector &u) {
+  const OutputState state{scene, mu, cells, u};
+  const OutputForm &form = scene.outputs[output];
+  const auto found = std::ranges::equal_range(cells.parts, output, {}, &OutputPart::output);
+  const std::span<const OutputPart> parts(found.begin(), found.end());
+  if (form.kind == OutputForm::Kind::spring)
+    return scene.mirror_images * spring_force(state, form, parts);
+  if (form.kind == OutputForm::Kind::reaction) {
+    double force = 0;
+    for (const OutputPart &part : parts)
+      force += tested(state, part, form.vector);
+    return scene.mirror_images * force;
+  }
+  OutputLines lines(form, mu);
+  const bool extreme = form.kind == OutputForm::Kind::min || form.kind == OutputForm::Kind::max;
+  for (const OutputPart &part : parts) {
+    if (form.place == OutputForm::Place::point)
+      add_point(state, part, form.vector, lines);
+    else if (part.facet >= 0)
+      add_facet(state, part, lines);
+    else
+      add_triangle(state, part, extreme, lines);
+  }
+  return output_value(form, lines.sums(), scene.mirror_images);
+}
+
+} // namespace rbvi

@@ -1,0 +1,247 @@
+#include "rbvi/fem/output_cells.hpp"
+
+#include "rbvi/core/error.hpp"
+#include "rbvi/core/text.hpp"
+#include "rbvi/fem/assembly.hpp"
+#include "rbvi/fem/materials.hpp"
+#include "rbvi/par/gather.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace rbvi {
+
+namespace {
+
+using Part = OutputCells::Part;
+
+/// The parts of outputs on the cells of this rank.
+class OwnParts {
+public:
+  OwnParts(const Scene &scene, const Mesh &mesh, const Dofs &dofs)
+      : scene_(scene), mesh_(mesh), dofs_(dofs) {}
+
+  std::vector<Part> of(int output) {
+    const OutputForm &form = scene_.outputs[output];
+    like_ = {output};
+    parts_.clear();
+    if (form.kind == OutputForm::Kind::reaction)
+      add_reaction(form);
+    else if (form.kind == OutputForm::Kind::spring)
+      for (std::size_t m = 0; m < form.means.size(); ++m)
+        add_facets(form.means[m].boundary, static_cast<int>(m));
+    else if (form.place == OutputForm::Place::point)
+      add_point(form);
+    else if (form.place == OutputForm::Place::boundary)
+      for (const std::string &boundary : form.at)
+        add_facets(boundary, 0);
+    else
+      for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
+        if (is_in(form.at, cell)) add({.cell = static_cast<int>(cell)});
+    return parts_;
+  }
+
+private:
+  void add(Part part) {
+    part.output = like_.output;
+    parts_.push_back(part);
+  }
+
+  bool is_in(const std::vector<std::string> &regions, std::size_t cell) const {
+    return regions.empty() || std::ranges::any_of(regions, [&](const std::string &region) {
+             return region.empty() || mesh_.region.at(region)[cell];
+           });
+  }
+
+  void add_facets(const std::string &boundary, int term) {
+    for (const auto &[cell, facet] : mesh_.facets.at(boundary))
+      add({.cell = static_cast<int>(cell), .facet = facet, .term = term});
+  }
+
+  /// The one of the lowest number of those around it, on all ranks.
+  void add_point(const OutputForm &form) {
+    const auto natural = [&](std::size_t cell) { return mesh_.natural_cell[cell]; };
+    std::vector<PetscInt> first{mesh_.total_cells};
+    for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell) {
+      const auto at = barycentric_of(mesh_.dim, cell_of(mesh_, cell).reference, form.vector);
+      if (std::ranges::min(at) > -1e-10) first[0] = std::min(first[0], natural(cell));
+    }
+    over_ranks(mesh_.comm, MPI_MIN, first);
+    if (first[0] == mesh_.total_cells)
+      throw bad_input("the output '" + form.name + "' is at (" + short_number(form.vector[0]) +
+                      ", " + short_number(form.vector[1]) + "), which no cell of the mesh has");
+    for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
+      if (natural(cell) == first[0]) add({.cell = static_cast<int>(cell)});
+  }
+
+  /// A bit for each node of a cell that is on a boundary.
+  int held_of(const OutputForm &form, std::size_t cell) const {
+    const auto nodes = nodes_of(mesh_, cell);
+    int held = 0;
+    for (std::size_t i = 0; i < nodes.size() && nodes[i] >= 0; ++i)
+      for (const std::string &boundary : form.at)
+        if (mesh_.boundary.at(boundary)[static_cast<std::size_t>(nodes[i])]) held |= 1 << i;
+    return held;
+  }
+
+  void add_term(const OutputForm &form, const Form &of, int term) {
+    if (!of.kernel) return;
+    const auto add_held = [&](std::size_t cell, int facet) {
+      if (const int held = held_of(form, cell); held != 0)
+        add({.cell = static_cast<int>(cell), .facet = facet, .term = term, .held = held});
+    };
+    if (!of.boundary.empty())
+      for (const auto &[cell, facet] : mesh_.facets.at(of.boundary))
+        add_held(cell, facet);
+    else
+      for (std::size_t cell = 0; cell < mesh_.cells.size(); ++cell)
+        if (is_in({of.region}, cell)) add_held(cell, -1);
+  }
+
+  void add_reaction(const OutputForm &form) {
+    check_reaction(form);
+    const auto a_terms = static_cast<int>(scene_.a.size());
+    for (int q = 0; q < a_terms; ++q)
+      add_term(form, scene_.a[q].form, q);
+    for (int q = 0; q < std::ssize(scene_.f); ++q)
+      if (!scene_.f[q].of_imposed) add_term(form, scene_.f[q].form, a_terms + q);
+  }
+
+  void check_reaction(const OutputForm &form) const {
+    std::vector<std::string> forces; // boundaries with forces of another kind
+    for (const ContactRecipe &contact : scene_.contacts)
+      if (contact.entities.kind != InterfaceEntities::Kind::cells)
+        forces.insert(forces.end(), contact.entities.parts.begin(), contact.entities.parts.end());
+    for (const Sum *sum : {&scene_.a, &scene_.f})
+      for (const Term &term : *sum)
+        for (const Mean &mean : term.form.means)
+          forces.push_back(mean.boundary);
+    std::vector<int> shared(forces.size()), loose{0};
+    for (const std::string &boundary : form.at)
+      for (std::size_t node = 0; node < mesh_.points.size(); ++node) {
+        if (!mesh_.boundary.at(boundary)[node]) continue;
+        for (int c = 0; c < dofs_.components; ++c)
+          if (form.vector[c] != 0 && dofs_.free[node * static_cast<std::size_t>(dofs_.components) +
+                                                static_cast<std::size_t>(c)] >= 0)
+            loose[0] = 1;
+        for (std::size_t i = 0; i < forces.size(); ++i)
+          if (mesh_.boundary.at(forces[i])[node]) shared[i] = 1;
+      }
+    over_ranks(mesh_.comm, MPI_MAX, shared);
+    over_ranks(mesh_.comm, MPI_MAX, loose);
+    const std::string where = "the reaction '" + form.name + "' is of " + joined(form.at);
+    if (loose[0] != 0)
+      throw bad_input(where + ", which is not held in its direction: impose a displacement there");
+    for (std::size_t i = 0; i < forces.size(); ++i)
+      if (shared[i] != 0)
+        throw bad_input(where + ", which shares nodes with '" + forces[i] +
+                        "': what that pushes them with is not known apart");
+  }
+
+  const Scene &scene_;
+  const Mesh &mesh_;
+  const Dofs &dofs_;
+  Part like_;
+  std::vector<Part> parts_;
+};
+
+/// What is told of a cell to the other ranks.
+struct CellTable {
+  std::vector<PetscInt> numbers; ///< per cell: natural number, material, nodes, imposed_by of dofs
+  std::vector<double> points;    ///< per cell: its nodes' coordinates
+};
+
+void tell(const Mesh &mesh, const Dofs &dofs, std::size_t cell, int material, CellTable &table) {
+  table.numbers.push_back(mesh.natural_cell[cell]);
+  table.numbers.push_back(material);
+  const auto nodes = nodes_of(mesh, cell);
+  const int count = nodes_per_cell(mesh.dim, mesh.degree);
+  for (int i = 0; i < count; ++i) {
+    table.numbers.push_back(mesh.natural_node[static_cast<std::size_t>(nodes[i])]);
+    const Point &x = mesh.points[static_cast<std::size_t>(nodes[i])];
+    table.points.insert(table.points.end(), x.begin(), x.begin() + mesh.dim);
+  }
+  for (int i = 0; i < count * dofs.components; ++i)
+    table.numbers.push_back(
+        dofs.imposed_by.empty()
+            ? -1
+            : dofs.imposed_by[static_cast<std::size_t>(
+                  nodes[i / dofs.components] * dofs.components + i % dofs.components)]);
+}
+
+/// Cells and nodes by their natural numbers; the position of each cell.
+std::map<PetscInt, int> put_cells(const CellTable &table, const Mesh &mesh, const Dofs &dofs,
+                                  OutputCells &result) {
+  const int count = nodes_per_cell(mesh.dim, mesh.degree), components = dofs.components;
+  const auto stride = static_cast<std::size_t>(2 + count * (1 + components));
+  std::map<PetscInt, std::size_t> rows;
+  std::map<PetscInt, int> nodes, cells;
+  for (std::size_t row = 0; row * stride < table.numbers.size(); ++row) {
+    rows[table.numbers[row * stride]] = row;
+    for (int i = 0; i < count; ++i)
+      nodes[table.numbers[row * stride + 2 + static_cast<std::size_t>(i)]] = 0;
+  }
+  for (auto &[natural, position] : nodes) {
+    position = static_cast<int>(result.nodes.size());
+    result.nodes.push_back(static_cast<int>(natural));
+  }
+  result.points.resize(std::ssize(nodes), mesh.dim);
+  result.imposed_by.assign(nodes.size() * static_cast<std::size_t>(components), -1);
+  for (const auto &[natural, row] : rows) {
+    const PetscInt *numbers = table.numbers.data() + row * stride;
+    cells[natural] = static_cast<int>(cells.size());
+    result.materials.push_back(static_cast<int>(numbers[1]));
+    for (int i = 0; i < count; ++i) {
+      const int node = nodes.at(numbers[2 + i]);
+      result.cells.push_back(node);
+      for (int k = 0; k < mesh.dim; ++k)
+        result.points(node, k) =
+            table.points[(row * static_cast<std::size_t>(count) + static_cast<std::size_t>(i)) *
+                             static_cast<std::size_t>(mesh.dim) +
+                         static_cast<std::size_t>(k)];
+      for (int c = 0; c < components; ++c)
+        result.imposed_by[static_cast<std::size_t>(node * components + c)] =
+            static_cast<int>(numbers[2 + count + i * components + c]);
+    }
+  }
+  return cells;
+}
+
+} // namespace
+
+OutputCells cells_of_outputs(const Scene &scene, const Mesh &mesh, const Dofs &dofs) {
+  OutputCells result;
+  if (std::ranges::none_of(scene.outputs, has_cells)) return result;
+  if (mesh.dim != 2) throw bad_input("outputs over boundaries and regions are of plane meshes");
+  const std::vector<int> materials = materials_of_cells(scene, mesh);
+  OwnParts own(scene, mesh, dofs);
+  CellTable table;
+  std::vector<bool> told(mesh.cells.size());
+  std::vector<PetscInt> rows;
+  for (std::size_t k = 0; k < scene.outputs.size(); ++k) {
+    if (!has_cells(scene.outputs[k])) continue;
+    for (const Part &part : own.of(static_cast<int>(k))) {
+      const auto cell = static_cast<std::size_t>(part.cell);
+      if (!told[cell]) tell(mesh, dofs, cell, materials.empty() ? 0 : materials[cell], table);
+      told[cell] = true;
+      for (const PetscInt number : {PetscInt{part.output}, mesh.natural_cell[cell],
+                                    PetscInt{part.facet}, PetscInt{part.term}, PetscInt{part.held}})
+        rows.push_back(number);
+    }
+  }
+  table = {gather_all(mesh.comm, table.numbers, MPIU_INT),
+           gather_all(mesh.comm, table.points, MPI_DOUBLE)};
+  rows = gather_all(mesh.comm, rows, MPIU_INT);
+  const std::map<PetscInt, int> cells = put_cells(table, mesh, dofs, result);
+  if (dofs.imposed_by.empty()) result.imposed_by.clear();
+  if (materials.empty()) result.materials.clear();
+  for (std::size_t r = 0; r < rows.size(); r += 5)
+    result.parts.push_back({int(rows[r]), cells.at(rows[r + 1]), int(rows[r + 2]), int(rows[r + 3]),
+                            int(rows[r + 4])});
+  std::ranges::sort(result.parts, {}, [](const Part &part) {
+    return std::tuple(part.output, part.cell, part.facet, part.term);
+  });
+  return result;
+}
+
+} // namespace rbvi
