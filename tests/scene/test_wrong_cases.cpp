@@ -45,7 +45,7 @@ TEST(WrongCase, Outputs) {
   expect_refused({
       {outputs("{force: {sum: gap}}"), "unknown key 'sum'"},
       {outputs("{force: {max: gab}}"), "unknown name 'gab' in 'gab': the nearest is 'gap'"},
-      {outputs("{force: {max: gap, mean: gap}}"), "it has max and mean"},
+      {outputs("{force: {max: gap, mean: gap}}"), "it has mean and max"},
       {outputs("{force: {at: floor}}"), "an output is one of integral"},
       {outputs("{force: {max: gap, at: flor}}"),
        "the built-in mesh one_block has no boundary 'flor'"},
