@@ -17,13 +17,19 @@ FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws
           motions.cwiseAbs().transpose() * load.cwiseAbs()};
 }
 
+bool rests_at_start(const ReducedModel &model, const Scene &scene) {
+  return model.body.springs.size() > 0 &&
+         std::ranges::any_of(scene.contacts, [](const ContactRecipe &contact) {
+           return contact.friction == FrictionLaw::coulomb;
+         });
+}
+
 namespace {
 
-/// What the samples predict; of several answers with friction, as for the full model, that from
-/// rest is taken.
+/// What the samples predict.
 Vector start_of(const ReducedModel &model, const Scene &scene, const FullMu &mu) {
   const Matrix &of_samples = model.body.motions, &at = model.made.trained_mu;
-  if (has_several_answers(model)) return Vector::Zero(of_samples.rows());
+  if (rests_at_start(model, scene)) return Vector::Zero(of_samples.rows());
   if (at.cols() != of_samples.cols()) // before the model is complete
     return of_samples.rowwise().mean();
   return local_fit(of_samples, parts_of_box(scene.parameters, at),

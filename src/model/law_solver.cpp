@@ -1,5 +1,6 @@
 #include "law_methods.hpp"
 
+#include "rbvi/model/free_bodies.hpp"
 #include "rbvi/core/error.hpp"
 #include "rbvi/core/text.hpp"
 
@@ -13,7 +14,8 @@ bool has_several_answers(const ReducedModel &model) {
 
 NodeLawSolver::NodeLawSolver(const ReducedModel &model, const Scene &scene, const Contact &contact,
                              const QueryOptions &options, bool by_rule)
-    : by_rule_(by_rule), looks_for_others_(options.looks_for_others || by_rule),
+    : by_rule_(by_rule || rests_at_start(model, scene)),
+      looks_for_others_(options.looks_for_others || by_rule),
       problem_(model, scene, contact), starts_(model, scene, options.warm) {}
 
 void NodeLawSolver::solve_at_nodes(const LawAtMu &law, ReducedAnswer &answer) {

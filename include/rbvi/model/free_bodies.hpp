@@ -11,6 +11,10 @@ namespace rbvi {
 /// What holds the free motions at an answer. `b`: rows of multipliers x n; `laws`: of these rows.
 FreeMotions free_motions_at(const BodyAtMu &body, const Matrix &b, NodeLaws laws);
 
+/// Whether queries start from rest, by the rule of friction_answer: with Coulomb's friction forces
+/// may balance in several answers, and this is the one of the full model.
+bool rests_at_start(const ReducedModel &model, const Scene &scene);
+
 /// As method.solve(), with the springs relaxed. Throws failure where forces do not balance, or
 /// where nothing holds a motion at the answer.
 ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, const Scene &scene,
