@@ -9,8 +9,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
 
-from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, label_plane, parameters_of, plt,
-                          read_grid)
+from figure_tools import (BLUE, GREEN, ORANGE, PURPLE, beside, in_length, label_plane, parameters_of,
+                          plt, read_grid, wider)
 from panels import Curve, Drawn, Lines, Triangles, legend_below, save_panels
 
 # Places in the box by the names of their files.
@@ -80,13 +80,14 @@ def contact_panels(grids, which):
     if middle.cells.shape[1] > 2:
         gaps = {place: grid.of_nodes["gap"] for place, grid in grids.items()}
         return [Triangles(f"gap of {which}, {PLACES[place][0]}", grid.points[:, :2], grid.cells,
-                          gaps[place], "height above the obstacle (m)",
+                          gaps[place], in_length("height above the obstacle"),
                           (gaps[place].min(), gaps[place].max() + (np.ptp(gaps[place]) == 0)))
                 for place, grid in grids.items()]
-    curves = [Curve(grid.points[:, 0], grid.of_nodes["gap"], *PLACES[place])
+    curves = [Curve(wider(grid.points)[0], grid.of_nodes["gap"], *PLACES[place])
               for place, grid in grids.items()]
     return [Drawn(f"{which} and what it faces", partial(draw_partners, grids)),
-            Lines(f"gap along {which}", "x (m)", "gap, overlap below 0 (m)", curves)]
+            Lines(f"gap along {which}", in_length(wider(middle.points)[1]),
+                  in_length("gap, overlap below 0"), curves)]
 
 
 def partners(path):

@@ -81,6 +81,41 @@ def contact_names(run):
     return {int(found[1]) + 1: lines[found[0]] for found in map(ends.fullmatch, lines) if found}
 
 
+UNITS = {"length": "m", "stress": "Pa"}  # of what is drawn: use_units()
+PREFIXES = {-9: "n", -6: "u", -3: "m", -2: "c", -1: "d", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+
+
+def use_units(source):
+    """Those of a run, or of a VTU file: the units of the case, of the international system where it
+    declares none."""
+    if source.suffix == ".vtu":
+        if source.is_file():
+            units = read_grid(source).units
+            UNITS["length"] = units["points"]
+            UNITS["stress"] = units.get("von_mises", UNITS["stress"])
+        return
+    with h5py.File(model_of(source), "r") as model:
+        lines = dict(zip(*(texts_in(model, "scene/functions/" + what) for what in ("names", "values"))))
+    length, force = map(int, lines.get(":units", "0 0").split()[:2])
+    for name, unit, power in (("length", "m", length), ("stress", "Pa", force - 2 * length)):
+        UNITS[name] = PREFIXES.get(power, f"1e{power} ") + unit
+
+
+def in_length(name):
+    return f"{name} ({UNITS['length']})"
+
+
+def in_stress(name):
+    return f"{name} ({UNITS['stress']})"
+
+
+def wider(points):
+    """The coordinate along which points are spread more, and its name: what is drawn along an
+    upright curve is drawn over y."""
+    which = int(np.ptp(points[:, 1]) > np.ptp(points[:, 0]))
+    return points[:, which], "xy"[which]
+
+
 def with_unit(name, unit):
     return f"{name} ({unit or '-'})"
 
@@ -170,8 +205,8 @@ def parameters_of(grid):
 def label_plane(axis):
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.set_xlabel("x (m)")
-    axis.set_ylabel("y (m)")
+    axis.set_xlabel(in_length("x"))
+    axis.set_ylabel(in_length("y"))
 
 
 def step_values(axis, grid, name, **style):

@@ -2,10 +2,10 @@
 """Figures of a run: figures.py RUN_DIR writes PNG and PDF files into RUN_DIR/figures; figures.py
 DIR/u.vtu draws that answer alone, into DIR/figures.
 
-Reads RUN_DIR/model.h5 (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify), RUN_DIR/u.vtu with the
-contact files beside it (rbvi-online --vtu, or rbvi solve -vtu; of rbvi check -vtu also its mesh and
-the partners of its contacts) and, if it is there,
-RUN_DIR/bench/table.csv (rbvi bench). What else is missing, and what cannot be drawn, is named and left
+Reads RUN_DIR/model.h5 and samples.csv (rbvi offline), RUN_DIR/verify/*.csv (rbvi verify),
+RUN_DIR/u.vtu with the contact files beside it (rbvi-online --vtu, or rbvi solve -vtu; of rbvi check
+-vtu also its mesh and the partners of its contacts), without it that of rbvi verify at the middle
+of the box, and, if it is there, RUN_DIR/bench/table.csv (rbvi bench). What else is missing, and what cannot be drawn, is named and left
 out; the exit status is then 1.
 """
 
@@ -18,7 +18,9 @@ import numpy as np
 from bench_figures import bench
 from case_figures import case
 from figure_tools import (BLUE, GREEN, GREY, ORANGE, PURPLE, Missing, contact_names, free_parameters,
-                          history, model_of, plt, table, with_unit)
+                          history, in_length, in_stress, model_of, plt, table, use_units, wider,
+                          with_unit)
+from model_figures import contact_cells, outputs, stresses
 from panels import Curve, Lines, Triangles, save_panels
 from solution_figures import solution
 
@@ -115,16 +117,6 @@ def bases(run):
     return save_panels(run / "figures", "bases.png", bases_panels(run))
 
 
-def contact_cells(run):
-    """Triangles between the vertices of a contact region; nothing for contact along curves."""
-    with h5py.File(run / "model.h5", "r") as model:
-        dimension, degree, _, nodes = model["interfaces/0/sizes"][()].ravel()
-        of_cells = nodes == (3 if degree == 1 else 6) and dimension == 2
-        region = of_cells and model["interfaces/0/edges"].size == 0
-        cells = model["interfaces/0/entities"][()] if region else np.zeros(0, int)
-        return cells.reshape(-1, nodes)[:, :3]
-
-
 def worst_parameters(run, data):
     """"radius = 0.85 m, ..." of a table with one mu."""
     return ", ".join(f"{name.replace('_', ' ')} {data[name][0]:.4g} {unit}".strip()
@@ -139,19 +131,20 @@ def of_peak(error, data):
 
 def pressure_curves(data, which):
     """Stresses along one contact curve, and their errors."""
-    data = np.sort(data, order="x")
+    over, name = wider(np.column_stack([data["x"], data["y"]]))
+    data, over = data[np.argsort(over)], np.sort(over)
     parts, errors, marks = [("", "pressure", BLUE)], [], []
     if "reduced_tangential" in data.dtype.names and np.any(data["high_fidelity_tangential"]):
         parts.append(("_tangential", "tangential stress", GREEN))
-    for suffix, name, colour in parts:
+    for suffix, what, colour in parts:
         truth, reduced = data["high_fidelity" + suffix], data["reduced" + suffix]
-        marks += [Curve(data["x"], truth, "" if suffix else "high-fidelity", "#bbbbbb", width=5),
-                  Curve(data["x"], reduced, "reduced " + name, colour)]
-        errors.append(Curve(data["x"], reduced - truth, name, colour))
+        marks += [Curve(over, truth, "" if suffix else "high-fidelity", "#bbbbbb", width=5),
+                  Curve(over, reduced, "reduced " + what, colour)]
+        errors.append(Curve(over, reduced - truth, what, colour))
     largest = of_peak(np.concatenate([curve.y for curve in errors]), data)
-    x = "x, reference domain (m)"
-    return [Lines("stress along the contact curve" + which, x, "stress (Pa)", marks),
-            Lines("error" + which + largest, x, "reduced less high-fidelity (Pa)", errors)]
+    x = in_length(name + ", reference domain")
+    return [Lines("stress along the contact curve" + which, x, in_stress("stress"), marks),
+            Lines("error" + which + largest, x, in_stress("reduced less high-fidelity"), errors)]
 
 
 def pressure_panels(run, data):
@@ -166,9 +159,9 @@ def pressure_panels(run, data):
     error = data["reduced"] - data["high_fidelity"]
     bound = np.abs(error).max() or 1
     return [Triangles("reduced, reference domain", points, cells, data["reduced"],
-                      "pressure (Pa)", (0, data["high_fidelity"].max() or 1)),
+                      in_stress("pressure"), (0, data["high_fidelity"].max() or 1)),
             Triangles("error" + of_peak(error, data), points, cells, error,
-                      "reduced less high-fidelity (Pa)", (-bound, bound), "RdBu_r")]
+                      in_stress("reduced less high-fidelity"), (-bound, bound), "RdBu_r")]
 
 
 def pressure(run):
@@ -347,13 +340,16 @@ def main(arguments):
         return 2
     run = Path(arguments[0])
     if run.suffix == ".vtu":
+        use_units(run)
         return draw_all((case, solution), run)
     if not run.is_dir():
         print(f"figures.py: there is no run directory {run}", file=sys.stderr)
         return 2
-    of_answer = draw_all((case, solution), run / "u.vtu")
-    return max(of_answer, draw_all((bases, pressure, infsup, error_map, mesh_quality, errors, bench),
-                                   run))
+    use_units(run)
+    of_answer = draw_all((case, solution), next((run / place for place in ("u.vtu", "verify/u.vtu")
+                                                 if (run / place).is_file()), run / "u.vtu"))
+    return max(of_answer, draw_all((bases, outputs, stresses, pressure, infsup, error_map,
+                                    mesh_quality, errors, bench), run))
 
 
 if __name__ == "__main__":

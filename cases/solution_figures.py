@@ -5,8 +5,10 @@ from functools import partial
 
 import numpy as np
 from matplotlib.patches import Rectangle
+from matplotlib.transforms import ScaledTranslation
 
-from figure_tools import GREEN, ORANGE, Missing, parameters_of, read_grid
+from figure_tools import (GREEN, ORANGE, Missing, in_length, in_stress, parameters_of, read_grid,
+                          wider)
 from panels import Curve, Drawn, Lines, Triangles, save_panels
 
 SHADES = "YlGnBu"
@@ -47,11 +49,11 @@ def draw_membrane(circle, grid, figure, axis):
     axis.set_zlim(floor, max(0, u.max()))
     axis.set_box_aspect((1, 1, 0.7), zoom=1.0)
     axis.view_init(elev=24, azim=-58)
-    axis.set_xlabel("x (m)")
-    axis.set_ylabel("y (m)")
-    axis.set_zlabel("u (m)", labelpad=0)
+    axis.set_xlabel(in_length("x"))
+    axis.set_ylabel(in_length("y"))
+    axis.set_zlabel(in_length("u"), labelpad=0)
     axis.tick_params(labelsize=7, pad=0)
-    figure.colorbar(surface, ax=axis, shrink=0.6, pad=0.1, label="u (m)")
+    figure.colorbar(surface, ax=axis, shrink=0.6, pad=0.1, label=in_length("u"))
 
 
 def membrane_panels(grid, contacts):
@@ -61,7 +63,7 @@ def membrane_panels(grid, contacts):
     return [Drawn("membrane, below it the rim of the obstacle", partial(draw_membrane, circle, grid),
                   "3d"),
             Triangles("pressure on the obstacle", contact.points[:, :2], contact.cells, pressure,
-                      "pressure (Pa)", (0, pressure.max() or 1))]
+                      in_stress("pressure"), (0, pressure.max() or 1))]
 
 
 def draw_segments(axis, segments, width, alpha):
@@ -89,7 +91,7 @@ def positions_of(grid):
 def draw_deformed(frames, grid, figure, axis):
     """Deformed bodies in 2D, shaded by |u|; the frames of other panels."""
     positions, u = positions_of(grid), np.linalg.norm(grid.of_nodes["u"], axis=1)
-    Triangles("", positions, grid.cells, u, "|u| (m)", (0, u.max() or 1), SHADES).draw(figure, axis)
+    Triangles("", positions, grid.cells, u, in_length("|u|"), (0, u.max() or 1), SHADES).draw(figure, axis)
     draw_mesh(axis, positions, grid, np.ptp(positions, axis=0).max())
     for low, high in frames:
         axis.add_patch(Rectangle(low, *(high - low), fill=False, edgecolor=ORANGE, linewidth=1))
@@ -140,20 +142,22 @@ def draw_zoom(frame, curve, grid, figure, axis):
     middles = positions[grid.cells].mean(axis=1)
     inside = np.all((low < middles) & (middles < high), axis=1)
     top = stress[inside].max() if inside.any() else stress.max()
-    Triangles("", positions, grid.cells, stress, "von Mises stress (Pa)", (0, top or 1),
+    Triangles("", positions, grid.cells, stress, in_stress("von Mises stress"), (0, top or 1),
               SHADES, flat=True).draw(figure, axis)
     draw_mesh(axis, positions, grid, 4 * half)
     if grid.of_cells["body"].max() == 1:
         line = support_line(grid, curve, 1.6 * half)
-        axis.plot(line[:, 0], line[:, 1], color=ORANGE, linewidth=1.6, label="rigid support")
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
+        handles = axis.plot(line[:, 0], line[:, 1], color=ORANGE, linewidth=1.6, label="rigid support")
+        below = axis.transAxes + ScaledTranslation(0, -0.5, figure.dpi_scale_trans)  # inches
+        axis.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, 0),
+                    bbox_transform=below)
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
 
 
 def along(grid, name):
-    """x and a field along a contact curve: by steps where it is constant on the edges."""
-    x = grid.points[:, 0]
+    """A coordinate and a field along a contact curve: by steps where it is constant on the edges."""
+    x = wider(grid.points)[0]
     if name in grid.of_cells:
         return np.repeat(x, 2)[1:-1], np.repeat(grid.of_cells[name], 2)
     return x, grid.of_nodes[name]
@@ -167,7 +171,8 @@ def contact_panel(curve, title):
     x, gap = along(curve, "gap")
     closed = np.abs(gap) < GAP_ROUND_OFF
     curves.append(Curve(x, np.where(closed, 0, gap), "gap (right)", ORANGE, right=True))
-    return Lines(title, "x, undeformed (m)", "stress (Pa)", curves, right="gap (m)")
+    return Lines(title, in_length(wider(curve.points)[1] + ", undeformed"), in_stress("stress"), curves,
+                 right=in_length("gap"))
 
 
 def body_panels(grid, contacts):
@@ -192,5 +197,6 @@ def solution_panels(path):
 def solution(path):
     """One answer, of the file u.vtu: the membrane and its pressure (Niakh 2022, figure 2.4), or
     bodies, their stress and the pressure between them (figure 2.10)."""
-    return save_panels(path.parent / "figures", "solution.png", solution_panels(path),
+    run = path.parent.parent if path.parent.name == "verify" else path.parent
+    return save_panels(run / "figures", "solution.png", solution_panels(path),
                        parameters_of(read_grid(path)))

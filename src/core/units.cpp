@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace rbvi {
 
@@ -22,6 +23,9 @@ struct Unit {
 
 const std::array<std::string, 4> base_names{"length", "force", "time", "temperature"};
 
+const std::map<std::string, int> prefixes{{"", 0},   {"n", -9}, {"u", -6}, {"m", -3}, {"c", -2},
+                                          {"d", -1}, {"k", 3},  {"M", 6},  {"G", 9},  {"T", 12}};
+
 std::map<std::string, Unit> all_units() {
   const std::map<std::string, Unit> prefixed{
       {"m", {{1}}},       {"N", {{0, 1}}},       {"Pa", {{-2, 1}}}, {"g", {{-1, 1, 2}, -3}},
@@ -29,16 +33,7 @@ std::map<std::string, Unit> all_units() {
   std::map<std::string, Unit> all{
       {"t", {{-1, 1, 2}, 3}}, {"rad", {}}, {"deg", {{}, 0, std::numbers::pi / 180}}, {"1", {}}};
   for (const auto &[name, unit] : prefixed)
-    for (const auto &[prefix, exponent] : std::map<std::string, int>{{"", 0},
-                                                                     {"n", -9},
-                                                                     {"u", -6},
-                                                                     {"m", -3},
-                                                                     {"c", -2},
-                                                                     {"d", -1},
-                                                                     {"k", 3},
-                                                                     {"M", 6},
-                                                                     {"G", 9},
-                                                                     {"T", 12}})
+    for (const auto &[prefix, exponent] : prefixes)
       all[prefix + name] = {unit.dimension, unit.exponent + exponent};
   return all;
 }
@@ -116,6 +111,33 @@ Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem>
     exponent -= unit.dimension[i] * (*system)[i];
   const double scale = std::pow(10.0, std::abs(exponent));
   return {unit.factor * (exponent < 0 ? number / scale : number * scale), unit.dimension, true};
+}
+
+std::string unit_in(const UnitSystem &system, const Dimension &dimension) {
+  const std::array<std::pair<std::string, Dimension>, 5> whole{
+      {{"m", {1}}, {"N", {0, 1}}, {"s", {0, 0, 1}}, {"K", {0, 0, 0, 1}}, {"Pa", {-2, 1}}}};
+  for (const auto &[name, own] : whole) {
+    if (own != dimension) continue;
+    const int exponent = std::inner_product(own.begin(), own.end(), system.begin(), 0);
+    for (const auto &[prefix, power] : prefixes)
+      if (power == exponent) return prefix + name;
+  }
+  std::string above, below; // of the base units
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (dimension[i] == 0) continue;
+    Dimension base{};
+    base[i] = 1;
+    if (base == dimension) return ""; // its power of ten has no name
+    std::string &side = dimension[i] > 0 ? above : below;
+    if (dimension[i] < 0)
+      side.append("/");
+    else if (!side.empty())
+      side.append("*");
+    side.append(unit_in(system, base));
+    if (std::abs(dimension[i]) > 1) side.append("^").append(std::to_string(std::abs(dimension[i])));
+  }
+  if (above.empty() && !below.empty()) above = "1";
+  return above.append(below);
 }
 
 Dimension dimension_of(const std::string &unit) {

@@ -169,10 +169,14 @@ void write_fields(Writer &out, const std::string &where, const std::vector<Field
 }
 
 void write_field_data(Writer &out, const Grid &grid) {
-  std::vector<std::string> units{"points: m"};
+  std::vector<std::string> units{"points: " + grid.length};
   for (const auto *fields : {&grid.of_nodes, &grid.of_cells, &grid.of_all})
     for (const Field &field : *fields) {
-      const std::string line = field.name + ": " + (field.unit.empty() ? "-" : field.unit);
+      const std::string unit = fields == &grid.of_all ? field.unit
+                               : field.unit == "m"    ? grid.length
+                               : field.unit == "Pa"   ? grid.stress
+                                                      : field.unit;
+      const std::string line = field.name + ": " + (unit.empty() ? "-" : unit);
       if (std::find(units.begin(), units.end(), line) == units.end()) units.push_back(line);
     }
   out.line("<FieldData>");

@@ -66,7 +66,7 @@ ReducedAnswer solve_balanced(QueryMethod &method, const ReducedModel &model, con
                   std::to_string(balance.solves) +
                   " solves: reduce again with more training parameters");
   if (loose_motions(answer.motions->laws, answer.motions->held, answer.lambda).cols() > 0)
-    throw failure("at the answer no contact and no friction holds a body: it can move at no cost");
+    throw failure("a body can move at no cost: no contact and no friction holds it at the answer");
   answer.iterations = iterations;
   answer.to_other = to_other;
   const Vector theta = spring_coefficients(model, scene, mu);

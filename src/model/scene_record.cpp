@@ -129,6 +129,17 @@ template <class Store> void list_point(const Store &store, const std::string &na
     store.number(numbered(name, c), point[c]);
 }
 
+template <class Store, class Of> void list_units(const Store &store, Of &units) {
+  if constexpr (Store::reads) {
+    std::vector<int> powers;
+    store.integers("units", powers);
+    if (powers.size() != 4) throw bad_input("'units' is not four powers of ten");
+    std::copy_n(powers.begin(), 4, units.emplace().begin());
+  } else {
+    store.integers("units", {units->begin(), units->end()});
+  }
+}
+
 /// What an output has beside its name, its kind and where it is.
 template <class Store, class Of> void list_output(const Store &store, Of &output) {
   int place = static_cast<int>(output.place);
@@ -156,6 +167,7 @@ template <class Store, class Of> void list_scene(const Store &store, Of &scene) 
   const auto function_if = [&](const std::string &name, auto &function) {
     if (store.has(name, static_cast<bool>(function))) store.function(name, function);
   };
+  if (store.has("units", scene.units.has_value())) list_units(store, scene.units);
   store.number("dim", scene.dim);
   store.number("components", scene.components);
   store.number("degree", scene.degree);

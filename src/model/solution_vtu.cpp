@@ -99,6 +99,10 @@ std::string file_safe(std::string name) {
 
 void name_parameters(const Scene &scene, const FullMu &all_parameters, Grid &grid) {
   grid.scene = scene.name;
+  if (scene.units) {
+    grid.length = unit_in(*scene.units, dimension_of("m"));
+    grid.stress = unit_in(*scene.units, dimension_of("Pa"));
+  }
   for (std::size_t i = 0; i < all_parameters.size(); ++i) {
     const Parameter &parameter = scene.parameters.all[i];
     grid.of_all.push_back(

@@ -24,10 +24,27 @@ bool holds(const Range &range, double value) {
   return value >= range.lower && value <= range.upper;
 }
 
+/// That of the first of its numbers that has a unit; none of an expression.
+Dimension dimension_of_numbers(const Reader &reader, const CaseNode &node) {
+  for (const char *key : {"default", "range"})
+    if (const CaseNode *numbers = node.find(key); numbers != nullptr)
+      for (const CaseNode &one :
+           numbers->items.empty() ? std::vector<CaseNode>{*numbers} : numbers->items)
+        try {
+          const Quantity quantity = parse_quantity(one.value, reader.units);
+          if (quantity.has_unit) return quantity.dimension;
+        } catch (const Error &) { // an expression, or what is refused where it is read
+        }
+  return {};
+}
+
 Parameter parameter_in(Reader &reader, const std::string &name, const CaseNode &node) {
   Parameter parameter{name, "", 0, 0, number_in(reader, entry(node, "default"))};
   parameter.lower = parameter.upper = parameter.value;
-  if (const CaseNode *unit = node.find("unit")) parameter.unit = unit->value;
+  if (const CaseNode *unit = node.find("unit"))
+    parameter.unit = unit->value;
+  else if (reader.units)
+    parameter.unit = unit_in(*reader.units, dimension_of_numbers(reader, node));
   for (const char *name_of_numbers : {"range", "default", "limits"})
     if (const CaseNode *numbers = node.find(name_of_numbers); numbers != nullptr && reader.units)
       check_unit(reader, *numbers, parameter.unit);

@@ -14,7 +14,7 @@ double magnitude(const OutputColumn &column, const std::vector<Outputs> &truth) 
   double largest = 0;
   for (const Outputs &row : truth) {
     largest = std::max(largest, std::abs(column.of(row).value_or(0)));
-    if (column.value == &Outputs::horizontal_reaction)
+    if (column.value == &Outputs::reaction || column.value == &Outputs::horizontal_reaction)
       largest = std::max(largest, std::abs(row.normal_force.value_or(0)));
   }
   return largest;

@@ -21,6 +21,7 @@
 #include "rbvi/tool/workspace.hpp"
 
 #include "errors.hpp"
+#include "pictures.hpp"
 #include "stability.hpp"
 
 #include <algorithm>
@@ -239,6 +240,7 @@ void command_verify(const ToolOptions &given) {
     print_several_answers(std::cout, model);
     write_model(model, options.out / "model.h5");
     write_sample_table(out / "samples.csv", options.scene.parameters, answers);
+    write_pictures(model, truths.mu, truths.outputs, out);
   });
   write_error_map(out / "error_map.csv", world, model, truths, problem.w_product());
   write_mesh_quality(out / "mesh_quality.csv", world, problem, training, truths.mu);

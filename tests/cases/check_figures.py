@@ -19,6 +19,7 @@ sys.path[:0] = [str(ROOT / "cases"), str(ROOT / "tests/docs"), str(ROOT / "tests
 import figures
 from case_figures import case_panels
 from figure_tools import plt, read_grid, table
+from model_figures import drawn_outputs, places_of, stress_panels
 from panels import Lines, Triangles, figure_of, shown
 from small_runs import CHECKED, RUNS
 from solution_figures import contact_grids, solution_panels
@@ -181,9 +182,31 @@ def check_errors(check, run):
                f"{run.name}: errors of the pressure are not those of the table")
 
 
+def check_model(check, run):
+    """Each parameter goes through its range, the others stay; stresses are those of the table."""
+    along, names = table(run, "along.csv"), [name for name, _ in figures.free_parameters(run)]
+    steps = len(along) // len(names)
+    for k, name in enumerate(names):
+        block = along[k * steps:(k + 1) * steps]
+        check.that(np.all(np.diff(block[name]) > 0) and
+                   all(np.ptp(block[other]) == 0 for other in names if other != name),
+                   f"{run.name}: along.csv does not go along {name}")
+        check.that(np.all(np.isfinite(block["energy"])), f"{run.name}: no answers along {name}")
+    check.that("normal_force" in drawn_outputs(along, names), f"{run.name}: no output is drawn")
+    rows, words = places_of(run)
+    panels = stress_panels(run, rows)
+    check_panels(check, panels, f"{run.name}, stresses")
+    check.that(len(rows) == len(words.splitlines()) > 1, f"{run.name}: {words}")
+    peaks = [own["pressure"].max() for own in rows.values()]
+    drawn = [panel.values if isinstance(panel, Triangles) else
+             np.concatenate([curve.y for curve in panel.curves]) for panel in panels]
+    check.that(max(peaks) == np.max(np.concatenate(drawn)) > 0, f"{run.name}: pressures {peaks}")
+
+
 def check_run(check, run):
     check_answer(check, run)
     check_errors(check, run)
+    check_model(check, run)
     check_panels(check, figures.bases_panels(run), f"{run.name}, bases")
     check_panels(check, figures.errors_panels(run), f"{run.name}, errors")
     check_panels(check, figures.mesh_quality_panels(run), f"{run.name}, mesh_quality")
@@ -209,7 +232,7 @@ def check_damage(check, run, scratch):
     check.that(drawn.close() is not None, "figures.py succeeds with a damaged table")
     check.that("figures.py: pressure: cannot be drawn" in output and "Traceback" not in output, output)
     names = {path.stem for path in (copy / "figures").glob("*.png")}
-    check.that(names == {"solution", "bases", "error_map", "mesh_quality", "errors"}, str(names))
+    check.that(names == {"solution", "bases", "outputs", "stresses", "error_map", "mesh_quality", "errors"}, str(names))
 
 
 def main(runs, scratch):

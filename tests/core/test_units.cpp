@@ -61,6 +61,29 @@ TEST(Units, HaveDimensionsAndErrorsThatNameThem) {
   EXPECT_TRUE(refuses("unknown unit of 'mass'", [] { unit_system({{"mass", "kg"}}); }));
 }
 
+TEST(Units, HaveNamesInASystem) {
+  const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "N"}}),
+                   si = unit_system({{"length", "m"}, {"force", "N"}}),
+                   odd = unit_system({{"length", "cm"}, {"force", "kN"}});
+  for (const auto &[unit, name] : std::map<std::string, std::string>{{"m", "mm"},
+                                                                     {"GPa", "MPa"},
+                                                                     {"kN", "N"},
+                                                                     {"N/m", "N/mm"},
+                                                                     {"N/m^3", "N/mm^3"},
+                                                                     {"1/K", "1/K"},
+                                                                     {"N*m", "mm*N"},
+                                                                     {"deg", ""},
+                                                                     {"s", "s"}})
+    EXPECT_EQ(unit_in(mm, dimension_of(unit)), name) << unit;
+  EXPECT_EQ(unit_in(si, dimension_of("MPa")), "Pa");
+  EXPECT_EQ(unit_in(odd, dimension_of("Pa")), "kN/cm^2") << "1e7 Pa has no name";
+  for (const std::string unit : {"m", "Pa", "N/m"}) {
+    const Quantity one = parse_quantity("1 " + unit_in(odd, dimension_of(unit)), odd);
+    EXPECT_DOUBLE_EQ(one.value, 1);
+    EXPECT_EQ(one.dimension, dimension_of(unit));
+  }
+}
+
 TEST(Units, OfWhatARunGives) {
   const UnitSystem mm = unit_system({{"length", "mm"}, {"force", "N"}});
   EXPECT_EQ(parse_given("2 GPa", mm, "MPa", "option -young"), 2000);

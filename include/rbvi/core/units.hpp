@@ -36,6 +36,9 @@ Quantity parse_quantity(const std::string &text, const std::optional<UnitSystem>
 /// The dimension of a product of units: "N/mm^2". Throws bad_input.
 Dimension dimension_of(const std::string &unit);
 
+/// What quantities of a dimension are in: "MPa", "N/mm"; "" of none.
+std::string unit_in(const UnitSystem &system, const Dimension &dimension);
+
 /// "a stress"; "of dimension force^2*length^-1" where it has no name.
 std::string described(const Dimension &dimension);
 

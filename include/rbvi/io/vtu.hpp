@@ -22,6 +22,7 @@ struct Grid {
   int per_cell = 3;       ///< 2 lines, 3 triangles, 4 tetrahedra, 6 and 10 quadratic ones
   std::vector<Field> of_nodes, of_cells, of_all;
   std::string scene = "";              ///< its name
+  std::string length = "m", stress = "Pa"; ///< what fields in m and in Pa are in, and points
   std::vector<std::string> contacts{}; ///< of its interfaces; of a grid of one, of that one
 };
 
