@@ -102,7 +102,7 @@ Vector forces_on_motions(const NodeLaws &laws, const Matrix &held, const Vector 
 
 Balance find_balance(Vector beta, const std::function<SpringState(const Vector &beta)> &lengths) {
   constexpr int most_solves = 100;
-  constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e12;
+  constexpr double tolerance = 1e-12, round_off = 1e-10, farthest = 1e10;
   // Changes of the excess, and jumps, over it.
   constexpr double constant = 1e-6, weak = 0.04, longest = 1e4;
   Balance result;
@@ -122,7 +122,7 @@ Balance find_balance(Vector beta, const std::function<SpringState(const Vector &
     // touches is much softer than they are, it does nearly so: there acceleration is tried first.
     const double change = last.size() > 0 ? (result.excess - last).norm() : size;
     const bool hardly = size > 0 && change <= weak * size;
-    bool flies = hardly && !(change > constant * size && size < 0.5 * tried);
+    bool flies = hardly && !(step == 1 && change > constant * size && size < 0.5 * tried);
     const double resolved =
         std::numeric_limits<double>::epsilon() * beta.norm(); // of lengths - beta
     result.converged = !flies && resolved <= round_off * state.scale &&
